@@ -1,0 +1,14 @@
+# Debian's libsystemc-dev has a pkg-config file but no CMake package: import it as stereotlm::systemc.
+# Its headers are SYSTEM, so that the project's warnings do not apply to them.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(SYSTEMC REQUIRED systemc>=2.3.4)
+find_path(SYSTEMC_INCLUDE_DIR systemc HINTS ${SYSTEMC_INCLUDE_DIRS} REQUIRED)
+find_library(SYSTEMC_LIBRARY systemc HINTS ${SYSTEMC_LIBRARY_DIRS} REQUIRED)
+find_package(Threads REQUIRED)
+
+add_library(stereotlm_systemc INTERFACE IMPORTED)
+add_library(stereotlm::systemc ALIAS stereotlm_systemc)
+target_include_directories(stereotlm_systemc SYSTEM INTERFACE ${SYSTEMC_INCLUDE_DIR})
+# Dynamic processes are not compiled in unless asked for; TLM's convenience sockets need them.
+target_compile_definitions(stereotlm_systemc INTERFACE SC_INCLUDE_DYNAMIC_PROCESSES)
+target_link_libraries(stereotlm_systemc INTERFACE ${SYSTEMC_LIBRARY} Threads::Threads)

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/kernels/column_filter.h"
+
+// What the stages of the FPGA hand to each other.
+namespace stereotlm::fpga {
+
+enum class Side : std::uint8_t { kLeft, kRight };
+
+// A turn of the sequence: the rectified pixel to fetch.
+struct Slot {
+  int column = 0;
+  int row = 0;
+  bool empty = false;   // outside the image: no access
+  sc_core::sc_time at;  // of the cycle, from now
+};
+
+// The source position of a rectified pixel, if it has one.
+struct TableEntry {
+  std::uint32_t entry = 0;  // contract 1.1; not valid for an empty slot
+};
+
+using kernels::MaskedPixel;
+using kernels::PixelColumn;
+
+// The window modules' outputs for one column.
+struct WindowSums {
+  const std::int32_t* sums = nullptr;  // padded lanes, valid during the push
+  int lanes = 0;
+  int candidates = 0;       // the first ones whose windows lie inside both images
+  bool left_valid = false;  // the table entry of the left pixel in the middle of the window
+};
+
+// Unit A's result for a right pixel; 255: none.
+struct RightMatch {
+  std::uint8_t disparity = 255;
+};
+
+// Unit B's result for a left pixel; 255: none.
+struct LeftMatch {
+  std::uint8_t disparity = 255;
+  bool left_valid = false;
+};
+
+struct Disparity {
+  std::uint8_t value = 255;
+};
+
+struct ResultWord {
+  std::uint32_t word = 0;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "models/fpga/core_config.h"
+
+namespace stereotlm::fpga {
+
+// How a frame runs through the core (contract section 2, "Slots" and "Matcher"): strips of columns of slots,
+// and how many columns a result waits behind the slots that it is made of.
+struct FrameGeometry {
+  explicit FrameGeometry(const CoreConfig& config)
+      : width(config.width),
+        height(config.height),
+        radius((config.window - 1) / 2),
+        filter_half(config.filter ? config.filter->half() : 0),
+        slots_per_column(config.fetch == Fetch::kColumn ? config.window : 1),
+        lead_strips(config.fetch == Fetch::kColumn ? std::max(0, filter_half - radius)
+                                                   : radius + filter_half),
+        strips(height + lead_strips),
+        first_row(config.fetch == Fetch::kColumn ? filter_half - radius - lead_strips : 0),
+        drain_columns(config.disparities - 1 + radius + filter_half),
+        slots(static_cast<std::uint64_t>(strips) * columns_per_strip() *
+              static_cast<std::uint64_t>(slots_per_column)),
+        drain_cycles(static_cast<std::uint64_t>(drain_columns) *
+                     static_cast<std::uint64_t>(slots_per_column)),
+        result_delay_columns(static_cast<std::uint64_t>(drain_columns) +
+                             static_cast<std::uint64_t>(lead_strips) * columns_per_strip()),
+        result_words(columns_per_strip() * static_cast<std::uint64_t>(height) / 4) {}
+
+  int width;
+  int height;
+  int radius;            // r
+  int filter_half;       // h
+  int slots_per_column;  // also the consume-cycles of a column of the drain
+  int lead_strips;       // strips before the one whose last column starts the first row of results
+  int strips;
+  int first_row;      // of the first slot; may be above the image. Each strip begins one row further down
+  int drain_columns;  // C_d
+  std::uint64_t slots;
+  std::uint64_t drain_cycles;
+  std::uint64_t result_delay_columns;  // C: pixel i leaves with column i + C
+  std::uint64_t result_words;
+
+ private:
+  std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
+};
+
+// Walks the slots of a frame in their order.
+class SlotCursor {
+ public:
+  SlotCursor() = default;
+  explicit SlotCursor(const FrameGeometry& geometry)
+      : width_(geometry.width),
+        height_(geometry.height),
+        slots_per_column_(geometry.slots_per_column),
+        row_(geometry.first_row),
+        left_(geometry.slots) {}
+
+  bool done() const { return left_ == 0; }
+  int column() const { return column_; }
+  int row() const { return row_; }  // may lie outside the image
+  // A slot outside the image makes no access, but takes its turn.
+  bool empty() const { return static_cast<unsigned>(row_) >= static_cast<unsigned>(height_); }
+
+  void advance() {
+    --left_;
+    ++row_;
+    if (++k_ < slots_per_column_) return;
+    row_ -= k_;
+    k_ = 0;
+    if (++column_ < width_) return;
+    column_ = 0;
+    ++row_;
+  }
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  int slots_per_column_ = 1;
+  int column_ = 0;
+  int k_ = 0;  // within the column
+  int row_ = 0;
+  std::uint64_t left_ = 0;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
+#include "models/fpga/frame_geometry.h"
+#include "models/kernels/column_filter.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// The filter of one side with its line memories (paper section 2.4; contract 1.2): pixels in, in slot order,
+// filtered columns out. Without a filter it only collects the column.
+class LogFilter : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t pixels = 0;   // consumed, those of the drain among them
+    std::uint64_t columns = 0;  // handed on
+  };
+
+  StreamOut<PixelColumn> columns_out{"columns_out"};
+
+ private:
+  void take(const MaskedPixel& pixel);
+
+ public:
+  StreamIn<MaskedPixel, LogFilter, &LogFilter::take> pixels_in{"pixels_in", this};
+
+  LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config);
+
+  void start_frame() { filter_.start_frame(first_row_); }
+  const Stats& stats() const { return stats_; }
+
+ private:
+  int first_row_;
+  kernels::ColumnFilter filter_;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

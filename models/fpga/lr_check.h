@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
+#include "models/kernels/lr_check.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// The left-right check (paper section 2.3; contract 1.4). For each column it takes unit A's match and unit
+// B's, in either order, and hands on the checked disparity of the left pixel D-1 columns back; nothing before
+// the first pixel of the frame has come that far.
+class LrCheck : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t answered = 0;
+    std::uint64_t invalid = 0;  // no match, inconsistent, or no table entry
+  };
+
+  StreamOut<Disparity> disparities_out{"disparities_out"};
+
+ private:
+  void take_right(const RightMatch& match);
+  void take_left(const LeftMatch& match);
+
+ public:
+  StreamIn<RightMatch, LrCheck, &LrCheck::take_right> right_in{"right_in", this};
+  StreamIn<LeftMatch, LrCheck, &LrCheck::take_left> left_in{"left_in", this};
+
+  LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config);
+
+  void start_frame();
+  const Stats& stats() const { return stats_; }
+
+ private:
+  void finish_column();
+
+  std::uint64_t columns_before_frame_;
+  std::uint64_t columns_to_skip_ = 0;
+  kernels::LrCheck check_;
+  RightMatch right_;
+  LeftMatch left_;
+  bool have_right_ = false;
+  bool have_left_ = false;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

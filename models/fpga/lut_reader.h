@@ -1,0 +1,52 @@
+#pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/fpga/beats.h"
+#include "models/memory/word_access.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// Reads the table entry of each slot of one side, at most one a cycle, and hands it to the pixel reader
+// (paper section 3.2). When a slot is taken is the control's decision: a slot that is not empty comes in the
+// cycle in which its access is granted.
+class LutReader : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t reads = 0;
+    std::uint64_t invalid_entries = 0;  // of these
+    std::uint64_t empty_slots = 0;
+    std::uint64_t errors = 0;  // refused accesses; they count as an entry that is not valid
+  };
+
+  tlm_utils::simple_initiator_socket<LutReader> port{"port"};
+  StreamOut<TableEntry> entries_out{"entries_out"};
+
+ private:
+  void take(const Slot& slot);
+
+ public:
+  StreamIn<Slot, LutReader, &LutReader::take> slots_in{"slots_in", this};
+
+  // `width`: of the image, in pixels.
+  LutReader(const sc_core::sc_module_name& name, int width);
+
+  // Byte address of the table on the port.
+  void start_frame(std::uint64_t table_address) { table_address_ = table_address; }
+  // Of the last slot taken.
+  bool entry_valid() const { return entry_valid_; }
+  const Stats& stats() const { return stats_; }
+
+ private:
+  std::uint64_t width_;
+  std::uint64_t table_address_ = 0;
+  memory::WordAccess access_;
+  bool entry_valid_ = false;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

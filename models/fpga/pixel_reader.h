@@ -1,0 +1,68 @@
+#pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
+
+#include <array>
+#include <cstdint>
+#include <systemc>
+
+#include "models/fpga/beats.h"
+#include "models/memory/word_access.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// Reads the source pixel of each slot of one side, at most one a cycle, in order, and holds it until the
+// matcher consumes it. With a table, entries arrive from the LUT reader and wait for handle(); without one,
+// slots come straight from the sequencer and are read at once. When either happens is the control's decision.
+class PixelReader : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t reads = 0;
+    std::uint64_t passed_slots = 0;  // empty, or without valid entry
+    std::uint64_t errors = 0;        // refused accesses; they read as 0
+  };
+
+  tlm_utils::simple_initiator_socket<PixelReader> port{"port"};
+  StreamOut<MaskedPixel> pixels_out{"pixels_out"};
+
+ private:
+  void store_entry(const TableEntry& entry);
+  void take(const Slot& slot);
+
+ public:
+  StreamIn<TableEntry, PixelReader, &PixelReader::store_entry> entries_in{"entries_in", this};
+  StreamIn<Slot, PixelReader, &PixelReader::take> slots_in{"slots_in", this};
+
+  // `width`: of the image, in pixels.
+  PixelReader(const sc_core::sc_module_name& name, int width);
+
+  // Byte address of the image on the port.
+  void start_frame(std::uint64_t image_address);
+  // Reads or passes the oldest entry that waits, in the cycle at `at` from now.
+  void handle(const sc_core::sc_time& at);
+  // The matcher consumes the oldest pixel.
+  void release();
+  // A cycle of the drain: a pixel that no result depends on.
+  void release_blank() { pixels_out->push(MaskedPixel{}); }
+  const Stats& stats() const { return stats_; }
+
+ private:
+  static constexpr std::size_t kRing = 64;  // the most slots in a lane
+
+  void read(std::uint64_t column, std::uint64_t row, const sc_core::sc_time& at);
+  void pass();
+
+  std::uint64_t width_;
+  std::uint64_t image_address_ = 0;
+  memory::WordAccess access_;
+  std::array<TableEntry, kRing> entries_{};
+  std::array<MaskedPixel, kRing> pixels_{};
+  std::size_t entries_stored_ = 0;  // all since the start of the frame, as are those below
+  std::size_t entries_handled_ = 0;
+  std::size_t pixels_stored_ = 0;
+  std::size_t pixels_released_ = 0;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

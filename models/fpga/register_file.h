@@ -1,0 +1,67 @@
+#pragma once
+
+#include <tlm_utils/simple_target_socket.h>
+
+#include <array>
+#include <cstdint>
+#include <systemc>
+#include <tlm>
+
+#include "models/fpga/register_map.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// The base registers as they stood at the start strobe: bank and first word, as in register_map.h.
+struct FrameStart {
+  std::uint32_t left_image = 0;
+  std::uint32_t right_image = 0;
+  std::uint32_t disparity = 0;
+  std::uint32_t left_lut = 0;
+  std::uint32_t right_lut = 0;
+};
+
+// The register file of register_map.h: start strobe, status, frame base addresses, done interrupt. Register
+// accesses take no time and no DMI. Errors, without effect: an address that is no register
+// TLM_ADDRESS_ERROR_RESPONSE, a length other than 4 or a streaming width below it TLM_BURST_ERROR_RESPONSE,
+// byte enables TLM_BYTE_ENABLE_ERROR_RESPONSE, a read of a write-only register, a write of a read-only one or
+// a command that does neither TLM_COMMAND_ERROR_RESPONSE. Debug transport reads.
+class RegisterFile : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t reads = 0;
+    std::uint64_t writes = 0;
+    std::uint64_t errors = 0;  // refused accesses
+  };
+
+  tlm_utils::simple_target_socket<RegisterFile> registers{"registers"};
+  sc_core::sc_out<bool> done{"done"};  // the interrupt: high from the end of a frame until it is acknowledged
+  StreamOut<FrameStart> start_out{"start_out"};
+
+  explicit RegisterFile(const sc_core::sc_module_name& name);
+
+  // The receiver of start_out refuses the strobe.
+  void refuse_start();
+  // The frame has ended; `access_error`: memory refused one of its accesses.
+  void finish_frame(std::uint64_t frame_cycles, bool access_error);
+  const Stats& stats() const { return stats_; }
+
+ private:
+  void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  unsigned debug(tlm::tlm_generic_payload& access);
+  tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
+  std::uint32_t read(std::uint64_t address) const;
+  void write(std::uint64_t address, std::uint32_t value);
+  void start();
+  void drive_done();
+
+  std::array<std::uint32_t, 5> bases_{};  // from kLeftImageBase on
+  bool busy_ = false;
+  bool done_ = false;
+  sc_core::sc_event done_changed_{"done_changed"};
+  bool error_ = false;
+  std::uint64_t frame_cycles_ = 0;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+
+// The registers of the FPGA core, 32 bit each, at byte addresses on its `registers` socket (ours: the paper
+// does not print its map).
+//
+// | address | name              | access | meaning |
+// |---------|-------------------|--------|-----------------------------------------------------------------------|
+// | 0x00    | kControl          | write  | bit 0: start strobe; bit 1: acknowledge, clears done and error |
+// | 0x04    | kStatus           | read   | bit 0: busy; bit 1: done, the interrupt is raised; bit 2: error |
+// | 0x08    | kFrameCyclesLow   | read   | frame_cycles of the last finished frame, bits 31..0 | | 0x0c    |
+// kFrameCyclesHigh  | read   | bits 63..32                                                           | | 0x10
+// | kLeftImageBase    | both   | where the next frame's buffers lie: bits 31..26 bank, 25..0 first word | |
+// 0x14    | kRightImageBase   | both   | | | 0x18    | kDisparityBase    | both   | | | 0x1c    |
+// kLeftLutBase      | both   |                                                                       | | 0x20
+// | kRightLutBase     | both   |                                                                       |
+//
+// The core takes the bases at the start strobe. A strobe while it is busy, or with a base in a bank that the
+// board does not have, is ignored and raises error, which stays until it is acknowledged; so does an access
+// of the running frame that memory refused. A write may acknowledge and start at once.
+namespace stereotlm::fpga::registers {
+
+inline constexpr std::uint64_t kControl = 0x00;
+inline constexpr std::uint64_t kStatus = 0x04;
+inline constexpr std::uint64_t kFrameCyclesLow = 0x08;
+inline constexpr std::uint64_t kFrameCyclesHigh = 0x0c;
+inline constexpr std::uint64_t kLeftImageBase = 0x10;
+inline constexpr std::uint64_t kRightImageBase = 0x14;
+inline constexpr std::uint64_t kDisparityBase = 0x18;
+inline constexpr std::uint64_t kLeftLutBase = 0x1c;
+inline constexpr std::uint64_t kRightLutBase = 0x20;
+inline constexpr std::uint64_t kEnd = 0x24;
+
+inline constexpr std::uint32_t kControlStart = 1U << 0U;
+inline constexpr std::uint32_t kControlAcknowledge = 1U << 1U;
+inline constexpr std::uint32_t kStatusBusy = 1U << 0U;
+inline constexpr std::uint32_t kStatusDone = 1U << 1U;
+inline constexpr std::uint32_t kStatusError = 1U << 2U;
+
+// The value of a base register.
+constexpr std::uint32_t base(std::uint32_t bank, std::uint32_t first_word) {
+  return bank << 26U | first_word;
+}
+// The byte address on the crossbar that it stands for.
+constexpr std::uint64_t base_address(std::uint32_t value) {
+  return static_cast<std::uint64_t>(value >> 26U) << 28U | (value & 0x03FF'FFFFULL) << 2U;
+}
+
+}  // namespace stereotlm::fpga::registers

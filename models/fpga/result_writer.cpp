@@ -1,0 +1,36 @@
+#include "models/fpga/result_writer.h"
+
+#include <algorithm>
+
+namespace stereotlm::fpga {
+
+ResultWriter::ResultWriter(const sc_core::sc_module_name& name, int fifo_words)
+    : sc_module(name), fifo_words_(static_cast<std::size_t>(fifo_words)) {}
+
+void ResultWriter::start_frame(std::uint64_t disparity_address) {
+  next_address_ = disparity_address;
+  stored_ = 0;
+  written_ = 0;
+}
+
+void ResultWriter::store(const ResultWord& word) {
+  if (stored_ - written_ == fifo_words_) {
+    SC_REPORT_ERROR("/stereotlm/result_writer", "a word arrives at a full queue");
+    return;
+  }
+  words_[stored_++ % kRing] = word.word;
+  stats_.most_queued_words = std::max<std::uint64_t>(stats_.most_queued_words, stored_ - written_);
+}
+
+void ResultWriter::write(const sc_core::sc_time& at) {
+  if (written_ == stored_) {
+    SC_REPORT_ERROR("/stereotlm/result_writer", "write: the queue is empty");
+    return;
+  }
+  sc_core::sc_time delay = at;
+  if (!access_.write(port, next_address_, words_[written_++ % kRing], delay)) ++stats_.errors;
+  ++stats_.writes;
+  next_address_ += 4;
+}
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
+
+#include <array>
+#include <cstdint>
+#include <systemc>
+
+#include "models/fpga/beats.h"
+#include "models/memory/word_access.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// The result queue and the port that writes it, word after word, to the disparity buffer. When a word is
+// written is the control's decision.
+class ResultWriter : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t writes = 0;
+    std::uint64_t most_queued_words = 0;
+    std::uint64_t errors = 0;  // refused accesses; their words are lost
+  };
+
+  tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};
+
+ private:
+  void store(const ResultWord& word);
+
+ public:
+  StreamIn<ResultWord, ResultWriter, &ResultWriter::store> words_in{"words_in", this};
+
+  // `fifo_words`: depth of the queue, 1..64.
+  ResultWriter(const sc_core::sc_module_name& name, int fifo_words);
+
+  // Byte address of the disparity buffer on the port.
+  void start_frame(std::uint64_t disparity_address);
+  // Writes the oldest word, in the cycle at `at` from now.
+  void write(const sc_core::sc_time& at);
+  const Stats& stats() const { return stats_; }
+
+ private:
+  static constexpr std::size_t kRing = 64;
+
+  std::size_t fifo_words_;
+  std::uint64_t next_address_ = 0;
+  memory::WordAccess access_;
+  std::array<std::uint32_t, kRing> words_{};
+  std::size_t stored_ = 0;  // since the start of the frame
+  std::size_t written_ = 0;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+#include <vector>
+
+#include "models/fpga/beats.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// The line memories of the `line_buffer` fetch for one side: they keep the last n-1 rows of filtered pixels,
+// so that one pixel in makes a column of n out. The memories are not cleared between frames.
+class RowBuffer : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t columns = 0;
+  };
+
+  StreamOut<PixelColumn> columns_out{"columns_out"};
+
+ private:
+  void take(const PixelColumn& pixel);
+
+ public:
+  StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
+
+  // `width`: of the image, in pixels; `window`: n.
+  RowBuffer(const sc_core::sc_module_name& name, int width, int window);
+
+  void start_frame() { column_ = 0; }
+  const Stats& stats() const { return stats_; }
+
+ private:
+  std::size_t newest_row_;  // n - 1
+  std::size_t column_ = 0;
+  std::vector<PixelColumn> columns_;  // [image column]: its last n pixels
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/fpga/beats.h"
+#include "models/kernels/select_min.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// Select-min unit A (paper section 3.3): the serial chain of comparators, right-based matching. Each column
+// of window sums in gives the match of the right pixel D-1 columns back.
+class SelectMinChain : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t columns = 0;
+    std::uint64_t matches = 0;  // right pixels that had a candidate
+  };
+
+  StreamOut<RightMatch> matches_out{"matches_out"};
+
+ private:
+  void take(const WindowSums& window);
+
+ public:
+  StreamIn<WindowSums, SelectMinChain, &SelectMinChain::take> sums_in{"sums_in", this};
+
+  // `disparities`: D.
+  SelectMinChain(const sc_core::sc_module_name& name, int disparities);
+
+  void start_frame() { chain_.start_frame(); }
+  const Stats& stats() const { return stats_; }
+
+ private:
+  kernels::SelectMinChain chain_;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

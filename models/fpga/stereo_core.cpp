@@ -1,0 +1,233 @@
+#include "models/fpga/stereo_core.h"
+
+#include <algorithm>
+#include <string>
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::Port;
+using memory::PortMask;
+
+// Cycles that the process runs at most before it lets the kernel look around.
+constexpr std::uint64_t kQuantumCycles = 8192;
+
+constexpr bool has(PortMask mask, Port port) { return (mask & memory::mask_of(port)) != 0; }
+
+}  // namespace
+
+StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder)
+    : sc_module(name),
+      banks("bank", config.memory.banks.size()),
+      config_(config),
+      clock_(config.core.clock_mhz),
+      control_(config.core) {
+  SC_HAS_PROCESS(StereoCore);
+  bind_memory(binder);
+  bind_streams();
+  SC_THREAD(run);
+}
+
+void StereoCore::bind_memory(Binder& binder) {
+  const auto bind = [this, &binder](InitiatorSocket& from, Port port) {
+    binder.bind(from, crossbar_.ports[memory::index_of(port)],
+                std::string(memory::name_of(port)) + "_to_crossbar");
+  };
+  if (config_.core.left_table) {
+    left_lut_ = std::make_unique<LutReader>("left_lut", config_.core.width);
+    bind(left_lut_->port, Port::kLeftLut);
+  }
+  if (config_.core.right_table) {
+    right_lut_ = std::make_unique<LutReader>("right_lut", config_.core.width);
+    bind(right_lut_->port, Port::kRightLut);
+  }
+  bind(left_pixel_.port, Port::kLeftPixel);
+  bind(right_pixel_.port, Port::kRightPixel);
+  bind(result_writer_.port, Port::kResult);
+  host.bind(crossbar_.ports[memory::index_of(Port::kHost)]);
+  for (std::size_t bank = 0; bank < banks.size(); ++bank) crossbar_.banks[bank].bind(banks[bank]);
+  registers.bind(register_file_.registers);
+  register_file_.done(done);
+  register_file_.start_out.bind(start_in_);
+}
+
+void StereoCore::bind_streams() {
+  if (left_lut_) {
+    sequencer_.left_out.bind(left_lut_->slots_in);
+    left_lut_->entries_out.bind(left_pixel_.entries_in);
+  } else {
+    sequencer_.left_out.bind(left_pixel_.slots_in);
+  }
+  if (right_lut_) {
+    sequencer_.right_out.bind(right_lut_->slots_in);
+    right_lut_->entries_out.bind(right_pixel_.entries_in);
+  } else {
+    sequencer_.right_out.bind(right_pixel_.slots_in);
+  }
+  left_pixel_.pixels_out.bind(left_filter_.pixels_in);
+  right_pixel_.pixels_out.bind(right_filter_.pixels_in);
+  if (config_.core.fetch == Fetch::kLineBuffer) {
+    left_rows_ = std::make_unique<RowBuffer>("left_rows", config_.core.width, config_.core.window);
+    right_rows_ = std::make_unique<RowBuffer>("right_rows", config_.core.width, config_.core.window);
+    left_filter_.columns_out.bind(left_rows_->columns_in);
+    right_filter_.columns_out.bind(right_rows_->columns_in);
+    left_rows_->columns_out.bind(sad_array_.left_in);
+    right_rows_->columns_out.bind(sad_array_.right_in);
+  } else {
+    left_filter_.columns_out.bind(sad_array_.left_in);
+    right_filter_.columns_out.bind(sad_array_.right_in);
+  }
+  sad_array_.chain_out.bind(select_min_chain_.sums_in);
+  sad_array_.tree_out.bind(select_min_tree_.sums_in);
+  select_min_chain_.matches_out.bind(lr_check_.right_in);
+  select_min_tree_.matches_out.bind(lr_check_.left_in);
+  lr_check_.disparities_out.bind(result_packer_.disparities_in);
+  result_packer_.words_out.bind(result_writer_.words_in);
+}
+
+bool StereoCore::has_bank(std::uint32_t base) const {
+  return memory::bank_of_address(registers::base_address(base)) < config_.memory.banks.size();
+}
+
+int StereoCore::latency_of(std::uint32_t base) const {
+  return memory::read_latency_cycles(
+      config_.memory.banks[memory::bank_of_address(registers::base_address(base))].kind);
+}
+
+void StereoCore::start_frame(const FrameStart& start) {
+  if (!has_bank(start.left_image) || !has_bank(start.right_image) || !has_bank(start.disparity) ||
+      (left_lut_ && !has_bank(start.left_lut)) || (right_lut_ && !has_bank(start.right_lut))) {
+    register_file_.refuse_start();
+    return;
+  }
+  const auto route = [this](Port port, std::uint32_t base, bool write) {
+    const std::uint64_t address = registers::base_address(base);
+    crossbar_.route(port, memory::bank_of_address(address), write);
+    return address;
+  };
+  FrameLatencies latencies;
+  sequencer_.start_frame();
+  if (left_lut_) {
+    left_lut_->start_frame(route(Port::kLeftLut, start.left_lut, false));
+    latencies.left_lut = latency_of(start.left_lut);
+  }
+  if (right_lut_) {
+    right_lut_->start_frame(route(Port::kRightLut, start.right_lut, false));
+    latencies.right_lut = latency_of(start.right_lut);
+  }
+  left_pixel_.start_frame(route(Port::kLeftPixel, start.left_image, false));
+  right_pixel_.start_frame(route(Port::kRightPixel, start.right_image, false));
+  result_writer_.start_frame(route(Port::kResult, start.disparity, true));
+  latencies.left_image = latency_of(start.left_image);
+  latencies.right_image = latency_of(start.right_image);
+  left_filter_.start_frame();
+  right_filter_.start_frame();
+  if (left_rows_) left_rows_->start_frame();
+  if (right_rows_) right_rows_->start_frame();
+  sad_array_.start_frame();
+  select_min_chain_.start_frame();
+  lr_check_.start_frame();
+  result_packer_.start_frame();
+  control_.start_frame(latencies);
+  errors_before_ = access_errors();
+
+  // Cycle 0 is the first that begins at or after the strobe.
+  state_ = State::kRunning;
+  cycle_ = std::max(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp())));
+  first_cycle_ = cycle_;
+  crossbar_.begin_counting(first_cycle_);
+  start_event_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void StereoCore::run() {
+  for (;;) {
+    // What happens at the time of an edge belongs to the cycle that begins there: let everybody else go
+    // first.
+    while (sc_core::sc_pending_activity_at_current_time()) wait(sc_core::SC_ZERO_TIME);
+    run_ahead();
+  }
+}
+
+// Runs the cycles that nothing from outside can come between, then waits for the next thing to do.
+void StereoCore::run_ahead() {
+  const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
+  const auto horizon_after = [now] { return now + Clock::to_ps(sc_core::sc_time_to_pending_activity()); };
+  std::uint64_t horizon = horizon_after();
+  cycle_ = std::max(cycle_, clock_.edge_at_or_after(now));
+  for (const std::uint64_t last = cycle_ + kQuantumCycles;; ++cycle_) {
+    const bool finishing = state_ == State::kFinishing;
+    if (state_ != State::kRunning && !crossbar_.request_pending()) {
+      // Nothing to step: sleep until a request or a start strobe comes, or the frame ends.
+      const std::uint64_t end = clock_.edge_ps(done_cycle_);
+      if (!finishing) {
+        wait(start_event_ | crossbar_.request_event());
+        return;
+      }
+      if (end > now) {
+        wait(Clock::to_time(end - now), crossbar_.request_event());
+        return;
+      }
+    }
+    const std::uint64_t edge = clock_.edge_ps(cycle_);
+    const bool ends = finishing && cycle_ == done_cycle_;
+    if (edge > now && (edge >= horizon || cycle_ >= last || ends)) {
+      wait(Clock::to_time(edge - now));
+      return;
+    }
+    if (ends) {
+      end_frame();
+      wait(sc_core::SC_ZERO_TIME);  // the host may start the next frame in this very cycle
+      return;
+    }
+    step(edge, now);
+    if (crossbar_.socket_requests() != 0) horizon = horizon_after();  // an answer may have set others going
+  }
+}
+
+void StereoCore::step(std::uint64_t edge_ps, std::uint64_t now_ps) {
+  if (state_ != State::kRunning) {
+    crossbar_.arbitrate(cycle_, edge_ps, 0);
+    return;
+  }
+  const CoreControl::Decision decision = control_.decide();
+  const PortMask granted = crossbar_.arbitrate(cycle_, edge_ps, decision.requests());
+  const auto moving = static_cast<PortMask>(granted | decision.passes());
+
+  const sc_core::sc_time at = Clock::to_time(edge_ps - now_ps);
+  if (has(moving, Port::kLeftLut)) sequencer_.issue(Side::kLeft, at);
+  if (has(moving, Port::kRightLut)) sequencer_.issue(Side::kRight, at);
+  if (has(moving, Port::kLeftPixel)) left_lut_ ? left_pixel_.handle(at) : sequencer_.issue(Side::kLeft, at);
+  if (has(moving, Port::kRightPixel))
+    right_lut_ ? right_pixel_.handle(at) : sequencer_.issue(Side::kRight, at);
+  if (has(granted, Port::kResult)) result_writer_.write(at);
+  if (decision.consume) {
+    if (decision.drain) {
+      left_pixel_.release_blank();
+      right_pixel_.release_blank();
+    } else {
+      left_pixel_.release();
+      right_pixel_.release();
+    }
+  }
+  control_.commit(decision, granted, left_lut_ && left_lut_->entry_valid(),
+                  right_lut_ && right_lut_->entry_valid());
+  control_.count_host(has(crossbar_.socket_requests(), Port::kHost), has(granted, Port::kHost));
+  if (control_.frame_done()) {
+    state_ = State::kFinishing;
+    done_cycle_ = cycle_ + 1 + static_cast<std::uint64_t>(config_.core.pipeline_latency_cycles);
+    crossbar_.end_counting(cycle_ + 1);
+  }
+}
+
+void StereoCore::end_frame() {
+  state_ = State::kIdle;
+  frame_cycles_.push_back(done_cycle_ - first_cycle_);
+  register_file_.finish_frame(frame_cycles_.back(), access_errors() != errors_before_);
+}
+
+std::uint64_t StereoCore::access_errors() const {
+  return (left_lut_ ? left_lut_->stats().errors : 0) + (right_lut_ ? right_lut_->stats().errors : 0) +
+         left_pixel_.stats().errors + right_pixel_.stats().errors + result_writer_.stats().errors;
+}
+
+}  // namespace stereotlm::fpga

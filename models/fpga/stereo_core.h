@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "models/binder.h"
+#include "models/clock.h"
+#include "models/fpga/core_config.h"
+#include "models/fpga/core_control.h"
+#include "models/fpga/log_filter.h"
+#include "models/fpga/lr_check.h"
+#include "models/fpga/lut_reader.h"
+#include "models/fpga/pixel_reader.h"
+#include "models/fpga/register_file.h"
+#include "models/fpga/result_packer.h"
+#include "models/fpga/result_writer.h"
+#include "models/fpga/row_buffer.h"
+#include "models/fpga/sad_array.h"
+#include "models/fpga/select_min_chain.h"
+#include "models/fpga/select_min_tree.h"
+#include "models/fpga/sequencer.h"
+#include "models/memory/crossbar.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+struct StereoCoreConfig {
+  CoreConfig core;
+  memory::CrossbarConfig memory;
+};
+
+// The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the register
+// file, and the one clocked process that steps them. Stages exchange data through streams, reach memory
+// through the crossbar's sockets, and move when CoreControl says so.
+//
+// The process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
+// have seen is missed; every access carries its own time. It sleeps while no frame runs and no request waits
+// at the host port.
+class StereoCore : public sc_core::sc_module {
+ public:
+  tlm::tlm_target_socket<32> registers{"registers"};  // register_map.h
+  tlm::tlm_target_socket<32> host{"host"};            // the crossbar's host port: nb_transport, debug, DMI
+  sc_core::sc_vector<tlm::tlm_initiator_socket<32>> banks;  // in the order of the configuration
+  sc_core::sc_out<bool> done{"done"};                       // interrupt
+
+  // `binder` binds the stages to the crossbar. Throws std::invalid_argument if the configuration has
+  // problems.
+  StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
+
+  const CoreControl& control() const { return control_; }
+  const memory::Crossbar& crossbar() const { return crossbar_; }
+  // frame_cycles of every finished frame.
+  const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  // The cycle of the clock that comes next.
+  std::uint64_t cycle() const { return cycle_; }
+
+  // The stages, for their statistics. A LUT reader or row buffer that the configuration does not need is
+  // null.
+  const Sequencer& sequencer() const { return sequencer_; }
+  const LutReader* left_lut_reader() const { return left_lut_.get(); }
+  const LutReader* right_lut_reader() const { return right_lut_.get(); }
+  const PixelReader& left_pixel_reader() const { return left_pixel_; }
+  const PixelReader& right_pixel_reader() const { return right_pixel_; }
+  const LogFilter& left_filter() const { return left_filter_; }
+  const LogFilter& right_filter() const { return right_filter_; }
+  const RowBuffer* left_row_buffer() const { return left_rows_.get(); }
+  const RowBuffer* right_row_buffer() const { return right_rows_.get(); }
+  const SadArray& sad_array() const { return sad_array_; }
+  const SelectMinChain& select_min_chain() const { return select_min_chain_; }
+  const SelectMinTree& select_min_tree() const { return select_min_tree_; }
+  const LrCheck& lr_check() const { return lr_check_; }
+  const ResultPacker& result_packer() const { return result_packer_; }
+  const ResultWriter& result_writer() const { return result_writer_; }
+  const RegisterFile& register_file() const { return register_file_; }
+
+ private:
+  enum class State { kIdle, kRunning, kFinishing };
+
+  void bind_memory(Binder& binder);
+  void bind_streams();
+  void start_frame(const FrameStart& start);
+  bool has_bank(std::uint32_t base) const;
+  int latency_of(std::uint32_t base) const;
+
+  void run();
+  void run_ahead();
+  void step(std::uint64_t edge_ps, std::uint64_t now_ps);
+  void end_frame();
+  std::uint64_t access_errors() const;
+
+  StereoCoreConfig config_;
+  Clock clock_;
+  CoreControl control_;
+  memory::Crossbar crossbar_{"crossbar", config_.memory};
+  RegisterFile register_file_{"register_file"};
+  Sequencer sequencer_{"sequencer", control_.geometry()};
+  std::unique_ptr<LutReader> left_lut_;
+  std::unique_ptr<LutReader> right_lut_;
+  PixelReader left_pixel_{"left_pixel", config_.core.width};
+  PixelReader right_pixel_{"right_pixel", config_.core.width};
+  LogFilter left_filter_{"left_filter", config_.core};
+  LogFilter right_filter_{"right_filter", config_.core};
+  std::unique_ptr<RowBuffer> left_rows_;
+  std::unique_ptr<RowBuffer> right_rows_;
+  SadArray sad_array_{"sad_array", config_.core};
+  SelectMinChain select_min_chain_{"select_min_chain", config_.core.disparities};
+  SelectMinTree select_min_tree_{"select_min_tree"};
+  LrCheck lr_check_{"lr_check", config_.core};
+  ResultPacker result_packer_{"result_packer"};
+  ResultWriter result_writer_{"result_writer", config_.core.result_fifo_words};
+  StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
+
+  State state_ = State::kIdle;
+  std::uint64_t cycle_ = 0;        // of the clock, the next to run
+  std::uint64_t first_cycle_ = 0;  // of the running frame
+  std::uint64_t done_cycle_ = 0;   // the first after the finishing frame
+  std::uint64_t errors_before_ = 0;
+  sc_core::sc_event start_event_{"start_event"};
+  std::vector<std::uint64_t> frame_cycles_;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,135 @@
+#include "models/host/ideal_host.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "models/fpga/register_map.h"
+
+namespace stereotlm::host {
+namespace {
+
+namespace registers_of = fpga::registers;
+
+constexpr char kReport[] = "/stereotlm/ideal_host";
+
+std::uint32_t in_turn(const std::vector<std::uint32_t>& list, std::uint64_t frame) {
+  return list[frame % list.size()];
+}
+
+std::vector<std::uint32_t> entries_of(const kernels::RectificationTable* table, bool expected,
+                                      const char* side) {
+  if ((table != nullptr) != expected) {
+    throw std::invalid_argument(std::string(side) +
+                                (expected ? " table missing" : " table given, but no buffer"));
+  }
+  return table != nullptr ? table->entries : std::vector<std::uint32_t>{};
+}
+
+}  // namespace
+
+IdealHost::IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
+                     const kernels::RectificationTable* left_table,
+                     const kernels::RectificationTable* right_table, FrameSource& source, FrameSink& sink)
+    : sc_module(name),
+      config_(config),
+      left_entries_(entries_of(left_table, config.left_lut.has_value(), "left")),
+      right_entries_(entries_of(right_table, config.right_lut.has_value(), "right")),
+      source_(source),
+      sink_(sink),
+      disparity_(config.width, config.height) {
+  SC_HAS_PROCESS(IdealHost);
+  if (config.left_images.empty() || config.right_images.empty() || config.disparities.empty()) {
+    throw std::invalid_argument(std::string(this->name()) + ": a list of buffers is empty");
+  }
+  SC_THREAD(run);
+}
+
+void IdealHost::run() {
+  load_tables();
+  while (!finished()) {
+    if (!start_frame()) return;
+    wait(done.posedge_event());
+    if (!end_frame()) return;
+  }
+}
+
+void IdealHost::load_tables() {
+  const auto load_table = [this](std::optional<std::uint32_t> base, const std::vector<std::uint32_t>& entries,
+                                 std::uint64_t base_register) {
+    if (!base) return;
+    preload(*base, entries.data(), entries.size() * sizeof(std::uint32_t));
+    write_register(base_register, *base);
+  };
+  load_table(config_.left_lut, left_entries_, registers_of::kLeftLutBase);
+  load_table(config_.right_lut, right_entries_, registers_of::kRightLutBase);
+}
+
+bool IdealHost::start_frame() {
+  const StereoPair& pair = source_.pair(frames_done_);
+  for (const kernels::GrayImage* image : {&pair.left, &pair.right}) {
+    if (image->width == config_.width && image->height == config_.height) continue;
+    SC_REPORT_ERROR(
+        kReport, ("frame " + std::to_string(frames_done_) + ": picture of " + std::to_string(image->width) +
+                  " x " + std::to_string(image->height) + " for images of " + std::to_string(config_.width) +
+                  " x " + std::to_string(config_.height))
+                     .c_str());
+    return false;
+  }
+  const std::uint32_t left = in_turn(config_.left_images, frames_done_);
+  const std::uint32_t right = in_turn(config_.right_images, frames_done_);
+  preload(left, pair.left.pixels.data(), pair.left.pixels.size());
+  preload(right, pair.right.pixels.data(), pair.right.pixels.size());
+  write_register(registers_of::kLeftImageBase, left);
+  write_register(registers_of::kRightImageBase, right);
+  write_register(registers_of::kDisparityBase, in_turn(config_.disparities, frames_done_));
+  write_register(registers_of::kControl, registers_of::kControlAcknowledge | registers_of::kControlStart);
+  return true;
+}
+
+bool IdealHost::end_frame() {
+  sc_core::sc_time delay;
+  access_.read(registers, registers_of::kStatus, delay);
+  if ((access_.word() & registers_of::kStatusError) != 0) {
+    SC_REPORT_ERROR(kReport,
+                    ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
+    return false;
+  }
+  read_back(in_turn(config_.disparities, frames_done_), disparity_.pixels.data(), disparity_.pixels.size());
+  const std::uint64_t frame = frames_done_++;
+  sink_.take(frame, disparity_);
+  return true;
+}
+
+void IdealHost::write_register(std::uint64_t address, std::uint32_t value) {
+  sc_core::sc_time delay;
+  if (!access_.write(registers, address, value, delay)) {
+    SC_REPORT_ERROR(kReport, ("register " + std::to_string(address) + " refuses a write").c_str());
+  }
+}
+
+void IdealHost::preload(std::uint32_t base, const void* bytes, std::size_t size) {
+  // A write does not change its data.
+  debug(tlm::TLM_WRITE_COMMAND, base, const_cast<unsigned char*>(static_cast<const unsigned char*>(bytes)),
+        size);
+}
+
+void IdealHost::read_back(std::uint32_t base, void* bytes, std::size_t size) {
+  debug(tlm::TLM_READ_COMMAND, base, static_cast<unsigned char*>(bytes), size);
+}
+
+void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size) {
+  tlm::tlm_generic_payload access;
+  access.set_command(command);
+  access.set_address(registers_of::base_address(base));
+  access.set_data_ptr(bytes);
+  access.set_data_length(static_cast<unsigned>(size));
+  access.set_streaming_width(static_cast<unsigned>(size));
+  const unsigned moved = memory->transport_dbg(access);
+  if (moved != size) {
+    SC_REPORT_ERROR(kReport, ("the buffer at base " + std::to_string(base) + " takes " +
+                              std::to_string(moved) + " of " + std::to_string(size) + " bytes")
+                                 .c_str());
+  }
+}
+
+}  // namespace stereotlm::host

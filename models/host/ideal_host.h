@@ -1,0 +1,86 @@
+#pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
+
+#include <cstdint>
+#include <optional>
+#include <systemc>
+#include <vector>
+
+#include "models/kernels/gray_image.h"
+#include "models/kernels/rectification_table.h"
+#include "models/memory/word_access.h"
+
+namespace stereotlm::host {
+
+struct StereoPair {
+  kernels::GrayImage left;
+  kernels::GrayImage right;
+};
+
+// Where the pictures come from and the results go.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  // The pair that frame number `frame` works on, of the configured size.
+  virtual const StereoPair& pair(std::uint64_t frame) = 0;
+};
+
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+  // Frame number `frame` has ended; called at its last cycle's end.
+  virtual void take(std::uint64_t frame, const kernels::GrayImage& disparity) = 0;
+};
+
+struct IdealHostConfig {
+  int width = 0;   // pixels
+  int height = 0;  // pixels
+  std::uint64_t frames = 1;
+  // Values of the base registers (fpga/register_map.h); a list is used in turn, frame by frame.
+  std::vector<std::uint32_t> left_images;
+  std::vector<std::uint32_t> right_images;
+  std::vector<std::uint32_t> disparities;
+  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table
+  std::optional<std::uint32_t> right_lut;
+};
+
+// A host without a computer around it (contract section 2, `preloaded`): tables are in their banks before
+// cycle 0, pictures appear in their buffers and results leave them in zero time, and each frame starts when
+// the last one ends. It drives the core's registers, and reaches the memory by debug transport.
+class IdealHost : public sc_core::sc_module {
+ public:
+  tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};
+  tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
+  sc_core::sc_in<bool> done{"done"};
+
+  // The tables are copied; null for a side without one. `source` and `sink` outlive the host.
+  IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
+            const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
+            FrameSource& source, FrameSink& sink);
+
+  std::uint64_t frames_done() const { return frames_done_; }
+  bool finished() const { return frames_done_ == config_.frames; }
+
+ private:
+  void run();
+  void load_tables();
+  bool start_frame();  // false, like end_frame(): an error has been reported, the host stops
+  bool end_frame();
+  void write_register(std::uint64_t address, std::uint32_t value);
+  // Moves whole buffers; reports an error if the memory does not take them.
+  void preload(std::uint32_t base, const void* bytes, std::size_t size);
+  void read_back(std::uint32_t base, void* bytes, std::size_t size);
+  void debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size);
+
+  IdealHostConfig config_;
+  std::vector<std::uint32_t> left_entries_;
+  std::vector<std::uint32_t> right_entries_;
+  FrameSource& source_;
+  FrameSink& sink_;
+  memory::WordAccess access_;
+  kernels::GrayImage disparity_;
+  std::uint64_t frames_done_ = 0;
+};
+
+}  // namespace stereotlm::host

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace stereotlm::kernels {
+
+// An integer convolution kernel of contract 1.2: F = clamp(128 + floor(S / 2^shift), 0, 255), S the
+// correlation of the kernel with the image, coordinates clamped to the image.
+struct FilterKernel {
+  int size = 0;              // m: rows and columns, odd, 3..31
+  std::vector<int> weights;  // size * size, rows from j = -h (top), in each i = -h (left) first; each
+                             // -32768..32767, sum 0
+  int shift = 0;             // 0..31
+
+  int half() const { return (size - 1) / 2; }  // h
+  int weight(int column, int row) const {      // 0..size-1 each, from the top left
+    return weights[static_cast<std::size_t>(row * size + column)];
+  }
+  friend bool operator==(const FilterKernel& a, const FilterKernel& b) {
+    return a.size == b.size && a.weights == b.weights && a.shift == b.shift;
+  }
+};
+
+// The preset `log7`: a Laplacian of Gaussian, 7x7, sigma 1.0, shift 6.
+FilterKernel log7();
+
+// Every broken rule as `field = value: rule`; empty if the kernel is usable.
+std::vector<std::string> problems(const FilterKernel& kernel);
+
+}  // namespace stereotlm::kernels

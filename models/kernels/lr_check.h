@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+
+#include "models/kernels/words.h"
+
+namespace stereotlm::kernels {
+
+// Contract 1.4: whether the left-based disparity of a left pixel survives, given the right-based disparity of
+// the right pixel that it points to. Without tolerance (`off`) every valid one does.
+inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_based,
+                                  std::optional<int> tolerance) {
+  if (left_based == kInvalidDisparity) return false;
+  if (!tolerance) return true;
+  return right_based != kInvalidDisparity && std::abs(int{left_based} - int{right_based}) <= *tolerance;
+}
+
+// The check as it runs behind the select-min units, one column after the other. Unit A is disparities-1
+// columns behind unit B, so that both belong to the same column once the left-based results have waited that
+// long.
+class LrCheck {
+ public:
+  LrCheck(int disparities, std::optional<int> tolerance) : delay_(disparities - 1), tolerance_(tolerance) {}
+
+  void start_frame() { time_ = 0; }
+
+  // One column: unit B's disparity of the left pixel of this column, whether that pixel's own table entry is
+  // valid, and unit A's disparity of the right pixel disparities-1 columns back. Returns the checked
+  // disparity of the left pixel disparities-1 columns back, kInvalidDisparity if it fails.
+  std::uint8_t step(std::uint8_t left_based, bool left_valid, std::uint8_t right_based) {
+    left_[time_ % kRing] = left_valid ? left_based : kInvalidDisparity;
+    right_[time_ % kRing] = right_based;
+    std::uint8_t out = kInvalidDisparity;
+    if (time_ >= static_cast<std::uint64_t>(delay_)) {
+      const std::uint8_t d = left_[(time_ - static_cast<std::uint64_t>(delay_)) % kRing];
+      // Right pixel x - d was d columns before right pixel x, which is the newest.
+      if (d != kInvalidDisparity && left_right_consistent(d, right_[(time_ - d) % kRing], tolerance_))
+        out = d;
+    }
+    ++time_;
+    return out;
+  }
+
+ private:
+  static constexpr std::uint64_t kRing = 256;  // at least the largest disparity + 1
+  int delay_;
+  std::optional<int> tolerance_;
+  std::uint64_t time_ = 0;
+  std::array<std::uint8_t, kRing> left_{};
+  std::array<std::uint8_t, kRing> right_{};
+};
+
+}  // namespace stereotlm::kernels

@@ -1,0 +1,74 @@
+#include "models/kernels/rectification_table.h"
+
+#include <cstddef>
+#include <cstdio>
+#include <stdexcept>
+
+namespace stereotlm::kernels {
+namespace {
+
+constexpr std::size_t kMostProblems = 10;
+
+std::size_t pixel_count(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+std::string entry_name(const RectificationTable& table, std::size_t index) {
+  const auto width = static_cast<std::size_t>(table.width);
+  char text[64];
+  std::snprintf(text, sizeof text, "entry (%zu, %zu) = 0x%08x", index % width, index / width,
+                table.entries[index]);
+  return text;
+}
+
+}  // namespace
+
+RectificationTable identity_table(int width, int height) {
+  RectificationTable table{width, height, {}};
+  table.entries.reserve(pixel_count(width, height));
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) table.entries.push_back(make_entry(column, row));
+  }
+  return table;
+}
+
+std::vector<std::string> problems(const RectificationTable& table) {
+  if (table.width < 1 || table.width > 2048 || table.height < 1 || table.height > 2048) {
+    return {"table size = " + std::to_string(table.width) + " x " + std::to_string(table.height) +
+            ": must be 1..2048 each"};
+  }
+  if (table.entries.size() != pixel_count(table.width, table.height)) {
+    return {"table entries = " + std::to_string(table.entries.size()) +
+            ": must be width * height = " + std::to_string(pixel_count(table.width, table.height))};
+  }
+  std::vector<std::string> found;
+  for (std::size_t index = 0; index < table.entries.size() && found.size() < kMostProblems; ++index) {
+    const std::uint32_t entry = table.entries[index];
+    if ((entry & kEntryUnusedBits) != 0) {
+      found.push_back(entry_name(table, index) + ": bits 30..27 and 15..11 must be 0");
+    } else if (entry_is_valid(entry) &&
+               (entry_column(entry) >= table.width || entry_row(entry) >= table.height)) {
+      found.push_back(entry_name(table, index) + ": a valid source position must lie inside the " +
+                      std::to_string(table.width) + " x " + std::to_string(table.height) + " image");
+    }
+  }
+  return found;
+}
+
+GrayImage rectify(const GrayImage& source, const RectificationTable& table) {
+  if (source.width != table.width || source.height != table.height) {
+    throw std::invalid_argument("rectify: image of " + std::to_string(source.width) + " x " +
+                                std::to_string(source.height) + " with a table of " +
+                                std::to_string(table.width) + " x " + std::to_string(table.height));
+  }
+  if (const auto found = problems(table); !found.empty())
+    throw std::invalid_argument("rectify: " + found.front());
+  GrayImage rectified(table.width, table.height);
+  for (std::size_t index = 0; index < table.entries.size(); ++index) {
+    const std::uint32_t entry = table.entries[index];
+    if (entry_is_valid(entry)) rectified.pixels[index] = source.at(entry_column(entry), entry_row(entry));
+  }
+  return rectified;
+}
+
+}  // namespace stereotlm::kernels

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "models/kernels/gray_image.h"
+
+namespace stereotlm::kernels {
+
+// One 32-bit entry per rectified pixel (contract 1.1): bit 31 valid, bits 26..16 source row, bits 10..0
+// source column, all other bits 0.
+inline constexpr std::uint32_t kEntryValid = 0x8000'0000U;
+inline constexpr std::uint32_t kEntryUnusedBits = 0x7800'F800U;
+
+constexpr std::uint32_t make_entry(int column, int row) {
+  return kEntryValid | static_cast<std::uint32_t>(row) << 16U | static_cast<std::uint32_t>(column);
+}
+constexpr bool entry_is_valid(std::uint32_t entry) { return (entry & kEntryValid) != 0; }
+constexpr int entry_row(std::uint32_t entry) { return static_cast<int>(entry >> 16U & 0x7FFU); }
+constexpr int entry_column(std::uint32_t entry) { return static_cast<int>(entry & 0x7FFU); }
+
+// The look-up table of one camera: entries row-major, width x height of the rectified image, which is also
+// the size of the source.
+struct RectificationTable {
+  int width = 0;   // pixels
+  int height = 0;  // pixels
+  std::vector<std::uint32_t> entries;
+};
+
+// Every pixel is its own source: the board without calibration.
+RectificationTable identity_table(int width, int height);
+
+// Every broken rule, as `entry (column, row) = 0x...: rule`, at most the first ten; empty if the table can be
+// loaded.
+std::vector<std::string> problems(const RectificationTable& table);
+
+// P(u, v) of contract 1.1: the source pixel, or 0 where the entry is not valid. Throws std::invalid_argument
+// if the sizes differ or the table has problems.
+GrayImage rectify(const GrayImage& source, const RectificationTable& table);
+
+}  // namespace stereotlm::kernels

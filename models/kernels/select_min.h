@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/kernels/sad_columns.h"
+#include "models/kernels/vector_loops.h"
+
+namespace stereotlm::kernels {
+
+// Select-min unit B (paper section 3.3): a tree of comparators. The disparity of the smallest of the first
+// `candidates` window sums, the first of equal ones; kInvalidDisparity if there is none. The sums of one
+// column belong to one left pixel: left-based matching.
+std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes);
+
+// Select-min unit A: a chain of `disparities` compare-and-shift modules. Each column, module d compares what
+// module d-1 held a column ago with the sum of candidate d and keeps the smaller, the former of equal ones;
+// so the minimum that leaves the chain belongs to the right pixel disparities-1 columns back: right-based
+// matching.
+class SelectMinChain {
+ public:
+  explicit SelectMinChain(int disparities);
+
+  void start_frame();
+  // One column: the first `candidates` window sums take part. Returns the disparity for the right pixel
+  // disparities-1 columns back, kInvalidDisparity if it had no candidate.
+  std::uint8_t step(const std::int32_t* window_sums, int candidates);
+
+ private:
+  int disparities_;
+  int lanes_;
+  LaneArray<std::int32_t> held_;  // [kBefore + d]: what module d holds; before it, nothing
+  LaneArray<std::int32_t> next_;
+};
+
+}  // namespace stereotlm::kernels

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/kernels/filter_kernel.h"
+#include "models/kernels/gray_image.h"
+#include "models/kernels/rectification_table.h"
+
+namespace stereotlm::kernels {
+
+// The whole of contract section 1 on whole images, by the same kernels that the modules of the FPGA run,
+// without memories and time. Disparity images hold 255 where there is none.
+struct StereoConfig {
+  int window = 7;        // n: odd, 3..31
+  int disparities = 80;  // D: 1..254
+  std::optional<FilterKernel> filter = log7();
+  std::optional<int> lr_tolerance = 0;  // 0..253; nullopt: no check
+};
+
+// Every broken rule as `field = value: rule`.
+std::vector<std::string> problems(const StereoConfig& config);
+
+// F of contract 1.2. Throws std::invalid_argument if the kernel has problems.
+GrayImage filter_image(const GrayImage& image, const FilterKernel& kernel);
+
+struct Matches {
+  GrayImage right_based;  // dR
+  GrayImage left_based;   // dL
+};
+// Contract 1.3 on two filtered images of one size.
+Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities);
+
+// Rectify, filter, match, check. A table that is null does not exist. Throws std::invalid_argument if the
+// images or tables differ in size, or the configuration or a table has problems.
+GrayImage disparity_image(const GrayImage& left, const GrayImage& right, const RectificationTable* left_table,
+                          const RectificationTable* right_table, const StereoConfig& config);
+
+}  // namespace stereotlm::kernels

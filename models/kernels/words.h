@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace stereotlm::kernels {
+
+// Image and disparity buffers hold four pixels to a 32-bit word, the lowest column in the lowest byte
+// (contract 1.5).
+inline constexpr int kPixelsPerWord = 4;
+inline constexpr std::uint8_t kInvalidDisparity = 255;
+
+constexpr std::uint8_t pixel_of_word(std::uint32_t word, std::size_t pixel_index) {
+  return static_cast<std::uint8_t>(word >> (8U * static_cast<unsigned>(pixel_index % kPixelsPerWord)));
+}
+
+constexpr std::uint32_t insert_pixel(std::uint32_t word, std::size_t pixel_index, std::uint8_t pixel) {
+  const unsigned shift = 8U * static_cast<unsigned>(pixel_index % kPixelsPerWord);
+  return (word & ~(0xFFU << shift)) | static_cast<std::uint32_t>(pixel) << shift;
+}
+
+}  // namespace stereotlm::kernels

@@ -1,0 +1,64 @@
+#include "models/memory/bank_arbiter.h"
+
+namespace stereotlm::memory {
+namespace {
+
+std::size_t place_of(const ArbiterConfig& config, PortMask port) {
+  std::size_t place = 0;
+  while (mask_of(config.priority[place]) != port) ++place;
+  return place;
+}
+
+}  // namespace
+
+BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
+    : turnaround_cycles_(static_cast<std::uint64_t>(turnaround_cycles)) {
+  const bool rotates = config.policy == ArbitrationPolicy::kRoundRobin;
+  for (std::size_t place = 0; place < kPortCount; ++place) {
+    for (std::size_t requests = 1; requests < kMasks; ++requests) {
+      std::size_t step = 0;
+      while ((requests & mask_of(config.priority[(place + step) % kPortCount])) == 0) ++step;
+      Winner& winner = winners_[place][requests];
+      winner.port = mask_of(config.priority[(place + step) % kPortCount]);
+      winner.next_place = rotates
+                              ? static_cast<std::uint8_t>((place_of(config, winner.port) + 1) % kPortCount)
+                              : std::uint8_t{0};
+    }
+  }
+}
+
+void BankArbiter::begin_counting(std::uint64_t first_cycle) {
+  counting_ = true;
+  next_uncounted_cycle_ = first_cycle;
+}
+
+void BankArbiter::end_counting(std::uint64_t end_cycle) {
+  idle_cycles_ += end_cycle - next_uncounted_cycle_;
+  counting_ = false;
+}
+
+ArbiterStats BankArbiter::stats() const {
+  ArbiterStats stats;
+  stats.idle_cycles = idle_cycles_;
+  for (std::size_t place = 0; place < kPortCount; ++place) {
+    for (std::size_t requests = 1; requests < kMasks; ++requests) {
+      const auto& outcomes = outcomes_[place][requests];
+      const std::uint64_t granted = outcomes[kRead] + outcomes[kWrite];
+      const PortMask winner = winners_[place][requests].port;
+      stats.reads += outcomes[kRead];
+      stats.writes += outcomes[kWrite];
+      stats.turnaround_cycles += outcomes[kTurning];
+      if ((requests & (requests - 1)) != 0) stats.contended_cycles += granted + outcomes[kTurning];
+      const auto winner_index = static_cast<std::size_t>(__builtin_ctz(winner));
+      stats.grants[winner_index] += granted;
+      for (std::size_t port = 0; port < kPortCount; ++port) {
+        if ((requests >> port & 1U) == 0) continue;
+        stats.blame[port][ArbiterStats::kTurnaround] += outcomes[kTurning];
+        if (port != winner_index) stats.blame[port][winner_index] += granted;
+      }
+    }
+  }
+  return stats;
+}
+
+}  // namespace stereotlm::memory

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::memory {
+
+// One bit per port, bit index_of(port).
+using PortMask = std::uint8_t;
+constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << index_of(port)); }
+
+// What one arbiter counted. The blame of a stalled port goes to the port that was granted, or to the
+// turnaround.
+struct ArbiterStats {
+  static constexpr std::size_t kTurnaround = kPortCount;  // column of `blame`
+
+  std::uint64_t reads = 0;              // cycles with a read granted
+  std::uint64_t writes = 0;             // cycles with a write granted
+  std::uint64_t turnaround_cycles = 0;  // cycles in which the winner was refused
+  std::uint64_t idle_cycles = 0;        // cycles without request
+  std::uint64_t contended_cycles = 0;   // cycles with two or more requests
+  std::array<std::uint64_t, kPortCount> grants{};
+  std::array<std::array<std::uint64_t, kPortCount + 1>, kPortCount> blame{};  // [victim][by]
+};
+
+// Decides each cycle which port may access one bank (contract section 2). The winner is chosen first; if the
+// bank is still turning round for the winner's direction nobody is granted, and the round-robin place does
+// not move. Plain C++, no SystemC: the single description of arbitration, whatever steps it.
+class BankArbiter {
+ public:
+  // `turnaround_cycles`: 0 for a bank that needs none.
+  BankArbiter(const ArbiterConfig& config, int turnaround_cycles);
+
+  // One cycle with at least one request: `requests`, and of these the writes. Cycles must increase. Returns
+  // the port that is granted as a mask of one bit, 0 if the bank is turning round.
+  PortMask arbitrate(std::uint64_t cycle, PortMask requests, PortMask writes) {
+    const Winner winner = winners_[place_][requests];
+    const bool write = (writes & winner.port) != 0;
+    const bool turning = turnaround_cycles_ != 0 && accessed_ && write != last_was_write_ &&
+                         cycle - last_access_cycle_ <= turnaround_cycles_;
+    if (counting_) {
+      idle_cycles_ += cycle - next_uncounted_cycle_;
+      next_uncounted_cycle_ = cycle + 1;
+      ++outcomes_[place_][requests][turning ? kTurning : write ? kWrite : kRead];
+    } else if (!turning) {
+      ++uncounted_accesses_;
+    }
+    if (turning) return 0;
+    place_ = winner.next_place;
+    accessed_ = true;
+    last_was_write_ = write;
+    last_access_cycle_ = cycle;
+    return winner.port;
+  }
+
+  // Only the cycles from `first_cycle` on, up to but not including `end_cycle`, are counted in stats(); of
+  // the others only the accesses, in uncounted_accesses().
+  void begin_counting(std::uint64_t first_cycle);
+  void end_counting(std::uint64_t end_cycle);
+
+  ArbiterStats stats() const;
+  std::uint64_t uncounted_accesses() const { return uncounted_accesses_; }
+
+ private:
+  enum Outcome : std::size_t { kRead, kWrite, kTurning, kOutcomeCount };
+  static constexpr std::size_t kMasks = std::size_t{1} << kPortCount;
+  struct Winner {
+    PortMask port = 0;
+    std::uint8_t next_place = 0;
+  };
+
+  std::array<std::array<Winner, kMasks>, kPortCount> winners_{};  // [round-robin place][requests]
+  std::uint8_t place_ = 0;
+  std::uint64_t turnaround_cycles_;
+  bool accessed_ = false;
+  bool last_was_write_ = false;
+  std::uint64_t last_access_cycle_ = 0;
+  bool counting_ = false;
+  std::uint64_t next_uncounted_cycle_ = 0;  // the first cycle not yet in the statistics
+  std::uint64_t idle_cycles_ = 0;
+  // How often each thing happened: with the winners it says all that stats() reports.
+  std::array<std::array<std::array<std::uint64_t, kOutcomeCount>, kMasks>, kPortCount> outcomes_{};
+  std::uint64_t uncounted_accesses_ = 0;
+};
+
+}  // namespace stereotlm::memory

@@ -1,0 +1,180 @@
+#include "models/memory/crossbar.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "models/clock.h"
+
+namespace stereotlm::memory {
+namespace {
+
+constexpr std::size_t lowest(PortMask mask) { return static_cast<std::size_t>(__builtin_ctz(mask)); }
+constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kBankAddressBits) - 1;
+constexpr std::uint64_t bank_base(std::uint64_t address) { return address & ~kOffsetMask; }
+
+}  // namespace
+
+Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
+    : sc_module(name),
+      ports("port", kPortCount),
+      banks("bank", config.banks.size()),
+      bank_targets_(config.banks.size(), nullptr),
+      request_event_("request") {
+  auto found = problems(config.arbiter);
+  if (config.banks.empty() || config.banks.size() > 64) {
+    found.push_back("banks = " + std::to_string(config.banks.size()) + ": must be 1..64");
+  }
+  for (const SsramBankConfig& bank : config.banks) {
+    for (const std::string& problem : problems(bank)) found.push_back(problem);
+  }
+  if (!found.empty()) throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    targets_.emplace_back(*this, port);
+    ports[port].bind(targets_.back());
+  }
+  for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
+    arbiters_.emplace_back(config.arbiter, config.banks[bank].turnaround_cycles);
+    banks[bank].register_invalidate_direct_mem_ptr(this, &Crossbar::invalidate_dmi, static_cast<int>(bank));
+  }
+}
+
+void Crossbar::end_of_elaboration() {
+  for (std::size_t bank = 0; bank < banks.size(); ++bank) bank_targets_[bank] = banks[bank].operator->();
+}
+
+void Crossbar::route(Port port, std::size_t bank, bool write) {
+  routes_[index_of(port)] = {bank, write};
+  routed_ = static_cast<PortMask>(routed_ | mask_of(port));
+  writes_ = 0;
+  used_bank_count_ = 0;
+  for (std::size_t i = 0; i < kPortCount; ++i) {
+    if ((routed_ >> i & 1U) == 0) continue;
+    writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
+    std::size_t used = 0;
+    while (used < used_bank_count_ && used_banks_[used].bank != routes_[i].bank) ++used;
+    if (used == used_bank_count_) used_banks_[used_bank_count_++] = {routes_[i].bank, 0};
+    used_banks_[used].ports = static_cast<PortMask>(used_banks_[used].ports | 1U << i);
+  }
+}
+
+PortMask Crossbar::ready_socket_requests(std::uint64_t edge_ps) const {
+  PortMask ready = 0;
+  for (PortMask left = pending_; left != 0; left = static_cast<PortMask>(left & (left - 1))) {
+    const std::size_t port = lowest(left);
+    if (waiting_[port].from_ps <= edge_ps) ready = static_cast<PortMask>(ready | 1U << port);
+  }
+  return ready;
+}
+
+PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests) {
+  socket_requests_ = pending_ == 0 ? PortMask{0} : ready_socket_requests(edge_ps);
+  const auto all = static_cast<PortMask>(requests | socket_requests_);
+  PortMask granted = 0;
+  for (std::size_t i = 0; i < used_bank_count_; ++i) {
+    const auto asking = static_cast<PortMask>(all & used_banks_[i].ports);
+    if (asking == 0) continue;
+    granted =
+        static_cast<PortMask>(granted | arbiters_[used_banks_[i].bank].arbitrate(cycle, asking, writes_));
+  }
+  granted_ = static_cast<PortMask>(granted & ~socket_requests_);
+  auto served = static_cast<PortMask>(granted & socket_requests_);
+  for (; served != 0; served = static_cast<PortMask>(served & (served - 1))) respond(lowest(served), edge_ps);
+  return granted;
+}
+
+void Crossbar::begin_counting(std::uint64_t first_cycle) {
+  for (BankArbiter& arbiter : arbiters_) arbiter.begin_counting(first_cycle);
+}
+
+void Crossbar::end_counting(std::uint64_t end_cycle) {
+  for (BankArbiter& arbiter : arbiters_) arbiter.end_counting(end_cycle);
+}
+
+void Crossbar::access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+  const std::uint64_t address = access.get_address();
+  access.set_address(address & kOffsetMask);
+  bank_targets_[bank_of_address(address)]->b_transport(access, delay);
+  access.set_address(address);
+}
+
+void Crossbar::transport(std::size_t port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+  const Route& route = routes_[port];
+  if ((granted_ >> port & 1U) != 0 && bank_of_address(access.get_address()) == route.bank &&
+      access.is_write() == route.write) {
+    granted_ = static_cast<PortMask>(granted_ & ~(1U << port));
+    access_bank(access, delay);
+    return;
+  }
+  access.set_response_status(has_bank(access.get_address()) ? tlm::TLM_GENERIC_ERROR_RESPONSE
+                                                            : tlm::TLM_ADDRESS_ERROR_RESPONSE);
+}
+
+tlm::tlm_sync_enum Crossbar::forward(std::size_t port, tlm::tlm_generic_payload& access,
+                                     tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+  Waiting& waiting = waiting_[port];
+  if (phase == tlm::END_RESP && waiting.responding) {
+    waiting.responding = false;
+    waiting.access = nullptr;
+    return tlm::TLM_COMPLETED;
+  }
+  if (phase != tlm::BEGIN_REQ || waiting.access != nullptr) {
+    SC_REPORT_ERROR("/stereotlm/crossbar",
+                    (std::string(name()) + ": port " + kPortNames[port] + ": phase out of order").c_str());
+    return tlm::TLM_ACCEPTED;
+  }
+  if (!has_bank(access.get_address())) {
+    access.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    return tlm::TLM_COMPLETED;
+  }
+  waiting.access = &access;
+  waiting.from_ps = Clock::to_ps(sc_core::sc_time_stamp() + delay);
+  access.acquire();
+  pending_ = static_cast<PortMask>(pending_ | 1U << port);
+  route(static_cast<Port>(port), bank_of_address(access.get_address()), access.is_write());
+  request_event_.notify(delay);
+  return tlm::TLM_ACCEPTED;
+}
+
+void Crossbar::respond(std::size_t port, std::uint64_t edge_ps) {
+  Waiting& waiting = waiting_[port];
+  tlm::tlm_generic_payload& access = *waiting.access;
+  pending_ = static_cast<PortMask>(pending_ & ~(1U << port));
+  sc_core::sc_time delay = Clock::to_time(edge_ps) - sc_core::sc_time_stamp();
+  access_bank(access, delay);
+  waiting.responding = true;
+  tlm::tlm_phase phase = tlm::BEGIN_RESP;
+  const tlm::tlm_sync_enum answer = ports[port]->nb_transport_bw(access, phase, delay);
+  if (answer == tlm::TLM_COMPLETED || (answer == tlm::TLM_UPDATED && phase == tlm::END_RESP)) {
+    waiting.responding = false;
+    waiting.access = nullptr;
+  }
+  access.release();
+}
+
+unsigned Crossbar::debug(tlm::tlm_generic_payload& access) {
+  const std::uint64_t address = access.get_address();
+  if (!has_bank(address)) return 0;
+  access.set_address(address & kOffsetMask);
+  const unsigned length = banks[bank_of_address(address)]->transport_dbg(access);
+  access.set_address(address);
+  return length;
+}
+
+bool Crossbar::grant_dmi(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
+  const std::uint64_t address = access.get_address();
+  if (!has_bank(address)) return false;
+  access.set_address(address & kOffsetMask);
+  const bool granted = banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi);
+  access.set_address(address);
+  dmi.set_start_address(dmi.get_start_address() + bank_base(address));
+  dmi.set_end_address(dmi.get_end_address() + bank_base(address));
+  return granted;
+}
+
+void Crossbar::invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end) {
+  const std::uint64_t base = static_cast<std::uint64_t>(bank) << kBankAddressBits;
+  for (std::size_t port = 0; port < kPortCount; ++port)
+    ports[port]->invalidate_direct_mem_ptr(start + base, end + base);
+}
+
+}  // namespace stereotlm::memory

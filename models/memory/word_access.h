@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+#include <tlm>
+
+namespace stereotlm::memory {
+
+// A 32-bit access that an initiator makes again and again: one transaction object, set up once.
+class WordAccess {
+ public:
+  WordAccess() {
+    access_.set_data_ptr(reinterpret_cast<unsigned char*>(&word_));
+    access_.set_data_length(4);
+    access_.set_streaming_width(4);
+    access_.set_byte_enable_ptr(nullptr);
+    access_.set_byte_enable_length(0);
+  }
+  WordAccess(const WordAccess&) = delete;
+  WordAccess& operator=(const WordAccess&) = delete;
+
+  // `delay`: the time of the access, from now; grows by what the target takes. False if it was refused:
+  // status() says why, and word() is 0 after a read.
+  template <class Socket>
+  bool read(Socket& socket, std::uint64_t address, sc_core::sc_time& delay) {
+    word_ = 0;
+    return transport(socket, tlm::TLM_READ_COMMAND, address, delay);
+  }
+  template <class Socket>
+  bool write(Socket& socket, std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {
+    word_ = word;
+    return transport(socket, tlm::TLM_WRITE_COMMAND, address, delay);
+  }
+  std::uint32_t word() const { return word_; }
+  tlm::tlm_response_status status() const { return access_.get_response_status(); }
+
+ private:
+  template <class Socket>
+  bool transport(Socket& socket, tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {
+    access_.set_command(command);
+    access_.set_address(address);
+    access_.set_dmi_allowed(false);
+    access_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+    socket->b_transport(access_, delay);
+    return access_.is_response_ok();
+  }
+
+  std::uint32_t word_ = 0;
+  tlm::tlm_generic_payload access_;
+};
+
+}  // namespace stereotlm::memory

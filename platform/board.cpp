@@ -1,0 +1,36 @@
+#include "platform/board.h"
+
+#include <stdexcept>
+
+namespace stereotlm::platform {
+namespace {
+
+const BoardConfig& checked(const BoardConfig& config) {
+  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+  return config;
+}
+
+memory::SsramBankConfig bank_config(const BoardConfig& board, const BankConfig& bank) {
+  return {static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles, board.fpga.clock_mhz};
+}
+
+fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board) {
+  fpga::StereoCoreConfig config{core_config(board), {board.fpga.arbiter, {}}};
+  for (const BankConfig& bank : board.banks) config.memory.banks.push_back(bank_config(board, bank));
+  return config;
+}
+
+}  // namespace
+
+Board::Board(const sc_core::sc_module_name& name, const BoardConfig& config, Binder& binder)
+    : sc_module(name), core("core", stereo_core_config(checked(config)), binder) {
+  banks.init(config.banks.size(), [&config](const char* /*numbered*/, std::size_t bank) {
+    return new memory::SsramBank(("ssram_" + config.banks[bank].name).c_str(),
+                                 bank_config(config, config.banks[bank]));
+  });
+  for (std::size_t bank = 0; bank < banks.size(); ++bank) {
+    binder.bind(core.banks[bank], banks[bank].port, "crossbar_to_" + config.banks[bank].name);
+  }
+}
+
+}  // namespace stereotlm::platform

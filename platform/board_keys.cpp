@@ -1,0 +1,283 @@
+#include "platform/board_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "platform/yaml_tree.h"
+
+namespace stereotlm::platform {
+namespace {
+
+template <auto... kMembers>
+auto& member(BoardConfig& board) {
+  return (board.*....*kMembers);
+}
+
+template <auto... kMembers>
+int get_enum(const BoardConfig& board) {
+  return static_cast<int>((board.*....*kMembers));
+}
+
+template <auto... kMembers>
+void set_enum(BoardConfig& board, int index) {
+  auto& field = (board.*....*kMembers);
+  field = static_cast<std::remove_reference_t<decltype(field)>>(index);
+}
+
+Key integer(const char* path, const char* meaning, const char* unit, IntegerRule rule,
+            int& (*field)(BoardConfig&)) {
+  return {path, meaning, unit, IntegerKey{rule, field}, rule.text()};
+}
+
+Key decimal(const char* path, const char* meaning, const char* unit, double min, double max,
+            double& (*field)(BoardConfig&)) {
+  return {path, meaning, unit, DecimalKey{min, max, field}, fmt::format("{}..{}", min, max)};
+}
+
+template <auto... kMembers>
+Key word(const char* path, const char* meaning, std::vector<std::string> words) {
+  std::string text = listed(words);
+  return {path, meaning, "", WordKey{std::move(words), get_enum<kMembers...>, set_enum<kMembers...>}, text};
+}
+
+Key other(const char* path, const char* meaning, const char* unit, std::string text) {
+  return {path, meaning, unit, OtherKey{}, std::move(text)};
+}
+
+template <std::size_t kSize>
+std::vector<std::string> names(const std::array<const char*, kSize>& list) {
+  return {list.begin(), list.end()};
+}
+
+Key device() {
+  const std::vector<std::string> known = {"xc2v6000"};
+  return {"fpga.device", "the FPGA, for its resources", "",
+          WordKey{known, [](const BoardConfig& board) { return board.fpga.device == "xc2v6000" ? 0 : -1; },
+                  [](BoardConfig& board, int) { board.fpga.device = "xc2v6000"; }},
+          listed(known)};
+}
+
+std::vector<Key> make_keys() {
+  using B = BoardConfig;
+  const std::string list_rule = "a bank, or a list of 1 to 3 banks";
+  const std::string image_rule = list_rule + "; left_image and right_image equally long";
+  const std::string table_rule = "a bank or none";
+  const std::string kinds = listed(names(memory::kBankKindNames));
+  const std::string turnaround_rule =
+      kTurnaroundRule.text() + "; where the kind is sync_burst, and only there";
+  Key trigger_words =
+      integer("capture.fifo_trigger_words", "words in the FIFO at which it asks for the PCI bus", "words",
+              {1, 4096}, member<&B::capture, &CaptureConfig::fifo_trigger_words>);
+  trigger_words.rule_text = "1..fifo_words";
+  return {
+      other("name", "the board's name, as results give it", "",
+            "a text of one or more characters without control characters; quoted if it could be read as "
+            "a number, a truth value or null"),
+      integer("image.width", "width of the images", "pixels", {4, 2048, 4},
+              member<&B::image, &ImageConfig::width>),
+      integer("image.height", "height of the images", "pixels", {1, 2048},
+              member<&B::image, &ImageConfig::height>),
+      decimal("cameras.frame_rate_hz", "frame rate of both cameras", "Hz", 0.1, 1000,
+              member<&B::cameras, &CamerasConfig::frame_rate_hz>),
+      word<&B::cameras, &CamerasConfig::trigger>(
+          "cameras.trigger", "whether frames follow a frame clock, or begin when triggered",
+          {"free_running", "on_demand"}),
+      word<&B::capture, &CaptureConfig::destination>(
+          "capture.destination", "where capture writes: the FPGA board, or a ring in host memory",
+          {"board", "host_memory"}),
+      integer("capture.host_frames", "pairs in the ring in host memory", "pairs", {1, 64},
+              member<&B::capture, &CaptureConfig::host_frames>),
+      integer("capture.fifo_words", "FIFO of a capture board", "words", {1, 4096},
+              member<&B::capture, &CaptureConfig::fifo_words>),
+      trigger_words,
+      decimal("pci.clock_mhz", "clock of the PCI bus", "MHz", 1, 1000,
+              member<&B::pci, &PciConfig::clock_mhz>),
+      integer("pci.latency_timer_clocks", "latency timer of every PCI master", "clocks", {0, 255},
+              member<&B::pci, &PciConfig::latency_timer_clocks>),
+      integer("pci.bridge_wait_clocks", "wait clocks of the bridge as a PCI target", "clocks", {0, 255},
+              member<&B::pci, &PciConfig::bridge_wait_clocks>),
+      integer("pci.memory_wait_clocks", "wait clocks of host memory as a PCI target", "clocks", {0, 255},
+              member<&B::pci, &PciConfig::memory_wait_clocks>),
+      decimal("bridge.local_clock_mhz", "clock of the bridge's local bus", "MHz", 1, 1000,
+              member<&B::bridge, &BridgeConfig::local_clock_mhz>),
+      integer("bridge.dma_burst_words", "longest burst of a DMA channel", "words", {1, 1024},
+              member<&B::bridge, &BridgeConfig::dma_burst_words>),
+      integer("bridge.posted_words", "posted writes that the bridge can hold", "words", {1, 4096},
+              member<&B::bridge, &BridgeConfig::posted_words>),
+      device(),
+      decimal("fpga.clock_mhz", "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000,
+              member<&B::fpga, &FpgaConfig::clock_mhz>),
+      word<&B::fpga, &FpgaConfig::arbiter, &memory::ArbiterConfig::policy>(
+          "fpga.arbitration", "how a bank picks one of the ports that request it",
+          {"fixed_priority", "round_robin"}),
+      other("fpga.priority", "the ports, highest priority first; the search order of round_robin", "",
+            fmt::format("a list that names each of the six ports once: {}",
+                        fmt::join(memory::kPortNames, ", "))),
+      integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
+              {1, 64}, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
+      integer("fpga.result_fifo_words", "queue of result words before the result port", "words", {1, 64},
+              member<&B::fpga, &FpgaConfig::result_fifo_words>),
+      integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
+              "cycles", {0, 1024}, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
+      other("ssram.default.words", "depth of a bank that gives none of its own", "words",
+            kBankWordsRule.text()),
+      other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
+      other("ssram.default.turnaround_cycles", "turnaround of a sync_burst bank that gives none of its own",
+            "cycles", turnaround_rule),
+      other("ssram.banks.NAME.words", "depth of the bank NAME", "words", kBankWordsRule.text()),
+      other("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds),
+      other("ssram.banks.NAME.turnaround_cycles",
+            "cycles lost when the bank NAME changes between reads and writes", "cycles", turnaround_rule),
+      other("allocation.left_image", "banks of the left input buffers, used in turn", "", image_rule),
+      other("allocation.right_image", "banks of the right input buffers, used in turn", "", image_rule),
+      other("allocation.disparity", "banks of the result buffers, used in turn", "", list_rule),
+      other("allocation.left_lut", "bank of the left rectification table", "", table_rule),
+      other("allocation.right_lut", "bank of the right rectification table", "", table_rule),
+      integer("matcher.window", "rows and columns of the matching window", "pixels", {3, 31, 2},
+              member<&B::matcher, &MatcherConfig::window>),
+      integer("matcher.disparities", "number of candidate disparities", "pixels", {1, 254},
+              member<&B::matcher, &MatcherConfig::disparities>),
+      other("matcher.filter", "filter before matching", "", "none, log7 or a map of kernel, shift"),
+      other("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
+            "a square list of lists, " + kKernelSizeRule.text() + " rows, entries " +
+                kKernelEntryRule.text() + ", sum 0"),
+      other("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
+            kShiftRule.text()),
+      word<&B::matcher, &MatcherConfig::fetch>(
+          "matcher.fetch", "how often a pixel is read: in every column of its window, or once",
+          {"column", "line_buffer"}),
+      other("matcher.lr_tolerance", "difference that the left-right check tolerates", "pixels",
+            kLrToleranceRule.text() + " or off"),
+  };
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  constexpr std::size_t kLongest = 200;  // a longer word is near to nothing
+  a = a.substr(0, kLongest);
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j - 1] + 1, row[j] + 1, changed});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+}  // namespace
+
+std::string IntegerRule::text() const {
+  std::string out = fmt::format("{}..{}", min, max);
+  if (step == 2 && min % 2 != 0) out += ", odd";
+  if (step > 1 && min % step == 0) out += fmt::format(", a multiple of {}", step);
+  return out;
+}
+
+const std::vector<Key>& board_keys() {
+  static const std::vector<Key> table = make_keys();
+  return table;
+}
+
+const Key& board_key(std::string_view path) {
+  for (const Key& key : board_keys()) {
+    if (key.path == path) return key;
+  }
+  throw std::out_of_range(fmt::format("{}: not a key of a board", path));
+}
+
+std::vector<std::string> child_keys(std::string_view path) {
+  const std::string prefix = path.empty() ? "" : std::string(path) + '.';
+  std::vector<std::string> children;
+  for (const Key& key : board_keys()) {
+    if (key.path.compare(0, prefix.size(), prefix) != 0) continue;
+    std::string child = key.path.substr(prefix.size(), key.path.find('.', prefix.size()) - prefix.size());
+    if (children.empty() || children.back() != child) children.push_back(std::move(child));
+  }
+  return children;
+}
+
+std::string rule_text(std::string_view path) {
+  for (const Key& key : board_keys()) {
+    if (key.path == path) return key.rule_text;
+  }
+  if (path == "ssram.banks") return fmt::format("a map of 1..{} banks", kMaximumBanks);
+  return fmt::format("a map of {}", fmt::join(child_keys(path), ", "));
+}
+
+std::string schema_path(const std::string& path) {
+  const std::string banks = "ssram.banks.";
+  if (path.compare(0, banks.size(), banks) != 0) return path;
+  const std::size_t end = path.find('.', banks.size());
+  return banks + "NAME" + (end == std::string::npos ? "" : path.substr(end));
+}
+
+std::string nearest_path(const std::string& path) {
+  const std::string schema = schema_path(path);
+  std::string best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  const auto offer = [&](const std::string& known) {
+    // The right key in the wrong place costs less than most wrong keys in the right place.
+    const std::size_t moved = edit_distance(last_part(schema), last_part(known)) + 2;
+    const std::size_t distance = std::min(edit_distance(schema, known), moved);
+    if (distance < best_distance) {
+      best = known;
+      best_distance = distance;
+    }
+  };
+  for (const Key& key : board_keys()) {
+    for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
+      offer(key.path.substr(0, dot));
+    }
+    offer(key.path);
+  }
+  const std::string name = "ssram.banks.NAME";
+  if (schema.compare(0, name.size(), name) == 0 && best.compare(0, name.size(), name) == 0) {
+    const std::size_t begin = name.size() - 4;
+    best = path.substr(0, path.find('.', begin)) + best.substr(name.size());
+  }
+  return best;
+}
+
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
+  const auto nearest = std::min_element(words.begin(), words.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(word, a) < edit_distance(word, b);
+  });
+  return nearest == words.end() ? "" : *nearest;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out += i + 1 == words.size() ? " or " : ", ";
+    out += words[i];
+  }
+  return out;
+}
+
+bool is_bank_name(std::string_view name) {
+  const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  return !name.empty() && letter(name[0]) && name != "none" &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-'; });
+}
+
+bool is_board_name(std::string_view name) {
+  const bool printable = std::none_of(
+      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  return !name.empty() && printable && is_utf8(name);
+}
+
+}  // namespace stereotlm::platform

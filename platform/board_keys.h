@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "platform/board_config.h"
+
+namespace stereotlm::platform {
+
+// What a board file may hold: every key with its rule, once. The reader, the writer, the checks of a
+// BoardConfig and the `keys` command all work from this table.
+struct IntegerRule {
+  std::int64_t min;
+  std::int64_t max;
+  std::int64_t step = 1;  // allowed: min, min + step, ..
+
+  bool allows(std::int64_t value) const { return value >= min && value <= max && (value - min) % step == 0; }
+  std::string text() const;  // "4..2048, a multiple of 4"
+};
+
+struct IntegerKey {
+  IntegerRule rule;
+  int& (*field)(BoardConfig&);
+};
+
+struct DecimalKey {
+  double min;
+  double max;
+  double& (*field)(BoardConfig&);
+
+  bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
+};
+
+// One of a few words, by its index. `get` returns a value outside the list if the board's is none of them.
+struct WordKey {
+  std::vector<std::string> words;
+  int (*get)(const BoardConfig&);
+  void (*set)(BoardConfig&, int);
+};
+
+// A key with code of its own in the reader and the writer.
+struct OtherKey {};
+
+struct Key {
+  std::string path;     // dotted; NAME stands for the name of a bank
+  std::string meaning;  // one line
+  std::string unit;     // empty: none
+  std::variant<IntegerKey, DecimalKey, WordKey, OtherKey> rule;
+  std::string rule_text;  // the range or the allowed values
+};
+
+// In the order in which boards are written.
+const std::vector<Key>& board_keys();
+const Key& board_key(std::string_view path);  // throws std::out_of_range
+
+// The names of the keys directly below a path ("" is the top), in order; empty below a single value.
+std::vector<std::string> child_keys(std::string_view path);
+
+// The rule of a key, or for a map what it holds: "a map of width, height".
+std::string rule_text(std::string_view path);
+
+// The known path nearest to one that is not known. Below `ssram.banks` any name of a bank is known.
+std::string nearest_path(const std::string& path);
+
+// The nearest of `words` by edit distance, the first of equals; empty if there are none.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+
+// `path` with NAME for the name of a bank: `ssram.banks.bank0.words` is `ssram.banks.NAME.words`.
+std::string schema_path(const std::string& path);
+
+// "a, b or c".
+std::string listed(const std::vector<std::string>& words);
+
+inline constexpr IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
+inline constexpr IntegerRule kTurnaroundRule{1, 16};
+inline constexpr IntegerRule kKernelSizeRule{3, 31, 2};
+inline constexpr IntegerRule kKernelEntryRule{-32768, 32767};
+inline constexpr IntegerRule kShiftRule{0, 31};
+inline constexpr IntegerRule kLrToleranceRule{0, 253};
+inline constexpr std::size_t kMaximumBanks = 64;
+inline constexpr std::size_t kMaximumBuffers = 3;  // of an image or disparity list
+inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
+
+bool is_bank_name(std::string_view name);
+bool is_board_name(std::string_view name);  // UTF-8, not empty, without control characters
+
+}  // namespace stereotlm::platform

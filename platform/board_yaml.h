@@ -1,0 +1,57 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/board_config.h"
+
+namespace stereotlm::platform {
+
+// One thing wrong with a board.
+struct Diagnostic {
+  std::string place;  // `file:line:column`, `--set path`, or a file or preset as a whole
+  std::string text;   // `full.path = value: rule`, `full.path: missing: rule`, or a rule alone
+};
+
+// Everything wrong with a board, in the order of its file, then of the `--set` options. what() has one line
+// for each: `place: text`.
+class BoardError : public std::runtime_error {
+ public:
+  explicit BoardError(std::vector<Diagnostic> diagnostics);
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+
+ private:
+  std::vector<Diagnostic> diagnostics_;
+};
+
+// The board of contract section 4. `board` is the name of a preset, or the path of a board file if it has a
+// `/` or ends in `.yaml`. `sets` are `path=value` pairs: each value is one YAML flow value and replaces the
+// whole value at its path of the board with all presets put in, in order; what is not there yet is added
+// (also a bank). Checked once at the end. Throws BoardError.
+BoardConfig load_board(const std::string& board, const std::vector<std::string>& sets = {});
+
+// The board in full, without `extends`; load_board() reads it back to an equal BoardConfig. `ssram.default`
+// is the first bank, the other banks give what differs. Throws std::invalid_argument if the board has
+// problems().
+std::string to_yaml(const BoardConfig& board);
+
+// The boards that are compiled in, `fpl2003` first.
+std::vector<std::string> preset_names();
+
+// The file of a preset, as it was written. Throws std::out_of_range for an unknown name.
+std::string_view preset_text(std::string_view name);
+
+// One key of a board file. A bank's keys stand under `ssram.banks.NAME`.
+struct KeyInfo {
+  std::string path;
+  std::string meaning;
+  std::string unit;   // empty: none
+  std::string range;  // or the allowed values
+};
+
+// All keys, `extends` first, then in the order in which boards are written.
+std::vector<KeyInfo> keys();
+
+}  // namespace stereotlm::platform

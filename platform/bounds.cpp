@@ -1,0 +1,151 @@
+#include "platform/bounds.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+
+#include "models/fpga/frame_geometry.h"
+
+namespace stereotlm::platform {
+namespace {
+
+using kernels::RectificationTable;
+
+// How often each side's ports access memory in a frame.
+struct Accesses {
+  std::uint64_t lut = 0;
+  std::uint64_t pixel = 0;
+};
+
+// How many slots fetch each row of the image, per column.
+std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) {
+  std::vector<std::uint64_t> fetches(static_cast<std::size_t>(geometry.height));
+  for (int strip = 0; strip < geometry.strips; ++strip) {
+    for (int k = 0; k < geometry.slots_per_column; ++k) {
+      const int row = geometry.first_row + strip + k;
+      if (row >= 0 && row < geometry.height) ++fetches[static_cast<std::size_t>(row)];
+    }
+  }
+  return fetches;
+}
+
+Accesses accesses_of(const fpga::FrameGeometry& geometry, const std::optional<RectificationTable>& table) {
+  const auto width = static_cast<std::uint64_t>(geometry.width);
+  const std::vector<std::uint64_t> fetches = fetches_of_rows(geometry);
+  Accesses accesses;
+  for (std::size_t row = 0; row < fetches.size(); ++row) {
+    if (!table) {
+      accesses.pixel += fetches[row] * width;
+      continue;
+    }
+    accesses.lut += fetches[row] * width;
+    const auto first = table->entries.begin() + static_cast<std::ptrdiff_t>(row * width);
+    const auto valid =
+        std::count_if(first, first + static_cast<std::ptrdiff_t>(width), &kernels::entry_is_valid);
+    accesses.pixel += fetches[row] * static_cast<std::uint64_t>(valid);
+  }
+  return accesses;
+}
+
+int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
+  return list[frame % list.size()].bank;
+}
+
+}  // namespace
+
+std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame) {
+  const fpga::FrameGeometry geometry(core_config(board));
+  const BufferLayout layout = layout_buffers(board);
+  const auto latency = [&board](int bank) {
+    return static_cast<std::uint64_t>(
+        memory::read_latency_cycles(board.banks[static_cast<std::size_t>(bank)].kind));
+  };
+  struct SideOfFrame {
+    const char* name;
+    int image;
+    std::optional<int> lut;
+    Accesses accesses;
+  };
+  const auto lut_bank = [](const std::optional<BufferPlace>& place) {
+    return place ? std::optional<int>(place->bank) : std::nullopt;
+  };
+  const std::array<SideOfFrame, 2> sides = {
+      SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut),
+                  accesses_of(geometry, tables.left)},
+      SideOfFrame{"right", bank_in_turn(layout.right_image, frame), lut_bank(layout.right_lut),
+                  accesses_of(geometry, tables.right)}};
+  const int disparity = bank_in_turn(layout.disparity, frame);
+  const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
+  const std::uint64_t after_last_slot = geometry.drain_cycles + 1 + pipeline;  // the drain and the last write
+
+  std::vector<ResourceBound> bounds;
+  for (const SideOfFrame& side : sides) {
+    if (side.lut) bounds.push_back({std::string("port ") + side.name + "_lut", geometry.slots + pipeline});
+  }
+  for (const SideOfFrame& side : sides) {
+    bounds.push_back({std::string("port ") + side.name + "_pixel", geometry.slots + pipeline});
+  }
+  bounds.push_back({"port result", geometry.result_words + pipeline});
+
+  struct BankDemand {
+    std::uint64_t reads = 0;
+    std::uint64_t writes = 0;
+    std::uint64_t after_last_read = 0;  // at least
+  };
+  std::map<int, BankDemand> demands;
+  const auto read = [&demands](int bank, std::uint64_t count, std::uint64_t cycles_to_matcher) {
+    BankDemand& demand = demands[bank];
+    demand.after_last_read =
+        demand.reads == 0 ? cycles_to_matcher : std::min(demand.after_last_read, cycles_to_matcher);
+    demand.reads += count;
+  };
+  std::uint64_t first_slot = 0;
+  std::vector<ResourceBound> lanes;
+  for (const SideOfFrame& side : sides) {
+    const std::uint64_t image_latency = latency(side.image);
+    const std::uint64_t lane_latency = image_latency + (side.lut ? latency(*side.lut) : 0);
+    first_slot = std::max(first_slot, lane_latency);
+    if (side.lut && side.accesses.lut > 0) read(*side.lut, side.accesses.lut, lane_latency);
+    if (side.accesses.pixel > 0) read(side.image, side.accesses.pixel, image_latency);
+    const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
+    lanes.push_back({std::string("lane ") + side.name, (geometry.slots - 1) / places * (lane_latency + 1) +
+                                                           lane_latency + 1 + after_last_slot});
+  }
+  demands[disparity].writes += geometry.result_words;
+  for (const auto& [bank, demand] : demands) {
+    std::uint64_t cycles = demand.reads + demand.writes + pipeline;
+    // The matcher consumes the last slot read no earlier than its latency after the grant, in the cycle after
+    // reads - 1 others.
+    if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
+    bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});
+  }
+  bounds.insert(bounds.end(), lanes.begin(), lanes.end());
+  bounds.push_back({"matcher", first_slot + geometry.slots + after_last_slot});
+  return bounds;
+}
+
+std::uint64_t frames_of_cycle(const BoardConfig& board) {
+  return std::lcm(std::lcm(board.allocation.left_image.size(), board.allocation.right_image.size()),
+                  board.allocation.disparity.size());
+}
+
+Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames) {
+  const std::uint64_t period = frames_of_cycle(board);
+  std::uint64_t total = 0;
+  ResourceBound slowest;
+  for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
+    ResourceBound limiting;
+    for (const ResourceBound& bound : frame_bounds(board, tables, frame)) {
+      if (bound.cycles >= limiting.cycles) limiting = bound;
+    }
+    if (limiting.cycles > slowest.cycles) slowest = limiting;
+    total += limiting.cycles * ((frames - frame + period - 1) / period);
+  }
+  Bound bound;
+  bound.core = board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(total);
+  bound.core_limited_by = slowest.resource;
+  return bound;
+}
+
+}  // namespace stereotlm::platform

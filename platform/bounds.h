@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "platform/board_config.h"
+#include "platform/statistics.h"
+#include "platform/tables.h"
+
+namespace stereotlm::platform {
+
+// The fewest cycles that one resource of the core needs for a frame, pipeline latency included. No run can be
+// faster:
+//   port P      one slot or word a cycle
+//   bank B      one access a cycle; after the last read the matcher's drain and the last write
+//   lane S      with F places in the lane, slot s+F is not taken before slot s has left it, latencies later
+//   matcher     the latencies of the first slot, one slot a cycle, the drain, the last write
+struct ResourceBound {
+  std::string resource;  // "port left_lut", "bank bank0", "lane left", "matcher"
+  std::uint64_t cycles = 0;
+};
+
+// For frame number `frame` with these tables, in the order: ports, banks of the frame, lanes, matcher. Throws
+// std::invalid_argument if the board has problems.
+std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
+
+// How many different frames the allocation lists make: the least common multiple of their lengths.
+std::uint64_t frames_of_cycle(const BoardConfig& board);
+
+// Frames per second that frames 0..frames-1 cannot exceed, and the resource that limits the slowest of them
+// (of equal ones the last in the order above).
+Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames);
+
+}  // namespace stereotlm::platform

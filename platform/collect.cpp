@@ -1,0 +1,160 @@
+#include "platform/collect.h"
+
+#include <numeric>
+#include <utility>
+
+#include "models/memory/memory_config.h"
+#include "platform/bounds.h"
+
+namespace stereotlm::platform {
+namespace {
+
+using memory::ArbiterStats;
+using memory::BankArbiter;
+using memory::kPortCount;
+using memory::Port;
+
+// Compares the two sides of an identity and keeps those that differ.
+class Audit {
+ public:
+  void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
+    if (left == right) return;
+    failed_.push_back(what + " = " + std::to_string(left) + ", but " + as + " = " + std::to_string(right));
+  }
+  void at_most(const std::string& what, double value, const std::string& as, double limit) {
+    if (value <= limit) return;
+    failed_.push_back(what + " = " + std::to_string(value) + ", but " + as + " = " + std::to_string(limit));
+  }
+  std::vector<std::string> failed() && { return std::move(failed_); }
+
+ private:
+  std::vector<std::string> failed_;
+};
+
+BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbiter, std::uint64_t cycles,
+                               double clock_mhz) {
+  BankStatistics bank;
+  bank.name = name;
+  bank.reads = arbiter.reads;
+  bank.writes = arbiter.writes;
+  bank.busy_cycles = arbiter.reads + arbiter.writes;
+  bank.turnaround_cycles = arbiter.turnaround_cycles;
+  bank.idle_cycles = arbiter.idle_cycles;
+  bank.contended_cycles = arbiter.contended_cycles;
+  if (cycles > 0) {
+    bank.utilization = static_cast<double>(bank.busy_cycles) / static_cast<double>(cycles);
+    bank.megabytes_per_second =
+        4.0 * static_cast<double>(bank.reads + bank.writes) * clock_mhz / static_cast<double>(cycles);
+  }
+  return bank;
+}
+
+PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
+  return {memory::name_of(port), cycles.granted(), cycles.stalled(), cycles.passed(),
+          cycles.idle(),         cycles.blocked(), cycles.starved()};
+}
+
+// In the order of ports, banks and ports, turnaround last.
+std::vector<BlameRow> blame_rows(const BoardConfig& config, const std::vector<BankArbiter>& arbiters) {
+  std::vector<ArbiterStats> stats;
+  for (const BankArbiter& arbiter : arbiters) stats.push_back(arbiter.stats());
+  std::vector<BlameRow> rows;
+  for (std::size_t victim = 0; victim < kPortCount; ++victim) {
+    for (std::size_t bank = 0; bank < stats.size(); ++bank) {
+      for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
+        const std::uint64_t cycles = stats[bank].blame[victim][by];
+        if (cycles == 0) continue;
+        rows.push_back({memory::kPortNames[victim], config.banks[bank].name,
+                        by == ArbiterStats::kTurnaround ? "turnaround" : memory::kPortNames[by], cycles});
+      }
+    }
+  }
+  return rows;
+}
+
+void audit_ports(const Board& board, std::uint64_t cycles, Audit& audit) {
+  const auto& arbiters = board.core.crossbar().arbiters();
+  for (std::size_t index = 0; index < kPortCount; ++index) {
+    const fpga::PortCycles& port = board.core.control().port_cycles(static_cast<Port>(index));
+    const std::string name = std::string("port ") + memory::kPortNames[index];
+    std::uint64_t blamed = 0;
+    std::uint64_t granted = 0;
+    for (const BankArbiter& arbiter : arbiters) {
+      const ArbiterStats stats = arbiter.stats();
+      const auto& row = stats.blame[index];
+      blamed = std::accumulate(row.begin(), row.end(), blamed);
+      granted += stats.grants[index];
+    }
+    audit.equal(name + ": sum of its states", port.sum(), "cycles", cycles);
+    audit.equal(name + ": stall_cycles", port.stalled(), "blamed by the arbiters", blamed);
+    audit.equal(name + ": grants", port.granted(), "given by the arbiters", granted);
+  }
+}
+
+void audit_banks(const BoardConfig& config, const Board& board, std::uint64_t cycles, Audit& audit) {
+  for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
+    const BankArbiter& arbiter = board.core.crossbar().arbiters()[bank];
+    const ArbiterStats stats = arbiter.stats();
+    const memory::SsramBank::Stats& accesses = board.banks[bank].stats();
+    const std::string name = "bank " + config.banks[bank].name;
+    audit.equal(name + ": busy + turnaround + idle cycles",
+                stats.reads + stats.writes + stats.turnaround_cycles + stats.idle_cycles, "cycles", cycles);
+    audit.equal(name + ": accesses", accesses.reads + accesses.writes + accesses.errors,
+                "granted by its arbiter", stats.reads + stats.writes + arbiter.uncounted_accesses());
+  }
+}
+
+void audit_flow(const Board& board, std::uint64_t frames, Audit& audit) {
+  const fpga::CoreControl& control = board.core.control();
+  const std::uint64_t slots = frames * control.geometry().slots;
+  const std::uint64_t words = frames * control.geometry().result_words;
+  audit.equal("left lane: slots consumed", control.consumed_left(), "slots of the sequence", slots);
+  audit.equal("right lane: slots consumed", control.consumed_right(), "slots of the sequence", slots);
+  audit.equal("left lane: slots issued", board.core.sequencer().stats(fpga::Side::kLeft).slots,
+              "slots of the sequence", slots);
+  audit.equal("right lane: slots issued", board.core.sequencer().stats(fpga::Side::kRight).slots,
+              "slots of the sequence", slots);
+  audit.equal("result packer: words", board.core.result_packer().stats().words, "words of the images", words);
+  audit.equal("result writer: words", board.core.result_writer().stats().writes, "words of the images",
+              words);
+}
+
+}  // namespace
+
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board) {
+  Statistics statistics;
+  statistics.board = config.name;
+  statistics.fidelity = "cycle";
+  statistics.frame_cycles = board.core.frame_cycles();
+  statistics.frames = statistics.frame_cycles.size();
+  const std::uint64_t all_cycles =
+      std::accumulate(statistics.frame_cycles.begin(), statistics.frame_cycles.end(), std::uint64_t{0});
+  const auto pipeline = static_cast<std::uint64_t>(config.fpga.pipeline_latency_cycles);
+  statistics.cycles = all_cycles - statistics.frames * pipeline;
+  for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
+    statistics.banks.push_back(bank_statistics(config.banks[bank].name,
+                                               board.core.crossbar().arbiters()[bank].stats(),
+                                               statistics.cycles, config.fpga.clock_mhz));
+  }
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    statistics.ports.push_back(
+        port_statistics(static_cast<Port>(port), board.core.control().port_cycles(static_cast<Port>(port))));
+  }
+  statistics.blame = blame_rows(config, board.core.crossbar().arbiters());
+
+  Audit audit;
+  audit_ports(board, statistics.cycles, audit);
+  audit_banks(config, board, statistics.cycles, audit);
+  audit_flow(board, statistics.frames, audit);
+  if (statistics.frames > 0) {
+    statistics.frames_per_second.core = config.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) /
+                                        static_cast<double>(all_cycles);
+    statistics.bound = core_bound(config, tables, statistics.frames);
+    audit.at_most("frames_per_second.core", statistics.frames_per_second.core, "bound.core",
+                  statistics.bound.core);
+  }
+  statistics.failed = std::move(audit).failed();
+  return statistics;
+}
+
+}  // namespace stereotlm::platform

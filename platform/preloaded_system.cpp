@@ -1,0 +1,65 @@
+#include "platform/preloaded_system.h"
+
+#include <stdexcept>
+
+#include "models/fpga/register_map.h"
+
+namespace stereotlm::platform {
+namespace {
+
+using kernels::RectificationTable;
+
+std::uint32_t base_of(const BufferPlace& place) {
+  return fpga::registers::base(static_cast<std::uint32_t>(place.bank), place.first_word);
+}
+
+std::vector<std::uint32_t> bases_of(const std::vector<BufferPlace>& places) {
+  std::vector<std::uint32_t> bases;
+  for (const BufferPlace& place : places) bases.push_back(base_of(place));
+  return bases;
+}
+
+host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames) {
+  const BufferLayout layout = layout_buffers(board);
+  host::IdealHostConfig config;
+  config.width = board.image.width;
+  config.height = board.image.height;
+  config.frames = frames;
+  config.left_images = bases_of(layout.left_image);
+  config.right_images = bases_of(layout.right_image);
+  config.disparities = bases_of(layout.disparity);
+  if (layout.left_lut) config.left_lut = base_of(*layout.left_lut);
+  if (layout.right_lut) config.right_lut = base_of(*layout.right_lut);
+  return config;
+}
+
+const RectificationTable* checked(const std::optional<RectificationTable>& table, const BoardConfig& board,
+                                  const char* side) {
+  if (!table) return nullptr;
+  const std::string where = std::string(side) + " table: ";
+  if (table->width != board.image.width || table->height != board.image.height) {
+    throw std::invalid_argument(where + std::to_string(table->width) + " x " + std::to_string(table->height) +
+                                ": must be of the size of the images, " + std::to_string(board.image.width) +
+                                " x " + std::to_string(board.image.height));
+  }
+  if (const auto found = kernels::problems(*table); !found.empty())
+    throw std::invalid_argument(where + found.front());
+  return &*table;
+}
+
+}  // namespace
+
+PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const BoardConfig& config,
+                                 const Tables& tables, std::uint64_t frames, host::FrameSource& source,
+                                 host::FrameSink& sink, Binder& binder)
+    : sc_module(name),
+      board("board", config, binder),
+      host("host", host_config(config, frames), checked(tables.left, config, "left"),
+           checked(tables.right, config, "right"), source, sink) {
+  binder.bind(host.registers, board.core.registers, "host_to_registers");
+  binder.bind(host.memory, board.core.host, "host_to_crossbar");
+  board.core.done(done_);
+  host.done(done_);
+}
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/binder.h"
+#include "models/host/ideal_host.h"
+#include "platform/board.h"
+#include "platform/board_config.h"
+#include "platform/tables.h"
+
+namespace stereotlm::platform {
+
+// The board alone, fed and emptied by an ideal host (`--source preloaded`).
+class PreloadedSystem : public sc_core::sc_module {
+ public:
+  // `source` and `sink` outlive the system. Throws std::invalid_argument if the board has problems or the
+  // tables do not fit to it.
+  PreloadedSystem(const sc_core::sc_module_name& name, const BoardConfig& config, const Tables& tables,
+                  std::uint64_t frames, host::FrameSource& source, host::FrameSink& sink, Binder& binder);
+
+  Board board;
+  host::IdealHost host;
+
+ private:
+  sc_core::sc_signal<bool> done_{"done"};
+};
+
+}  // namespace stereotlm::platform

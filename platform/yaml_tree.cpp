@@ -1,0 +1,292 @@
+#include "platform/yaml_tree.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace stereotlm::platform {
+namespace {
+
+bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+// Length in bytes of the UTF-8 character that begins at `at`; 0 if there is none.
+std::size_t character_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(at);
+  const std::size_t length = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+  if (length == 0 || first > 0xF4 || at + length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if (!continues_character(text[at + i])) return 0;
+  }
+  if (length >= 3) {  // overlong forms, surrogates, beyond U+10FFFF
+    const unsigned second = byte(at + 1);
+    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+        (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F)) {
+      return 0;
+    }
+  }
+  return length;
+}
+
+void check_characters(const std::string& text, int source) {
+  Place place{source, 1, 1};
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_length(text, at);
+    const auto byte = static_cast<unsigned char>(text[at]);
+    if (length == 0) throw YamlError(place, fmt::format("byte 0x{:02X}: the text is not UTF-8", byte));
+    if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F) {
+      throw YamlError(place, fmt::format("control character 0x{:02X}: not allowed in YAML", byte));
+    }
+    at += length;
+    ++place.column;
+    if (byte == '\n') {
+      ++place.line;
+      place.column = 1;
+    }
+  }
+}
+
+// yaml-cpp counts lines and columns from 0, and columns in bytes.
+Place place_of(const std::string& text, const YAML::Mark& mark, int source) {
+  if (mark.is_null()) return {source, 1, 1};
+  const std::size_t end = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text.size());
+  const std::size_t column = std::min(static_cast<std::size_t>(std::max(mark.column, 0)), end);
+  const auto begin = text.begin() + static_cast<std::ptrdiff_t>(end - column);
+  const auto inside = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(column), continues_character);
+  return {source, mark.line + 1, mark.column + 1 - static_cast<int>(inside)};
+}
+
+// Whether the quoted scalar that begins at `at` has its closing quote; true for any other text.
+bool is_closed(const std::string& text, std::size_t at) {
+  const char quote = at < text.size() ? text[at] : ' ';
+  if (quote != '"' && quote != '\'') return true;
+  for (++at; at < text.size(); ++at) {
+    if (text[at] == '\\' && quote == '"') {
+      ++at;
+    } else if (text[at] == quote) {
+      if (quote == '"' || at + 1 >= text.size() || text[at + 1] != quote) return true;
+      ++at;  // two single quotes stand for one
+    }
+  }
+  return false;
+}
+
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  TreeBuilder(const std::string& text, int source) : text_(text), source_(source) {}
+
+  bool has_document() const { return documents_ > 0; }
+  YamlNode take_root() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1) throw YamlError(place_of(text_, mark, source_), "one YAML document only");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    YamlNode node = make(YamlNode::Kind::kNull, mark, "", anchor);
+    const std::string_view rest = std::string_view(text_).substr(
+        std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text_.size()));
+    for (const std::string_view word : {"~", "null", "Null", "NULL"}) {
+      if (rest.substr(0, word.size()) == word) node.text = word;
+    }
+    complete(std::move(node));
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    complete(make(YamlNode::Kind::kNull, mark, "", anchor));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    YamlNode node = make(YamlNode::Kind::kScalar, mark, tag, anchor);
+    node.text = value;
+    node.quoted = tag == "!";
+    // yaml-cpp takes the end of the text after a line break for a closing quote.
+    if (node.quoted && !is_closed(text_, static_cast<std::size_t>(std::max(mark.pos, 0)))) {
+      throw YamlError(node.place, "not YAML: the closing quote is missing");
+    }
+    complete(std::move(node));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open_.push_back({make(YamlNode::Kind::kList, mark, tag, anchor), {}, false});
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open_.push_back({make(YamlNode::Kind::kMap, mark, tag, anchor), {}, false});
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    YamlNode node;
+    YamlNode key;  // of the entry whose value comes next
+    bool has_key;
+  };
+
+  YamlNode make(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+    YamlNode node;
+    node.kind = kind;
+    node.place = place_of(text_, mark, source_);
+    if (anchor != 0) node.misuse = "anchors and aliases are not allowed in a board";
+    if (!tag.empty() && tag != "?" && tag != "!") node.misuse = "tags are not allowed in a board";
+    return node;
+  }
+  void close() {
+    YamlNode node = std::move(open_.back().node);
+    open_.pop_back();
+    complete(std::move(node));
+  }
+  void complete(YamlNode node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.node.is_list()) {
+      parent.node.items.push_back(std::move(node));
+    } else if (!parent.has_key) {
+      parent.key = std::move(node);
+      parent.has_key = true;
+    } else {
+      // A value that is not there has no place of its own.
+      if (node.kind == YamlNode::Kind::kNull && node.text.empty() && node.misuse.empty()) {
+        node.place = parent.key.place;
+      }
+      parent.node.entries.push_back({std::move(parent.key), std::move(node)});
+      parent.has_key = false;
+    }
+  }
+
+  const std::string& text_;
+  int source_;
+  int documents_ = 0;
+  YamlNode root_;
+  std::vector<Open> open_;
+};
+
+YamlNode parse_document(const std::string& text, int source) {
+  check_characters(text, source);
+  TreeBuilder builder(text, source);
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const YAML::DeepRecursion& error) {
+    throw YamlError(place_of(text, error.mark, source), "nested too deeply");
+  } catch (const YAML::Exception& error) {
+    throw YamlError(place_of(text, error.mark, source), "not YAML: " + error.msg);
+  }
+  if (!builder.has_document()) throw YamlError({source, 1, 1}, "empty: a board is a map of keys and values");
+  return builder.take_root();
+}
+
+void append_text(const YamlNode& node, std::string& out) {
+  constexpr std::size_t kEnough = 80;  // what follows is cut off anyway
+  if (out.size() > kEnough) return;
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      out += !node.text.empty() ? node.text : node.misuse.empty() ? "(nothing)" : "(anchor or alias)";
+      break;
+    case YamlNode::Kind::kScalar:
+      out += node.quoted ? quoted_text(node.text) : node.text;
+      break;
+    case YamlNode::Kind::kList:
+      out += '[';
+      for (std::size_t i = 0; i < node.items.size() && out.size() <= kEnough; ++i) {
+        if (i > 0) out += ", ";
+        append_text(node.items[i], out);
+      }
+      out += ']';
+      break;
+    case YamlNode::Kind::kMap:
+      out += '{';
+      for (std::size_t i = 0; i < node.entries.size() && out.size() <= kEnough; ++i) {
+        if (i > 0) out += ", ";
+        append_text(node.entries[i].key, out);
+        out += ": ";
+        append_text(node.entries[i].value, out);
+      }
+      out += '}';
+      break;
+  }
+}
+
+}  // namespace
+
+const YamlNode::Entry* YamlNode::find(const std::string& key) const {
+  const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
+    return entry.key.is_scalar() && entry.key.text == key;
+  });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+YamlNode::Entry* YamlNode::find(const std::string& key) {
+  return const_cast<Entry*>(std::as_const(*this).find(key));
+}
+
+YamlNode parse_yaml(const std::string& text, int source) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (std::string_view(text).substr(0, kByteOrderMark.size()) == kByteOrderMark) {
+    return parse_document(text.substr(kByteOrderMark.size()), source);
+  }
+  return parse_document(text, source);
+}
+
+// Inside a flow list everything is flow style; a comment ends with its line.
+YamlNode parse_flow_value(const std::string& text, int source) {
+  YamlNode list = parse_document("[" + text + "\n]", source);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  const bool is_one_value = list.is_list() && list.items.size() == 1 && first != std::string::npos &&
+                            (!list.items[0].is_map() || text[first] == '{');
+  if (!is_one_value) throw YamlError({source, 1, 1}, "one YAML flow value, such as 3, [a, b] or {a: 1}");
+  return std::move(list.items[0]);
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
+std::string quoted_text(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      out += fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string short_text(const YamlNode& node) {
+  constexpr std::size_t kLimit = 60;
+  std::string out;
+  append_text(node, out);
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
+  if (out.size() <= kLimit) return out;
+  std::size_t end = kLimit - 3;
+  while (end > 0 && continues_character(out[end])) --end;
+  return out.substr(0, end) + "...";
+}
+
+}  // namespace stereotlm::platform

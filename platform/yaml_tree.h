@@ -1,0 +1,72 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stereotlm::platform {
+
+// Where a value was written. Sources are numbered by who overrules whom: presets that a board extends, the
+// board itself, then each `--set` in its order.
+struct Place {
+  static constexpr int kPreset = 0;
+  static constexpr int kBoard = 1;
+  static constexpr int kFirstSet = 2;
+
+  int source = kBoard;
+  int line = 1;    // from 1
+  int column = 1;  // from 1, in characters
+};
+
+// A YAML value as it was written: nothing is converted, keys may repeat, every value knows its place.
+struct YamlNode {
+  enum class Kind { kNull, kScalar, kList, kMap };
+  struct Entry;
+
+  Kind kind = Kind::kNull;
+  Place place;
+  std::string text;             // of a scalar; of a null `~`, `null`, or nothing
+  bool quoted = false;          // a scalar in quotes, or a block scalar
+  std::string misuse;           // a rule that this value breaks by an anchor, an alias or a tag; else empty
+  std::vector<YamlNode> items;  // of a list
+  std::vector<Entry> entries;   // of a map, in the order of the text
+
+  bool is_map() const { return kind == Kind::kMap; }
+  bool is_list() const { return kind == Kind::kList; }
+  bool is_scalar() const { return kind == Kind::kScalar; }
+
+  // The first entry with that key; nullptr if there is none.
+  Entry* find(const std::string& key);
+  const Entry* find(const std::string& key) const;
+};
+
+struct YamlNode::Entry {
+  YamlNode key;
+  YamlNode value;
+};
+
+// The text is not one YAML document.
+class YamlError : public std::runtime_error {
+ public:
+  YamlError(const Place& error_place, const std::string& rule)
+      : std::runtime_error(rule), place(error_place) {}
+  Place place;
+};
+
+// One YAML document. Throws YamlError for the first error of syntax, for text that is not UTF-8, for control
+// characters, for nothing at all and for a second document.
+YamlNode parse_yaml(const std::string& text, int source);
+
+// One YAML flow value, such as `3`, `[a, b]` or `{a: 1}`. Throws YamlError.
+YamlNode parse_flow_value(const std::string& text, int source);
+
+// The value in one line for a message: flow style, shortened to about 60 characters.
+std::string short_text(const YamlNode& node);
+
+bool is_utf8(std::string_view text);
+
+// `text` in double quotes, with YAML's escapes.
+std::string quoted_text(const std::string& text);
+
+}  // namespace stereotlm::platform

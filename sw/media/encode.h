@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "models/kernels/gray_image.h"
+#include "sw/media/truth.h"
+
+namespace stereotlm::media {
+
+// Files as bytes in memory. In a disparity image 255 = invalid. An empty image is refused with
+// std::invalid_argument. The same image gives the same bytes.
+
+inline constexpr std::uint8_t kInvalidDisparity = 255;
+
+std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
+
+// 0 .. disparities-1 from dark blue to dark red (Turbo), invalid black. A value that is neither is refused
+// with std::invalid_argument. disparities: 1..254.
+std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities);
+
+// Portable float map: one channel, little endian (scale -1.0), rows bottom to top, invalid = +infinity.
+std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity);
+
+// For display: the nearest whole disparity (halves up), invalid where the truth is unknown or lies outside
+// 0 .. disparities-1.
+kernels::GrayImage nearest_disparity(const Truth& truth, int disparities);
+
+}  // namespace stereotlm::media

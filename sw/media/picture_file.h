@@ -1,0 +1,16 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+namespace stereotlm::media {
+
+// For the files of this folder only: the one header here that shows OpenCV.
+
+// The picture in `path` as stored: 8 bits, 1 or 3 channels (BGR). Refuses as load.h says.
+cv::Mat read_picture(const std::string& path);
+
+// The one form of an error about a picture file.
+[[noreturn]] void refuse(const std::string& path, const std::string& found, const std::string& rule);
+
+}  // namespace stereotlm::media

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace stereotlm::report {
+
+struct InputFile {
+  std::string path;    // absolute, UTF-8
+  std::string sha256;  // of its content, 64 hexadecimal digits (sha256.h)
+};
+
+// All that `run` was told apart from the board, which config.yaml holds in full. With both, running again
+// gives the same bytes.
+struct RunOptions {
+  std::string program_version;
+  std::string source;        // "preloaded"
+  std::string fidelity;      // "cycle"
+  std::uint64_t frames = 1;  // asked for
+  std::optional<InputFile> left;
+  std::optional<InputFile> right;
+  std::optional<InputFile> truth;
+  double truth_scale = 1;  // written if there is a truth
+};
+
+// The text of run.json: keys are the names of the options, one not given is absent. Everything in it is known
+// before the first cycle. Throws std::runtime_error naming a path that is not absolute or not UTF-8.
+std::string run_json(const RunOptions& options);
+
+}  // namespace stereotlm::report

@@ -1,0 +1,72 @@
+#include "sw/report/stats_json.h"
+
+#include "sw/report/json_text.h"
+
+namespace stereotlm::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const platform::BankStatistics& bank) {
+  return {{"name", bank.name},
+          {"reads", bank.reads},
+          {"writes", bank.writes},
+          {"busy_cycles", bank.busy_cycles},
+          {"turnaround_cycles", bank.turnaround_cycles},
+          {"idle_cycles", bank.idle_cycles},
+          {"contended_cycles", bank.contended_cycles},
+          {"utilization", bank.utilization},
+          {"megabytes_per_second", bank.megabytes_per_second}};
+}
+
+Json to_json(const platform::PortStatistics& port) {
+  return {{"name", port.name},
+          {"grants", port.grants},
+          {"stall_cycles", port.stall_cycles},
+          {"passed_cycles", port.passed_cycles},
+          {"idle_cycles", port.idle_cycles},
+          {"blocked_cycles", port.blocked_cycles},
+          {"starved_cycles", port.starved_cycles}};
+}
+
+Json to_json(const platform::BlameRow& row) {
+  return {{"port", row.port}, {"bank", row.bank}, {"by", row.by}, {"cycles", row.cycles}};
+}
+
+Json to_json(const Accuracy& accuracy) {
+  const auto number = [](const std::optional<double>& percent) {
+    return percent ? Json(*percent) : Json(nullptr);
+  };
+  return {{"bad_1_percent", number(accuracy.bad_1_percent)},
+          {"bad_2_percent", number(accuracy.bad_2_percent)},
+          {"answered_percent", number(accuracy.answered_percent)}};
+}
+
+template <typename Row>
+Json rows(const std::vector<Row>& values) {
+  Json result = Json::array();
+  for (const Row& value : values) result.push_back(to_json(value));
+  return result;
+}
+
+}  // namespace
+
+std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
+  Json document = {{"schema", 1},
+                   {"board", statistics.board},
+                   {"fidelity", statistics.fidelity},
+                   {"frames", statistics.frames},
+                   {"cycles", statistics.cycles},
+                   {"frame_cycles", statistics.frame_cycles}};
+  document["frames_per_second"] = {{"core", statistics.frames_per_second.core}};
+  document["bound"] = {{"core", statistics.bound.core},
+                       {"core_limited_by", statistics.bound.core_limited_by}};
+  document["banks"] = rows(statistics.banks);
+  document["ports"] = rows(statistics.ports);
+  document["blame"] = rows(statistics.blame);
+  if (!statistics.failed.empty()) document["failed"] = statistics.failed;
+  if (accuracy) document["accuracy"] = to_json(*accuracy);
+  return json_text(document);
+}
+
+}  // namespace stereotlm::report

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace stereotlm::report {
+
+// Writes a new file and makes it durable. Throws std::system_error, whose code is the cause, if any byte
+// could not be stored: what is left of the file is then the caller's to remove. An existing file is an error.
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+// Makes the names in a folder durable. Throws std::system_error.
+void sync_folder(const std::filesystem::path& folder);
+
+}  // namespace stereotlm::report

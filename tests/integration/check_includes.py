@@ -1,0 +1,158 @@
+"""Checks who may include whom, and what a header must and must not contain.
+
+usage: check_includes.py ROOT
+
+ROOT is the repository root (or a tree laid out like it). Prints one line per broken rule, path:line: what,
+and exits with 1 if there is any, with 2 if ROOT is not such a tree.
+"""
+
+import pathlib
+import re
+import sys
+
+# Folder -> folders whose files it may include.
+MAY_INCLUDE = {
+    "models": ["models"],
+    "platform": ["platform", "models"],
+    "calib": ["calib", "models/kernels"],
+    "sw": ["sw", "platform", "models", "calib"],
+    "tests": ["tests", "sw", "platform", "models", "calib"],
+}
+SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
+HEADER_SUFFIXES = {".h", ".hpp"}
+
+SYSTEMC = re.compile(r"(systemc|systemc\.h|tlm|tlm\.h|(sysc|tlm_core|tlm_utils)/.*)$")
+OPENCV = re.compile(r"opencv(2|4)?(/.*|\.hpp)$")
+FILES_OR_YAML = re.compile(r"(fstream|filesystem|(yaml-cpp|nlohmann)/.*)$")
+
+# Files -> headers from outside that they may not reach, directly or through the project's own headers.
+FREE_OF = [
+    (re.compile(r"models/kernels/"), SYSTEMC, "SystemC"),
+    (re.compile(r"(models|platform)/.*(_config|register_map|registers)\.h$"), SYSTEMC, "SystemC"),
+    (re.compile(r"(sw/explore|sw/driver|calib)/"), SYSTEMC, "SystemC"),
+    (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
+    (re.compile(r"models/"), FILES_OR_YAML, "YAML or files"),
+]
+
+INCLUDE = re.compile(r'\s*#\s*include\s*(?P<quote>["<])(?P<path>[^">]+)[">]')
+USING_NAMESPACE = re.compile(r"\busing\s+namespace\b")
+# Comments and literals. An apostrophe behind a digit separates digits.
+NOT_CODE = re.compile(
+    r"//[^\n]*|/\*.*?\*/"
+    r'|R"(?P<tag>[^()\s\\]{0,16})\(.*?\)(?P=tag)"|"(?:\\.|[^"\\\n])*"'
+    r"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])*'",
+    re.DOTALL,
+)
+
+
+def blank(match):
+    return re.sub(r"[^\n]", " ", match.group())
+
+
+def blank_comment(match):
+    """Blanks a comment and keeps a literal: the path of an #include is one."""
+    return blank(match) if match.group().startswith(("//", "/*")) else match.group()
+
+
+class File:
+    """What one source file includes: (line, path, quoted)."""
+
+    def __init__(self, root, path):
+        text = (root / path).read_text(encoding="utf-8")
+        self.path = path
+        self.lines = NOT_CODE.sub(blank_comment, text).splitlines()
+        self.code = NOT_CODE.sub(blank, text).splitlines()
+        self.includes = []
+        for number, line in enumerate(self.lines, 1):
+            match = INCLUDE.match(line)
+            if match:
+                self.includes.append((number, match["path"], match["quote"] == '"'))
+
+
+def folder_of(path):
+    return path.split("/", 1)[0]
+
+
+def allowed(includer, included):
+    return any(included.startswith(folder + "/") for folder in MAY_INCLUDE[folder_of(includer)])
+
+
+def check_includes(file, files):
+    for line, path, quoted in file.includes:
+        if path in files:
+            if not quoted:
+                yield line, f"<{path}>: a header of the project is included with quotes"
+            if not allowed(file.path, path):
+                yield line, f'"{path}": {folder_of(file.path)} may not include it'
+        elif quoted:
+            yield line, f'"{path}": no such file below the repository root'
+        elif folder_of(path) in MAY_INCLUDE:
+            yield line, f"<{path}>: no such file below the repository root"
+
+
+def check_header(file):
+    first = next((line for line in file.lines if line.strip()), "")
+    if first.strip() != "#pragma once":
+        yield 1, "a header begins with #pragma once"
+    for number, line in enumerate(file.code, 1):
+        if USING_NAMESPACE.search(line):
+            yield number, "using namespace in a header"
+
+
+def way_to(start, forbidden, files):
+    """The includes from `start` to a forbidden header, shortest first; None if it is out of reach."""
+    ways = [(start, [])]
+    seen = {start}
+    for path, way in ways:
+        for line, included, _ in files[path].includes:
+            if forbidden.match(included):
+                return way + [(path, line, included)]
+            if included in files and included not in seen:
+                seen.add(included)
+                ways.append((included, way + [(path, line, included)]))
+    return None
+
+
+def check_reach(file, files):
+    for who, forbidden, name in FREE_OF:
+        if not who.match(file.path):
+            continue
+        way = way_to(file.path, forbidden, files)
+        if way:
+            through = " -> ".join(included for _, _, included in way)
+            yield way[0][1], f"{through}: this file may not include {name}"
+
+
+def check(root):
+    """Every broken rule of the tree as (path, line, what)."""
+    paths = sorted(
+        path.relative_to(root).as_posix()
+        for folder in MAY_INCLUDE
+        for path in (root / folder).rglob("*")
+        if path.suffix in SUFFIXES and path.is_file()
+    )
+    files = {path: File(root, path) for path in paths}
+    for file in files.values():
+        findings = list(check_includes(file, files)) + list(check_reach(file, files))
+        if pathlib.PurePosixPath(file.path).suffix in HEADER_SUFFIXES:
+            findings += check_header(file)
+        for line, what in sorted(findings):
+            yield file.path, line, what
+
+
+def main(arguments):
+    if len(arguments) != 1:
+        print("usage: check_includes.py ROOT", file=sys.stderr)
+        return 2
+    root = pathlib.Path(arguments[0])
+    if not (root / "models").is_dir():
+        print(f"check_includes.py: {root}: not the repository root: it has no folder models", file=sys.stderr)
+        return 2
+    findings = list(check(root))
+    for path, line, what in findings:
+        print(f"{path}:{line}: {what}")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

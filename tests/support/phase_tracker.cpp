@@ -1,0 +1,200 @@
+#include "tests/support/phase_tracker.h"
+
+#include <sstream>
+#include <utility>
+
+namespace stereotlm::test {
+namespace {
+
+std::string text_of(const tlm::tlm_phase& phase) {
+  std::ostringstream text;
+  text << phase;
+  return text.str();
+}
+
+void append(Problems& problems, Problems more) {
+  for (auto& problem : more) problems.push_back(std::move(problem));
+}
+
+bool is_sync_value(tlm::tlm_sync_enum status) {
+  return status == tlm::TLM_ACCEPTED || status == tlm::TLM_UPDATED || status == tlm::TLM_COMPLETED;
+}
+
+// TLM_ACCEPTED says that nothing was touched.
+void check_accepted(const PhaseTracker::Call& call, const PhaseTracker::Call& answer, Problems& problems) {
+  if (answer.phase != call.phase) {
+    problems.push_back("TLM_ACCEPTED with phase " + text_of(answer.phase) + ": must leave the phase, " +
+                       text_of(call.phase) + " (11.1.2.7)");
+  }
+  if (answer.time != call.time) {
+    problems.emplace_back("TLM_ACCEPTED with another delay: must leave the delay (11.1.2.7)");
+  }
+}
+
+}  // namespace
+
+Problems PhaseTracker::forward_call(const Payload& payload, const Call& call) {
+  Problems problems;
+  if (call.phase == tlm::BEGIN_REQ) {
+    begin_request(payload, call.time, problems);
+    return problems;
+  }
+  if (call.phase != tlm::END_RESP) {
+    problems.push_back("phase " + text_of(call.phase) +
+                       " on the forward path: only BEGIN_REQ and END_RESP (15.2.3 c)");
+    return problems;
+  }
+  Transaction* transaction = find(payload);
+  if (transaction == nullptr || transaction->state != State::kResponse) {
+    problems.emplace_back("END_RESP without BEGIN_RESP before it (15.2.4)");
+    return problems;
+  }
+  advance(*transaction, call.time, problems);
+  check_unchanged(payload, *transaction, problems);
+  finish(payload);
+  return problems;
+}
+
+Problems PhaseTracker::forward_return(const Payload& payload, const Call& call, const Call& answer,
+                                      tlm::tlm_sync_enum status) {
+  Problems problems;
+  if (!is_sync_value(status)) {
+    problems.push_back("nb_transport_fw returned " + std::to_string(status) +
+                       ": must be a tlm_sync_enum (11.1.2.7)");
+    return problems;
+  }
+  if (status == tlm::TLM_ACCEPTED) check_accepted(call, answer, problems);
+  if (call.phase == tlm::END_RESP) {
+    if (status == tlm::TLM_UPDATED)
+      problems.emplace_back("TLM_UPDATED for END_RESP: nothing may follow it (15.2.4)");
+    return problems;
+  }
+  Transaction* transaction = find(payload);
+  if (transaction == nullptr) {
+    // Ended by nb_transport_bw calls made inside this one, or its phase was refused above.
+    if (call.phase == tlm::BEGIN_REQ && status != tlm::TLM_ACCEPTED) {
+      problems.emplace_back("a phase returned for a transaction that was complete (15.2.4)");
+    }
+    return problems;
+  }
+  if (call.phase != tlm::BEGIN_REQ) return problems;
+  check_unchanged(payload, *transaction, problems);
+  if (status == tlm::TLM_ACCEPTED) return problems;
+  advance(*transaction, answer.time, problems);
+  if (status == tlm::TLM_UPDATED) {
+    answer_phase(payload, *transaction, answer.phase, problems);
+  } else {
+    append(problems, response_problems(payload));
+    finish(payload);
+  }
+  return problems;
+}
+
+Problems PhaseTracker::backward_call(const Payload& payload, const Call& call) {
+  Problems problems;
+  Transaction* transaction = find(payload);
+  if (transaction == nullptr) {
+    problems.push_back("phase " + text_of(call.phase) +
+                       " for a transaction that is not in progress (15.2.4)");
+    return problems;
+  }
+  advance(*transaction, call.time, problems);
+  check_unchanged(payload, *transaction, problems);
+  answer_phase(payload, *transaction, call.phase, problems);
+  return problems;
+}
+
+Problems PhaseTracker::backward_return(const Payload& payload, const Call& call, const Call& answer,
+                                       tlm::tlm_sync_enum status) {
+  Problems problems;
+  if (!is_sync_value(status)) {
+    problems.push_back("nb_transport_bw returned " + std::to_string(status) +
+                       ": must be a tlm_sync_enum (11.1.2.7)");
+    return problems;
+  }
+  if (status == tlm::TLM_ACCEPTED) check_accepted(call, answer, problems);
+  if (call.phase == tlm::END_REQ) {
+    if (status != tlm::TLM_ACCEPTED)
+      problems.emplace_back("END_REQ: only TLM_ACCEPTED may be returned (15.2.4)");
+    return problems;
+  }
+  Transaction* transaction = find(payload);
+  if (call.phase != tlm::BEGIN_RESP || status == tlm::TLM_ACCEPTED) return problems;
+  if (transaction == nullptr) {
+    problems.emplace_back("a phase returned for a transaction that was complete (15.2.4)");
+    return problems;
+  }
+  if (status == tlm::TLM_UPDATED && answer.phase != tlm::END_RESP) {
+    problems.push_back("TLM_UPDATED with phase " + text_of(answer.phase) +
+                       " for BEGIN_RESP: only END_RESP (15.2.4)");
+  }
+  advance(*transaction, answer.time, problems);
+  check_unchanged(payload, *transaction, problems);
+  finish(payload);
+  return problems;
+}
+
+PhaseTracker::Transaction* PhaseTracker::find(const Payload& payload) {
+  const auto found = transactions_.find(&payload);
+  return found == transactions_.end() ? nullptr : &found->second;
+}
+
+void PhaseTracker::begin_request(const Payload& payload, const sc_core::sc_time& time, Problems& problems) {
+  append(problems, request_problems(payload, options_));
+  if (find(payload) != nullptr) {
+    problems.emplace_back("BEGIN_REQ for a transaction that is already in progress (15.2.4)");
+    finish(payload);
+  } else if (request_ != nullptr) {
+    problems.emplace_back("BEGIN_REQ before the last request ended: one request at a time (15.2.6 e)");
+  }
+  transactions_.emplace(&payload, Transaction{State::kRequest, time, PayloadSnapshot(payload)});
+  request_ = &payload;
+}
+
+// END_REQ and BEGIN_RESP, called or returned.
+void PhaseTracker::answer_phase(const Payload& payload, Transaction& transaction, const tlm::tlm_phase& phase,
+                                Problems& problems) {
+  if (phase == tlm::END_REQ) {
+    if (transaction.state != State::kRequest)
+      problems.emplace_back("END_REQ after the request has ended (15.2.4)");
+  } else if (phase == tlm::BEGIN_RESP) {
+    if (transaction.state == State::kResponse) {
+      problems.emplace_back("a second BEGIN_RESP of the same transaction (15.2.4)");
+    } else if (response_ != nullptr) {
+      problems.emplace_back("BEGIN_RESP before the last response ended: one response at a time (15.2.6 f)");
+    }
+    append(problems, response_problems(payload));
+  } else {
+    problems.push_back("phase " + text_of(phase) +
+                       " from the target: only END_REQ and BEGIN_RESP (15.2.3 c)");
+    return;
+  }
+  if (request_ == &payload) request_ = nullptr;
+  if (phase == tlm::BEGIN_RESP) {
+    transaction.state = State::kResponse;
+    response_ = &payload;
+  } else if (transaction.state == State::kRequest) {
+    transaction.state = State::kRequestEnded;
+  }
+}
+
+void PhaseTracker::advance(Transaction& transaction, const sc_core::sc_time& time, Problems& problems) const {
+  if (time < transaction.time) {
+    problems.push_back("time " + time.to_string() + " after " + transaction.time.to_string() +
+                       ": a transaction's time must not run backwards (15.2.7 c)");
+  }
+  transaction.time = time;
+}
+
+void PhaseTracker::finish(const Payload& payload) {
+  transactions_.erase(&payload);
+  if (request_ == &payload) request_ = nullptr;
+  if (response_ == &payload) response_ = nullptr;
+}
+
+void PhaseTracker::check_unchanged(const Payload& payload, const Transaction& transaction,
+                                   Problems& problems) const {
+  append(problems, transaction.sent.changes(payload, options_));
+}
+
+}  // namespace stereotlm::test

@@ -1,0 +1,216 @@
+#include "tests/support/protocol_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace stereotlm::test {
+namespace {
+
+using Payload = tlm::tlm_generic_payload;
+
+constexpr std::size_t kViolationsKept = 100;
+
+// Keeps a counted payload alive while the monitor still has to look at it. A count of 0 is left alone: the
+// first release would free what the initiator never acquired.
+class Hold {
+ public:
+  explicit Hold(Payload& payload)
+      : payload_(payload.has_mm() && payload.get_ref_count() > 0 ? &payload : nullptr) {
+    if (payload_ != nullptr) payload_->acquire();
+  }
+  ~Hold() {
+    if (payload_ != nullptr) payload_->release();
+  }
+  Hold(const Hold&) = delete;
+  Hold& operator=(const Hold&) = delete;
+  // References of others; 0 without a memory manager.
+  int others() const { return payload_ == nullptr ? 0 : payload_->get_ref_count() - 1; }
+
+ private:
+  Payload* payload_;
+};
+
+// The list of b_transport calls in progress, also when the callee throws.
+class Listed {
+ public:
+  Listed(std::vector<const Payload*>& list, const Payload& payload) : list_(list), payload_(&payload) {
+    list_.push_back(payload_);
+  }
+  ~Listed() { list_.erase(std::find(list_.begin(), list_.end(), payload_)); }
+  Listed(const Listed&) = delete;
+  Listed& operator=(const Listed&) = delete;
+
+ private:
+  std::vector<const Payload*>& list_;
+  const Payload* payload_;
+};
+
+// The moment of a call that may not wait.
+struct Moment {
+  sc_core::sc_time time = sc_core::sc_time_stamp();
+  sc_dt::uint64 delta = sc_core::sc_delta_count();
+  bool passed() const { return time != sc_core::sc_time_stamp() || delta != sc_core::sc_delta_count(); }
+};
+
+bool in_method_process() {
+  const sc_core::sc_process_b* process = sc_core::sc_get_current_process_b();
+  return process != nullptr && process->proc_kind() == sc_core::SC_METHOD_PROC_;
+}
+
+}  // namespace
+
+ProtocolMonitor::ProtocolMonitor(const sc_core::sc_module_name& name, const ProtocolOptions& options)
+    : sc_module(name), options_(options), phases_(options) {
+  from_initiator.bind(*this);
+  to_target.bind(*this);
+}
+
+ProtocolMonitor::~ProtocolMonitor() {
+  for (const auto& violation : violations()) ADD_FAILURE() << violation;
+}
+
+std::vector<std::string> ProtocolMonitor::violations() const {
+  auto all = violations_;
+  if (violations_not_kept_ > 0) {
+    all.push_back(std::string(name()) + ": " + std::to_string(violations_not_kept_) + " more violations");
+  }
+  return all;
+}
+
+std::vector<std::string> ProtocolMonitor::take_violations() {
+  auto all = violations();
+  violations_.clear();
+  violations_not_kept_ = 0;
+  return all;
+}
+
+void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
+  constexpr const char* kCall = "b_transport";
+  ++counts_.b_transport_calls;
+  count(payload);
+  if (in_method_process()) report(kCall, "called from a method process: the callee may wait (11.1.1.4 b)");
+  if (payload.has_mm() && payload.get_ref_count() == 0) {
+    report(kCall, "reference count = 0: the initiator must acquire a managed transaction (14.5 t)");
+  }
+  if (phases_.in_progress(payload) ||
+      std::find(blocking_.begin(), blocking_.end(), &payload) != blocking_.end()) {
+    report(kCall, "the transaction is already in progress on this link (15.2.10 c)");
+  }
+  report(kCall, request_problems(payload, options_));
+
+  const PayloadSnapshot sent(payload);
+  const sc_core::sc_time start = sc_core::sc_time_stamp() + delay;
+  const Listed listed(blocking_, payload);
+  const Hold hold(payload);
+  const int references = hold.others();
+  to_target->b_transport(payload, delay);
+
+  if (hold.others() < references) {
+    report(kCall, "reference count fell: the target released more than it acquired (14.5)");
+  }
+  if (sc_core::sc_time_stamp() + delay < start) {
+    report(kCall, "time fell from " + start.to_string() + " to " +
+                      (sc_core::sc_time_stamp() + delay).to_string() +
+                      ": a callee must not take back time (11.1.1.4)");
+  }
+  report(kCall, sent.changes(payload, options_));
+  report(kCall, response_problems(payload));
+}
+
+tlm::tlm_sync_enum ProtocolMonitor::nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
+                                                    sc_core::sc_time& delay) {
+  constexpr const char* kCall = "nb_transport_fw";
+  if (phase == tlm::BEGIN_REQ) {
+    ++counts_.nb_transactions;
+    count(payload);
+    if (std::find(blocking_.begin(), blocking_.end(), &payload) != blocking_.end()) {
+      report(kCall, "the transaction is already in progress on this link (15.2.10 c)");
+    }
+  }
+  check_non_blocking(kCall, payload);
+  const Moment moment;
+  const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
+  report(kCall, phases_.forward_call(payload, call));
+  const Hold hold(payload);
+  const auto status = to_target->nb_transport_fw(payload, phase, delay);
+  if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
+  report(kCall, phases_.forward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
+  return status;
+}
+
+tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
+                                                    sc_core::sc_time& delay) {
+  constexpr const char* kCall = "nb_transport_bw";
+  check_non_blocking(kCall, payload);
+  const Moment moment;
+  const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
+  report(kCall, phases_.backward_call(payload, call));
+  const Hold hold(payload);
+  const auto status = from_initiator->nb_transport_bw(payload, phase, delay);
+  if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
+  report(kCall, phases_.backward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
+  return status;
+}
+
+bool ProtocolMonitor::get_direct_mem_ptr(Payload& payload, tlm::tlm_dmi& dmi) {
+  constexpr const char* kCall = "get_direct_mem_ptr";
+  ++counts_.dmi_requests;
+  report(kCall, dmi_request_problems(payload, dmi));
+  const PayloadSnapshot sent(payload);
+  const Moment moment;
+  const bool granted = to_target->get_direct_mem_ptr(payload, dmi);
+  if (granted) ++counts_.dmi_grants;
+  if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.2.4)");
+  report(kCall, sent.changes(payload, options_));
+  report(kCall, dmi_answer_problems(payload, sent.address(), granted, dmi));
+  return granted;
+}
+
+unsigned int ProtocolMonitor::transport_dbg(Payload& payload) {
+  constexpr const char* kCall = "transport_dbg";
+  ++counts_.debug_calls;
+  report(kCall, debug_request_problems(payload));
+  const PayloadSnapshot sent(payload);
+  const Moment moment;
+  const unsigned int bytes = to_target->transport_dbg(payload);
+  if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.3.4)");
+  report(kCall, sent.changes(payload, options_));
+  report(kCall, debug_answer_problems(payload, bytes));
+  return bytes;
+}
+
+void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) {
+  ++counts_.dmi_invalidations;
+  if (start > end) report("invalidate_direct_mem_ptr", "the range ends before it starts (11.2.7)");
+  from_initiator->invalidate_direct_mem_ptr(start, end);
+}
+
+void ProtocolMonitor::count(const Payload& payload) {
+  if (payload.is_read()) ++counts_.reads;
+  if (payload.is_write()) ++counts_.writes;
+}
+
+void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {
+  if (!payload.has_mm()) {
+    report(call, "no memory manager: a non-blocking transaction must be reference counted (14.5 i)");
+  } else if (payload.get_ref_count() == 0) {
+    report(call, "reference count = 0: the initiator must acquire a managed transaction (14.5 t)");
+  }
+}
+
+void ProtocolMonitor::report(const char* call, const Problems& problems) {
+  for (const auto& problem : problems) report(call, problem);
+}
+
+void ProtocolMonitor::report(const char* call, const std::string& problem) {
+  if (violations_.size() == kViolationsKept) {
+    ++violations_not_kept_;
+    return;
+  }
+  violations_.push_back(std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call +
+                        ": " + problem);
+}
+
+}  // namespace stereotlm::test

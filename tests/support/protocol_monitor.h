@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "tests/support/payload_rules.h"
+#include "tests/support/phase_tracker.h"
+
+namespace stereotlm::test {
+
+// Sits between an initiator and a target, passes every call on unchanged, and checks that both keep the base
+// protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. What is broken is
+// collected as
+// "<monitor> at <time>: <call>: <what was found and the rule>" and fails the running test when the monitor is
+// destroyed; a test that provokes a violation takes it out first.
+class ProtocolMonitor : public sc_core::sc_module,
+                        public tlm::tlm_fw_transport_if<>,
+                        public tlm::tlm_bw_transport_if<> {
+ public:
+  // Calls seen. Reads and writes count blocking and non-blocking transactions.
+  struct Counts {
+    std::uint64_t b_transport_calls = 0;
+    std::uint64_t nb_transactions = 0;
+    std::uint64_t reads = 0;
+    std::uint64_t writes = 0;
+    std::uint64_t dmi_requests = 0;
+    std::uint64_t dmi_grants = 0;
+    std::uint64_t dmi_invalidations = 0;
+    std::uint64_t debug_calls = 0;
+  };
+
+  tlm::tlm_target_socket<32> from_initiator{"from_initiator"};
+  tlm::tlm_initiator_socket<32> to_target{"to_target"};
+
+  explicit ProtocolMonitor(const sc_core::sc_module_name& name, const ProtocolOptions& options = {});
+  ~ProtocolMonitor() override;
+
+  const Counts& counts() const { return counts_; }
+  // Every violation so far, the first hundred in words and the number of the others.
+  std::vector<std::string> violations() const;
+  // The same, and forgets them.
+  std::vector<std::string> take_violations();
+
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) override;
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) override;
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload& payload, tlm::tlm_dmi& dmi) override;
+  unsigned int transport_dbg(tlm::tlm_generic_payload& payload) override;
+  void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) override;
+
+ private:
+  void count(const tlm::tlm_generic_payload& payload);
+  void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
+  void report(const char* call, const Problems& problems);
+  void report(const char* call, const std::string& problem);
+
+  ProtocolOptions options_;
+  PhaseTracker phases_;
+  std::vector<const tlm::tlm_generic_payload*> blocking_;  // in b_transport now
+  Counts counts_;
+  std::vector<std::string> violations_;
+  std::uint64_t violations_not_kept_ = 0;
+};
+
+}  // namespace stereotlm::test

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+// The arithmetic of contract section 1 as literal nested loops, written from that page alone. It shares no
+// code with the models and exists to be compared with them: each function below is one sentence or formula of
+// the page, and nothing is done for speed.
+namespace stereotlm::test {
+
+// K of contract 1.2.
+struct ReferenceKernel {
+  int size = 0;              // m: odd
+  std::vector<int> weights;  // m * m, rows from j = -h (top), in each i = -h (left) first; sum 0
+  int shift = 0;
+};
+
+struct ReferenceInput {
+  int width = 0;                    // W, a multiple of 4
+  int height = 0;                   // H
+  std::vector<std::uint8_t> left;   // source pixels, row-major, W * H
+  std::vector<std::uint8_t> right;  // likewise
+  // Table entries, row-major, W * H; nullopt: a side without table.
+  std::optional<std::vector<std::uint32_t>> left_table;
+  std::optional<std::vector<std::uint32_t>> right_table;
+  std::optional<ReferenceKernel> filter;  // nullopt: none
+  int window = 0;                         // n, odd
+  int disparities = 0;                    // D
+  std::optional<int> lr_tolerance;        // t; nullopt: off
+};
+
+// All images are row-major, W * H values.
+struct ReferenceResult {
+  std::vector<std::uint8_t> rectified_left;    // P of the left side
+  std::vector<std::uint8_t> rectified_right;   // P of the right side
+  std::vector<std::uint8_t> filtered_left;     // Fl
+  std::vector<std::uint8_t> filtered_right;    // Fr
+  std::vector<int> right_based;                // dR, -1 where invalid
+  std::vector<int> left_based;                 // dL, -1 where invalid
+  std::vector<std::uint8_t> disparity;         // the output, 255 where invalid
+  std::vector<std::uint32_t> disparity_words;  // the output as it lies in its buffer, W * H / 4 words
+};
+
+// Throws std::invalid_argument if a vector has the wrong length, a size breaks a rule of the page, or a table
+// is one that the page refuses; the message names the field, the value and the rule.
+ReferenceResult compute_reference(const ReferenceInput& input);
+
+// The stages alone, for tests that look at one of them. `width` and `height` as in ReferenceInput.
+
+// Contract 1.1. `table` nullopt: P = source.
+std::vector<std::uint8_t> reference_rectify(int width, int height, const std::vector<std::uint8_t>& source,
+                                            const std::optional<std::vector<std::uint32_t>>& table);
+
+// Contract 1.2. `filter` nullopt: F = P.
+std::vector<std::uint8_t> reference_filter(int width, int height, const std::vector<std::uint8_t>& rectified,
+                                           const std::optional<ReferenceKernel>& filter);
+
+// Contract 1.5: four pixels to a word, lowest column in the lowest byte; `pixels` has a multiple of 4.
+std::vector<std::uint32_t> reference_words(const std::vector<std::uint8_t>& pixels);
+
+}  // namespace stereotlm::test

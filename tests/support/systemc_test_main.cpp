@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <systemc>
+#include <utility>
+#include <vector>
+
+#include "tests/support/expected_report.h"
+
+namespace stereotlm::test {
+namespace {
+
+// SystemC's report handler is a plain function, so what it consults cannot belong to an object.
+std::vector<ExpectedReport*>& announcements() {
+  static std::vector<ExpectedReport*> list;
+  return list;
+}
+
+void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
+  if (report.get_severity() == sc_core::SC_INFO) return;
+  const std::string text = report.get_msg();
+  const bool announced =
+      std::any_of(announcements().begin(), announcements().end(),
+                  [&](ExpectedReport* expected) { return expected->takes(report.get_msg_type(), text); });
+  if (!announced) {
+    ADD_FAILURE_AT(report.get_file_name(), report.get_line_number())
+        << "SystemC report that the test did not announce: " << report.what();
+  }
+  sc_core::sc_report_handler::default_handler(
+      report, actions & ~static_cast<sc_core::sc_actions>(sc_core::SC_DISPLAY));
+}
+
+}  // namespace
+
+ExpectedReport::ExpectedReport(std::string message_type, int count)
+    : message_type_(std::move(message_type)), missing_(count) {
+  announcements().push_back(this);
+}
+
+ExpectedReport::~ExpectedReport() {
+  auto& list = announcements();
+  list.erase(std::remove(list.begin(), list.end(), this), list.end());
+  if (missing_ > 0) {
+    ADD_FAILURE() << "announced SystemC report " << message_type_ << " did not come: " << missing_
+                  << " missing";
+  }
+}
+
+bool ExpectedReport::takes(const std::string& message_type, const std::string& text) {
+  if (missing_ == 0 || message_type != message_type_) return false;
+  --missing_;
+  text_ = text;
+  return true;
+}
+
+}  // namespace stereotlm::test
+
+int sc_main(int argc, char** argv) {
+  sc_core::sc_report_handler::set_handler(stereotlm::test::handle_report);
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
+
+// Takes the place of libsystemc's own main, which prints the copyright banner before sc_main can turn it off.
+int main(int argc, char** argv) {
+  setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
+  return sc_core::sc_elab_and_sim(argc, argv);
+}

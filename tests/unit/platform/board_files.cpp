@@ -1,0 +1,93 @@
+#include "tests/unit/platform/board_files.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "platform/board_yaml.h"
+
+namespace stereotlm::platform::testing {
+namespace {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "board_test_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string without(std::string text, const std::string& part) {
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at)) {
+    text.erase(at, part.size());
+  }
+  return text;
+}
+
+std::string write_board(const TemporaryFolder& folder, const std::string& text) {
+  const std::filesystem::path file = folder.path() / "board.yaml";
+  std::ofstream(file, std::ios::binary) << text;
+  return file.string();
+}
+
+}  // namespace
+
+BoardConfig load_text(const std::string& text, const std::vector<std::string>& sets) {
+  const TemporaryFolder folder;
+  return load_board(write_board(folder, text), sets);
+}
+
+std::string refusal_of(const std::string& text, const std::vector<std::string>& sets) {
+  const TemporaryFolder folder;
+  return without(refusal_of_board(write_board(folder, text), sets), folder.path().string() + '/');
+}
+
+std::string refusal_of_board(const std::string& board, const std::vector<std::string>& sets) {
+  try {
+    load_board(board, sets);
+  } catch (const BoardError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string block_board() {
+  BoardConfig board;
+  for (BankConfig& bank : board.banks) bank.words = 1 << 26;
+  return to_yaml(board);
+}
+
+ChangedBoard board_with(const std::string& path, const std::string& value) {
+  std::istringstream lines(block_board());
+  std::vector<std::string> open;  // the keys above the line
+  ChangedBoard changed;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::size_t indent = line.find_first_not_of(' ');
+    const std::size_t colon = line.find(':');
+    open.resize(indent / 2);
+    open.push_back(line.substr(indent, colon - indent));
+    if (fmt::format("{}", fmt::join(open, ".")) == path) {
+      changed.place = fmt::format("board.yaml:{}:{}", number, colon + 3);
+      line.replace(colon + 2, std::string::npos, value);
+    }
+    changed.text += line + '\n';
+  }
+  if (changed.place.empty()) throw std::out_of_range(path);
+  return changed;
+}
+
+}  // namespace stereotlm::platform::testing

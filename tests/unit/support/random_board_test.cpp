@@ -1,0 +1,140 @@
+#include "tests/support/random_board.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+namespace stereotlm::test {
+namespace {
+
+constexpr std::uint64_t kSeeds = 1500;
+
+TEST(SplitMix64, GivesThePublishedSequence) {
+  SplitMix64 random(1234567);
+  EXPECT_EQ(random.next(), 6457827717110365317U);
+  EXPECT_EQ(random.next(), 3203168211198807973U);
+  EXPECT_EQ(random.next(), 9817491932198370423U);
+}
+
+TEST(SplitMix64, DrawsBothEndsOfARangeAndNothingElse) {
+  SplitMix64 random(7);
+  std::set<int> drawn;
+  for (int draw = 0; draw < 200; ++draw) drawn.insert(random.between(-2, 3));
+  EXPECT_EQ(drawn, (std::set<int>{-2, -1, 0, 1, 2, 3}));
+  EXPECT_FALSE(random.chance(0));
+  EXPECT_TRUE(random.chance(100));
+}
+
+TEST(RandomBoard, IsTheSameForTheSameSeed) {
+  const RandomBoard one = make_random_board(42);
+  const RandomBoard again = make_random_board(42);
+  EXPECT_EQ(describe(one), describe(again));
+  EXPECT_EQ(one.left_table, again.left_table);
+  EXPECT_EQ(one.pictures.front().left, again.pictures.front().left);
+  RandomBoard other = make_random_board(43);
+  other.seed = 42;
+  EXPECT_NE(describe(one), describe(other));
+}
+
+TEST(RandomBoard, IsAlwaysInRange) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RandomBoard board = make_random_board(seed);
+    SCOPED_TRACE(describe(board));
+    ASSERT_NO_THROW(require_sound(cycle_input(board)));
+    ASSERT_LE(board.width, 64);
+    ASSERT_LE(board.height, 40);
+    ASSERT_LE(board.pipeline_latency_cycles, 40);
+    ASSERT_LE(board.banks.size(), 10U);
+    ASSERT_EQ(board.left_lut.has_value(), board.left_table.has_value());
+    ASSERT_EQ(board.right_lut.has_value(), board.right_table.has_value());
+    ASSERT_GE(board.frames, 1);
+    ASSERT_LE(board.frames, 4);
+    ASSERT_GE(board.pictures.size(), 1U);
+    ASSERT_LE(board.pictures.size(), static_cast<std::size_t>(board.frames));
+  }
+}
+
+TEST(RandomBoard, IsAcceptedByBothReferences) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const RandomBoard board = make_random_board(seed);
+    SCOPED_TRACE(describe(board));
+    for (int frame = 0; frame < board.frames; ++frame) {
+      ASSERT_NO_THROW(compute_reference(reference_input(board, frame)));
+    }
+    ASSERT_FALSE(run_plain_cycle_loop(cycle_input(board), board.frames).hang);
+  }
+}
+
+bool names_a_bank_twice(const std::vector<int>& list) {
+  return std::set<int>(list.begin(), list.end()).size() < list.size();
+}
+
+std::size_t banks_in_use(const RandomBoard& board) {
+  std::set<int> banks;
+  for (const auto* list : {&board.left_image, &board.right_image, &board.disparity}) {
+    banks.insert(list->begin(), list->end());
+  }
+  for (const auto& bank : {board.left_lut, board.right_lut}) {
+    if (bank) banks.insert(*bank);
+  }
+  return banks.size();
+}
+
+std::size_t buffers(const RandomBoard& board) {
+  return 2 * board.left_image.size() + board.disparity.size() + (board.left_lut ? 1U : 0U) +
+         (board.right_lut ? 1U : 0U);
+}
+
+bool has_invalid_entries(const std::optional<std::vector<std::uint32_t>>& table) {
+  return table && std::any_of(table->begin(), table->end(), [](std::uint32_t e) { return e >> 31U == 0; });
+}
+
+// Every kind of board that a comparison must not miss is drawn at least once in a hundred.
+TEST(RandomBoard, CoversEveryKindOfBoard) {
+  std::map<std::string, int> seen;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RandomBoard board = make_random_board(seed);
+    const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
+    const int radius = (board.window - 1) / 2;
+    seen[name_of(board.fetch)]++;
+    seen[name_of(board.arbitration)]++;
+    std::set<PlainBankKind> kinds;
+    for (const PlainBank& bank : board.banks) kinds.insert(bank.kind);
+    for (const PlainBankKind kind : kinds) seen[name_of(kind)]++;
+    seen["several kinds"] += kinds.size() > 1 ? 1 : 0;
+    seen["no filter"] += board.filter ? 0 : 1;
+    seen["filter larger than window"] += half > radius ? 1 : 0;
+    seen["filter smaller than window"] += board.filter && half < radius ? 1 : 0;
+    seen["extreme weights"] += board.filter && *std::max_element(board.filter->weights.begin(),
+                                                                 board.filter->weights.end()) == 32767;
+    seen["check off"] += board.lr_tolerance ? 0 : 1;
+    seen["tolerance"] += board.lr_tolerance.value_or(0) > 0 ? 1 : 0;
+    seen["disparities beyond width"] += board.disparities > board.width ? 1 : 0;
+    seen["window beyond image"] += board.window > std::min(board.width, board.height) ? 1 : 0;
+    seen["a bank twice in a list"] += names_a_bank_twice(board.left_image) ? 1 : 0;
+    seen["one bank for all"] += banks_in_use(board) == 1 ? 1 : 0;
+    seen["a bank for each buffer"] += banks_in_use(board) == buffers(board) ? 1 : 0;
+    seen["no tables"] += !board.left_lut && !board.right_lut ? 1 : 0;
+    seen["a table on one side"] += board.left_lut.has_value() != board.right_lut.has_value() ? 1 : 0;
+    seen["invalid entries"] += has_invalid_entries(board.left_table) ? 1 : 0;
+    seen["all entries valid"] += board.left_table && !has_invalid_entries(board.left_table) ? 1 : 0;
+    seen["one slot in a lane"] += board.lane_fifo_slots == 1 ? 1 : 0;
+    seen["one result word"] += board.result_fifo_words == 1 ? 1 : 0;
+    seen["several frames"] += board.frames > 1 ? 1 : 0;
+  }
+  for (const auto& [kind, count] : seen) EXPECT_GE(count, static_cast<int>(kSeeds / 100)) << kind;
+}
+
+TEST(RandomBoard, DescribesItselfWithItsSeedAsABoardFile) {
+  const RandomBoard board = make_random_board(7);
+  const std::string text = describe(board);
+  EXPECT_NE(text.find("seed 7;"), std::string::npos);
+  EXPECT_NE(text.find("\nextends: fpl2003\n"), std::string::npos);
+  EXPECT_NE(text.find("\n  disparities: " + std::to_string(board.disparities) + "\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stereotlm::test

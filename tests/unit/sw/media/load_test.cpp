@@ -1,0 +1,317 @@
+#include "sw/media/load.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstring>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "tests/unit/sw/report/scratch_folder.h"
+
+namespace stereotlm::media {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string encoded(const char* extension, const cv::Mat& picture, const std::vector<int>& parameters = {}) {
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(extension, picture, bytes, parameters)) throw std::runtime_error(extension);
+  return {bytes.begin(), bytes.end()};
+}
+
+constexpr int kWidth = 48;  // at least 32 each: OpenCV writes no smaller JPEG 2000
+constexpr int kHeight = 32;
+
+cv::Mat noise(int type) {
+  cv::Mat picture(kHeight, kWidth, type);
+  cv::RNG(7).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  return picture;
+}
+
+std::vector<std::uint8_t> pixels_of(const cv::Mat& grey) { return {grey.datastart, grey.dataend}; }
+
+// PNG: length, type, data, CRC-32 of type and data.
+std::string png_chunk(const std::string& type, const std::string& data) {
+  const auto big_endian = [](std::uint32_t value) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift);
+    return text;
+  };
+  std::uint32_t crc = ~0U;
+  for (const char c : type + data) {
+    crc ^= static_cast<std::uint8_t>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? 0xEDB88320U ^ crc >> 1U : crc >> 1U;
+  }
+  return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(~crc);
+}
+
+// A grey PNG with `extra` chunks behind its header, of another colour type if asked for (3: palette).
+std::string png_with(const std::string& grey_png, const std::string& extra, char colour_type = 0) {
+  std::string header = grey_png.substr(16, 13);
+  header[9] = colour_type;
+  return grey_png.substr(0, 8) + png_chunk("IHDR", header) + extra + grey_png.substr(33);
+}
+
+class LoadTest : public ::testing::Test {
+ protected:
+  std::string file(const std::string& bytes) { return test::write_file(scratch_.path() / "picture", bytes); }
+  std::string refusal(const std::string& path) {
+    return test::message_of([&] { load_gray(path); });
+  }
+  // The message about a file with these bytes, without the path, which must come first.
+  std::string refusal_of_bytes(const std::string& bytes) {
+    const std::string path = file(bytes);
+    ::testing::internal::CaptureStderr();
+    const std::string message = refusal(path);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "decoders keep quiet";
+    EXPECT_EQ(message.substr(0, path.size() + 4), "'" + path + "': ");
+    return message.substr(std::min(message.size(), path.size() + 4));
+  }
+
+  test::ScratchFolder scratch_;
+};
+
+TEST_F(LoadTest, TakesGreyAsStoredInEveryLosslessFormat) {
+  const cv::Mat picture = noise(CV_8UC1);
+  for (const char* extension : {".png", ".bmp", ".pgm", ".tiff", ".pam"}) {
+    const LoadedGray loaded = load_gray(file(encoded(extension, picture)));
+    EXPECT_FALSE(loaded.converted_from_colour) << extension;
+    EXPECT_EQ(loaded.image.width, kWidth);
+    EXPECT_EQ(loaded.image.height, kHeight);
+    EXPECT_EQ(loaded.image.pixels, pixels_of(picture)) << extension;
+  }
+}
+
+TEST_F(LoadTest, TakesGreyJpegAsOpenCVDecodesIt) {
+  for (const int progressive : {0, 1}) {
+    const std::string bytes = encoded(".jpg", noise(CV_8UC1), {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
+    const cv::Mat expected = cv::imread(file(bytes), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(load_gray(file(bytes)).image.pixels, pixels_of(expected));
+  }
+}
+
+TEST_F(LoadTest, ConvertsColourWithBgr2Gray) {
+  const cv::Mat picture = noise(CV_8UC3);
+  cv::Mat expected;
+  cv::cvtColor(picture, expected, cv::COLOR_BGR2GRAY);
+  for (const char* extension : {".png", ".bmp", ".ppm", ".tiff"}) {
+    const LoadedGray loaded = load_gray(file(encoded(extension, picture)));
+    EXPECT_TRUE(loaded.converted_from_colour) << extension;
+    EXPECT_EQ(loaded.image.pixels, pixels_of(expected)) << extension;
+  }
+}
+
+TEST_F(LoadTest, TakesAPaletteAsColour) {
+  std::string palette;
+  std::string greys;
+  for (int i = 0; i < 256; ++i) {
+    palette += std::string{static_cast<char>(i), '\0', static_cast<char>(255 - i)};
+    greys += std::string(3, static_cast<char>(i));
+  }
+  const cv::Mat picture = noise(CV_8UC1);
+  const std::string png = encoded(".png", picture);
+  const LoadedGray loaded = load_gray(file(png_with(png, png_chunk("PLTE", palette), 3)));
+  EXPECT_TRUE(loaded.converted_from_colour);
+  cv::Mat expected;
+  cv::Mat colours(picture.size(), CV_8UC3);
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    const std::uint8_t level = picture.at<std::uint8_t>(i / kWidth, i % kWidth);
+    colours.at<cv::Vec3b>(i / kWidth, i % kWidth) =
+        cv::Vec3b(static_cast<std::uint8_t>(255 - level), 0, level);
+  }
+  cv::cvtColor(colours, expected, cv::COLOR_BGR2GRAY);
+  EXPECT_EQ(loaded.image.pixels, pixels_of(expected));
+
+  const LoadedGray of_greys = load_gray(file(png_with(png, png_chunk("PLTE", greys), 3)));
+  EXPECT_TRUE(of_greys.converted_from_colour);
+  EXPECT_EQ(of_greys.image.pixels, pixels_of(picture)) << "greys are their own grey";
+}
+
+TEST_F(LoadTest, DoesNotTurnByExifOrientation) {
+  // APP1 with one big-endian directory entry: orientation (0x0112) = 6, turn by 90 degrees.
+  const std::string exif(
+      "\xFF\xE1\x00\x22"
+      "Exif\0\0MM\0\x2A\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0",
+      36);
+  const std::string jpeg = encoded(".jpg", noise(CV_8UC1));
+  const std::string path = file(jpeg.substr(0, 2) + exif + jpeg.substr(2));
+  ASSERT_EQ(cv::imread(path, cv::IMREAD_GRAYSCALE).size(), cv::Size(kHeight, kWidth))
+      << "OpenCV's default turns";
+  EXPECT_EQ(load_gray(path).image.width, kWidth);
+  EXPECT_EQ(load_gray(path).image.pixels, load_gray(file(jpeg)).image.pixels);
+}
+
+TEST_F(LoadTest, RefusesAlpha) {
+  const char* rule = ": a picture must be 8-bit grey or 8-bit colour, without alpha";
+  EXPECT_EQ(refusal_of_bytes(encoded(".png", noise(CV_8UC4))), std::string("8-bit colour with alpha") + rule);
+  EXPECT_THAT(refusal_of_bytes(encoded(".tiff", noise(CV_8UC4))), HasSubstr("8-bit colour with alpha"));
+  EXPECT_THAT(refusal_of_bytes(encoded(".webp", noise(CV_8UC4))), HasSubstr("8-bit colour with alpha"));
+  const std::string png = encoded(".png", noise(CV_8UC1));
+  const std::string palette = png_chunk("PLTE", std::string(768, 'p'));
+  EXPECT_THAT(refusal_of_bytes(png_with(png, png_chunk("tRNS", std::string(2, '\0')))), HasSubstr("tRNS"));
+  EXPECT_THAT(refusal_of_bytes(png_with(png, palette + png_chunk("tRNS", "tr"), 3)), HasSubstr("alpha"));
+}
+
+TEST_F(LoadTest, RefusesSixteenBitsAndFloats) {
+  for (const char* extension : {".png", ".tiff", ".pgm"}) {
+    EXPECT_THAT(refusal_of_bytes(encoded(extension, noise(CV_16UC1))), HasSubstr("16-bit grey: "))
+        << extension;
+  }
+  EXPECT_THAT(refusal_of_bytes(encoded(".png", noise(CV_16UC3))), HasSubstr("16-bit colour: "));
+  EXPECT_THAT(refusal_of_bytes(encoded(".tiff", noise(CV_32FC1))), HasSubstr("float grey: "));
+  EXPECT_THAT(refusal_of_bytes(encoded(".pfm", noise(CV_32FC1))), HasSubstr("float grey: "));
+}
+
+TEST_F(LoadTest, RefusesGreyThatOpenCVWouldStretch) {
+  EXPECT_THAT(refusal_of_bytes(encoded(".png", noise(CV_8UC1), {cv::IMWRITE_PNG_BILEVEL, 1})),
+              HasSubstr("1-bit grey"));
+  EXPECT_THAT(refusal_of_bytes("P2\n2 1\n100\n0 50\n"), HasSubstr("a maximum level of 100: "));
+  EXPECT_THAT(refusal_of_bytes("P5\n# 255\n2 1\n254\nab"), HasSubstr("a maximum level of 254: "));
+  EXPECT_THAT(refusal_of_bytes("P1\n4 1\n0 1 1 0\n"), HasSubstr("1-bit black and white"));
+  EXPECT_THAT(refusal_of_bytes("P7\nWIDTH 2\nHEIGHT 1\nDEPTH 1\nMAXVAL 15\nTUPLTYPE GRAYSCALE\nENDHDR\nab"),
+              HasSubstr("a maximum level of 15: "));
+  EXPECT_EQ(load_gray(file("P5\n# 100\n2 1\n255\nab")).image.pixels, (std::vector<std::uint8_t>{'a', 'b'}));
+  EXPECT_EQ(load_gray(file("P2\n2 1\n255\n0 50\n")).image.pixels, (std::vector<std::uint8_t>{0, 50}));
+}
+
+TEST_F(LoadTest, RefusesASunRasterThatOpenCVWouldReadAsBlack) {
+  EXPECT_THAT(refusal_of_bytes(encoded(".ras", noise(CV_8UC1))),
+              HasSubstr("a Sun raster without colour map: "));
+  EXPECT_TRUE(load_gray(file(encoded(".ras", noise(CV_8UC3)))).converted_from_colour);
+}
+
+TEST_F(LoadTest, RefusesWhatIsNotAReadableFile) {
+  const std::string missing = scratch_.path() / "missing.png";
+  EXPECT_EQ(refusal(missing), "'" + missing + "': no such file: a picture must be a readable regular file");
+  EXPECT_THAT(refusal(scratch_.path()), HasSubstr("': a directory: "));
+  EXPECT_THAT(refusal(file("x") + "/below"), HasSubstr("': no such file: "));
+  const std::string pipe = scratch_.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(refusal(pipe), HasSubstr("': not a regular file: "));
+}
+
+TEST_F(LoadTest, RefusesWhatIsNotAPicture) {
+  EXPECT_THAT(refusal_of_bytes(""), HasSubstr("an empty file: "));
+  EXPECT_THAT(refusal_of_bytes("x"), HasSubstr("not a picture in a format that OpenCV reads: "));
+  EXPECT_THAT(refusal_of_bytes(std::string(5000, 't')),
+              HasSubstr("not a picture in a format that OpenCV reads: "));
+}
+
+// Every prefix of a file either lacks pixels, and is refused, or holds them all, and gives the same picture.
+TEST_F(LoadTest, RefusesATruncatedFileOfAnyFormat) {
+  struct Format {
+    const char* extension;
+    std::vector<int> parameters;
+    std::size_t bytes_without_pixels;  // at the end: line ends, a part of a tag that says nothing
+  };
+  const std::vector<Format> formats = {{".png", {}, 0},
+                                       {".jpg", {}, 0},
+                                       {".jpg", {cv::IMWRITE_JPEG_PROGRESSIVE, 1}, 0},
+                                       {".bmp", {}, 0},
+                                       {".ppm", {}, 0},
+                                       {".ppm", {cv::IMWRITE_PXM_BINARY, 0}, 4},
+                                       {".tiff", {}, 4},
+                                       {".tiff", {cv::IMWRITE_TIFF_COMPRESSION, 1}, 4},
+                                       {".webp", {}, 0},
+                                       {".jp2", {}, 0}};
+  for (const Format& format : formats) {
+    for (const int type : {CV_8UC1, CV_8UC3}) {
+      const char* extension =
+          type == CV_8UC1 && std::strcmp(format.extension, ".ppm") == 0 ? ".pgm" : format.extension;
+      const std::string whole = encoded(extension, noise(type), format.parameters);
+      const LoadedGray expected = load_gray(file(whole));
+      const std::size_t step = std::max<std::size_t>(1, whole.size() / 25);
+      for (std::size_t size = whole.size() - 1; size > 0;
+           size -= std::min(size, size + 30 > whole.size() ? 1 : step)) {
+        if (size + format.bytes_without_pixels >= whole.size()) {
+          LoadedGray loaded;
+          try {
+            loaded = load_gray(file(whole.substr(0, size)));
+          } catch (const std::runtime_error&) {
+            continue;
+          }
+          EXPECT_EQ(loaded.image, expected.image) << extension << ' ' << size;
+        } else {
+          EXPECT_NE(refusal_of_bytes(whole.substr(0, size)), "")
+              << extension << ' ' << size << " of " << whole.size();
+        }
+      }
+    }
+  }
+}
+
+TEST_F(LoadTest, SaysThatATruncatedFileIsTruncated) {
+  const std::string expected = "truncated, damaged or too large to decode: a picture must be complete";
+  for (const char* extension : {".png", ".jpg", ".bmp"}) {
+    const std::string whole = encoded(extension, noise(CV_8UC1));
+    EXPECT_EQ(refusal_of_bytes(whole.substr(0, whole.size() / 2)), expected) << extension;
+    EXPECT_EQ(refusal_of_bytes(whole.substr(0, whole.size() - 1)), expected) << extension;
+  }
+}
+
+TEST_F(LoadTest, TakesAJpegWithBytesBehindItsEnd) {
+  const std::string jpeg = encoded(".jpg", noise(CV_8UC1));
+  EXPECT_EQ(load_gray(file(jpeg + "appended")).image, load_gray(file(jpeg)).image);
+}
+
+TEST_F(LoadTest, RefusesATruncatedJpegThatHoldsAWholePreview) {
+  const std::string preview = encoded(".jpg", noise(CV_8UC1));
+  const std::size_t length = preview.size() + 2;
+  const std::string segment =
+      std::string("\xFF\xE2") + static_cast<char>(length >> 8U) + static_cast<char>(length) + preview;
+  const std::string jpeg = preview.substr(0, 2) + segment + preview.substr(2);
+  EXPECT_NO_THROW(load_gray(file(jpeg)));
+  EXPECT_THAT(refusal_of_bytes(jpeg.substr(0, jpeg.size() - 20)), HasSubstr("truncated"));
+}
+
+TEST_F(LoadTest, RefusesDamagedFiles) {
+  cv::Mat large(200, 200, CV_8UC1);
+  cv::RNG(3).fill(large, cv::RNG::UNIFORM, 0, 256);
+  std::string jpeg = encoded(".jpg", large);
+  EXPECT_THAT(refusal_of_bytes(std::string(jpeg).erase(jpeg.size() / 2, 500)), HasSubstr("a damaged JPEG"));
+  EXPECT_THAT(refusal_of_bytes(jpeg.replace(jpeg.size() / 2, 2, "\xFF\xD9")), HasSubstr("a damaged JPEG"));
+  std::string png = encoded(".png", large);
+  png[png.size() / 2] = static_cast<char>(png[png.size() / 2] ^ 1);
+  EXPECT_THAT(refusal_of_bytes(png), HasSubstr("damaged"));
+}
+
+TEST_F(LoadTest, RefusesAPictureTooLargeToDecode) {
+  const std::string png = encoded(".png", noise(CV_8UC1));
+  std::string header = png.substr(16, 13);
+  header.replace(0, 8, std::string("\0\1\0\0\0\1\0\0", 8));  // 65536 x 65536
+  EXPECT_THAT(refusal_of_bytes(png.substr(0, 8) + png_chunk("IHDR", header) + png.substr(33)),
+              HasSubstr("too large to decode"));
+}
+
+TEST_F(LoadTest, TruthIsGreyWithItsScale) {
+  const cv::Mat picture = noise(CV_8UC1);
+  const Truth truth = load_truth(file(encoded(".png", picture)), 2.5);
+  EXPECT_EQ(truth.grey.pixels, pixels_of(picture));
+  EXPECT_EQ(truth.grey.width, kWidth);
+  EXPECT_EQ(truth.scale, 2.5);
+}
+
+TEST_F(LoadTest, TruthMayNotBeColourNorSixteenBit) {
+  const auto refused = [this](const cv::Mat& picture) {
+    const std::string path = file(encoded(".png", picture));
+    return test::message_of([&] { load_truth(path, 1); });
+  };
+  EXPECT_THAT(refused(noise(CV_8UC3)), HasSubstr("': 8-bit colour: ground truth must be 8-bit grey"));
+  EXPECT_THAT(refused(noise(CV_16UC1)), HasSubstr("': 16-bit grey: "));
+}
+
+TEST_F(LoadTest, TruthNeedsAPositiveScale) {
+  const std::string path = file(encoded(".png", noise(CV_8UC1)));
+  for (const double scale : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(load_truth(path, scale), std::invalid_argument) << scale;
+  }
+  EXPECT_NO_THROW(load_truth(path, 1e-3));
+}
+
+}  // namespace
+}  // namespace stereotlm::media

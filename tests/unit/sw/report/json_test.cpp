@@ -1,0 +1,156 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sw/report/json_text.h"
+#include "sw/report/run_json.h"
+#include "sw/report/stats_json.h"
+#include "tests/unit/sw/report/scratch_folder.h"
+
+namespace stereotlm::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::ordered_json;
+
+TEST(JsonText, WritesTheShortestNumberThatReadsBackEqual) {
+  EXPECT_EQ(json_text(0.1), "0.1\n");
+  EXPECT_EQ(json_text(40.0), "40\n");
+  EXPECT_EQ(json_text(18.6), "18.6\n");
+  EXPECT_EQ(json_text(2.0 / 3), "0.6666666666666666\n");
+  EXPECT_EQ(json_text(std::numeric_limits<std::uint64_t>::max()), "18446744073709551615\n");
+  for (const double number :
+       {5e-324, 1.7976931348623157e308, 1e16, 1e21, 123456.789, 1e-7, std::nextafter(1.0, 2.0)}) {
+    EXPECT_EQ(Json::parse(json_text(number)).get<double>(), number);
+  }
+}
+
+TEST(JsonText, KeepsAContainerWithoutContainersOnOneLine) {
+  const Json document = {
+      {"b", 1}, {"a", {1, 2}}, {"rows", {{{"x", 1}, {"y", nullptr}}, {{"x", 2}, {"y", "z"}}}}};
+  EXPECT_EQ(json_text(document),
+            "{\n  \"b\": 1,\n  \"a\": [1, 2],\n  \"rows\": [\n    {\"x\": 1, \"y\": null},\n"
+            "    {\"x\": 2, \"y\": \"z\"}\n  ]\n}\n");
+  EXPECT_EQ(json_text({{"none", Json::array()}}), "{\n  \"none\": []\n}\n");
+}
+
+TEST(JsonText, EscapesStrings) {
+  EXPECT_EQ(json_text("a\"b\\c\n\xC3\xA4"), "\"a\\\"b\\\\c\\n\xC3\xA4\"\n");
+  EXPECT_EQ(json_text({{"a\"b", 1}}), "{\n  \"a\\\"b\": 1\n}\n");
+}
+
+TEST(JsonText, RefusesWhatJsonCannotSay) {
+  EXPECT_THROW(json_text(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  EXPECT_THROW(json_text(std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW(json_text("\xFF"), std::invalid_argument);
+}
+
+platform::Statistics small_run() {
+  platform::Statistics statistics;
+  statistics.board = "small";
+  statistics.fidelity = "cycle";
+  statistics.frames = 2;
+  statistics.cycles = 2000;
+  statistics.frame_cycles = {1016, 1016};
+  statistics.frames_per_second.core = 18.6;
+  statistics.bound = {19.25, "left_pixel"};
+  statistics.banks = {{"bank0", 1500, 20, 1520, 7, 473, 3, 0.76, 121.6}};
+  statistics.ports = {{"left_lut", 1, 2, 3, 4, 5, 6}, {"host", 0, 0, 0, 2000, 0, 0}};
+  statistics.blame = {{"left_lut", "bank0", "left_pixel", 40}};
+  return statistics;
+}
+
+TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
+  EXPECT_EQ(stats_json(small_run(), Accuracy{4.25, std::nullopt, 81.5}),
+            R"({
+  "schema": 1,
+  "board": "small",
+  "fidelity": "cycle",
+  "frames": 2,
+  "cycles": 2000,
+  "frame_cycles": [1016, 1016],
+  "frames_per_second": {"core": 18.6},
+  "bound": {"core": 19.25, "core_limited_by": "left_pixel"},
+  "banks": [
+    {"name": "bank0", "reads": 1500, "writes": 20, "busy_cycles": 1520, "turnaround_cycles": 7, "idle_cycles": 473, )"
+            R"("contended_cycles": 3, "utilization": 0.76, "megabytes_per_second": 121.6}
+  ],
+  "ports": [
+    {"name": "left_lut", "grants": 1, "stall_cycles": 2, "passed_cycles": 3, "idle_cycles": 4, )"
+            R"("blocked_cycles": 5, "starved_cycles": 6},
+    {"name": "host", "grants": 0, "stall_cycles": 0, "passed_cycles": 0, "idle_cycles": 2000, )"
+            R"("blocked_cycles": 0, "starved_cycles": 0}
+  ],
+  "blame": [
+    {"port": "left_lut", "bank": "bank0", "by": "left_pixel", "cycles": 40}
+  ],
+  "accuracy": {"bad_1_percent": 4.25, "bad_2_percent": null, "answered_percent": 81.5}
+}
+)");
+}
+
+TEST(StatsJson, LeavesOutWhatDoesNotApply) {
+  platform::Statistics statistics = small_run();
+  statistics.blame.clear();
+  const std::string text = stats_json(statistics, std::nullopt);
+  EXPECT_THAT(text, HasSubstr("  \"blame\": []\n}\n"));
+  EXPECT_THAT(text, Not(HasSubstr("failed")));
+  EXPECT_THAT(text, Not(HasSubstr("accuracy")));
+}
+
+TEST(StatsJson, ListsTheIdentitiesThatFailed) {
+  platform::Statistics statistics = small_run();
+  statistics.failed = {"bank0: 1 + 2 = 3, not 4"};
+  EXPECT_THAT(stats_json(statistics, std::nullopt),
+              HasSubstr("  \"failed\": [\"bank0: 1 + 2 = 3, not 4\"]\n}\n"));
+}
+
+RunOptions pair_of_pictures() {
+  RunOptions options;
+  options.program_version = "0.1.0";
+  options.source = "preloaded";
+  options.fidelity = "cycle";
+  options.frames = 4;
+  options.left = InputFile{"/in/left.png", "aa"};
+  options.right = InputFile{"/in/right.png", "bb"};
+  return options;
+}
+
+TEST(RunJson, NamesEveryOptionAndTheSumOfEveryInput) {
+  RunOptions options = pair_of_pictures();
+  options.truth = InputFile{"/in/truth.png", "cc"};
+  options.truth_scale = 2.5;
+  EXPECT_EQ(run_json(options),
+            R"({
+  "schema": 1,
+  "command": "run",
+  "version": "0.1.0",
+  "source": "preloaded",
+  "fidelity": "cycle",
+  "frames": 4,
+  "left": {"path": "/in/left.png", "sha256": "aa"},
+  "right": {"path": "/in/right.png", "sha256": "bb"},
+  "truth": {"path": "/in/truth.png", "sha256": "cc"},
+  "truth_scale": 2.5
+}
+)");
+}
+
+TEST(RunJson, LeavesOutOptionsThatWereNotGiven) {
+  EXPECT_THAT(run_json(pair_of_pictures()), Not(HasSubstr("truth")));
+}
+
+TEST(RunJson, RefusesPathsThatCannotBeFoundAgain) {
+  RunOptions options = pair_of_pictures();
+  options.left->path = "left.png";
+  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+            "'left.png': not an absolute path: run.json needs one");
+  options.left->path = "/in/\xFF.png";
+  EXPECT_THAT(test::message_of([&] { run_json(options); }), HasSubstr("a path that is not UTF-8"));
+}
+
+}  // namespace
+}  // namespace stereotlm::report
