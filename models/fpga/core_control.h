@@ -152,20 +152,13 @@ inline void CoreControl::commit(const Decision& decision, memory::PortMask grant
                                 bool right_entry_valid) {
   using memory::Port;
   const auto is_granted = [granted](Port port) { return (granted & memory::mask_of(port)) != 0; };
-  left_.commit(decision.left, is_granted(Port::kLeftLut), is_granted(Port::kLeftPixel), left_entry_valid);
-  right_.commit(decision.right, is_granted(Port::kRightLut), is_granted(Port::kRightPixel),
-                right_entry_valid);
-  bool word_enters = false;
-  if (decision.consume) {
-    if (!decision.drain) {
-      left_.consume();
-      right_.consume();
-    }
-    word_enters = match_.consume();
-  }
+  const bool consumes_slot = decision.consume && !decision.drain;
+  left_.commit(decision.left, is_granted(Port::kLeftLut), is_granted(Port::kLeftPixel), left_entry_valid,
+               consumes_slot);
+  right_.commit(decision.right, is_granted(Port::kRightLut), is_granted(Port::kRightPixel), right_entry_valid,
+                consumes_slot);
+  const bool word_enters = decision.consume && match_.consume();
   result_.commit(decision.result, is_granted(Port::kResult), word_enters);
-  left_.end_of_cycle();
-  right_.end_of_cycle();
 }
 
 }  // namespace stereotlm::fpga

@@ -34,41 +34,30 @@ class PortCycles {
   std::array<std::uint64_t, 6> cycles_{};  // [intent], requests only while not granted
 };
 
-// Slots under way: one that enters in cycle c is available from cycle c + latency on. `enter` and `leave`
-// take effect at end_of_cycle().
-class LatencyQueue {
+// A running count as it was some cycles ago: what entered in cycle c is seen from cycle c + latency on.
+class DelayedCount {
  public:
   void start(int latency_cycles) {
     latency_ = latency_cycles;
-    available_ = 0;
-    under_way_ = 0;
-    entering_ = 0;
-    leaving_ = 0;
+    ends_ = {};
   }
-  int available() const { return available_; }
-  void enter() { entering_ = 1; }
-  void leave() { leaving_ = 1; }
-  void end_of_cycle() {
-    under_way_ = under_way_ << 1U | entering_;
-    available_ += static_cast<int>(under_way_ >> (latency_ - 1) & 1U) - leaving_;
-    entering_ = 0;
-    leaving_ = 0;
+  std::uint64_t seen() const { return ends_[static_cast<std::size_t>(latency_ - 1)]; }
+  // `count`: at the end of this cycle.
+  void end_of_cycle(std::uint64_t count) {
+    ends_[1] = ends_[0];
+    ends_[0] = count;
   }
 
  private:
-  int latency_ = 1;
-  int available_ = 0;
-  std::uint32_t under_way_ = 0;  // bit i: one entered i cycles before the last
-  std::uint32_t entering_ = 0;
-  int leaving_ = 0;
+  int latency_ = 1;                      // 1 or 2
+  std::array<std::uint64_t, 2> ends_{};  // the count at the end of the last cycle, and of the one before
 };
 
 // One side of the core, from the sequence of slots to the matcher: which port asks for what in each cycle,
 // and what follows from the grants. Plain C++: the single description of the lane's timing, whatever steps
 // it.
 //
-// A cycle is decide(), then the arbitration, then commit() and perhaps consume() in any order, then
-// end_of_cycle().
+// A cycle is decide() and ready(), then the arbitration, then commit().
 class LaneControl {
  public:
   struct Decision {
@@ -77,108 +66,80 @@ class LaneControl {
   };
 
   LaneControl(const FrameGeometry& geometry, bool has_table, int fifo_slots)
-      : geometry_(geometry), has_table_(has_table), fifo_slots_(fifo_slots) {}
+      : geometry_(geometry), has_table_(has_table), fifo_slots_(static_cast<std::uint64_t>(fifo_slots)) {}
 
   // Latencies of the banks that hold this frame's table and image.
   void start_frame(int table_latency_cycles, int image_latency_cycles) {
     cursor_ = SlotCursor(geometry_);
-    in_lane_ = 0;
-    marks_ = 0;
-    marked_ = 0;
+    taken_ = 0;
     handled_ = 0;
-    pixel_began_ = false;
-    taken_.start(has_table_ ? table_latency_cycles : 1);
-    handled_queue_.start(image_latency_cycles);
+    consumed_ = 0;
+    marks_ = 0;
+    taken_seen_.start(has_table_ ? table_latency_cycles : 1);
+    handled_seen_.start(image_latency_cycles);
   }
 
   Decision decide() const {
     if (!has_table_) return {Intent::kIdle, take_intent()};
     return {take_intent(), handle_intent()};
   }
+  // Whether the matcher can consume a slot of this lane.
+  bool ready() const { return handled_seen_.seen() > consumed_; }
 
   // `lut_granted`, `pixel_granted`: the request was granted. `entry_valid`: of the table entry that the LUT
-  // port has just read; without effect otherwise.
-  void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid) {
+  // port has just read; without effect otherwise. `consumes`: the matcher consumes a slot in this cycle.
+  void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid, bool consumes) {
     lut_cycles_.count(decision.lut, lut_granted);
     pixel_cycles_.count(decision.pixel, pixel_granted);
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
-    if (!has_table_) {
-      if (pixel_moves) {
-        take();
-        handled_queue_.enter();
-      }
-      return;
+    bool takes = pixel_moves;
+    if (has_table_) {
+      takes = lut_granted || decision.lut == Intent::kPass;
+      if (pixel_moves) marks_ >>= 1U;
+      // The slots between the ports are those taken before this cycle and not handled by its end.
+      const std::uint64_t between = taken_ - handled_ - std::uint64_t{pixel_moves};
+      if (takes) marks_ |= std::uint64_t{lut_granted && entry_valid} << between;
     }
-    if (pixel_moves) {
-      marks_ >>= 1U;
-      --marked_;
-      ++handled_;
-      taken_.leave();
-      handled_queue_.enter();
+    if (takes) {
+      cursor_.advance();
+      ++taken_;
     }
-    if (lut_granted || decision.lut == Intent::kPass) {
-      const bool needs_access = lut_granted && entry_valid;
-      marks_ |= std::uint64_t{needs_access} << marked_;
-      ++marked_;
-      take();
-      taken_.enter();
-    }
-  }
-
-  // Whether the matcher can consume a slot of this lane.
-  bool ready() const { return handled_queue_.available() > 0; }
-  // The matcher consumes one in this cycle.
-  void consume() {
-    handled_queue_.leave();
-    ++consumed_;
-    consuming_ = 1;
-  }
-
-  void end_of_cycle() {
-    taken_.end_of_cycle();
-    handled_queue_.end_of_cycle();
-    in_lane_ -= consuming_;
-    consuming_ = 0;
-    pixel_began_ = pixel_began_ || taken_.available() > 0;
+    handled_ += std::uint64_t{pixel_moves};
+    consumed_ += std::uint64_t{consumes};
+    all_consumed_ += std::uint64_t{consumes};
+    taken_seen_.end_of_cycle(taken_);
+    handled_seen_.end_of_cycle(handled_);
   }
 
   const PortCycles& lut_cycles() const { return lut_cycles_; }
   const PortCycles& pixel_cycles() const { return pixel_cycles_; }
-  std::uint64_t consumed() const { return consumed_; }  // slots, over all frames
+  std::uint64_t consumed() const { return all_consumed_; }  // slots, over all frames
 
  private:
   Intent take_intent() const {
     if (cursor_.done()) return Intent::kIdle;
-    if (in_lane_ >= fifo_slots_) return Intent::kBlocked;
+    if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;
     return cursor_.empty() ? Intent::kPass : Intent::kRequest;
   }
   Intent handle_intent() const {
-    if (taken_.available() == 0) {
-      return pixel_began_ && handled_ < geometry_.slots ? Intent::kStarved : Intent::kIdle;
-    }
-    return (marks_ & 1U) != 0 ? Intent::kRequest : Intent::kPass;
-  }
-  void take() {
-    cursor_.advance();
-    ++in_lane_;
+    if (taken_seen_.seen() > handled_) return (marks_ & 1U) != 0 ? Intent::kRequest : Intent::kPass;
+    return taken_seen_.seen() == 0 || handled_ == geometry_.slots ? Intent::kIdle : Intent::kStarved;
   }
 
   FrameGeometry geometry_;
   bool has_table_;
-  int fifo_slots_;
+  std::uint64_t fifo_slots_;
   SlotCursor cursor_;
-  int in_lane_ = 0;  // taken and not yet consumed
-  int consuming_ = 0;
-  LatencyQueue taken_;
-  std::uint64_t marks_ =
-      0;  // of the slots taken and not yet handled, oldest lowest: whether it needs an access
-  int marked_ = 0;
+  // Slots of this frame, until now.
+  std::uint64_t taken_ = 0;
   std::uint64_t handled_ = 0;
-  bool pixel_began_ = false;
-  LatencyQueue handled_queue_;
+  std::uint64_t consumed_ = 0;
+  DelayedCount taken_seen_;    // by the pixel port
+  DelayedCount handled_seen_;  // by the matcher
+  std::uint64_t marks_ = 0;    // per slot taken and not yet handled, oldest lowest: needs an access
   PortCycles lut_cycles_;
   PortCycles pixel_cycles_;
-  std::uint64_t consumed_ = 0;
+  std::uint64_t all_consumed_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -15,7 +15,7 @@ void LutReader::take(const Slot& slot) {
     const std::uint64_t pixel =
         static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
     sc_core::sc_time delay = slot.at;
-    if (!access_.read(port, table_address_ + pixel * 4, delay)) ++stats_.errors;
+    if (!access_.read(table_address_ + pixel * 4, delay)) ++stats_.errors;
     ++stats_.reads;
     entry.entry = access_.word();
     stats_.invalid_entries += std::uint64_t{!kernels::entry_is_valid(entry.entry)};

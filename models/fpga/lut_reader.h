@@ -44,7 +44,7 @@ class LutReader : public sc_core::sc_module {
  private:
   std::uint64_t width_;
   std::uint64_t table_address_ = 0;
-  memory::WordAccess access_;
+  memory::WordAccess access_{port};
   bool entry_valid_ = false;
   Stats stats_;
 };

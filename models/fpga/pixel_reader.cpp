@@ -43,7 +43,7 @@ void PixelReader::take(const Slot& slot) {
 void PixelReader::read(std::uint64_t column, std::uint64_t row, const sc_core::sc_time& at) {
   const std::uint64_t pixel = row * width_ + column;
   sc_core::sc_time delay = at;
-  if (!access_.read(port, image_address_ + pixel / kernels::kPixelsPerWord * 4, delay)) ++stats_.errors;
+  if (!access_.read(image_address_ + pixel / kernels::kPixelsPerWord * 4, delay)) ++stats_.errors;
   ++stats_.reads;
   pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(access_.word(), pixel), true};
 }

@@ -55,7 +55,7 @@ class PixelReader : public sc_core::sc_module {
 
   std::uint64_t width_;
   std::uint64_t image_address_ = 0;
-  memory::WordAccess access_;
+  memory::WordAccess access_{port};
   std::array<TableEntry, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};
   std::size_t entries_stored_ = 0;  // all since the start of the frame, as are those below

@@ -28,7 +28,7 @@ void ResultWriter::write(const sc_core::sc_time& at) {
     return;
   }
   sc_core::sc_time delay = at;
-  if (!access_.write(port, next_address_, words_[written_++ % kRing], delay)) ++stats_.errors;
+  if (!access_.write(next_address_, words_[written_++ % kRing], delay)) ++stats_.errors;
   ++stats_.writes;
   next_address_ += 4;
 }

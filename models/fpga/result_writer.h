@@ -44,7 +44,7 @@ class ResultWriter : public sc_core::sc_module {
 
   std::size_t fifo_words_;
   std::uint64_t next_address_ = 0;
-  memory::WordAccess access_;
+  memory::WordAccess access_{port};
   std::array<std::uint32_t, kRing> words_{};
   std::size_t stored_ = 0;  // since the start of the frame
   std::size_t written_ = 0;

@@ -88,7 +88,7 @@ bool IdealHost::start_frame() {
 
 bool IdealHost::end_frame() {
   sc_core::sc_time delay;
-  access_.read(registers, registers_of::kStatus, delay);
+  access_.read(registers_of::kStatus, delay);
   if ((access_.word() & registers_of::kStatusError) != 0) {
     SC_REPORT_ERROR(kReport,
                     ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
@@ -102,7 +102,7 @@ bool IdealHost::end_frame() {
 
 void IdealHost::write_register(std::uint64_t address, std::uint32_t value) {
   sc_core::sc_time delay;
-  if (!access_.write(registers, address, value, delay)) {
+  if (!access_.write(address, value, delay)) {
     SC_REPORT_ERROR(kReport, ("register " + std::to_string(address) + " refuses a write").c_str());
   }
 }

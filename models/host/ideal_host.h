@@ -78,7 +78,7 @@ class IdealHost : public sc_core::sc_module {
   std::vector<std::uint32_t> right_entries_;
   FrameSource& source_;
   FrameSink& sink_;
-  memory::WordAccess access_;
+  memory::WordAccess access_{registers};
   kernels::GrayImage disparity_;
   std::uint64_t frames_done_ = 0;
 };

@@ -85,9 +85,10 @@ void ColumnFilter::leave() {
   const std::uint64_t centre_count = column_count_ - static_cast<std::uint64_t>(half_);
   const int centre = column_ >= half_ ? column_ - half_
                                       : static_cast<int>(centre_count % static_cast<std::uint64_t>(width_));
-  std::array<const float*, kRing> taps{};
+  std::array<const float*, kRing> taps;  // [i + h]
+  const bool inside = centre >= half_ && centre + half_ < width_;
   for (int i = -half_; i <= half_; ++i) {
-    const int offset = std::clamp(centre + i, 0, width_ - 1) - centre;
+    const int offset = inside ? i : std::clamp(centre + i, 0, width_ - 1) - centre;
     taps[static_cast<std::size_t>(i + half_)] =
         ring_[(centre_count + static_cast<std::uint64_t>(offset)) % kRing].values.data();
   }

@@ -9,8 +9,8 @@ namespace stereotlm::kernels {
 // correlation of the kernel with the image, coordinates clamped to the image.
 struct FilterKernel {
   int size = 0;              // m: rows and columns, odd, 3..31
-  std::vector<int> weights;  // size * size, rows from j = -h (top), in each i = -h (left) first; each
-                             // -32768..32767, sum 0
+  std::vector<int> weights;  // size * size, rows from j = -h (top), in each i = -h (left)
+                             // first; each -32768..32767, sum 0
   int shift = 0;             // 0..31
 
   int half() const { return (size - 1) / 2; }  // h

@@ -73,42 +73,47 @@ std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes) {
   return hn::GetLane(hn::MinOfLanes(d32, best));
 }
 
-void filter_column(const float* const* taps, const float* weights, int size, int rows, int shift,
-                   std::uint8_t* out) {
+// The usual sizes are compiled for themselves: kSize is 0 for any other.
+template <int kSize>
+void filter_column_of(const float* const* taps, const float* weights, int any_size, int rows, int shift,
+                      std::uint8_t* out) {
+  const int size = kSize != 0 ? kSize : any_size;
   const hn::CappedTag<float, 8> df;
   const hn::RebindToSigned<decltype(df)> d32;
   const hn::Rebind<std::uint8_t, decltype(df)> d8;
   HWY_ALIGN std::uint8_t levels[48];
   for (int k = 0; k < rows; k += static_cast<int>(hn::Lanes(df))) {
-    // Four sums, because one alone would wait for itself.
-    auto sum0 = hn::Zero(df);
-    auto sum1 = sum0;
-    auto sum2 = sum0;
-    auto sum3 = sum0;
+    // Two sums, because one alone would wait for itself.
+    auto even = hn::Zero(df);
+    auto odd = even;
     const float* weight = weights;
     for (int i = 0; i < size; ++i, weight += size) {
       const float* tap = taps[i] + k;
-      const auto add = [&](int j, auto& sum) HWY_ATTR {
-        sum = hn::MulAdd(hn::LoadU(df, tap + j), hn::Set(df, weight[j]), sum);
-      };
-      int j = 0;
-      for (; j + 4 <= size; j += 4) {
-        add(j, sum0);
-        add(j + 1, sum1);
-        add(j + 2, sum2);
-        add(j + 3, sum3);
+      for (int j = 0; j + 1 < size; j += 2) {
+        even = hn::MulAdd(hn::LoadU(df, tap + j), hn::Set(df, weight[j]), even);
+        odd = hn::MulAdd(hn::LoadU(df, tap + j + 1), hn::Set(df, weight[j + 1]), odd);
       }
-      if (j < size) add(j, sum0);  // sizes are odd
-      if (j + 2 < size) {
-        add(j + 1, sum1);
-        add(j + 2, sum2);
-      }
+      even = hn::MulAdd(hn::LoadU(df, tap + size - 1), hn::Set(df, weight[size - 1]), even);  // sizes are odd
     }
-    const auto sum = hn::Add(hn::Add(sum0, sum1), hn::Add(sum2, sum3));
-    const auto level = hn::Add(hn::ShiftRightSame(hn::ConvertTo(d32, sum), shift), hn::Set(d32, 128));
+    const auto sum = hn::ConvertTo(d32, hn::Add(even, odd));
+    const auto level = hn::Add(hn::ShiftRightSame(sum, shift), hn::Set(d32, 128));
     hn::StoreU(hn::DemoteTo(d8, hn::Min(hn::Max(level, hn::Zero(d32)), hn::Set(d32, 255))), d8, levels + k);
   }
   std::copy_n(levels, rows, out);
+}
+
+void filter_column(const float* const* taps, const float* weights, int size, int rows, int shift,
+                   std::uint8_t* out) {
+  switch (size) {
+    case 3:
+      return filter_column_of<3>(taps, weights, size, rows, shift, out);
+    case 5:
+      return filter_column_of<5>(taps, weights, size, rows, shift, out);
+    case 7:
+      return filter_column_of<7>(taps, weights, size, rows, shift, out);
+    default:
+      return filter_column_of<0>(taps, weights, size, rows, shift, out);
+  }
 }
 
 }  // namespace stereotlm::kernels::HWY_NAMESPACE
@@ -124,7 +129,8 @@ HWY_EXPORT(filter_column);
 
 void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
                   std::int16_t* leaving, std::int32_t* windows) {
-  HWY_DYNAMIC_DISPATCH(step_windows)(histories, left, rows, lanes, leaving, windows);
+  HWY_DYNAMIC_DISPATCH(step_windows)
+  (histories, left, rows, lanes, leaving, windows);
 }
 
 void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,

@@ -12,13 +12,13 @@ std::size_t place_of(const ArbiterConfig& config, PortMask port) {
 }  // namespace
 
 BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
-    : turnaround_cycles_(static_cast<std::uint64_t>(turnaround_cycles)) {
+    : other_direction_cycles_(static_cast<std::uint64_t>(turnaround_cycles) + 1) {
   const bool rotates = config.policy == ArbitrationPolicy::kRoundRobin;
   for (std::size_t place = 0; place < kPortCount; ++place) {
     for (std::size_t requests = 1; requests < kMasks; ++requests) {
       std::size_t step = 0;
       while ((requests & mask_of(config.priority[(place + step) % kPortCount])) == 0) ++step;
-      Winner& winner = winners_[place][requests];
+      Winner& winner = winners_[place * kMasks + requests];
       winner.port = mask_of(config.priority[(place + step) % kPortCount]);
       winner.next_place = rotates
                               ? static_cast<std::uint8_t>((place_of(config, winner.port) + 1) % kPortCount)
@@ -42,9 +42,9 @@ ArbiterStats BankArbiter::stats() const {
   stats.idle_cycles = idle_cycles_;
   for (std::size_t place = 0; place < kPortCount; ++place) {
     for (std::size_t requests = 1; requests < kMasks; ++requests) {
-      const auto& outcomes = outcomes_[place][requests];
+      const auto& outcomes = outcomes_[place * kMasks + requests];
       const std::uint64_t granted = outcomes[kRead] + outcomes[kWrite];
-      const PortMask winner = winners_[place][requests].port;
+      const PortMask winner = winners_[place * kMasks + requests].port;
       stats.reads += outcomes[kRead];
       stats.writes += outcomes[kWrite];
       stats.turnaround_cycles += outcomes[kTurning];

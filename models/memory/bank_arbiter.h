@@ -36,22 +36,20 @@ class BankArbiter {
   // One cycle with at least one request: `requests`, and of these the writes. Cycles must increase. Returns
   // the port that is granted as a mask of one bit, 0 if the bank is turning round.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests, PortMask writes) {
-    const Winner winner = winners_[place_][requests];
+    const std::size_t situation = place_ * kMasks + requests;
+    const Winner winner = winners_[situation];
     const bool write = (writes & winner.port) != 0;
-    const bool turning = turnaround_cycles_ != 0 && accessed_ && write != last_was_write_ &&
-                         cycle - last_access_cycle_ <= turnaround_cycles_;
+    const bool turning = cycle < ready_cycle_[std::size_t{write}];
     if (counting_) {
       idle_cycles_ += cycle - next_uncounted_cycle_;
       next_uncounted_cycle_ = cycle + 1;
-      ++outcomes_[place_][requests][turning ? kTurning : write ? kWrite : kRead];
-    } else if (!turning) {
-      ++uncounted_accesses_;
+      ++outcomes_[situation][turning ? kTurning : std::size_t{write}];
+    } else {
+      uncounted_accesses_ += std::uint64_t{!turning};
     }
     if (turning) return 0;
     place_ = winner.next_place;
-    accessed_ = true;
-    last_was_write_ = write;
-    last_access_cycle_ = cycle;
+    ready_cycle_[std::size_t{!write}] = cycle + other_direction_cycles_;
     return winner.port;
   }
 
@@ -64,24 +62,23 @@ class BankArbiter {
   std::uint64_t uncounted_accesses() const { return uncounted_accesses_; }
 
  private:
-  enum Outcome : std::size_t { kRead, kWrite, kTurning, kOutcomeCount };
+  enum Outcome : std::size_t { kRead, kWrite, kTurning, kOutcomeCount = 4 };
   static constexpr std::size_t kMasks = std::size_t{1} << kPortCount;
   struct Winner {
     PortMask port = 0;
     std::uint8_t next_place = 0;
   };
 
-  std::array<std::array<Winner, kMasks>, kPortCount> winners_{};  // [round-robin place][requests]
-  std::uint8_t place_ = 0;
-  std::uint64_t turnaround_cycles_;
-  bool accessed_ = false;
-  bool last_was_write_ = false;
-  std::uint64_t last_access_cycle_ = 0;
+  // A situation is a round-robin place and a mask of requests.
+  std::array<Winner, kPortCount * kMasks> winners_{};
+  std::size_t place_ = 0;
+  std::uint64_t other_direction_cycles_;        // from an access to the first in the other direction
+  std::array<std::uint64_t, 2> ready_cycle_{};  // from which a read, a write can be granted
   bool counting_ = false;
   std::uint64_t next_uncounted_cycle_ = 0;  // the first cycle not yet in the statistics
   std::uint64_t idle_cycles_ = 0;
   // How often each thing happened: with the winners it says all that stats() reports.
-  std::array<std::array<std::array<std::uint64_t, kOutcomeCount>, kMasks>, kPortCount> outcomes_{};
+  std::array<std::array<std::uint64_t, kOutcomeCount>, kPortCount * kMasks> outcomes_{};  // [situation]
   std::uint64_t uncounted_accesses_ = 0;
 };
 

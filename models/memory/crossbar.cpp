@@ -51,8 +51,9 @@ void Crossbar::route(Port port, std::size_t bank, bool write) {
     if ((routed_ >> i & 1U) == 0) continue;
     writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
     std::size_t used = 0;
-    while (used < used_bank_count_ && used_banks_[used].bank != routes_[i].bank) ++used;
-    if (used == used_bank_count_) used_banks_[used_bank_count_++] = {routes_[i].bank, 0};
+    BankArbiter* arbiter = &arbiters_[routes_[i].bank];
+    while (used < used_bank_count_ && used_banks_[used].arbiter != arbiter) ++used;
+    if (used == used_bank_count_) used_banks_[used_bank_count_++] = {arbiter, 0};
     used_banks_[used].ports = static_cast<PortMask>(used_banks_[used].ports | 1U << i);
   }
 }
@@ -73,8 +74,7 @@ PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMas
   for (std::size_t i = 0; i < used_bank_count_; ++i) {
     const auto asking = static_cast<PortMask>(all & used_banks_[i].ports);
     if (asking == 0) continue;
-    granted =
-        static_cast<PortMask>(granted | arbiters_[used_banks_[i].bank].arbitrate(cycle, asking, writes_));
+    granted = static_cast<PortMask>(granted | used_banks_[i].arbiter->arbitrate(cycle, asking, writes_));
   }
   granted_ = static_cast<PortMask>(granted & ~socket_requests_);
   auto served = static_cast<PortMask>(granted & socket_requests_);

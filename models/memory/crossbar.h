@@ -45,8 +45,8 @@ struct CrossbarConfig {
 // Debug transport and DMI reach every bank without a grant.
 class Crossbar : public sc_core::sc_module {
  public:
-  sc_core::sc_vector<
-      tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1, sc_core::SC_ZERO_OR_MORE_BOUND>>
+  sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
+                                            sc_core::SC_ZERO_OR_MORE_BOUND>>
       ports;  // [index_of(Port)]; one that nobody uses may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket_tagged<Crossbar>> banks;  // [bank]
 
@@ -103,7 +103,7 @@ class Crossbar : public sc_core::sc_module {
   };
   // A bank that ports are routed to.
   struct UsedBank {
-    std::size_t bank = 0;
+    BankArbiter* arbiter = nullptr;
     PortMask ports = 0;
   };
 
@@ -121,7 +121,7 @@ class Crossbar : public sc_core::sc_module {
 
   std::vector<BankArbiter> arbiters_;
   std::deque<PortTarget> targets_;
-  std::vector<tlm::tlm_fw_transport_if<>*> bank_targets_;
+  std::vector<tlm::tlm_blocking_transport_if<>*> bank_targets_;  // found once, for speed
   std::array<Route, kPortCount> routes_{};
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes

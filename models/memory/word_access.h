@@ -6,10 +6,10 @@
 
 namespace stereotlm::memory {
 
-// A 32-bit access that an initiator makes again and again: one transaction object, set up once.
+// The 32-bit accesses of one initiator socket: one transaction object, set up once.
 class WordAccess {
  public:
-  WordAccess() {
+  explicit WordAccess(tlm::tlm_initiator_socket<32>& socket) : socket_(socket) {
     access_.set_data_ptr(reinterpret_cast<unsigned char*>(&word_));
     access_.set_data_length(4);
     access_.set_streaming_width(4);
@@ -21,30 +21,31 @@ class WordAccess {
 
   // `delay`: the time of the access, from now; grows by what the target takes. False if it was refused:
   // status() says why, and word() is 0 after a read.
-  template <class Socket>
-  bool read(Socket& socket, std::uint64_t address, sc_core::sc_time& delay) {
+  bool read(std::uint64_t address, sc_core::sc_time& delay) {
     word_ = 0;
-    return transport(socket, tlm::TLM_READ_COMMAND, address, delay);
+    return transport(tlm::TLM_READ_COMMAND, address, delay);
   }
-  template <class Socket>
-  bool write(Socket& socket, std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {
+  bool write(std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {
     word_ = word;
-    return transport(socket, tlm::TLM_WRITE_COMMAND, address, delay);
+    return transport(tlm::TLM_WRITE_COMMAND, address, delay);
   }
   std::uint32_t word() const { return word_; }
   tlm::tlm_response_status status() const { return access_.get_response_status(); }
 
  private:
-  template <class Socket>
-  bool transport(Socket& socket, tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {
+  bool transport(tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {
+    // Found once: the way through the socket and the interface's virtual bases costs as much as an access.
+    if (target_ == nullptr) target_ = socket_.operator->();
     access_.set_command(command);
     access_.set_address(address);
     access_.set_dmi_allowed(false);
     access_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-    socket->b_transport(access_, delay);
+    target_->b_transport(access_, delay);
     return access_.is_response_ok();
   }
 
+  tlm::tlm_initiator_socket<32>& socket_;
+  tlm::tlm_blocking_transport_if<>* target_ = nullptr;
   std::uint32_t word_ = 0;
   tlm::tlm_generic_payload access_;
 };
