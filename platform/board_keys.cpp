@@ -71,7 +71,7 @@ std::vector<Key> make_keys() {
   const std::string table_rule = "a bank or none";
   const std::string kinds = listed(names(memory::kBankKindNames));
   const std::string turnaround_rule =
-      kTurnaroundRule.text() + "; where the kind is sync_burst, and only there";
+      kTurnaroundRule.text() + "; required where the kind is sync_burst, refused beside another";
   Key trigger_words =
       integer("capture.fifo_trigger_words", "words in the FIFO at which it asks for the PCI bus", "words",
               {1, 4096}, member<&B::capture, &CaptureConfig::fifo_trigger_words>);

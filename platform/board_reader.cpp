@@ -263,13 +263,15 @@ class BoardReader {
       return values_.read_word(key, node, {memory::kBankKindNames.begin(), memory::kBankKindNames.end()});
     });
     read("turnaround_cycles", bank.turnaround_cycles, integer(kTurnaroundRule));
-    check_turnaround_use(path, bank, bank.kind);
+    check_turnaround_use(path, bank);
     return bank;
   }
 
-  // Turnaround cycles that could have no effect are a mistake.
-  void check_turnaround_use(const std::string& path, const BankEntry& entry, const Given& kind) {
+  // Turnaround cycles in one entry with a kind that has none are a mistake. Where the kind is inherited they
+  // have no effect unless it is sync_burst.
+  void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
+    const Given& kind = entry.kind;
     if (!given.value || !kind.value || is_sync_burst(*kind.value)) return;
     const auto name = memory::kBankKindNames[static_cast<std::size_t>(*kind.value)];
     values_.report(latest(given.place, kind.place), path + ".turnaround_cycles", std::to_string(*given.value),
@@ -316,7 +318,6 @@ class BoardReader {
     const Given& words = own.words.present ? own.words : defaults.words;
     const Given& turnaround =
         own.turnaround_cycles.present ? own.turnaround_cycles : defaults.turnaround_cycles;
-    if (!own.kind.present) check_turnaround_use(path, own, kind);
     if (kind.value && is_sync_burst(*kind.value) && !turnaround.present) {
       if (own.kind.present) {
         values_.report_missing(latest(latest(own.key, own.kind.place), defaults.key),
