@@ -140,47 +140,47 @@ void StereoCore::start_frame(const FrameStart& start) {
 }
 
 void StereoCore::run() {
-  for (;;) {
-    // What happens at the time of an edge belongs to the cycle that begins there: let everybody else go
-    // first.
-    while (sc_core::sc_pending_activity_at_current_time()) wait(sc_core::SC_ZERO_TIME);
-    run_ahead();
-  }
+  for (;;) run_ahead();
 }
 
-// Runs the cycles that nothing from outside can come between, then waits for the next thing to do.
+// Runs the cycles that nothing from outside can come between, then waits for the next thing to do. What happens at
+// the time of an edge belongs to the cycle that begins there: while anything is pending at that time, the cycle
+// waits until just after it.
 void StereoCore::run_ahead() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   const auto horizon_after = [now] { return now + Clock::to_ps(sc_core::sc_time_to_pending_activity()); };
   std::uint64_t horizon = horizon_after();
-  cycle_ = std::max(cycle_, clock_.edge_at_or_after(now));
   for (const std::uint64_t last = cycle_ + kQuantumCycles;; ++cycle_) {
-    const bool finishing = state_ == State::kFinishing;
-    if (state_ != State::kRunning && !crossbar_.request_pending()) {
-      // Nothing to step: sleep until a request or a start strobe comes, or the frame ends.
-      const std::uint64_t end = clock_.edge_ps(done_cycle_);
-      if (!finishing) {
-        wait(start_event_ | crossbar_.request_event());
+    if (state_ != State::kRunning) {
+      // There is nothing to step before the next request.
+      const bool pending = crossbar_.request_pending();
+      if (pending) cycle_ = std::max(cycle_, clock_.edge_at_or_after(crossbar_.earliest_request_ps()));
+      if (state_ == State::kFinishing && (!pending || cycle_ >= done_cycle_)) {
+        finish_frame(now);
         return;
       }
-      if (end > now) {
-        wait(Clock::to_time(end - now), crossbar_.request_event());
+      if (!pending) {
+        wait(start_event_ | crossbar_.request_event());
         return;
       }
     }
     const std::uint64_t edge = clock_.edge_ps(cycle_);
-    const bool ends = finishing && cycle_ == done_cycle_;
-    if (edge > now && (edge >= horizon || cycle_ >= last || ends)) {
-      wait(Clock::to_time(edge - now));
-      return;
-    }
-    if (ends) {
-      end_frame();
-      wait(sc_core::SC_ZERO_TIME);  // the host may start the next frame in this very cycle
+    if (edge >= now && (edge >= horizon || cycle_ >= last)) {
+      wait(Clock::to_time(edge + 1 - now));
       return;
     }
     step(edge, now);
     if (crossbar_.socket_requests() != 0) horizon = horizon_after();  // an answer may have set others going
+  }
+}
+
+// Waits for the end of the frame, or for a request before it, and ends the frame at exactly its time.
+void StereoCore::finish_frame(std::uint64_t now_ps) {
+  const std::uint64_t end = clock_.edge_ps(done_cycle_);
+  if (end > now_ps) {
+    wait(Clock::to_time(end - now_ps), crossbar_.request_event());
+  } else {
+    end_frame();
   }
 }
 
@@ -193,7 +193,7 @@ void StereoCore::step(std::uint64_t edge_ps, std::uint64_t now_ps) {
   const PortMask granted = crossbar_.arbitrate(cycle_, edge_ps, decision.requests());
   const auto moving = static_cast<PortMask>(granted | decision.passes());
 
-  const sc_core::sc_time at = Clock::to_time(edge_ps - now_ps);
+  const sc_core::sc_time at = Clock::to_time(edge_ps > now_ps ? edge_ps - now_ps : 0);
   if (has(moving, Port::kLeftLut)) sequencer_.issue(Side::kLeft, at);
   if (has(moving, Port::kRightLut)) sequencer_.issue(Side::kRight, at);
   if (has(moving, Port::kLeftPixel)) left_lut_ ? left_pixel_.handle(at) : sequencer_.issue(Side::kLeft, at);

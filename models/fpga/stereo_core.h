@@ -37,8 +37,8 @@ struct StereoCoreConfig {
 // through the crossbar's sockets, and move when CoreControl says so.
 //
 // The process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
-// have seen is missed; every access carries its own time. It sleeps while no frame runs and no request waits
-// at the host port.
+// have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every access carries its
+// own time. It sleeps while no frame runs and no request waits at the host port.
 class StereoCore : public sc_core::sc_module {
  public:
   tlm::tlm_target_socket<32> registers{"registers"};  // register_map.h
@@ -87,6 +87,7 @@ class StereoCore : public sc_core::sc_module {
 
   void run();
   void run_ahead();
+  void finish_frame(std::uint64_t now_ps);
   void step(std::uint64_t edge_ps, std::uint64_t now_ps);
   void end_frame();
   std::uint64_t access_errors() const;

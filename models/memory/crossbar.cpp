@@ -1,5 +1,6 @@
 #include "models/memory/crossbar.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +19,7 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
     : sc_module(name),
       ports("port", kPortCount),
       banks("bank", config.banks.size()),
+      clock_(config.banks.empty() ? 1 : config.banks.front().clock_mhz),
       bank_targets_(config.banks.size(), nullptr),
       request_event_("request") {
   auto found = problems(config.arbiter);
@@ -34,6 +36,7 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
   }
   for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
     arbiters_.emplace_back(config.arbiter, config.banks[bank].turnaround_cycles);
+    read_latencies_.push_back(read_latency_cycles(config.banks[bank].kind));
     banks[bank].register_invalidate_direct_mem_ptr(this, &Crossbar::invalidate_dmi, static_cast<int>(bank));
   }
 }
@@ -67,6 +70,14 @@ PortMask Crossbar::ready_socket_requests(std::uint64_t edge_ps) const {
   return ready;
 }
 
+std::uint64_t Crossbar::earliest_request_ps() const {
+  std::uint64_t earliest = UINT64_MAX;
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    if ((pending_ >> port & 1U) != 0) earliest = std::min(earliest, waiting_[port].from_ps);
+  }
+  return earliest;
+}
+
 PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests) {
   socket_requests_ = pending_ == 0 ? PortMask{0} : ready_socket_requests(edge_ps);
   const auto all = static_cast<PortMask>(requests | socket_requests_);
@@ -78,7 +89,7 @@ PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMas
   }
   granted_ = static_cast<PortMask>(granted & ~socket_requests_);
   auto served = static_cast<PortMask>(granted & socket_requests_);
-  for (; served != 0; served = static_cast<PortMask>(served & (served - 1))) respond(lowest(served), edge_ps);
+  for (; served != 0; served = static_cast<PortMask>(served & (served - 1))) respond(lowest(served), cycle);
   return granted;
 }
 
@@ -135,12 +146,18 @@ tlm::tlm_sync_enum Crossbar::forward(std::size_t port, tlm::tlm_generic_payload&
   return tlm::TLM_ACCEPTED;
 }
 
-void Crossbar::respond(std::size_t port, std::uint64_t edge_ps) {
+void Crossbar::respond(std::size_t port, std::uint64_t cycle) {
   Waiting& waiting = waiting_[port];
   tlm::tlm_generic_payload& access = *waiting.access;
   pending_ = static_cast<PortMask>(pending_ & ~(1U << port));
-  sc_core::sc_time delay = Clock::to_time(edge_ps) - sc_core::sc_time_stamp();
+  sc_core::sc_time delay;
   access_bank(access, delay);
+  // A word read is usable from the beginning of its cycle on, anything else is done at the end of the cycle. The time
+  // is that of an edge: periods added up would drift.
+  const bool reads = access.is_read() && access.is_response_ok();
+  const int cycles = reads ? read_latencies_[bank_of_address(access.get_address())] : 1;
+  delay =
+      Clock::to_time(clock_.edge_ps(cycle + static_cast<std::uint64_t>(cycles))) - sc_core::sc_time_stamp();
   waiting.responding = true;
   tlm::tlm_phase phase = tlm::BEGIN_RESP;
   const tlm::tlm_sync_enum answer = ports[port]->nb_transport_bw(access, phase, delay);
@@ -166,8 +183,9 @@ bool Crossbar::grant_dmi(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
   access.set_address(address & kOffsetMask);
   const bool granted = banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi);
   access.set_address(address);
-  dmi.set_start_address(dmi.get_start_address() + bank_base(address));
-  dmi.set_end_address(dmi.get_end_address() + bank_base(address));
+  // Also a refusal names a range; what lies beyond the bank's window belongs to the next bank.
+  dmi.set_start_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_start_address(), kOffsetMask));
+  dmi.set_end_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_end_address(), kOffsetMask));
   return granted;
 }
 

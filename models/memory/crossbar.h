@@ -8,6 +8,7 @@
 #include <tlm>
 #include <vector>
 
+#include "models/clock.h"
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/memory_config.h"
 
@@ -22,7 +23,7 @@ constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address 
 
 struct CrossbarConfig {
   ArbiterConfig arbiter;
-  std::vector<SsramBankConfig> banks;  // what the memory controllers know about their banks
+  std::vector<SsramBankConfig> banks;  // what the memory controllers know about them; all of one clock
 };
 
 // The crossbar between the six ports and the banks, with one arbiter per bank. It has no process: its owner's
@@ -36,10 +37,10 @@ struct CrossbarConfig {
 //   bank or direction than the port's route, is answered TLM_GENERIC_ERROR_RESPONSE and does not reach the
 //   bank.
 // - Anybody else sends BEGIN_REQ by nb_transport_fw. The request takes part in arbitration from the first
-// cycle that
-//   begins at or after the request's time, until BEGIN_RESP says that it has been granted; its time is when
-//   the word is usable. One transaction per port at a time: the next BEGIN_REQ comes after END_RESP (or
-//   TLM_COMPLETED).
+//   cycle that begins at or after the request's time, until BEGIN_RESP says that it has been granted. Its time
+//   is when it is done: for a read the beginning of the cycle in which the word is usable, for a write, or a
+//   request that the bank refuses, the end of the cycle of the grant. One transaction per port at a time: the
+//   next BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
 //
 // An address outside every bank is answered TLM_ADDRESS_ERROR_RESPONSE at once; other errors are the bank's.
 // Debug transport and DMI reach every bank without a grant.
@@ -63,6 +64,8 @@ class Crossbar : public sc_core::sc_module {
   PortMask socket_requests() const { return socket_requests_; }
   // Whether an nb_transport request waits for a cycle; `request_event` is notified when one arrives.
   bool request_pending() const { return pending_ != 0; }
+  // The time of the earliest of them; one must wait.
+  std::uint64_t earliest_request_ps() const;
   const sc_core::sc_event& request_event() const { return request_event_; }
 
   // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics.
@@ -117,9 +120,11 @@ class Crossbar : public sc_core::sc_module {
   bool has_bank(std::uint64_t address) const { return bank_of_address(address) < arbiters_.size(); }
   void access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
   PortMask ready_socket_requests(std::uint64_t edge_ps) const;
-  void respond(std::size_t port, std::uint64_t edge_ps);
+  void respond(std::size_t port, std::uint64_t cycle);
 
+  Clock clock_;
   std::vector<BankArbiter> arbiters_;
+  std::vector<int> read_latencies_;  // cycles, of each bank
   std::deque<PortTarget> targets_;
   std::vector<tlm::tlm_blocking_transport_if<>*> bank_targets_;  // found once, for speed
   std::array<Route, kPortCount> routes_{};

@@ -86,7 +86,10 @@ unsigned SsramBank::transport_dbg(tlm::tlm_generic_payload& access) {
 }
 
 bool SsramBank::get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
-  if (access.get_address() >= bytes()) return false;
+  if (access.get_address() >= bytes()) {
+    dmi.set_start_address(bytes());
+    return false;
+  }
   dmi.set_dmi_ptr(reinterpret_cast<unsigned char*>(words_.get()));
   dmi.set_start_address(0);
   dmi.set_end_address(bytes() - 1);
