@@ -77,7 +77,8 @@ TEST(BoardBanks, TakeTheirTurnaroundUpToBothLimits) {
 }
 
 TEST(BoardBanks, RequireATurnaroundWhereTheKindIsSyncBurst) {
-  const std::string rule = ".turnaround_cycles: missing: 1..16; where the kind is sync_burst, and only there";
+  const std::string rule =
+      ".turnaround_cycles: missing: 1..16; required where the kind is sync_burst, refused beside another";
   EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: sync_burst}}}")),
             "board.yaml:2:17: ssram.banks.a" + rule);
   EXPECT_EQ(refusal_of(banks_board("{default: {kind: sync_burst}, banks: {a: {}, b: {}}}")),
@@ -96,9 +97,18 @@ TEST(BoardBanks, RefuseATurnaroundInAnEntryOfAnotherKind) {
             "board.yaml:2:61: ssram.banks.a.turnaround_cycles" + rule);
   EXPECT_EQ(refusal_of(banks_board("{default: {turnaround_cycles: 2}, banks: {a: {}}}")),
             "board.yaml:2:38: ssram.default.turnaround_cycles" + rule);
-  // An entry that inherits its kind is of that kind.
-  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {turnaround_cycles: 2}}}")),
-            "board.yaml:2:40: ssram.banks.a.turnaround_cycles" + rule);
+}
+
+TEST(BoardBanks, IgnoreATurnaroundBesideAnInheritedKindThatHasNone) {
+  const BoardConfig board = load_text(banks_board("{banks: {a: {turnaround_cycles: 2}}}"));
+  EXPECT_EQ(board.banks[0].kind, memory::BankKind::kZbtPipelined);
+  EXPECT_EQ(board.banks[0].turnaround_cycles, 0);
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {turnaround_cycles: 17}}}")),
+            "board.yaml:2:40: ssram.banks.a.turnaround_cycles = 17: 1..16");
+  EXPECT_EQ(load_board("fpl2003", {"ssram.banks.bank3.turnaround_cycles=2"}), load_board("fpl2003"));
+  EXPECT_EQ(
+      load_board("fpl2003-syncburst", {"ssram.banks.bank3.turnaround_cycles=3"}).banks[3].turnaround_cycles,
+      3);
 }
 
 TEST(BoardBanks, IgnoreATurnaroundThatAnotherKindInherits) {

@@ -91,16 +91,16 @@ TEST(BoardSet, IsNamedWhereItBreaksARuleWithOtherValues) {
       "--set allocation.left_image: allocation.right_image = [bank2, bank3]: as long as left_image, which is "
       "[bank0]");
   EXPECT_EQ(refusal_of_board("fpl2003", {"ssram.default.kind=sync_burst"}),
-            "--set ssram.default.kind: ssram.default.turnaround_cycles: missing: 1..16; where the kind is "
-            "sync_burst, and only there");
+            "--set ssram.default.kind: ssram.default.turnaround_cycles: missing: 1..16; required where the "
+            "kind is sync_burst, refused beside another");
   EXPECT_EQ(
       refusal_of_board("fpl2003", {"ssram.banks.bank3.kind=sync_burst"}),
-      "--set ssram.banks.bank3.kind: ssram.banks.bank3.turnaround_cycles: missing: 1..16; where the kind is "
-      "sync_burst, and only there");
+      "--set ssram.banks.bank3.kind: ssram.banks.bank3.turnaround_cycles: missing: 1..16; required where "
+      "the kind is sync_burst, refused beside another");
   EXPECT_EQ(
       refusal_of_board("fpl2003-syncburst", {"ssram.default={words: 524288, kind: sync_burst}"}),
-      "--set ssram.default: ssram.default.turnaround_cycles: missing: 1..16; where the kind is sync_burst, "
-      "and only there");
+      "--set ssram.default: ssram.default.turnaround_cycles: missing: 1..16; required where the kind is "
+      "sync_burst, refused beside another");
   EXPECT_EQ(
       refusal_of_board("fpl2003-syncburst", {"ssram.default.kind=zbt_flow_through"}),
       "--set ssram.default.kind: ssram.default.turnaround_cycles = 2: only where the kind is sync_burst, and "

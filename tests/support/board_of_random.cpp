@@ -1,0 +1,145 @@
+#include "tests/support/board_of_random.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace stereotlm::test {
+namespace {
+
+memory::Port port_of(PlainPort port) {
+  switch (port) {
+    case PlainPort::kLeftLut:
+      return memory::Port::kLeftLut;
+    case PlainPort::kRightLut:
+      return memory::Port::kRightLut;
+    case PlainPort::kLeftPixel:
+      return memory::Port::kLeftPixel;
+    case PlainPort::kRightPixel:
+      return memory::Port::kRightPixel;
+    case PlainPort::kResult:
+      return memory::Port::kResult;
+    case PlainPort::kHost:
+      break;
+  }
+  return memory::Port::kHost;
+}
+
+memory::BankKind kind_of(PlainBankKind kind) {
+  switch (kind) {
+    case PlainBankKind::kZbtPipelined:
+      return memory::BankKind::kZbtPipelined;
+    case PlainBankKind::kZbtFlowThrough:
+      return memory::BankKind::kZbtFlowThrough;
+    case PlainBankKind::kSyncBurst:
+      break;
+  }
+  return memory::BankKind::kSyncBurst;
+}
+
+std::string bank_name(int bank) { return "bank" + std::to_string(bank); }
+
+std::vector<std::string> bank_names(const std::vector<int>& banks) {
+  std::vector<std::string> names;
+  for (const int bank : banks) names.push_back(bank_name(bank));
+  return names;
+}
+
+std::optional<std::string> bank_name(const std::optional<int>& bank) {
+  if (!bank) return std::nullopt;
+  return bank_name(*bank);
+}
+
+std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
+  std::vector<platform::BankConfig> banks;
+  for (const PlainBank& bank : input.banks) {
+    const bool turns = bank.kind == PlainBankKind::kSyncBurst;
+    banks.push_back({bank_name(static_cast<int>(banks.size())), 0, kind_of(bank.kind),
+                     turns ? bank.turnaround_cycles : 0});
+  }
+  const int table_words = input.width * input.height;
+  const auto add = [&banks](int bank, int words) { banks[static_cast<std::size_t>(bank)].words += words; };
+  for (const auto* list : {&input.left_image, &input.right_image, &input.disparity}) {
+    for (const int bank : *list) add(bank, table_words / 4);
+  }
+  for (const auto& bank : {input.left_lut, input.right_lut}) {
+    if (bank) add(*bank, table_words);
+  }
+  for (platform::BankConfig& bank : banks) bank.words = std::max(bank.words, 1);
+  return banks;
+}
+
+std::optional<kernels::RectificationTable> table_of(
+    const PlainCycleInput& input, const std::optional<int>& bank,
+    const std::optional<std::vector<std::uint32_t>>& entries) {
+  if (!bank) return std::nullopt;
+  if (!entries) throw std::invalid_argument("board_tables: a side with a bank for its table has no entries");
+  return kernels::RectificationTable{input.width, input.height, *entries};
+}
+
+kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::uint8_t>& pixels) {
+  kernels::GrayImage image(board.width, board.height);
+  if (image.pixels.size() != pixels.size()) {
+    throw std::invalid_argument("stereo_pair: " + std::to_string(pixels.size()) + " pixels for " +
+                                std::to_string(board.width) + " x " + std::to_string(board.height));
+  }
+  image.pixels = pixels;
+  return image;
+}
+
+}  // namespace
+
+platform::BoardConfig board_config(const PlainCycleInput& input) {
+  platform::BoardConfig board;
+  board.name = "plain";
+  board.image = {input.width, input.height};
+  board.fpga.arbiter.policy = input.arbitration == PlainArbitration::kFixedPriority
+                                  ? memory::ArbitrationPolicy::kFixedPriority
+                                  : memory::ArbitrationPolicy::kRoundRobin;
+  std::transform(input.priority.begin(), input.priority.end(), board.fpga.arbiter.priority.begin(), port_of);
+  board.fpga.lane_fifo_slots = input.lane_fifo_slots;
+  board.fpga.result_fifo_words = input.result_fifo_words;
+  board.fpga.pipeline_latency_cycles = input.pipeline_latency_cycles;
+  board.banks = bank_configs(input);
+  board.allocation.left_image = bank_names(input.left_image);
+  board.allocation.right_image = bank_names(input.right_image);
+  board.allocation.disparity = bank_names(input.disparity);
+  board.allocation.left_lut = bank_name(input.left_lut);
+  board.allocation.right_lut = bank_name(input.right_lut);
+  board.matcher.window = input.window;
+  board.matcher.disparities = input.disparities;
+  board.matcher.filter.reset();
+  if (input.filter_half > 0) {
+    kernels::FilterKernel kernel{2 * input.filter_half + 1, {}, 2};
+    kernel.weights.resize(static_cast<std::size_t>(kernel.size) * static_cast<std::size_t>(kernel.size));
+    kernel.weights.front() = 3;
+    kernel.weights.back() = -3;
+    board.matcher.filter = kernel;
+  }
+  board.matcher.fetch = input.fetch == PlainFetch::kColumn ? fpga::Fetch::kColumn : fpga::Fetch::kLineBuffer;
+  return board;
+}
+
+platform::Tables board_tables(const PlainCycleInput& input) {
+  return {table_of(input, input.left_lut, input.left_table),
+          table_of(input, input.right_lut, input.right_table)};
+}
+
+platform::BoardConfig board_config(const RandomBoard& board) {
+  platform::BoardConfig config = board_config(cycle_input(board));
+  config.name = "random-" + std::to_string(board.seed);
+  if (board.filter)
+    config.matcher.filter =
+        kernels::FilterKernel{board.filter->size, board.filter->weights, board.filter->shift};
+  config.matcher.lr_tolerance = board.lr_tolerance;
+  return config;
+}
+
+platform::Tables board_tables(const RandomBoard& board) { return board_tables(cycle_input(board)); }
+
+host::StereoPair stereo_pair(const RandomBoard& board, int frame) {
+  const PicturePair& pair = board.pictures_of_frame(frame);
+  return {gray_image(board, pair.left), gray_image(board, pair.right)};
+}
+
+}  // namespace stereotlm::test

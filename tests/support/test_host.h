@@ -1,0 +1,145 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <systemc>
+#include <tlm>
+#include <utility>
+#include <vector>
+
+namespace stereotlm::test {
+
+// An initiator that a test drives: words by b_transport and nb_transport, blocks by debug transport, and DMI.
+// It ends a response of nb_transport as `ending` says, and records every answer.
+class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
+ public:
+  struct Answer {
+    tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;
+    std::uint32_t word = 0;
+    sc_core::sc_time at;  // absolute
+  };
+  enum class Ending { kCompleted, kUpdated, kAccepted };  // what it returns to BEGIN_RESP
+
+  tlm::tlm_initiator_socket<32> socket{"socket"};
+  Ending ending = Ending::kCompleted;
+  std::vector<Answer> answers;  // of nb_transport, in the order in which they came
+  std::vector<std::pair<sc_dt::uint64, sc_dt::uint64>> invalidations;
+
+  explicit TestHost(const sc_core::sc_module_name& name) : sc_module(name) { socket.bind(*this); }
+
+  // One word by b_transport, at now + delay.
+  Answer read(std::uint64_t address, sc_core::sc_time delay = {}) {
+    return block(tlm::TLM_READ_COMMAND, address, 0, delay);
+  }
+  Answer write(std::uint64_t address, std::uint32_t word, sc_core::sc_time delay = {}) {
+    return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
+  }
+
+  // One word by nb_transport that asks from now + delay on; does not wait. Returns what the target returned.
+  tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
+                             sc_core::sc_time delay = {}) {
+    Transaction& transaction = prepare(command, address, word);
+    transaction.payload.set_mm(&manager_);
+    transaction.payload.acquire();
+    tlm::tlm_phase phase = tlm::BEGIN_REQ;
+    const tlm::tlm_sync_enum status = socket->nb_transport_fw(transaction.payload, phase, delay);
+    if (status == tlm::TLM_COMPLETED) record(transaction, delay);
+    return status;
+  }
+  // END_RESP at the time of the last answer, after Ending::kAccepted.
+  tlm::tlm_sync_enum end_response() {
+    tlm::tlm_phase phase = tlm::END_RESP;
+    sc_core::sc_time delay =
+        answers.empty() ? sc_core::sc_time() : answers.back().at - sc_core::sc_time_stamp();
+    Transaction& transaction = transactions_.back();
+    const auto status = socket->nb_transport_fw(transaction.payload, phase, delay);
+    transaction.payload.release();
+    return status;
+  }
+  // In a thread process: request(), and waits until the answer's time.
+  Answer access(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0) {
+    if (request(command, address, word) == tlm::TLM_ACCEPTED) sc_core::wait(answered_);
+    return answers.back();
+  }
+
+  unsigned debug_write(std::uint64_t address, const std::vector<std::uint32_t>& words) {
+    std::vector<std::uint32_t> copy = words;
+    return debug(tlm::TLM_WRITE_COMMAND, address, copy);
+  }
+  std::vector<std::uint32_t> debug_read(std::uint64_t address, std::size_t count) {
+    std::vector<std::uint32_t> words(count);
+    words.resize(debug(tlm::TLM_READ_COMMAND, address, words) / 4);
+    return words;
+  }
+  bool dmi(std::uint64_t address, tlm::tlm_dmi& dmi) {
+    tlm::tlm_generic_payload payload;
+    payload.set_command(tlm::TLM_READ_COMMAND);
+    payload.set_address(address);
+    dmi.init();
+    return socket->get_direct_mem_ptr(payload, dmi);
+  }
+
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) override {
+    if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
+    for (Transaction& transaction : transactions_) {
+      if (&transaction.payload == &payload) record(transaction, delay);
+    }
+    answered_.notify(delay);
+    if (ending == Ending::kAccepted) return tlm::TLM_ACCEPTED;
+    payload.release();
+    if (ending == Ending::kCompleted) return tlm::TLM_COMPLETED;
+    phase = tlm::END_RESP;
+    return tlm::TLM_UPDATED;
+  }
+  void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) override {
+    invalidations.emplace_back(start, end);
+  }
+
+ private:
+  struct Transaction {
+    tlm::tlm_generic_payload payload;
+    std::uint32_t word = 0;
+  };
+  // Transactions live as long as the host.
+  class Manager : public tlm::tlm_mm_interface {
+    void free(tlm::tlm_generic_payload* /*payload*/) override {}
+  };
+
+  Transaction& prepare(tlm::tlm_command command, std::uint64_t address, std::uint32_t word) {
+    Transaction& transaction = transactions_.emplace_back();
+    transaction.word = word;
+    transaction.payload.set_command(command);
+    transaction.payload.set_address(address);
+    transaction.payload.set_data_ptr(reinterpret_cast<unsigned char*>(&transaction.word));
+    transaction.payload.set_data_length(4);
+    transaction.payload.set_streaming_width(4);
+    return transaction;
+  }
+  Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word, sc_core::sc_time delay) {
+    Transaction& transaction = prepare(command, address, word);
+    socket->b_transport(transaction.payload, delay);
+    return answer_of(transaction, delay);
+  }
+  static Answer answer_of(const Transaction& transaction, sc_core::sc_time delay) {
+    return {transaction.payload.get_response_status(), transaction.word, sc_core::sc_time_stamp() + delay};
+  }
+  void record(const Transaction& transaction, sc_core::sc_time delay) {
+    answers.push_back(answer_of(transaction, delay));
+  }
+  unsigned debug(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t>& words) {
+    tlm::tlm_generic_payload payload;
+    payload.set_command(command);
+    payload.set_address(address);
+    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+    payload.set_data_length(static_cast<unsigned>(words.size() * 4));
+    payload.set_streaming_width(static_cast<unsigned>(words.size() * 4));
+    return socket->transport_dbg(payload);
+  }
+
+  Manager manager_;
+  std::deque<Transaction> transactions_;
+  sc_core::sc_event answered_{"answered"};
+};
+
+}  // namespace stereotlm::test

@@ -1,0 +1,67 @@
+#include "models/fpga/core_config.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace stereotlm::fpga {
+namespace {
+
+using Change = std::function<void(CoreConfig&)>;
+
+std::vector<std::string> problems_after(const Change& change) {
+  CoreConfig config;
+  change(config);
+  return problems(config);
+}
+
+TEST(CoreConfig, AcceptsBothEndsOfEachRange) {
+  const std::vector<Change> changes = {
+      [](CoreConfig& c) { c.width = 4, c.height = 1, c.window = 3, c.disparities = 1, c.lr_tolerance = 0; },
+      [](CoreConfig& c) { c.width = 2048, c.height = 2048, c.window = 31, c.disparities = 254; },
+      [](CoreConfig& c) { c.lane_fifo_slots = 1, c.result_fifo_words = 1, c.pipeline_latency_cycles = 0; },
+      [](CoreConfig& c) { c.lane_fifo_slots = 64, c.result_fifo_words = 64, c.clock_mhz = 1000; },
+      [](CoreConfig& c) { c.pipeline_latency_cycles = 1024, c.lr_tolerance = 253, c.clock_mhz = 1; },
+      [](CoreConfig& c) { c.filter.reset(), c.lr_tolerance.reset(); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    EXPECT_EQ(problems_after(changes[i]), std::vector<std::string>{}) << i;
+}
+
+TEST(CoreConfig, RefusesWhatLiesBeyondThem) {
+  const std::vector<std::pair<Change, std::string>> cases = {
+      {[](CoreConfig& c) { c.width = 0; }, "width = 0: must be a multiple of 4, 4..2048"},
+      {[](CoreConfig& c) { c.width = 6; }, "width = 6: must be a multiple of 4, 4..2048"},
+      {[](CoreConfig& c) { c.width = 2052; }, "width = 2052: must be a multiple of 4, 4..2048"},
+      {[](CoreConfig& c) { c.height = 0; }, "height = 0: must be 1..2048"},
+      {[](CoreConfig& c) { c.height = 2049; }, "height = 2049: must be 1..2048"},
+      {[](CoreConfig& c) { c.window = 1; }, "window = 1: must be odd, 3..31"},
+      {[](CoreConfig& c) { c.window = 8; }, "window = 8: must be odd, 3..31"},
+      {[](CoreConfig& c) { c.window = 33; }, "window = 33: must be odd, 3..31"},
+      {[](CoreConfig& c) { c.disparities = 0; }, "disparities = 0: must be 1..254"},
+      {[](CoreConfig& c) { c.disparities = 255; }, "disparities = 255: must be 1..254"},
+      {[](CoreConfig& c) { c.lr_tolerance = -1; }, "lr_tolerance = -1: must be 0..253"},
+      {[](CoreConfig& c) { c.lr_tolerance = 254; }, "lr_tolerance = 254: must be 0..253"},
+      {[](CoreConfig& c) { c.lane_fifo_slots = 0; }, "lane_fifo_slots = 0: must be 1..64"},
+      {[](CoreConfig& c) { c.lane_fifo_slots = 65; }, "lane_fifo_slots = 65: must be 1..64"},
+      {[](CoreConfig& c) { c.result_fifo_words = 0; }, "result_fifo_words = 0: must be 1..64"},
+      {[](CoreConfig& c) { c.result_fifo_words = 65; }, "result_fifo_words = 65: must be 1..64"},
+      {[](CoreConfig& c) { c.pipeline_latency_cycles = -1; },
+       "pipeline_latency_cycles = -1: must be 0..1024"},
+      {[](CoreConfig& c) { c.pipeline_latency_cycles = 1025; },
+       "pipeline_latency_cycles = 1025: must be 0..1024"},
+      {[](CoreConfig& c) { c.clock_mhz = 0.5; }, "clock_mhz = 0.500000: must be 1..1000"},
+      {[](CoreConfig& c) { c.clock_mhz = 1000.5; }, "clock_mhz = 1000.500000: must be 1..1000"},
+  };
+  for (const auto& [change, problem] : cases)
+    EXPECT_EQ(problems_after(change), std::vector<std::string>{problem});
+}
+
+TEST(CoreConfig, RefusesAKernelWithProblems) {
+  const auto found = problems_after([](CoreConfig& c) { c.filter->weights.front() = 1; });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().rfind("filter: ", 0), 0U) << found.front();
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

@@ -1,0 +1,214 @@
+#include "models/fpga/register_file.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/test_host.h"
+#include "tests/unit/fpga/stream_ends.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+using registers::kControl;
+using registers::kControlAcknowledge;
+using registers::kControlStart;
+using registers::kStatus;
+using registers::kStatusBusy;
+using registers::kStatusDone;
+using registers::kStatusError;
+using test::TestHost;
+
+const std::vector<std::uint64_t> kBases = {registers::kLeftImageBase, registers::kRightImageBase,
+                                           registers::kDisparityBase, registers::kLeftLutBase,
+                                           registers::kRightLutBase};
+
+class RegisterFileTest : public testing::Test {
+ protected:
+  RegisterFileTest() {
+    binder.bind(host.socket, file.registers, "host_to_registers");
+    file.done(done);
+    file.start_out.bind(starts);
+    settle();
+  }
+  static void settle() { sc_core::sc_start(sc_core::sc_time(1, sc_core::SC_NS)); }
+
+  void control(std::uint32_t value) {
+    ASSERT_EQ(host.write(kControl, value).status, tlm::TLM_OK_RESPONSE);
+    settle();
+  }
+  std::uint32_t status() { return host.read(kStatus).word; }
+
+  // Sends `payload`, which must be refused so and change nothing.
+  void expect_refused(tlm::tlm_generic_payload& payload, tlm::tlm_response_status status_expected) {
+    const auto errors = file.stats().errors;
+    sc_core::sc_time delay;
+    host.socket->b_transport(payload, delay);
+    EXPECT_EQ(payload.get_response_status(), status_expected);
+    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
+    EXPECT_EQ(file.stats().errors, errors + 1);
+    EXPECT_TRUE(starts.beats.empty());
+    for (const std::uint64_t base : kBases) EXPECT_EQ(host.read(base).word, 0U);
+    binder.take_violations();
+  }
+
+  test::MonitoringBinder binder;
+  TestHost host{"test_host"};
+  RegisterFile file{"file"};
+  sc_core::sc_signal<bool> done{"done"};
+  Collected<FrameStart> starts;
+};
+
+TEST_F(RegisterFileTest, KeepsTheBaseRegisters) {
+  for (std::uint32_t i = 0; i < kBases.size(); ++i) {
+    EXPECT_EQ(host.read(kBases[i]).word, 0U);
+    EXPECT_EQ(host.write(kBases[i], registers::base(i, 100 + i)).status, tlm::TLM_OK_RESPONSE);
+  }
+  for (std::uint32_t i = 0; i < kBases.size(); ++i)
+    EXPECT_EQ(host.read(kBases[i]).word, registers::base(i, 100 + i));
+  EXPECT_EQ(file.stats().reads, 10U);
+  EXPECT_EQ(file.stats().writes, 5U);
+}
+
+TEST_F(RegisterFileTest, HandsTheBasesToTheCoreWithTheStrobe) {
+  for (std::uint32_t i = 0; i < kBases.size(); ++i) host.write(kBases[i], 10 + i);
+  EXPECT_TRUE(starts.beats.empty());
+  control(kControlStart);
+  ASSERT_EQ(starts.beats.size(), 1U);
+  const FrameStart& start = starts.beats[0];
+  EXPECT_EQ(start.left_image, 10U);
+  EXPECT_EQ(start.right_image, 11U);
+  EXPECT_EQ(start.disparity, 12U);
+  EXPECT_EQ(start.left_lut, 13U);
+  EXPECT_EQ(start.right_lut, 14U);
+  EXPECT_EQ(status(), kStatusBusy);
+}
+
+TEST_F(RegisterFileTest, RaisesTheInterruptWithTheEndOfAFrameUntilItIsAcknowledged) {
+  control(kControlStart);
+  EXPECT_FALSE(done.read());
+  file.finish_frame(0x1'2345'6789, false);
+  settle();
+  EXPECT_TRUE(done.read());
+  EXPECT_EQ(status(), kStatusDone);
+  EXPECT_EQ(host.read(registers::kFrameCyclesLow).word, 0x2345'6789U);
+  EXPECT_EQ(host.read(registers::kFrameCyclesHigh).word, 1U);
+  control(0);
+  EXPECT_TRUE(done.read());
+  control(kControlAcknowledge);
+  EXPECT_FALSE(done.read());
+  EXPECT_EQ(status(), 0U);
+  EXPECT_EQ(host.read(registers::kFrameCyclesLow).word, 0x2345'6789U);
+}
+
+TEST_F(RegisterFileTest, IgnoresAStrobeWhileBusyAndRaisesError) {
+  control(kControlStart);
+  control(kControlStart);
+  EXPECT_EQ(starts.beats.size(), 1U);
+  EXPECT_EQ(status(), kStatusBusy | kStatusError);
+  file.finish_frame(5, false);
+  settle();
+  EXPECT_EQ(status(), kStatusDone | kStatusError);  // stays
+  control(kControlAcknowledge);
+  EXPECT_EQ(status(), 0U);
+  control(kControlStart);
+  EXPECT_EQ(starts.beats.size(), 2U);
+}
+
+TEST_F(RegisterFileTest, RaisesErrorWithARefusedStrobeAndIsNotBusy) {
+  control(kControlStart);
+  file.refuse_start();
+  settle();
+  EXPECT_EQ(status(), kStatusError);
+  EXPECT_FALSE(done.read());
+}
+
+TEST_F(RegisterFileTest, RaisesErrorWithTheEndOfAFrameThatMemoryRefused) {
+  control(kControlStart);
+  file.finish_frame(5, true);
+  settle();
+  EXPECT_EQ(status(), kStatusDone | kStatusError);
+  control(kControlAcknowledge | kControlStart);
+  file.finish_frame(5, false);
+  settle();
+  EXPECT_EQ(status(), kStatusDone);
+}
+
+TEST_F(RegisterFileTest, AcknowledgesAndStartsInOneWrite) {
+  control(kControlStart);
+  file.finish_frame(5, false);
+  settle();
+  control(kControlAcknowledge | kControlStart);
+  EXPECT_FALSE(done.read());
+  EXPECT_EQ(status(), kStatusBusy);
+  EXPECT_EQ(starts.beats.size(), 2U);
+}
+
+TEST_F(RegisterFileTest, AnswersTheLastRegisterAndRefusesTheAddressBehindIt) {
+  EXPECT_EQ(host.write(registers::kEnd - 4, 0).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(host.write(registers::kEnd, 0).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(host.read(registers::kEnd).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(file.stats().errors, 2U);
+}
+
+TEST_F(RegisterFileTest, RefusesTheDirectionThatARegisterDoesNotHave) {
+  EXPECT_EQ(host.read(kControl).status, tlm::TLM_COMMAND_ERROR_RESPONSE);
+  for (const std::uint64_t address : {kStatus, registers::kFrameCyclesLow, registers::kFrameCyclesHigh}) {
+    EXPECT_EQ(host.write(address, 1).status, tlm::TLM_COMMAND_ERROR_RESPONSE) << address;
+    EXPECT_EQ(host.read(address).status, tlm::TLM_OK_RESPONSE) << address;
+  }
+  EXPECT_EQ(file.stats().errors, 4U);
+}
+
+TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWholeWord) {
+  std::array<unsigned char, 8> data;
+  data.fill(0xFF);
+  std::array<unsigned char, 4> enables;
+  enables.fill(TLM_BYTE_ENABLED);
+  const auto payload = [&data] {
+    auto fresh = std::make_unique<tlm::tlm_generic_payload>();
+    fresh->set_command(tlm::TLM_WRITE_COMMAND);
+    fresh->set_address(registers::kLeftImageBase);
+    fresh->set_data_ptr(data.data());
+    fresh->set_data_length(4);
+    fresh->set_streaming_width(8);
+    return fresh;
+  };
+  for (const unsigned length : {1U, 3U, 8U}) {
+    const auto wrong_length = payload();
+    wrong_length->set_data_length(length);
+    expect_refused(*wrong_length, tlm::TLM_BURST_ERROR_RESPONSE);
+  }
+  const auto narrow = payload();
+  narrow->set_streaming_width(3);
+  expect_refused(*narrow, tlm::TLM_BURST_ERROR_RESPONSE);
+  const auto enabled = payload();
+  enabled->set_byte_enable_ptr(enables.data());
+  enabled->set_byte_enable_length(4);
+  expect_refused(*enabled, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
+  const auto unaligned = payload();
+  unaligned->set_address(registers::kLeftImageBase + 2);
+  expect_refused(*unaligned, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  const auto ignored = payload();
+  ignored->set_command(tlm::TLM_IGNORE_COMMAND);
+  expect_refused(*ignored, tlm::TLM_COMMAND_ERROR_RESPONSE);
+}
+
+TEST_F(RegisterFileTest, LetsDebugTransportReadAndNotWrite) {
+  host.write(registers::kDisparityBase, 42);
+  EXPECT_EQ(host.debug_read(registers::kDisparityBase, 1), (std::vector<std::uint32_t>{42}));
+  EXPECT_TRUE(host.debug_read(kControl, 1).empty());
+  EXPECT_TRUE(host.debug_read(registers::kEnd, 1).empty());
+  EXPECT_EQ(host.debug_write(registers::kDisparityBase, {43}), 0U);
+  EXPECT_EQ(host.read(registers::kDisparityBase).word, 42U);
+}
+
+TEST(RegisterMap, PlacesABaseInTheAddressesOfTheCrossbar) {
+  EXPECT_EQ(registers::base_address(registers::base(0, 0)), 0U);
+  EXPECT_EQ(registers::base_address(registers::base(1, 5)), (std::uint64_t{1} << 28U) + 20);
+  EXPECT_EQ(registers::base_address(registers::base(63, (1U << 26U) - 1)), (std::uint64_t{1} << 34U) - 4);
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/fpga/register_map.h"
+#include "models/fpga/stereo_core.h"
+#include "models/kernels/rectification_table.h"
+#include "models/memory/ssram_bank.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/test_host.h"
+#include "tests/unit/fpga/stream_ends.h"
+
+namespace stereotlm::fpga {
+
+// The core of an 8 x 6 board with six banks of 64 words: left image, right image, disparity, left table,
+// right table, and one that no frame uses. Hosts drive its registers and its host port, every link under a
+// monitor; the times at which the interrupt rises are recorded.
+class StereoCoreBench : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kWords = 64;
+  enum Bank : std::uint32_t { kLeft, kRight, kResult, kLeftTable, kRightTable, kSpare, kBankCount };
+
+  static StereoCoreConfig small_board() {
+    StereoCoreConfig config;
+    config.core.width = 8;
+    config.core.height = 6;
+    config.core.window = 3;
+    config.core.disparities = 3;
+    config.core.filter.reset();
+    config.core.pipeline_latency_cycles = 5;
+    config.memory.banks.assign(kBankCount, {kWords});
+    return config;
+  }
+
+  void build(const StereoCoreConfig& board) {
+    config = board;
+    clock = std::make_unique<Clock>(board.core.clock_mhz);
+    core = std::make_unique<StereoCore>("core", board, binder);
+    for (std::size_t bank = 0; bank < board.memory.banks.size(); ++bank) {
+      const std::string number = std::to_string(bank);
+      banks.push_back(
+          std::make_unique<memory::SsramBank>(("ssram" + number).c_str(), board.memory.banks[bank]));
+      binder.bind(core->banks[bank], banks.back()->port, "crossbar_to_bank" + number);
+    }
+    binder.bind(registers.socket, core->registers, "host_to_registers");
+    binder.bind(memory.socket, core->host, "host_to_crossbar");
+    core->done(done);
+    sc_core::sc_spawn([this] {
+      for (;;) {
+        sc_core::wait(done.posedge_event());
+        done_at.push_back(sc_core::sc_time_stamp());
+        if (on_done) on_done();
+      }
+    });
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    load();
+  }
+
+  // Pictures of noise, identity tables, and the base registers.
+  void load() {
+    const auto pixels = static_cast<std::size_t>(config.core.width * config.core.height);
+    left = noise(pixels, 11);
+    right = noise(pixels, 12);
+    memory.debug_write(memory::crossbar_address(kLeft, 0), words_of(left));
+    memory.debug_write(memory::crossbar_address(kRight, 0), words_of(right));
+    const auto table = kernels::identity_table(config.core.width, config.core.height);
+    memory.debug_write(memory::crossbar_address(kLeftTable, 0), table.entries);
+    memory.debug_write(memory::crossbar_address(kRightTable, 0), table.entries);
+    set_base(registers::kLeftImageBase, kLeft);
+    set_base(registers::kRightImageBase, kRight);
+    set_base(registers::kDisparityBase, kResult);
+    set_base(registers::kLeftLutBase, kLeftTable);
+    set_base(registers::kRightLutBase, kRightTable);
+  }
+  void set_base(std::uint64_t base_register, std::uint32_t bank, std::uint32_t word = 0) {
+    registers.write(base_register, registers::base(bank, word));
+  }
+  static std::vector<std::uint32_t> words_of(const std::vector<std::uint8_t>& pixels) {
+    std::vector<std::uint32_t> words(pixels.size() / 4);
+    for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel)
+      words[pixel / 4] |= std::uint32_t{pixels[pixel]} << (8 * (pixel % 4));
+    return words;
+  }
+
+  void control(std::uint32_t value) { registers.write(registers::kControl, value); }
+  void start() { control(registers::kControlAcknowledge | registers::kControlStart); }
+  std::uint32_t status() { return registers.read(registers::kStatus).word; }
+
+  // The start of a clock cycle.
+  sc_core::sc_time edge(std::uint64_t cycle) const { return Clock::to_time(clock->edge_ps(cycle)); }
+  static void run_until(const sc_core::sc_time& time) { sc_core::sc_start(time - sc_core::sc_time_stamp()); }
+  // Lets everything come to an end.
+  void finish() { run_until(sc_core::sc_time_stamp() + edge(5000)); }
+  // Does something in a process of its own, at this time.
+  static void at(const sc_core::sc_time& time, const std::function<void()>& action) {
+    sc_core::sc_spawn([time, action] {
+      if (time > sc_core::sc_time_stamp()) sc_core::wait(time - sc_core::sc_time_stamp());
+      action();
+    });
+  }
+
+  // frame_cycles if nothing contends, with both latencies of the slower side.
+  std::uint64_t frame_cycles_alone(std::uint64_t latencies) const {
+    const FrameGeometry& geometry = core->control().geometry();
+    return latencies + geometry.slots + geometry.drain_cycles + 1 + pipeline();
+  }
+  std::uint64_t pipeline() const { return static_cast<std::uint64_t>(config.core.pipeline_latency_cycles); }
+  const PortCycles& port(memory::Port which) const { return core->control().port_cycles(which); }
+  std::uint64_t blamed(Bank bank, memory::Port victim, memory::Port by) const {
+    return core->crossbar().arbiters()[bank].stats().blame[memory::index_of(victim)][memory::index_of(by)];
+  }
+
+  StereoCoreConfig config;
+  std::vector<std::uint8_t> left;
+  std::vector<std::uint8_t> right;
+  test::MonitoringBinder binder;
+  test::TestHost registers{"register_host"};
+  test::TestHost memory{"memory_host"};
+  std::unique_ptr<Clock> clock;
+  std::unique_ptr<StereoCore> core;
+  std::vector<std::unique_ptr<memory::SsramBank>> banks;
+  sc_core::sc_signal<bool> done{"done"};
+  std::vector<sc_core::sc_time> done_at;
+  std::function<void()> on_done;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,192 @@
+// The host port beside the core's own: accesses before, in and after a frame.
+#include <gtest/gtest.h>
+
+#include "tests/unit/fpga/stereo_core_bench.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::crossbar_address;
+using memory::Port;
+using sc_core::sc_time;
+using test::TestHost;
+using tlm::TLM_READ_COMMAND;
+using tlm::TLM_WRITE_COMMAND;
+
+const sc_time kPicosecond = sc_time::from_value(1);
+
+class StereoCoreHost : public StereoCoreBench {
+ protected:
+  static StereoCoreConfig host_last() {
+    StereoCoreConfig board = small_board();
+    board.memory.arbiter.priority = {Port::kResult,  Port::kLeftPixel, Port::kRightPixel,
+                                     Port::kLeftLut, Port::kRightLut,  Port::kHost};
+    return board;
+  }
+  void expect_nothing_counted() const {
+    for (const memory::BankArbiter& arbiter : core->crossbar().arbiters()) {
+      const memory::ArbiterStats stats = arbiter.stats();
+      EXPECT_EQ(stats.grants[memory::index_of(Port::kHost)], 0U);
+    }
+    EXPECT_EQ(port(Port::kHost).granted(), 0U);
+  }
+  std::uint64_t uncounted() const {
+    std::uint64_t accesses = 0;
+    for (const memory::BankArbiter& arbiter : core->crossbar().arbiters())
+      accesses += arbiter.uncounted_accesses();
+    return accesses;
+  }
+};
+
+TEST_F(StereoCoreHost, ReachesTheBanksWhileNoFrameRuns) {
+  build(small_board());
+  at(edge(5), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 3), 77); });
+  at(edge(10) + kPicosecond, [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 3)); });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 2U);
+  EXPECT_EQ(memory.answers[0].at, edge(5 + 1));
+  EXPECT_EQ(memory.answers[1].word, 77U);
+  EXPECT_EQ(memory.answers[1].at, edge(11 + 2));
+  expect_nothing_counted();
+  EXPECT_EQ(uncounted(), 2U);
+  EXPECT_EQ(port(Port::kHost).sum(), 0U);
+}
+
+TEST_F(StereoCoreHost, ReachesTheBanksWordAfterWord) {
+  build(small_board());
+  at(edge(1), [this] {
+    for (std::uint32_t word = 0; word < 5; ++word)
+      memory.access(TLM_READ_COMMAND, crossbar_address(kLeft, word));
+  });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 5U);
+  for (std::uint32_t word = 0; word < 5; ++word) {
+    EXPECT_EQ(memory.answers[word].word, words_of(left)[word]);
+    EXPECT_EQ(memory.answers[word].at, edge(1 + 2 * (word + 1)));
+  }
+}
+
+TEST_F(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
+  build(small_board());
+  at(edge(0), [this] { start(); });
+  // Slot 1 of the sequence is read in cycle 3 (tables 2 cycles); the host is first in the list.
+  at(edge(3), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kLeft, 4)); });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 1U);
+  EXPECT_EQ(memory.answers[0].word, words_of(left)[4]);
+  EXPECT_EQ(memory.answers[0].at, edge(3 + 2));
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4) + 1});
+  EXPECT_EQ(port(Port::kHost).granted(), 1U);
+  EXPECT_EQ(port(Port::kHost).stalled(), 0U);
+  EXPECT_EQ(port(Port::kHost).idle(), frame_cycles_alone(4) + 1 - pipeline() - 1);
+  EXPECT_EQ(port(Port::kLeftPixel).stalled(), 1U);
+  EXPECT_EQ(blamed(kLeft, Port::kLeftPixel, Port::kHost), 1U);
+  EXPECT_EQ(uncounted(), 0U);
+}
+
+TEST_F(StereoCoreHost, CostsNothingInABankThatNoPortWants) {
+  build(small_board());
+  at(edge(0), [this] { start(); });
+  at(edge(3), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 0), 5); });
+  finish();
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(memory.answers[0].at, edge(3 + 1));
+  EXPECT_EQ(port(Port::kHost).granted(), 1U);
+  const memory::ArbiterStats stats = core->crossbar().arbiters()[kSpare].stats();
+  EXPECT_EQ(stats.writes, 1U);
+  EXPECT_EQ(stats.idle_cycles, frame_cycles_alone(4) - pipeline() - 1);
+}
+
+TEST_F(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
+  build(host_last());
+  at(edge(0), [this] { start(); });
+  // Slots 1 and 2 are read in cycles 3 and 4; slot 3, the next column's first, is empty in cycle 5.
+  at(edge(3), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kLeft, 4)); });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 1U);
+  EXPECT_EQ(memory.answers[0].at, edge(5 + 2));
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(port(Port::kHost).stalled(), 2U);
+  EXPECT_EQ(port(Port::kHost).granted(), 1U);
+  EXPECT_EQ(blamed(kLeft, Port::kHost, Port::kLeftPixel), 2U);
+  EXPECT_EQ(core->crossbar().arbiters()[kLeft].stats().contended_cycles, 2U);
+}
+
+TEST_F(StereoCoreHost, TakesPartFromTheFirstCycleAtOrAfterItsRequest) {
+  build(small_board());
+  at(edge(0), [this] { start(); });
+  at(edge(20), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
+  at(edge(30) + kPicosecond, [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
+  at(edge(40),
+     [this] { memory.request(TLM_READ_COMMAND, crossbar_address(kSpare, 0), 0, edge(3) - kPicosecond); });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 3U);
+  EXPECT_EQ(memory.answers[0].at, edge(20 + 2));
+  EXPECT_EQ(memory.answers[1].at, edge(31 + 2));
+  EXPECT_EQ(memory.answers[2].at, edge(43 + 2));
+}
+
+TEST_F(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
+  build(small_board());
+  at(edge(0), [this] { start(); });
+  const std::uint64_t last_write = frame_cycles_alone(4) - pipeline() - 1;
+  at(edge(last_write), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
+  at(edge(last_write + 3), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kResult, 11)); });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 2U);
+  EXPECT_EQ(memory.answers[0].at, edge(last_write + 2));
+  EXPECT_EQ(memory.answers[1].at, edge(last_write + 3 + 2));
+  EXPECT_EQ(memory.answers[1].word, banks[kResult]->words()[11]);
+  EXPECT_EQ(port(Port::kHost).granted(), 1U);  // in the cycle of the last write, and no later
+  EXPECT_EQ(uncounted(), 1U);
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
+}
+
+TEST_F(StereoCoreHost, AsksThroughTheEndOfAFrameAndTheBeginOfTheNext) {
+  build(small_board());
+  on_done = [this] {
+    if (core->frame_cycles().size() == 1) start();
+  };
+  at(edge(0), [this] {
+    start();
+    while (core->frame_cycles().size() < 2) memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0));
+  });
+  finish();
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>(2, frame_cycles_alone(4)));
+  // A word takes two cycles, so that the host asks in every other one.
+  for (std::size_t word = 1; word < memory.answers.size(); ++word)
+    EXPECT_EQ(memory.answers[word].at - memory.answers[word - 1].at, edge(2)) << word;
+  EXPECT_EQ(port(Port::kHost).granted() + uncounted(), memory.answers.size());
+  const std::uint64_t counted = frame_cycles_alone(4) - pipeline();
+  EXPECT_EQ(port(Port::kHost).sum(), 2 * counted);
+}
+
+TEST_F(StereoCoreHost, SeesTheWordsThatAFrameHasWritten) {
+  build(small_board());
+  start();
+  finish();
+  for (std::uint32_t word = 0; word < 12; ++word) {
+    at(sc_core::sc_time_stamp(),
+       [this, word] { memory.access(TLM_READ_COMMAND, crossbar_address(kResult, word)); });
+    finish();
+    EXPECT_EQ(memory.answers.back().word, banks[kResult]->words()[word]);
+  }
+}
+
+TEST_F(StereoCoreHost, IsRefusedABlockingAccess) {
+  build(small_board());
+  EXPECT_EQ(memory.read(crossbar_address(kSpare, 0)).status, tlm::TLM_GENERIC_ERROR_RESPONSE);
+  EXPECT_EQ(memory.read(crossbar_address(kBankCount, 0)).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+}
+
+TEST_F(StereoCoreHost, IsGrantedDirectAccess) {
+  build(small_board());
+  tlm::tlm_dmi dmi;
+  ASSERT_TRUE(memory.dmi(crossbar_address(kResult, 0), dmi));
+  EXPECT_EQ(dmi.get_start_address(), crossbar_address(kResult, 0));
+  EXPECT_EQ(dmi.get_end_address(), crossbar_address(kResult, kWords) - 1);
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

@@ -1,0 +1,320 @@
+// Frames: when they begin and end, what they compute, and what is refused.
+#include "models/fpga/stereo_core.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/support/reference_arithmetic.h"
+#include "tests/unit/fpga/stereo_core_bench.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::BankKind;
+using memory::Port;
+using registers::kStatusBusy;
+using registers::kStatusDone;
+using registers::kStatusError;
+using sc_core::sc_time;
+
+const sc_time kPicosecond = sc_time::from_value(1);
+
+class StereoCoreTest : public StereoCoreBench {
+ protected:
+  std::vector<std::uint32_t> expected_words() const {
+    test::ReferenceInput input;
+    input.width = config.core.width;
+    input.height = config.core.height;
+    input.left = left;
+    input.right = right;
+    if (config.core.filter)
+      input.filter = {config.core.filter->size, config.core.filter->weights, config.core.filter->shift};
+    input.window = config.core.window;
+    input.disparities = config.core.disparities;
+    input.lr_tolerance = config.core.lr_tolerance;
+    return test::compute_reference(input).disparity_words;
+  }
+  std::vector<std::uint32_t> result_words() {
+    return memory.debug_read(memory::crossbar_address(kResult, 0),
+                             static_cast<std::size_t>(config.core.width * config.core.height / 4));
+  }
+};
+
+TEST_F(StereoCoreTest, BeginsInTheCycleThatBeginsWithTheStrobe) {
+  build(small_board());
+  at(edge(10), [this] { start(); });
+  finish();
+  ASSERT_EQ(done_at.size(), 1U);
+  EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
+}
+
+TEST_F(StereoCoreTest, BeginsInTheCycleAfterAStrobeAPicosecondEarlier) {
+  build(small_board());
+  at(edge(10) - kPicosecond, [this] { start(); });
+  finish();
+  ASSERT_EQ(done_at.size(), 1U);
+  EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
+}
+
+TEST_F(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
+  build(small_board());
+  at(edge(10) + kPicosecond, [this] { start(); });
+  finish();
+  ASSERT_EQ(done_at.size(), 1U);
+  EXPECT_EQ(done_at[0], edge(11 + frame_cycles_alone(4)));
+}
+
+TEST_F(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
+  build(small_board());
+  at(edge(0), [this] { start(); });
+  run_until(edge(frame_cycles_alone(4)) - kPicosecond);
+  EXPECT_EQ(status(), kStatusBusy);
+  EXPECT_FALSE(done.read());
+  EXPECT_TRUE(core->frame_cycles().empty());
+  run_until(edge(frame_cycles_alone(4)) + kPicosecond);
+  EXPECT_EQ(status(), kStatusDone);
+  EXPECT_TRUE(done.read());
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(registers.read(registers::kFrameCyclesLow).word, frame_cycles_alone(4));
+  EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
+}
+
+TEST_F(StereoCoreTest, KeepsItsCyclesOnAClockWithoutWholePeriod) {
+  StereoCoreConfig board = small_board();
+  board.core.clock_mhz = 33.333;
+  for (auto& bank : board.memory.banks) bank.clock_mhz = 33.333;
+  build(board);
+  at(edge(7), [this] { start(); });
+  finish();
+  ASSERT_EQ(done_at.size(), 1U);
+  EXPECT_EQ(done_at[0], edge(7 + frame_cycles_alone(4)));
+}
+
+TEST_F(StereoCoreTest, EndsAFrameWithoutPipelineLatencyRightAfterItsLastWrite) {
+  StereoCoreConfig board = small_board();
+  board.core.pipeline_latency_cycles = 0;
+  build(board);
+  start();
+  finish();
+  ASSERT_EQ(done_at.size(), 1U);
+  EXPECT_EQ(done_at[0], edge(frame_cycles_alone(4)));
+}
+
+TEST_F(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
+  StereoCoreConfig board = small_board();
+  for (const Bank bank : {kLeft, kRight, kLeftTable, kRightTable})
+    board.memory.banks[bank].kind = BankKind::kZbtFlowThrough;
+  build(board);
+  // Left image in a bank with latency 2, then all with 1.
+  memory.debug_write(memory::crossbar_address(kSpare, 0), words_of(left));
+  set_base(registers::kLeftImageBase, kSpare);
+  start();
+  finish();
+  set_base(registers::kLeftImageBase, kLeft);
+  start();
+  finish();
+  EXPECT_EQ(core->frame_cycles(), (std::vector<std::uint64_t>{frame_cycles_alone(3), frame_cycles_alone(2)}));
+  EXPECT_EQ(result_words(), expected_words());
+}
+
+TEST_F(StereoCoreTest, ComputesTheDisparitiesOfTheContract) {
+  build(small_board());
+  start();
+  finish();
+  EXPECT_EQ(result_words(), expected_words());
+}
+
+TEST_F(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
+  StereoCoreConfig board = small_board();
+  board.core.filter = kernels::log7();
+  board.core.fetch = Fetch::kLineBuffer;
+  board.core.lr_tolerance = 1;
+  build(board);
+  start();
+  finish();
+  EXPECT_EQ(result_words(), expected_words());
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  ASSERT_NE(core->left_row_buffer(), nullptr);
+  EXPECT_EQ(core->left_row_buffer()->stats().columns, core->left_filter().stats().columns);
+}
+
+TEST_F(StereoCoreTest, ComputesThemWithoutTables) {
+  StereoCoreConfig board = small_board();
+  board.core.left_table = false;
+  board.core.right_table = false;
+  build(board);
+  // Nobody looks at the tables' bases.
+  set_base(registers::kLeftLutBase, kBankCount);
+  set_base(registers::kRightLutBase, kBankCount);
+  start();
+  finish();
+  EXPECT_EQ(result_words(), expected_words());
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(2)});
+  EXPECT_EQ(core->left_lut_reader(), nullptr);
+  EXPECT_EQ(core->right_row_buffer(), nullptr);
+  EXPECT_EQ(port(Port::kLeftLut).idle(), frame_cycles_alone(2) - pipeline());
+}
+
+TEST_F(StereoCoreTest, CountsTheSameAtAllItsStages) {
+  build(small_board());
+  start();
+  finish();
+  const FrameGeometry& geometry = core->control().geometry();
+  const std::uint64_t columns = (geometry.slots + geometry.drain_cycles) / 3;
+  EXPECT_EQ(core->sequencer().stats(Side::kRight).slots, geometry.slots);
+  EXPECT_EQ(core->control().consumed_left(), geometry.slots);
+  EXPECT_EQ(core->left_lut_reader()->stats().reads, port(Port::kLeftLut).granted());
+  EXPECT_EQ(core->left_pixel_reader().stats().reads, port(Port::kLeftPixel).granted());
+  EXPECT_EQ(core->right_pixel_reader().stats().passed_slots, port(Port::kRightPixel).passed());
+  EXPECT_EQ(core->right_filter().stats().columns, columns);
+  EXPECT_EQ(core->sad_array().stats().columns, columns);
+  EXPECT_EQ(core->select_min_chain().stats().columns, core->select_min_tree().stats().columns);
+  EXPECT_EQ(core->lr_check().stats().answered + core->lr_check().stats().invalid, 48U);
+  EXPECT_EQ(core->result_packer().stats().words, 12U);
+  EXPECT_EQ(core->result_writer().stats().writes, 12U);
+  EXPECT_EQ(banks[kLeft]->stats().reads, port(Port::kLeftPixel).granted());
+  EXPECT_EQ(banks[kResult]->stats().writes, 12U);
+}
+
+TEST_F(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
+  build(small_board());
+  int frames = 1;
+  on_done = [&] {
+    if (++frames <= 3) start();
+  };
+  at(edge(2), [this] { start(); });
+  finish();
+  const std::uint64_t cycles = frame_cycles_alone(4);
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>(3, cycles));
+  EXPECT_EQ(done_at, (std::vector<sc_time>{edge(2 + cycles), edge(2 + 2 * cycles), edge(2 + 3 * cycles)}));
+  EXPECT_EQ(result_words(), expected_words());
+}
+
+TEST_F(StereoCoreTest, RunsAFrameAfterAPause) {
+  build(small_board());
+  start();
+  finish();
+  const sc_time later = edge(9000) + kPicosecond;
+  at(later, [this] { start(); });
+  run_until(edge(9500));
+  ASSERT_EQ(done_at.size(), 2U);
+  EXPECT_EQ(done_at[1], edge(9001 + frame_cycles_alone(4)));
+}
+
+TEST_F(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
+  build(small_board());
+  start();
+  at(edge(20), [this] {
+    set_base(registers::kDisparityBase, kSpare);
+    control(registers::kControlStart);
+  });
+  finish();
+  EXPECT_EQ(status(), kStatusDone | kStatusError);
+  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(result_words(), expected_words());
+}
+
+TEST_F(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtTheEnd) {
+  build(small_board());
+  const std::uint64_t cycles = frame_cycles_alone(4);
+  at(edge(0), [this] { start(); });
+  at(edge(cycles) - kPicosecond, [this] { control(registers::kControlStart); });
+  at(edge(2 * cycles), [this] { control(registers::kControlAcknowledge); });
+  at(edge(3 * cycles), [this] { start(); });
+  on_done = [this] {
+    if (core->frame_cycles().size() == 2) start();
+  };
+  run_until(edge(cycles) + kPicosecond);
+  EXPECT_EQ(status(), kStatusDone | kStatusError);
+  finish();
+  EXPECT_EQ(status(), kStatusDone);
+  EXPECT_EQ(done_at, (std::vector<sc_time>{edge(cycles), edge(4 * cycles), edge(5 * cycles)}));
+}
+
+TEST_F(StereoCoreTest, KeepsItsTimesInAFrameOfManyThousandCycles) {
+  StereoCoreConfig board = small_board();
+  board.core.width = 64;
+  board.core.height = 96;
+  for (auto& bank : board.memory.banks) bank.words = 64 * 96;
+  build(board);
+  const std::uint64_t cycles = frame_cycles_alone(4);
+  ASSERT_GT(cycles, 17'000U);
+  at(edge(1), [this] { start(); });
+  // Nothing comes from outside for 17000 cycles, then two words.
+  at(edge(17'000), [this] {
+    memory.access(tlm::TLM_READ_COMMAND, memory::crossbar_address(kSpare, 0));
+    memory.access(tlm::TLM_READ_COMMAND, memory::crossbar_address(kSpare, 0));
+  });
+  run_until(edge(20'000));
+  EXPECT_EQ(done_at, std::vector<sc_time>{edge(1 + cycles)});
+  EXPECT_EQ(memory.answers.at(0).at, edge(17'002));
+  EXPECT_EQ(memory.answers.at(1).at, edge(17'004));
+  EXPECT_EQ(port(Port::kHost).granted(), 2U);
+  EXPECT_EQ(result_words(), expected_words());
+}
+
+class StereoCoreBases : public StereoCoreBench, public testing::WithParamInterface<const char*> {
+ protected:
+  std::uint64_t base_register() const {
+    const std::string name = GetParam();
+    if (name == "left_image") return registers::kLeftImageBase;
+    if (name == "right_image") return registers::kRightImageBase;
+    if (name == "disparity") return registers::kDisparityBase;
+    return name == "left_lut" ? registers::kLeftLutBase : registers::kRightLutBase;
+  }
+};
+
+TEST_P(StereoCoreBases, MustLieInABankThatTheBoardHas) {
+  build(small_board());
+  set_base(base_register(), kBankCount);
+  start();
+  finish();
+  EXPECT_EQ(status(), kStatusError);
+  EXPECT_TRUE(done_at.empty());
+  EXPECT_TRUE(core->frame_cycles().empty());
+  for (const auto& bank : banks) EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
+  set_base(base_register(), kSpare);
+  start();
+  finish();
+  EXPECT_EQ(status(), kStatusDone);
+}
+
+TEST_P(StereoCoreBases, RaiseErrorBehindABanksEndAndTheFrameEnds) {
+  StereoCoreConfig board = small_board();
+  build(board);
+  // Image and disparity buffers have 12 words, tables 48: the last word lies just inside, then just outside.
+  const bool table = base_register() >= registers::kLeftLutBase;
+  const std::uint32_t last_fit = kWords - (table ? 48 : 12);
+  memory.debug_write(memory::crossbar_address(kSpare, last_fit),
+                     std::vector<std::uint32_t>(kWords - last_fit, kernels::kEntryValid));
+  set_base(base_register(), kSpare, last_fit);
+  start();
+  finish();
+  EXPECT_EQ(status(), kStatusDone);
+  set_base(base_register(), kSpare, last_fit + 1);
+  start();
+  finish();
+  EXPECT_EQ(status(), kStatusDone | kStatusError);
+  EXPECT_EQ(core->frame_cycles().size(), 2U);
+  EXPECT_GT(banks[kSpare]->stats().errors, 0U);
+  set_base(base_register(), kSpare, last_fit);
+  start();
+  finish();
+  EXPECT_EQ(status(), kStatusDone);
+}
+
+INSTANTIATE_TEST_SUITE_P(StereoCore, StereoCoreBases,
+                         testing::Values("left_image", "right_image", "disparity", "left_lut", "right_lut"));
+
+TEST_F(StereoCoreTest, RefusesAConfigurationWithProblems) {
+  StereoCoreConfig window = small_board();
+  window.core.window = 4;
+  EXPECT_THROW(StereoCore("a", window, binder), std::invalid_argument);
+  StereoCoreConfig no_banks = small_board();
+  no_banks.memory.banks.clear();
+  EXPECT_THROW(StereoCore("b", no_banks, binder), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

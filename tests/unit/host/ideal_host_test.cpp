@@ -1,0 +1,294 @@
+#include "models/host/ideal_host.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "models/fpga/register_map.h"
+#include "tests/support/expected_report.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/unit/support/scripted_link.h"
+
+namespace stereotlm::host {
+namespace {
+
+namespace registers_of = fpga::registers;
+using kernels::GrayImage;
+using sc_core::sc_time;
+using test::ExpectedReport;
+
+constexpr int kWidth = 4;
+constexpr int kHeight = 2;
+constexpr std::size_t kPixels = kWidth * kHeight;
+const sc_time kFrameTime(100, sc_core::SC_NS);
+
+// Frame f: left pixels 10 f + 1, right pixels 10 f + 2.
+class Source : public FrameSource {
+ public:
+  const StereoPair& pair(std::uint64_t frame) override {
+    asked.push_back(frame);
+    const auto base = static_cast<std::uint8_t>(10 * frame);
+    pair_.left = GrayImage(width, kHeight, static_cast<std::uint8_t>(base + 1));
+    pair_.right = GrayImage(kWidth, height, static_cast<std::uint8_t>(base + 2));
+    return pair_;
+  }
+  int width = kWidth;    // of left pictures
+  int height = kHeight;  // of right pictures
+  std::vector<std::uint64_t> asked;
+
+ private:
+  StereoPair pair_;
+};
+
+class Sink : public FrameSink {
+ public:
+  void take(std::uint64_t frame, const GrayImage& disparity) override {
+    frames.push_back(frame);
+    images.push_back(disparity);
+    times.push_back(sc_core::sc_time_stamp());
+  }
+  std::vector<std::uint64_t> frames;
+  std::vector<GrayImage> images;
+  std::vector<sc_time> times;
+};
+
+// Registers and memory of a core that works kFrameTime on a frame and then fills the disparity buffer with
+// the sum of a left and a right pixel.
+class IdealHostTest : public testing::Test {
+ protected:
+  void build(const IdealHostConfig& host_config, const kernels::RectificationTable* left_table = nullptr,
+             const kernels::RectificationTable* right_table = nullptr) {
+    host = std::make_unique<IdealHost>("host", host_config, left_table, right_table, source, sink);
+    binder.bind(host->registers, register_target.socket, "host_to_registers");
+    binder.bind(host->memory, memory_target.socket, "host_to_memory");
+    host->done(done);
+    register_target.on_blocking = [this](auto& payload, auto&) { access_register(payload); };
+    memory_target.on_debug = [this](auto& payload) { return access_memory(payload); };
+    sc_core::sc_spawn([this] {
+      for (;;) {
+        sc_core::wait(strobe);
+        done.write(false);
+        sc_core::wait(kFrameTime);
+        pictures.push_back({buffer(registers_of::kLeftImageBase)[kPixels - 1],
+                            buffer(registers_of::kRightImageBase)[kPixels - 1]});
+        std::fill_n(buffer(registers_of::kDisparityBase), kPixels,
+                    static_cast<std::uint8_t>(pictures.back()[0] + pictures.back()[1]));
+        done.write(true);
+      }
+    });
+  }
+  IdealHostConfig config(std::uint64_t frames) const {
+    IdealHostConfig host_config;
+    host_config.width = kWidth;
+    host_config.height = kHeight;
+    host_config.frames = frames;
+    host_config.left_images = {registers_of::base(0, 0)};
+    host_config.right_images = {registers_of::base(1, 0)};
+    host_config.disparities = {registers_of::base(2, 0)};
+    return host_config;
+  }
+
+  void access_register(tlm::tlm_generic_payload& payload) {
+    auto* word = reinterpret_cast<std::uint32_t*>(payload.get_data_ptr());
+    if (refuse_registers) {
+      payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+      return;
+    }
+    payload.set_response_status(tlm::TLM_OK_RESPONSE);
+    if (payload.is_read()) {
+      *word = status;
+      return;
+    }
+    written[payload.get_address()].push_back(*word);
+    if (payload.get_address() == registers_of::kControl) {
+      controls.push_back(*word);
+      strobe.notify(sc_core::SC_ZERO_TIME);
+    }
+  }
+  unsigned access_memory(tlm::tlm_generic_payload& payload) {
+    const std::size_t length = std::min<std::size_t>(payload.get_data_length(), most_bytes);
+    if (payload.is_read()) {
+      std::copy_n(at(payload.get_address()), length, payload.get_data_ptr());
+    } else {
+      std::copy_n(payload.get_data_ptr(), length, at(payload.get_address()));
+    }
+    return static_cast<unsigned>(length);
+  }
+  std::uint8_t* at(std::uint64_t address) {
+    return banks.at(address >> 28U).data() + (address & 0x0FFF'FFFFU);
+  }
+  // The buffer that a base register names now.
+  std::uint8_t* buffer(std::uint64_t base_register) {
+    return at(registers_of::base_address(written[base_register].back()));
+  }
+  std::vector<std::uint32_t> words(std::uint32_t bank, std::uint32_t first, std::size_t count) {
+    std::vector<std::uint32_t> copy(count);
+    std::memcpy(copy.data(), banks.at(bank).data() + 4 * first, 4 * count);
+    return copy;
+  }
+
+  test::MonitoringBinder binder;
+  test::ScriptedTarget register_target{"register_target"};
+  test::ScriptedTarget memory_target{"memory_target"};
+  sc_core::sc_signal<bool> done{"done"};
+  sc_core::sc_event strobe{"strobe"};
+  std::array<std::array<std::uint8_t, 256>, 6> banks{};
+  std::size_t most_bytes = 256;  // that the memory takes at once
+  bool refuse_registers = false;
+  std::uint32_t status = registers_of::kStatusDone;
+  std::map<std::uint64_t, std::vector<std::uint32_t>> written;
+  std::vector<std::uint32_t> controls;
+  std::vector<std::array<std::uint8_t, 2>> pictures;  // the last pixels of each frame's pair
+  Source source;
+  Sink sink;
+  std::unique_ptr<IdealHost> host;
+};
+
+TEST_F(IdealHostTest, ShowsEachFrameItsOwnPairAndHandsOnItsResult) {
+  build(config(3));
+  sc_core::sc_start();
+  EXPECT_EQ(source.asked, (std::vector<std::uint64_t>{0, 1, 2}));
+  EXPECT_EQ(pictures, (std::vector<std::array<std::uint8_t, 2>>{{1, 2}, {11, 12}, {21, 22}}));
+  EXPECT_EQ(sink.frames, (std::vector<std::uint64_t>{0, 1, 2}));
+  for (int frame = 0; frame < 3; ++frame) {
+    EXPECT_EQ(sink.images[static_cast<std::size_t>(frame)],
+              GrayImage(kWidth, kHeight, static_cast<std::uint8_t>(20 * frame + 3)));
+  }
+  EXPECT_TRUE(host->finished());
+  EXPECT_EQ(host->frames_done(), 3U);
+}
+
+TEST_F(IdealHostTest, TakesNoTimeOfItsOwn) {
+  build(config(3));
+  sc_core::sc_start();
+  EXPECT_EQ(sink.times, (std::vector<sc_time>{kFrameTime, 2 * kFrameTime, 3 * kFrameTime}));
+}
+
+TEST_F(IdealHostTest, StopsAfterItsLastFrame) {
+  build(config(1));
+  sc_core::sc_start();
+  EXPECT_EQ(controls.size(), 1U);
+  EXPECT_EQ(sc_core::sc_time_stamp(), kFrameTime);
+}
+
+TEST_F(IdealHostTest, AcknowledgesTheLastFrameWithTheNextStrobe) {
+  build(config(2));
+  sc_core::sc_start();
+  const std::uint32_t both = registers_of::kControlAcknowledge | registers_of::kControlStart;
+  EXPECT_EQ(controls, (std::vector<std::uint32_t>{both, both}));
+}
+
+TEST_F(IdealHostTest, UsesEachListInTurn) {
+  IdealHostConfig lists = config(5);
+  lists.left_images = {registers_of::base(0, 0), registers_of::base(0, 8), registers_of::base(0, 16)};
+  lists.right_images = {registers_of::base(1, 0), registers_of::base(1, 8)};
+  lists.disparities = {registers_of::base(2, 4)};
+  build(lists);
+  sc_core::sc_start();
+  const auto expected = [](const std::vector<std::uint32_t>& list) {
+    std::vector<std::uint32_t> values;
+    for (std::size_t frame = 0; frame < 5; ++frame) values.push_back(list[frame % list.size()]);
+    return values;
+  };
+  EXPECT_EQ(written[registers_of::kLeftImageBase], expected(lists.left_images));
+  EXPECT_EQ(written[registers_of::kRightImageBase], expected(lists.right_images));
+  EXPECT_EQ(written[registers_of::kDisparityBase], expected(lists.disparities));
+  EXPECT_EQ(sink.images[4], GrayImage(kWidth, kHeight, 83));
+}
+
+TEST_F(IdealHostTest, LoadsEachTableBeforeTheFirstFrame) {
+  IdealHostConfig tables = config(2);
+  tables.left_lut = registers_of::base(3, 2);
+  tables.right_lut = registers_of::base(4, 0);
+  kernels::RectificationTable left = kernels::identity_table(kWidth, kHeight);
+  kernels::RectificationTable right = left;
+  right.entries[3] = 0;
+  build(tables, &left, &right);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  EXPECT_EQ(words(3, 2, kPixels), left.entries);
+  EXPECT_EQ(words(4, 0, kPixels), right.entries);
+  sc_core::sc_start();
+  EXPECT_EQ(written[registers_of::kLeftLutBase], std::vector<std::uint32_t>{*tables.left_lut});
+  EXPECT_EQ(written[registers_of::kRightLutBase], std::vector<std::uint32_t>{*tables.right_lut});
+}
+
+TEST_F(IdealHostTest, LeavesTheBaseOfATableAloneThatDoesNotExist) {
+  build(config(1));
+  sc_core::sc_start();
+  EXPECT_EQ(written.count(registers_of::kLeftLutBase), 0U);
+  EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
+}
+
+TEST_F(IdealHostTest, DoesNothingForNoFrames) {
+  build(config(0));
+  sc_core::sc_start();
+  EXPECT_TRUE(host->finished());
+  EXPECT_TRUE(controls.empty());
+  EXPECT_TRUE(source.asked.empty());
+}
+
+// The error leaves the host's process and ends the simulation.
+TEST_F(IdealHostTest, ReportsALeftPictureOfAnotherSize) {
+  build(config(2));
+  source.width = kWidth + 4;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "frame 0: picture of 8 x 2 for images of 4 x 2");
+  EXPECT_TRUE(controls.empty());
+}
+
+TEST_F(IdealHostTest, ReportsARightPictureOfAnotherSize) {
+  build(config(2));
+  source.height = 1;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "frame 0: picture of 4 x 1 for images of 4 x 2");
+}
+
+TEST_F(IdealHostTest, ReportsAnErrorOfTheCore) {
+  build(config(2));
+  status = registers_of::kStatusDone | registers_of::kStatusError;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "frame 0: the core reports an error");
+  EXPECT_TRUE(sink.frames.empty());
+}
+
+TEST_F(IdealHostTest, ReportsMemoryThatDoesNotTakeAWholeBuffer) {
+  build(config(1));
+  most_bytes = kPixels - 1;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "the buffer at base 0 takes 7 of 8 bytes");
+}
+
+TEST_F(IdealHostTest, ReportsARegisterThatRefusesAWrite) {
+  build(config(1));
+  refuse_registers = true;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "register 16 refuses a write");
+}
+
+TEST_F(IdealHostTest, RefusesATableWithoutBufferAndABufferWithoutTable) {
+  const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
+  EXPECT_THROW(IdealHost("a", config(1), &table, nullptr, source, sink), std::invalid_argument);
+  IdealHostConfig with_buffer = config(1);
+  with_buffer.right_lut = registers_of::base(3, 0);
+  EXPECT_THROW(IdealHost("b", with_buffer, nullptr, nullptr, source, sink), std::invalid_argument);
+}
+
+TEST_F(IdealHostTest, RefusesAnEmptyList) {
+  IdealHostConfig empty = config(1);
+  empty.disparities.clear();
+  EXPECT_THROW(IdealHost("a", empty, nullptr, nullptr, source, sink), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::host

@@ -1,0 +1,148 @@
+#include "models/kernels/column_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/support/random_board.h"
+#include "tests/support/reference_arithmetic.h"
+#include "tests/unit/kernels/reference_types.h"
+
+namespace stereotlm::kernels {
+namespace {
+
+using test::RandomBoard;
+using test::SplitMix64;
+
+// One frame: what leaves `half` columns after (u, v) entered and as many rows further up, is its filtered value
+// and its own valid bit. Rows outside the image hold anything.
+void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_per_column, int first_row,
+                     int strips, SplitMix64& random) {
+  const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
+  const auto& pixels = board.pictures.front().left;
+  const auto expected = test::reference_filter(board.width, board.height, pixels, board.filter);
+  std::vector<bool> valid;
+  for (std::size_t index = 0; index < pixels.size(); ++index) valid.push_back(random.chance(70));
+  const auto inside = [&](int row) { return row >= 0 && row < board.height; };
+  const auto place = [&](int column, int row) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(board.width) +
+           static_cast<std::size_t>(column);
+  };
+  filter.start_frame(first_row);
+  for (int count = 0; count < strips * board.width + half; ++count) {
+    for (int k = 0; k < rows_per_column; ++k) {
+      const int row = first_row + count / board.width + k;
+      const MaskedPixel outside{static_cast<std::uint8_t>(random.between(0, 255)), random.chance(50)};
+      const auto from = inside(row) ? place(count % board.width, row) : 0;
+      const bool complete = filter.push(inside(row) ? MaskedPixel{pixels[from], valid[from]} : outside);
+      ASSERT_EQ(complete, k == rows_per_column - 1);
+    }
+    if (count < half) continue;
+    const int column = (count - half) % board.width;
+    for (int k = 0; k < rows_per_column; ++k) {
+      const int row = first_row + (count - half) / board.width - half + k;
+      if (!inside(row)) continue;
+      const auto at = static_cast<std::size_t>(k);
+      ASSERT_EQ(int{filter.output().values[at]}, expected[place(column, row)]) << column << ", " << row;
+      ASSERT_EQ((filter.output().valid >> k & 1U) != 0, valid[place(column, row)]) << column << ", " << row;
+    }
+  }
+}
+
+void expect_filtered_by_columns(const RandomBoard& board, SplitMix64& random) {
+  const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
+  const int lead = std::max(0, half - (board.window - 1) / 2);
+  ColumnFilter filter(board.width, board.height, board.window, test::filter_kernel(board.filter));
+  for (int frame = 0; frame < 2; ++frame) {
+    expect_filtered(filter, board, board.window, half - (board.window - 1) / 2 - lead, lead + board.height,
+                    random);
+  }
+}
+
+void expect_filtered_by_rows(const RandomBoard& board, SplitMix64& random) {
+  const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
+  ColumnFilter filter(board.width, board.height, 1, test::filter_kernel(board.filter));
+  for (int frame = 0; frame < 2; ++frame)
+    expect_filtered(filter, board, 1, 0, board.height + half + (board.window - 1) / 2, random);
+}
+
+TEST(ColumnFilter, EqualsTheLiteralFilterOnRandomBoards) {
+  SplitMix64 random(5);
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const RandomBoard board = test::make_random_board(seed);
+    SCOPED_TRACE(describe(board));
+    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
+    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
+  }
+}
+
+RandomBoard noise_board(int width, int height, int window, const test::ReferenceKernel& kernel,
+                        SplitMix64& random) {
+  RandomBoard board;
+  board.width = width;
+  board.height = height;
+  board.window = window;
+  board.filter = kernel;
+  board.pictures.resize(1);
+  for (int pixel = 0; pixel < width * height; ++pixel)
+    board.pictures[0].left.push_back(static_cast<std::uint8_t>(random.between(0, 255)));
+  return board;
+}
+
+test::ReferenceKernel differences_kernel(int size) {
+  test::ReferenceKernel kernel{size, {}, 3};
+  for (int place = 0; place < size * size; ++place) kernel.weights.push_back(place * 7 % 23);
+  int sum = 0;
+  for (const int weight : kernel.weights) sum += weight;
+  kernel.weights[static_cast<std::size_t>(size * size / 2)] -= sum;
+  return kernel;
+}
+
+// h smaller than, equal to and larger than r; images down to the smallest.
+TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
+  SplitMix64 random(6);
+  for (const int size : {3, 5, 7, 17, 31}) {
+    for (const int window : {3, 5, 7, 15, 31}) {
+      for (const auto& [width, height] :
+           {std::pair(4, 1), std::pair(4, 40), std::pair(36, 3), std::pair(20, 33)}) {
+        SCOPED_TRACE("kernel " + std::to_string(size) + ", window " + std::to_string(window) + ", image " +
+                     std::to_string(width) + " x " + std::to_string(height));
+        const RandomBoard board = noise_board(width, height, window, differences_kernel(size), random);
+        ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
+        ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
+      }
+    }
+  }
+}
+
+// 255 * 65793 is the last multiple of 255 below 2^24, the limit of a float's exact integers; every shift keeps
+// the lowest bits of the sum apart somewhere.
+TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
+  SplitMix64 random(7);
+  for (const int more : {0, 1, 2}) {
+    for (int shift = 0; shift < 32; ++shift) {
+      const test::ReferenceKernel kernel{
+          3, {32767, -32768, 259 + more, -32768, -257 - more, 32767, 0, 0, 0}, shift};
+      SCOPED_TRACE("positive weights " + std::to_string(65793 + more) + ", shift " + std::to_string(shift));
+      RandomBoard board = noise_board(12, 9, 3, kernel, random);
+      for (std::uint8_t& pixel : board.pictures[0].left) {
+        if (pixel > 60) pixel = random.chance(50) ? 255 : 0;
+      }
+      ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
+      ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
+    }
+  }
+}
+
+TEST(ColumnFilter, RefusesABrokenKernel) {
+  EXPECT_NO_THROW(ColumnFilter(8, 8, 3, log7()));
+  FilterKernel kernel = log7();
+  kernel.weights[0] = 1;
+  EXPECT_THROW(ColumnFilter(8, 8, 3, kernel), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::kernels

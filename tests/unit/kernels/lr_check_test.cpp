@@ -1,0 +1,95 @@
+#include "models/kernels/lr_check.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/support/random_board.h"
+
+namespace stereotlm::kernels {
+namespace {
+
+TEST(LrCheck, AcceptsADifferenceUpToTheTolerance) {
+  EXPECT_TRUE(left_right_consistent(10, 10, 0));
+  EXPECT_FALSE(left_right_consistent(10, 11, 0));
+  EXPECT_FALSE(left_right_consistent(10, 9, 0));
+  EXPECT_TRUE(left_right_consistent(10, 13, 3));
+  EXPECT_TRUE(left_right_consistent(10, 7, 3));
+  EXPECT_FALSE(left_right_consistent(10, 14, 3));
+  EXPECT_FALSE(left_right_consistent(10, 6, 3));
+  EXPECT_TRUE(left_right_consistent(0, 253, 253));
+  EXPECT_FALSE(left_right_consistent(0, 253, 252));
+}
+
+TEST(LrCheck, RefusesAnInvalidSide) {
+  EXPECT_FALSE(left_right_consistent(kInvalidDisparity, 253, 253));
+  EXPECT_FALSE(left_right_consistent(253, kInvalidDisparity, 253));
+  EXPECT_FALSE(left_right_consistent(kInvalidDisparity, kInvalidDisparity, 0));
+}
+
+TEST(LrCheck, LooksAtTheLeftSideOnlyWhenItIsOff) {
+  EXPECT_TRUE(left_right_consistent(3, kInvalidDisparity, std::nullopt));
+  EXPECT_TRUE(left_right_consistent(3, 200, std::nullopt));
+  EXPECT_FALSE(left_right_consistent(kInvalidDisparity, 3, std::nullopt));
+}
+
+struct Stream {
+  std::vector<std::uint8_t> left;
+  std::vector<bool> left_valid;
+  std::vector<std::uint8_t> right;
+};
+
+Stream random_stream(int columns, int disparities, test::SplitMix64& random) {
+  const auto disparity = [&] {
+    return static_cast<std::uint8_t>(random.chance(15) ? kInvalidDisparity
+                                                       : random.between(0, disparities - 1));
+  };
+  Stream stream;
+  for (int column = 0; column < columns; ++column) {
+    stream.left.push_back(disparity());
+    stream.left_valid.push_back(random.chance(85));
+    stream.right.push_back(disparity());
+  }
+  return stream;
+}
+
+// Right pixel c arrives with column c + D - 1.
+std::uint8_t expected_output(const Stream& stream, int column, std::optional<int> tolerance) {
+  const auto at = static_cast<std::size_t>(column);
+  const int d = stream.left[at];
+  if (!stream.left_valid[at] || d == kInvalidDisparity) return kInvalidDisparity;
+  if (!tolerance) return stream.left[at];
+  const int right = stream.right[static_cast<std::size_t>(column - d)];
+  if (right == kInvalidDisparity || std::abs(d - right) > *tolerance) return kInvalidDisparity;
+  return stream.left[at];
+}
+
+TEST(LrCheck, StreamsWithADelayOfTheDisparities) {
+  test::SplitMix64 random(4);
+  for (const int disparities : {1, 2, 17, 80, 253, 254}) {
+    for (const std::optional<int> tolerance : {std::optional(0), std::optional(2), std::optional(253), {}}) {
+      SCOPED_TRACE(std::to_string(disparities) + " disparities, tolerance " +
+                   (tolerance ? std::to_string(*tolerance) : "off"));
+      LrCheck check(disparities, tolerance);
+      for (int frame = 0; frame < 2; ++frame) {
+        Stream stream = random_stream(1200, disparities, random);
+        // No left pixel points to one before the first.
+        for (std::size_t column = 0; column < 254; ++column) {
+          if (stream.left[column] > column) stream.left[column] = kInvalidDisparity;
+        }
+        check.start_frame();
+        for (int column = 0; column < 1200; ++column) {
+          const auto at = static_cast<std::size_t>(column);
+          const int back = column - (disparities - 1);
+          const std::uint8_t right =
+              back < 0 ? kInvalidDisparity : stream.right[static_cast<std::size_t>(back)];
+          const std::uint8_t out = check.step(stream.left[at], stream.left_valid[at], right);
+          ASSERT_EQ(out, back < 0 ? kInvalidDisparity : expected_output(stream, back, tolerance)) << column;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::kernels

@@ -1,0 +1,114 @@
+#include "models/kernels/rectification_table.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/support/random_board.h"
+#include "tests/support/reference_arithmetic.h"
+#include "tests/unit/kernels/reference_types.h"
+
+namespace stereotlm::kernels {
+namespace {
+
+using Problems = std::vector<std::string>;
+
+TEST(RectificationTable, IsTheIdentityWithoutCalibration) {
+  const RectificationTable table = identity_table(8, 3);
+  ASSERT_EQ(table.entries.size(), 24U);
+  EXPECT_EQ(table.entries[0], 0x8000'0000U);
+  EXPECT_EQ(table.entries[7], 0x8000'0007U);
+  EXPECT_EQ(table.entries[8], 0x8001'0000U);
+  EXPECT_EQ(table.entries[23], 0x8002'0007U);
+  EXPECT_EQ(problems(table), Problems());
+}
+
+TEST(RectificationTable, HasItsBitsWhereTheContractSays) {
+  EXPECT_EQ(make_entry(0x7FF, 0x7FF), 0x87FF'07FFU);
+  EXPECT_EQ(entry_column(0x8123'0456U), 0x456);
+  EXPECT_EQ(entry_row(0x8123'0456U), 0x123);
+  EXPECT_TRUE(entry_is_valid(0x8000'0000U));
+  EXPECT_FALSE(entry_is_valid(0x7FFF'FFFFU));
+}
+
+TEST(RectificationTable, HasNoOtherBits) {
+  for (int bit = 0; bit < 32; ++bit) {
+    RectificationTable table = identity_table(4, 2);
+    table.entries[6] = 1U << bit;  // not valid unless bit 31 is set, then pixel (0, 0)
+    const bool other = (bit >= 11 && bit <= 15) || (bit >= 27 && bit <= 30);
+    EXPECT_EQ(problems(table).size(), other ? 1U : 0U) << bit;
+  }
+  RectificationTable table = identity_table(4, 2);
+  table.entries[6] = 0x8000'0800U;
+  EXPECT_EQ(problems(table), Problems{"entry (2, 1) = 0x80000800: bits 30..27 and 15..11 must be 0"});
+}
+
+TEST(RectificationTable, HasValidEntriesInsideTheImageOnly) {
+  RectificationTable table = identity_table(8, 3);
+  table.entries[1] = make_entry(7, 2);
+  table.entries[2] = make_entry(8, 3) & ~kEntryValid;
+  EXPECT_EQ(problems(table), Problems());
+  table.entries[1] = make_entry(8, 2);
+  table.entries[2] = make_entry(7, 3);
+  EXPECT_EQ(problems(table),
+            (Problems{"entry (1, 0) = 0x80020008: a valid source position must lie inside the 8 x 3 image",
+                      "entry (2, 0) = 0x80030007: a valid source position must lie inside the 8 x 3 image"}));
+}
+
+TEST(RectificationTable, IsAtMost2048Wide) {
+  EXPECT_EQ(problems(identity_table(2048, 1)), Problems());
+  EXPECT_EQ(problems(identity_table(1, 2048)), Problems());
+  EXPECT_EQ(problems({2049, 1, std::vector<std::uint32_t>(2049)}),
+            Problems{"table size = 2049 x 1: must be 1..2048 each"});
+  EXPECT_EQ(problems({1, 2049, std::vector<std::uint32_t>(2049)}),
+            Problems{"table size = 1 x 2049: must be 1..2048 each"});
+  EXPECT_EQ(problems(RectificationTable{0, 5, {}}), Problems{"table size = 0 x 5: must be 1..2048 each"});
+  EXPECT_EQ(problems(RectificationTable{5, 0, {}}), Problems{"table size = 5 x 0: must be 1..2048 each"});
+}
+
+TEST(RectificationTable, HasAnEntryForEachPixel) {
+  for (const std::size_t entries : {23U, 25U}) {
+    EXPECT_EQ(problems({8, 3, std::vector<std::uint32_t>(entries)}),
+              Problems{"table entries = " + std::to_string(entries) + ": must be width * height = 24"});
+  }
+}
+
+TEST(RectificationTable, ReportsTheFirstTenProblems) {
+  EXPECT_EQ(problems({4, 3, std::vector<std::uint32_t>(12, 0x800U)}).size(), 10U);
+}
+
+TEST(RectificationTable, RectifiesAsTheReference) {
+  int with_table = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const test::RandomBoard board = test::make_random_board(seed);
+    if (!board.left_table) continue;
+    ++with_table;
+    const auto& pixels = board.pictures.front().left;
+    EXPECT_EQ(rectify(test::gray_image(board, pixels), *test::table(board, board.left_table)).pixels,
+              test::reference_rectify(board.width, board.height, pixels, board.left_table))
+        << describe(board);
+  }
+  EXPECT_GT(with_table, 100);
+}
+
+TEST(RectificationTable, GivesZeroWhereItIsNotValid) {
+  RectificationTable table = identity_table(4, 1);
+  table.entries = {make_entry(3, 0), make_entry(1, 0) & ~kEntryValid, make_entry(3, 0), 0};
+  GrayImage source(4, 1);
+  source.pixels = {10, 20, 30, 40};
+  EXPECT_EQ(rectify(source, table).pixels, (std::vector<std::uint8_t>{40, 0, 40, 0}));
+}
+
+TEST(RectificationTable, RefusesAnImageOfAnotherSizeAndABrokenTable) {
+  RectificationTable table = identity_table(8, 3);
+  EXPECT_NO_THROW(rectify(GrayImage(8, 3), table));
+  EXPECT_THROW(rectify(GrayImage(8, 4), table), std::invalid_argument);
+  EXPECT_THROW(rectify(GrayImage(4, 3), table), std::invalid_argument);
+  table.entries[0] = make_entry(8, 0);
+  EXPECT_THROW(rectify(GrayImage(8, 3), table), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::kernels

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+#include "models/kernels/stereo.h"
+#include "tests/support/random_board.h"
+#include "tests/support/reference_arithmetic.h"
+
+// The inputs of the literal reference as the kernels take them.
+namespace stereotlm::test {
+
+inline kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::uint8_t>& pixels) {
+  kernels::GrayImage image(board.width, board.height);
+  EXPECT_EQ(image.pixels.size(), pixels.size());
+  image.pixels = pixels;
+  return image;
+}
+
+inline std::optional<kernels::FilterKernel> filter_kernel(const std::optional<ReferenceKernel>& kernel) {
+  if (!kernel) return std::nullopt;
+  return kernels::FilterKernel{kernel->size, kernel->weights, kernel->shift};
+}
+
+inline std::optional<kernels::RectificationTable> table(
+    const RandomBoard& board, const std::optional<std::vector<std::uint32_t>>& entries) {
+  if (!entries) return std::nullopt;
+  return kernels::RectificationTable{board.width, board.height, *entries};
+}
+
+inline kernels::StereoConfig stereo_config(const RandomBoard& board) {
+  return {board.window, board.disparities, filter_kernel(board.filter), board.lr_tolerance};
+}
+
+// The disparity image of the kernels for the pictures of frame 0.
+inline kernels::GrayImage disparity_image(const RandomBoard& board) {
+  const auto left_table = table(board, board.left_table);
+  const auto right_table = table(board, board.right_table);
+  const PicturePair& pair = board.pictures_of_frame(0);
+  return kernels::disparity_image(gray_image(board, pair.left), gray_image(board, pair.right),
+                                  left_table ? &*left_table : nullptr, right_table ? &*right_table : nullptr,
+                                  stereo_config(board));
+}
+
+}  // namespace stereotlm::test

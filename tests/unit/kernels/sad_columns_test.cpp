@@ -1,0 +1,101 @@
+#include "models/kernels/sad_columns.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/support/random_board.h"
+
+namespace stereotlm::kernels {
+namespace {
+
+using PixelColumns = std::vector<std::vector<std::uint8_t>>;
+
+PixelColumns random_columns(int columns, int window, bool extreme, test::SplitMix64& random) {
+  PixelColumns pixels(static_cast<std::size_t>(columns));
+  for (auto& column : pixels) {
+    for (int row = 0; row < window; ++row) {
+      const int value = extreme ? 255 * random.between(0, 1) : random.between(0, 255);
+      column.push_back(static_cast<std::uint8_t>(value));
+    }
+  }
+  return pixels;
+}
+
+// Sum of |right pixel d columns before - left pixel| over the window columns that end at `column`.
+int sad(const PixelColumns& left, const PixelColumns& right, int column, int d, int window) {
+  int sum = 0;
+  for (int c = column - window + 1; c <= column; ++c) {
+    const auto& left_column = left[static_cast<std::size_t>(c)];
+    const auto& right_column = right[static_cast<std::size_t>(c - d)];
+    for (std::size_t row = 0; row < left_column.size(); ++row)
+      sum += std::abs(int{left_column[row]} - int{right_column[row]});
+  }
+  return sum;
+}
+
+void expect_literal_sums(SadColumns& sums, int window, int disparities, bool extreme, int columns,
+                         test::SplitMix64& random) {
+  SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities));
+  const PixelColumns left = random_columns(columns, window, extreme, random);
+  const PixelColumns right = random_columns(columns, window, extreme, random);
+  sums.start_frame();
+  ASSERT_GE(sums.lanes(), disparities);
+  for (int column = 0; column < columns; ++column) {
+    const auto at = static_cast<std::size_t>(column);
+    sums.push_column(left[at].data(), right[at].data());
+    for (int d = 0; d < disparities && d <= column - window + 1; ++d)
+      ASSERT_EQ(sums.window_sums()[d], sad(left, right, column, d, window)) << "d " << d << ", " << column;
+  }
+}
+
+TEST(SadColumns, HoldTheLiteralSumsOfEachCandidate) {
+  test::SplitMix64 random(1);
+  for (const int window : {3, 7, 31}) {
+    for (const int disparities : {1, 31, 32, 33, 64, 254}) {
+      SadColumns sums(window, disparities);
+      for (const bool extreme : {false, true})
+        expect_literal_sums(sums, window, disparities, extreme, 330, random);
+    }
+  }
+}
+
+TEST(SadColumns, HoldThemOverAWholeFrameOfColumns) {
+  test::SplitMix64 random(2);
+  SadColumns sums(3, 64);
+  expect_literal_sums(sums, 3, 64, false, 5000, random);
+}
+
+TEST(SadColumns, HoldTheLargestSum) {
+  SadColumns sums(31, 254);
+  const std::vector<std::uint8_t> white(31, 255);
+  const std::vector<std::uint8_t> black(31, 0);
+  for (int column = 0; column < 300; ++column) sums.push_column(white.data(), black.data());
+  for (int d = 0; d < 254; ++d) ASSERT_EQ(sums.window_sums()[d], 31 * 31 * 255);
+}
+
+TEST(CandidateCount, CountsTheWindowsInsideBothImages) {
+  for (const int window : {3, 7, 31}) {
+    for (const int disparities : {1, 5, 254}) {
+      for (const auto& [width, height] : {std::pair(4, 1), std::pair(32, 31), std::pair(64, 40)}) {
+        const int r = (window - 1) / 2;
+        for (int row = 0; row < height; ++row) {
+          for (int column = 0; column < width; ++column) {
+            int expected = 0;
+            for (int d = 0; d < disparities; ++d) {
+              const bool inside =
+                  column - d - r >= 0 && column + r < width && row - r >= 0 && row + r < height;
+              expected += inside ? 1 : 0;
+            }
+            ASSERT_EQ(candidate_count(column, row, width, height, window, disparities), expected);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::kernels

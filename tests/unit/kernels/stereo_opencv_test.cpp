@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "models/kernels/stereo.h"
+#include "models/kernels/words.h"
+#include "tests/support/random_board.h"
+#include "tests/unit/kernels/reference_types.h"
+
+// The kernels against OpenCV's functions for the same.
+namespace stereotlm::kernels {
+namespace {
+
+GrayImage noise(int width, int height, test::SplitMix64& random) {
+  GrayImage image(width, height);
+  for (std::uint8_t& pixel : image.pixels) pixel = static_cast<std::uint8_t>(random.between(0, 255));
+  return image;
+}
+
+cv::Mat mat_of(const GrayImage& image) {
+  cv::Mat mat(image.height, image.width, CV_8U);
+  std::copy(image.pixels.begin(), image.pixels.end(), mat.begin<std::uint8_t>());
+  return mat;
+}
+
+// filter2D sums large kernels by a Fourier transform, whose doubles are off by far less than a half here.
+GrayImage filtered_by_opencv(const GrayImage& image, const FilterKernel& kernel) {
+  const cv::Mat weights = cv::Mat(kernel.weights, true).reshape(1, kernel.size);
+  cv::Mat weights_as_doubles;
+  weights.convertTo(weights_as_doubles, CV_64F);
+  cv::Mat sums;
+  cv::Mat pixels;
+  mat_of(image).convertTo(pixels, CV_64F);
+  cv::filter2D(pixels, sums, CV_64F, weights_as_doubles, {-1, -1}, 0, cv::BORDER_REPLICATE);
+  GrayImage filtered(image.width, image.height);
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const double level =
+          128 + std::floor(std::ldexp(std::round(sums.at<double>(row, column)), -kernel.shift));
+      filtered.at(column, row) = static_cast<std::uint8_t>(std::clamp(level, 0.0, 255.0));
+    }
+  }
+  return filtered;
+}
+
+TEST(StereoAndOpenCv, HaveTheSameLog7) {
+  test::SplitMix64 random(1);
+  for (const auto& [width, height] : {std::pair(4, 1), std::pair(64, 48), std::pair(320, 240)}) {
+    const GrayImage image = noise(width, height, random);
+    EXPECT_TRUE(filter_image(image, log7()) == filtered_by_opencv(image, log7())) << width;
+  }
+}
+
+TEST(StereoAndOpenCv, HaveTheSameFilter) {
+  test::SplitMix64 random(2);
+  int filters = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const test::RandomBoard board = test::make_random_board(seed);
+    if (!board.filter) continue;
+    ++filters;
+    const GrayImage image = noise(board.width, board.height, random);
+    const FilterKernel kernel = *test::filter_kernel(board.filter);
+    ASSERT_TRUE(filter_image(image, kernel) == filtered_by_opencv(image, kernel)) << describe(board);
+  }
+  EXPECT_GT(filters, 200);
+}
+
+struct OpenCvMatch {
+  GrayImage left_based;
+  bool unique = true;  // no minimum occurs twice
+};
+
+// SAD of candidate d at left pixel x by absdiff and box sums; the smallest of those whose windows lie inside.
+OpenCvMatch matched_by_opencv(const GrayImage& left, const GrayImage& right, int window, int disparities) {
+  const int width = left.width;
+  const int height = left.height;
+  const int r = (window - 1) / 2;
+  const cv::Mat left_mat = mat_of(left);
+  const cv::Mat right_mat = mat_of(right);
+  OpenCvMatch match{GrayImage(width, height, kInvalidDisparity)};
+  cv::Mat best(height, width, CV_32S, cv::Scalar(std::numeric_limits<int>::max()));
+  for (int d = 0; d < disparities && d + window <= width && window <= height; ++d) {
+    cv::Mat difference;
+    cv::Mat sums;
+    cv::absdiff(left_mat.colRange(d, width), right_mat.colRange(0, width - d), difference);
+    cv::boxFilter(difference, sums, CV_32S, {window, window}, {-1, -1}, false, cv::BORDER_REPLICATE);
+    for (int row = r; row < height - r; ++row) {
+      for (int column = d + r; column < width - r; ++column) {
+        const int sum = sums.at<int>(row, column - d);
+        int& smallest = best.at<int>(row, column);
+        match.unique = match.unique && sum != smallest;
+        if (sum >= smallest) continue;
+        smallest = sum;
+        match.left_based.at(column, row) = static_cast<std::uint8_t>(d);
+      }
+    }
+  }
+  return match;
+}
+
+TEST(StereoAndOpenCv, HaveTheSameLeftBasedSearchOnUniqueMinima) {
+  test::SplitMix64 random(3);
+  int compared = 0;
+  for (int round = 0; round < 400; ++round) {
+    const int window = 2 * random.between(1, 15) + 1;
+    const int width = 4 * random.between(4, 20);
+    const GrayImage left = noise(width, random.between(window, window + 8), random);
+    const GrayImage right = noise(width, left.height, random);
+    const int disparities = random.between(1, 12);
+    const OpenCvMatch expected = matched_by_opencv(left, right, window, disparities);
+    if (!expected.unique) continue;
+    compared += width > window + disparities ? 1 : 0;
+    ASSERT_TRUE(match(left, right, window, disparities).left_based == expected.left_based)
+        << "round " << round << ", window " << window << ", disparities " << disparities << ", width "
+        << width;
+  }
+  EXPECT_GE(compared, 100);
+}
+
+// At the size of the paper's board, with a picture in which the true disparity meets exactly.
+TEST(StereoAndOpenCv, HaveTheSameLeftBasedSearchAtFullSize) {
+  test::SplitMix64 random(4);
+  constexpr int kShift = 23;
+  const GrayImage scene = noise(640 + kShift, 60, random);
+  GrayImage left(640, 60);
+  GrayImage right(640, 60);
+  for (int row = 0; row < 60; ++row) {
+    for (int column = 0; column < 640; ++column) {
+      left.at(column, row) = scene.at(column, row);
+      right.at(column, row) = scene.at(column + kShift, row);
+    }
+  }
+  const GrayImage found = match(left, right, 7, 80).left_based;
+  const OpenCvMatch expected = matched_by_opencv(left, right, 7, 80);
+  int exact = 0;
+  for (int row = 0; row < 60; ++row) {
+    for (int column = kShift + 3; column < 640; ++column) {
+      EXPECT_EQ(found.at(column, row), expected.left_based.at(column, row));
+      exact += found.at(column, row) == kShift ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(exact, (60 - 6) * (640 - kShift - 6));
+}
+
+}  // namespace
+}  // namespace stereotlm::kernels

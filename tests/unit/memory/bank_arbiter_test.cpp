@@ -1,0 +1,247 @@
+#include "models/memory/bank_arbiter.h"
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <numeric>
+
+namespace stereotlm::memory {
+namespace {
+
+using std::uint64_t;
+
+constexpr PortMask kAll = 0x3F;
+constexpr PortMask kNone = 0;
+
+PortMask ports(std::initializer_list<Port> list) {
+  PortMask mask = 0;
+  for (const Port port : list) mask = static_cast<PortMask>(mask | mask_of(port));
+  return mask;
+}
+
+ArbiterConfig unusual_order(ArbitrationPolicy policy) {
+  return {policy,
+          {Port::kRightLut, Port::kResult, Port::kLeftLut, Port::kHost, Port::kLeftPixel, Port::kRightPixel}};
+}
+
+// The first of the list, from `place` on, that asks.
+std::size_t first_asking(const ArbiterConfig& config, std::size_t place, PortMask requests) {
+  while ((requests & mask_of(config.priority[place % kPortCount])) == 0) ++place;
+  return place % kPortCount;
+}
+
+TEST(BankArbiter, GrantsTheFirstOfTheListForEverySetOfRequests) {
+  const ArbiterConfig config = unusual_order(ArbitrationPolicy::kFixedPriority);
+  BankArbiter arbiter(config, 0);
+  uint64_t cycle = 0;
+  for (PortMask requests = 1; requests <= kAll; ++requests) {
+    const Port winner = config.priority[first_asking(config, 0, requests)];
+    EXPECT_EQ(arbiter.arbitrate(cycle++, requests, kNone), mask_of(winner)) << int{requests};
+    EXPECT_EQ(arbiter.arbitrate(cycle++, requests, requests), mask_of(winner)) << int{requests};
+  }
+}
+
+TEST(BankArbiter, PutsTheHostFirstByDefault) {
+  BankArbiter arbiter(ArbiterConfig{}, 0);
+  EXPECT_EQ(arbiter.arbitrate(0, kAll, kNone), mask_of(Port::kHost));
+  EXPECT_EQ(arbiter.arbitrate(1, kAll & ~mask_of(Port::kHost), kNone), mask_of(Port::kResult));
+  EXPECT_EQ(arbiter.arbitrate(2, ports({Port::kRightLut, Port::kLeftLut}), kNone), mask_of(Port::kLeftLut));
+}
+
+TEST(BankArbiter, SearchesFromAfterTheLastOneGrantedForEverySetOfRequests) {
+  const ArbiterConfig config = unusual_order(ArbitrationPolicy::kRoundRobin);
+  for (std::size_t last = 0; last < kPortCount; ++last) {
+    for (PortMask requests = 1; requests <= kAll; ++requests) {
+      BankArbiter arbiter(config, 0);
+      ASSERT_EQ(arbiter.arbitrate(0, mask_of(config.priority[last]), kNone), mask_of(config.priority[last]));
+      const Port winner = config.priority[first_asking(config, last + 1, requests)];
+      EXPECT_EQ(arbiter.arbitrate(1, requests, kNone), mask_of(winner)) << last << ' ' << int{requests};
+    }
+  }
+}
+
+TEST(BankArbiter, StartsTheRoundRobinFromTheHeadOfTheList) {
+  const ArbiterConfig config = unusual_order(ArbitrationPolicy::kRoundRobin);
+  BankArbiter arbiter(config, 0);
+  for (uint64_t cycle = 0; cycle < 2 * kPortCount; ++cycle) {
+    EXPECT_EQ(arbiter.arbitrate(cycle, kAll, kNone), mask_of(config.priority[cycle % kPortCount]));
+  }
+}
+
+class Turnaround : public testing::TestWithParam<int> {};
+
+TEST_P(Turnaround, GrantsTheOtherDirectionAtTurnaroundPlusOne) {
+  const auto turnaround = static_cast<uint64_t>(GetParam());
+  const PortMask port = mask_of(Port::kHost);
+  for (const bool write_first : {false, true}) {
+    const PortMask first = write_first ? port : kNone;
+    const PortMask second = write_first ? kNone : port;
+    BankArbiter early(ArbiterConfig{}, GetParam());
+    ASSERT_EQ(early.arbitrate(10, port, first), port);
+    for (uint64_t cycle = 11; cycle <= 10 + turnaround; ++cycle) {
+      EXPECT_EQ(early.arbitrate(cycle, port, second), kNone) << cycle;
+    }
+    EXPECT_EQ(early.arbitrate(10 + turnaround + 1, port, second), port);
+
+    BankArbiter first_asked_late(ArbiterConfig{}, GetParam());
+    ASSERT_EQ(first_asked_late.arbitrate(10, port, first), port);
+    EXPECT_EQ(first_asked_late.arbitrate(10 + turnaround, port, second), kNone);
+    BankArbiter asked_in_time(ArbiterConfig{}, GetParam());
+    ASSERT_EQ(asked_in_time.arbitrate(10, port, first), port);
+    EXPECT_EQ(asked_in_time.arbitrate(10 + turnaround + 1, port, second), port);
+  }
+}
+
+TEST_P(Turnaround, GrantsTheSameDirectionEveryCycle) {
+  const PortMask port = mask_of(Port::kResult);
+  for (const PortMask writes : {kNone, port}) {
+    BankArbiter arbiter(ArbiterConfig{}, GetParam());
+    for (uint64_t cycle = 0; cycle < 5; ++cycle) EXPECT_EQ(arbiter.arbitrate(cycle, port, writes), port);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BankArbiter, Turnaround, testing::Values(1, 2, 7, 16));
+
+TEST(BankArbiter, NeedsNoTurnaroundBeforeTheFirstAccess) {
+  for (const PortMask writes : {kNone, kAll}) {
+    BankArbiter arbiter(ArbiterConfig{}, 16);
+    EXPECT_NE(arbiter.arbitrate(0, kAll, writes), kNone);
+  }
+}
+
+TEST(BankArbiter, GrantsBothDirectionsInTurnWithoutTurnaround) {
+  BankArbiter arbiter(ArbiterConfig{}, 0);
+  for (uint64_t cycle = 0; cycle < 6; ++cycle) {
+    EXPECT_EQ(arbiter.arbitrate(cycle, kAll, cycle % 2 == 0 ? kAll : kNone), mask_of(Port::kHost));
+  }
+}
+
+TEST(BankArbiter, ChoosesTheWinnerBeforeItLooksAtTheTurnaround) {
+  // The pixel port could read, but the result port wins and must wait: nobody is granted.
+  BankArbiter arbiter(ArbiterConfig{}, 2);
+  const PortMask both = ports({Port::kResult, Port::kLeftPixel});
+  const PortMask result = mask_of(Port::kResult);
+  ASSERT_EQ(arbiter.arbitrate(0, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
+  arbiter.begin_counting(1);
+  EXPECT_EQ(arbiter.arbitrate(1, both, result), kNone);
+  EXPECT_EQ(arbiter.arbitrate(2, both, result), kNone);
+  EXPECT_EQ(arbiter.arbitrate(3, both, result), result);
+  arbiter.end_counting(4);
+  const ArbiterStats stats = arbiter.stats();
+  EXPECT_EQ(stats.turnaround_cycles, 2U);
+  EXPECT_EQ(stats.blame[index_of(Port::kResult)][ArbiterStats::kTurnaround], 2U);
+  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][ArbiterStats::kTurnaround], 2U);
+  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][index_of(Port::kResult)], 1U);
+}
+
+TEST(BankArbiter, RefusesATurningWinnerEvenIfAnotherCouldGoAhead) {
+  // Lower in the list and in the bank's own direction, alone it is granted at once.
+  BankArbiter arbiter(ArbiterConfig{}, 2);
+  ASSERT_EQ(arbiter.arbitrate(0, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
+  ASSERT_EQ(arbiter.arbitrate(1, ports({Port::kHost, Port::kLeftPixel}), mask_of(Port::kHost)), kNone);
+  EXPECT_EQ(arbiter.arbitrate(2, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
+}
+
+TEST(BankArbiter, DoesNotMoveTheRoundRobinPlaceOnATurnaround) {
+  const ArbiterConfig config{ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority};
+  BankArbiter arbiter(config, 1);
+  const PortMask host = mask_of(Port::kHost);
+  const PortMask result = mask_of(Port::kResult);
+  ASSERT_EQ(arbiter.arbitrate(0, host, kNone), host);
+  // From after the host: the result port wins, and waits one cycle; it is still the one to win.
+  EXPECT_EQ(arbiter.arbitrate(1, kAll, result), kNone);
+  EXPECT_EQ(arbiter.arbitrate(2, kAll, result), result);
+  // The next in the list is a reader again.
+  EXPECT_EQ(arbiter.arbitrate(3, kAll, result), kNone);
+  EXPECT_EQ(arbiter.arbitrate(4, kAll, result), mask_of(Port::kLeftPixel));
+}
+
+TEST(BankArbiter, CountsWhatItGrantsAndWhomItRefuses) {
+  BankArbiter arbiter(ArbiterConfig{}, 0);
+  const PortMask left = mask_of(Port::kLeftPixel);
+  const PortMask result = mask_of(Port::kResult);
+  arbiter.begin_counting(100);
+  arbiter.arbitrate(102, left, kNone);  // two idle cycles before
+  arbiter.arbitrate(103, static_cast<PortMask>(left | result), result);
+  arbiter.arbitrate(104, static_cast<PortMask>(left | result), result);
+  arbiter.arbitrate(106, kAll, result);  // the host reads
+  arbiter.end_counting(110);
+  const ArbiterStats stats = arbiter.stats();
+  EXPECT_EQ(stats.reads, 2U);
+  EXPECT_EQ(stats.writes, 2U);
+  EXPECT_EQ(stats.turnaround_cycles, 0U);
+  EXPECT_EQ(stats.idle_cycles, 6U);
+  EXPECT_EQ(stats.contended_cycles, 3U);
+  EXPECT_EQ(stats.grants[index_of(Port::kLeftPixel)], 1U);
+  EXPECT_EQ(stats.grants[index_of(Port::kResult)], 2U);
+  EXPECT_EQ(stats.grants[index_of(Port::kHost)], 1U);
+  EXPECT_EQ(stats.grants[index_of(Port::kLeftLut)], 0U);
+  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][index_of(Port::kResult)], 2U);
+  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][index_of(Port::kHost)], 1U);
+  EXPECT_EQ(stats.blame[index_of(Port::kRightLut)][index_of(Port::kHost)], 1U);
+  EXPECT_EQ(stats.blame[index_of(Port::kHost)][index_of(Port::kHost)], 0U);
+  EXPECT_EQ(stats.reads + stats.writes + stats.turnaround_cycles + stats.idle_cycles, 10U);
+  EXPECT_EQ(arbiter.uncounted_accesses(), 0U);
+}
+
+TEST(BankArbiter, CountsOnlyAccessesOutsideTheCountedCycles) {
+  BankArbiter arbiter(ArbiterConfig{}, 2);
+  const PortMask host = mask_of(Port::kHost);
+  arbiter.arbitrate(3, host, host);
+  arbiter.arbitrate(4, host, kNone);  // turning: no access
+  arbiter.begin_counting(10);
+  arbiter.arbitrate(10, host, kNone);
+  arbiter.end_counting(12);
+  arbiter.arbitrate(12, host, kNone);
+  arbiter.begin_counting(20);
+  arbiter.end_counting(21);
+  EXPECT_EQ(arbiter.uncounted_accesses(), 2U);
+  const ArbiterStats stats = arbiter.stats();
+  EXPECT_EQ(stats.reads, 1U);
+  EXPECT_EQ(stats.writes, 0U);
+  EXPECT_EQ(stats.turnaround_cycles, 0U);
+  EXPECT_EQ(stats.idle_cycles, 2U);  // 11 and 20
+}
+
+TEST(BankArbiter, RemembersDirectionAndPlaceBetweenCountedPeriods) {
+  const ArbiterConfig config{ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority};
+  BankArbiter arbiter(config, 3);
+  const PortMask host = mask_of(Port::kHost);
+  arbiter.begin_counting(0);
+  ASSERT_EQ(arbiter.arbitrate(5, host, host), host);
+  arbiter.end_counting(6);
+  arbiter.begin_counting(8);
+  EXPECT_EQ(arbiter.arbitrate(8, kAll, kNone), kNone);                   // 5 + 3: still turning
+  EXPECT_EQ(arbiter.arbitrate(9, kAll, kNone), mask_of(Port::kResult));  // after the host
+}
+
+TEST(BankArbiter, BlamesEveryStalledRequestExactlyOnce) {
+  const ArbiterConfig config = unusual_order(ArbitrationPolicy::kRoundRobin);
+  BankArbiter arbiter(config, 2);
+  arbiter.begin_counting(0);
+  uint64_t stalls = 0;
+  uint64_t grants = 0;
+  std::uint32_t random = 1;
+  for (uint64_t cycle = 0; cycle < 2000; ++cycle) {
+    random = random * 1664525U + 1013904223U;
+    const auto requests = static_cast<PortMask>(random >> 24U & kAll);
+    const auto writes = static_cast<PortMask>(requests & (random >> 16U));
+    if (requests == 0) continue;
+    const PortMask granted = arbiter.arbitrate(cycle, requests, writes);
+    ASSERT_EQ(granted & ~requests, 0);
+    grants += uint64_t{granted != 0};
+    for (std::size_t port = 0; port < kPortCount; ++port)
+      stalls += (static_cast<unsigned>(requests & ~granted) >> port) & 1U;
+  }
+  arbiter.end_counting(2000);
+  const ArbiterStats stats = arbiter.stats();
+  uint64_t blamed = 0;
+  for (const auto& row : stats.blame) blamed = std::accumulate(row.begin(), row.end(), blamed);
+  EXPECT_EQ(blamed, stalls);
+  EXPECT_EQ(std::accumulate(stats.grants.begin(), stats.grants.end(), uint64_t{0}), grants);
+  EXPECT_EQ(stats.reads + stats.writes, grants);
+  EXPECT_EQ(grants + stats.turnaround_cycles + stats.idle_cycles, 2000U);
+}
+
+}  // namespace
+}  // namespace stereotlm::memory

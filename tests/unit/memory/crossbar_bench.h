@@ -1,0 +1,63 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <systemc>
+#include <vector>
+
+#include "models/memory/crossbar.h"
+#include "models/memory/ssram_bank.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/test_host.h"
+
+namespace stereotlm::memory {
+
+// A crossbar with a host on each port and three banks of 16 words, one of each kind, every link under a
+// monitor. The test plays the clocked process: it calls arbitrate() for the cycles of a 40 MHz clock.
+class CrossbarBench : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kWords = 16;
+  static constexpr std::size_t kPipelined = 0;
+  static constexpr std::size_t kFlowThrough = 1;
+  static constexpr std::size_t kBurst = 2;
+  static constexpr std::uint64_t kPeriodPs = 25'000;
+
+  void build(const ArbiterConfig& arbiter = {}, double clock_mhz = 40) {
+    CrossbarConfig config{arbiter,
+                          {{kWords, BankKind::kZbtPipelined, 0, clock_mhz},
+                           {kWords, BankKind::kZbtFlowThrough, 0, clock_mhz},
+                           {kWords, BankKind::kSyncBurst, 2, clock_mhz}}};
+    crossbar = std::make_unique<Crossbar>("crossbar", config);
+    for (std::size_t port = 0; port < kPortCount; ++port) {
+      binder.bind(hosts[port].socket, crossbar->ports[port], std::string(kPortNames[port]) + "_to_crossbar");
+    }
+    for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
+      const std::string number = std::to_string(bank);
+      banks.push_back(std::make_unique<SsramBank>(("ssram" + number).c_str(), config.banks[bank]));
+      binder.bind(crossbar->banks[bank], banks.back()->port, "crossbar_to_bank" + number);
+    }
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  }
+
+  test::TestHost& at(Port port) { return hosts[index_of(port)]; }
+  // Cycle number `cycle`, with these stages asking.
+  PortMask arbitrate(std::uint64_t cycle, PortMask requests = 0) {
+    return crossbar->arbitrate(cycle, cycle * kPeriodPs, requests);
+  }
+  static sc_core::sc_time cycles(std::uint64_t count) {
+    return sc_core::sc_time::from_value(count * kPeriodPs);
+  }
+  std::uint64_t accesses(std::size_t bank) const {
+    const SsramBank::Stats& stats = banks[bank]->stats();
+    return stats.reads + stats.writes + stats.errors;
+  }
+
+  test::MonitoringBinder binder;
+  sc_core::sc_vector<test::TestHost> hosts{"test_host", kPortCount};
+  std::vector<std::unique_ptr<SsramBank>> banks;
+  std::unique_ptr<Crossbar> crossbar;
+};
+
+}  // namespace stereotlm::memory

@@ -1,0 +1,266 @@
+#include "models/memory/ssram_bank.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "models/clock.h"
+#include "models/memory/word_access.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/test_host.h"
+
+namespace stereotlm::memory {
+namespace {
+
+using sc_core::sc_time;
+using test::TestHost;
+
+constexpr std::uint32_t kWords = 16;
+
+// A bank under a monitor, and a payload for a correct read of word 1 to start from.
+class SsramBankTest : public testing::Test {
+ protected:
+  void build(const SsramBankConfig& config, const test::ProtocolOptions& options = {}) {
+    binder = std::make_unique<test::MonitoringBinder>(options);
+    bank = std::make_unique<SsramBank>("bank", config);
+    binder->bind(host.socket, bank->port, "host_to_bank");
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    payload.set_command(tlm::TLM_READ_COMMAND);
+    payload.set_address(4);
+    payload.set_data_ptr(data.data());
+    payload.set_data_length(4);
+    payload.set_streaming_width(4);
+  }
+  void build() { build({kWords}); }
+
+  // Sends the payload, which must be refused so, without effect and without cost.
+  void expect_refused(tlm::tlm_response_status status) {
+    const auto errors = bank->stats().errors;
+    sc_time delay(7, sc_core::SC_NS);
+    host.socket->b_transport(payload, delay);
+    EXPECT_EQ(payload.get_response_status(), status);
+    EXPECT_EQ(delay, sc_time(7, sc_core::SC_NS));
+    EXPECT_EQ(bank->stats().errors, errors + 1);
+    EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
+    EXPECT_EQ(host.debug_read(0, kWords), std::vector<std::uint32_t>(kWords));
+    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  }
+  void expect_violations(std::size_t count) { EXPECT_EQ(binder->take_violations().size(), count); }
+
+  std::unique_ptr<test::MonitoringBinder> binder;
+  TestHost host{"test_host"};
+  std::unique_ptr<SsramBank> bank;
+  tlm::tlm_generic_payload payload;
+  std::array<unsigned char, 8> data{};
+  std::array<unsigned char, 4> enables{};
+};
+
+class SsramBankKinds : public SsramBankTest, public testing::WithParamInterface<const char*> {
+ protected:
+  static SsramBankConfig config() {
+    const std::string name = GetParam();
+    if (name == "sync_burst") return {kWords, BankKind::kSyncBurst, 2};
+    if (name == "zbt_flow_through") return {kWords, BankKind::kZbtFlowThrough, 0, 1000};
+    return {kWords, BankKind::kZbtPipelined, 0, name == "zbt_pipelined at 33.333 MHz" ? 33.333 : 40};
+  }
+};
+
+TEST_P(SsramBankKinds, AddsItsReadLatencyToAReadAndNothingToAWrite) {
+  build(config());
+  const sc_time before(3, sc_core::SC_NS);
+  const auto latency = static_cast<std::uint64_t>(read_latency_cycles(config().kind));
+  const sc_time read_time = Clock::to_time(Clock(config().clock_mhz).edge_ps(latency));
+  EXPECT_EQ(host.write(8, 0xDEAD'BEEF, before).at, before);
+  const TestHost::Answer answer = host.read(8, before);
+  EXPECT_EQ(answer.at, before + read_time);
+  EXPECT_EQ(answer.word, 0xDEAD'BEEFU);
+  EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(bank->stats().reads, 1U);
+  EXPECT_EQ(bank->stats().writes, 1U);
+  EXPECT_EQ(bank->stats().errors, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(SsramBank, SsramBankKinds,
+                         testing::Values("zbt_pipelined", "zbt_pipelined at 33.333 MHz", "zbt_flow_through",
+                                         "sync_burst"));
+
+TEST_F(SsramBankTest, HoldsZerosAtFirst) {
+  build();
+  EXPECT_EQ(host.debug_read(0, kWords), std::vector<std::uint32_t>(kWords));
+}
+
+TEST_F(SsramBankTest, KeepsEachWordByItself) {
+  build();
+  for (std::uint32_t word = 0; word < kWords; ++word) host.write(word * 4, 0x1111'0000 + word);
+  for (std::uint32_t word = 0; word < kWords; ++word) {
+    EXPECT_EQ(host.read(word * 4).word, 0x1111'0000 + word);
+    EXPECT_EQ(bank->words()[word], 0x1111'0000 + word);
+  }
+}
+
+TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheAddressBehindIt) {
+  build();
+  EXPECT_EQ(host.write((kWords - 1) * 4, 0).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(host.write(kWords * 4, 1).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(host.read(kWords * 4).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(host.read(std::uint64_t{1} << 40U).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(bank->stats().errors, 3U);
+}
+
+TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedToWords) {
+  build();
+  payload.set_command(tlm::TLM_WRITE_COMMAND);
+  data.fill(0xFF);
+  for (const unsigned address : {1U, 2U, 3U, 5U}) {
+    payload.set_address(address);
+    expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    expect_violations(1);
+  }
+}
+
+TEST_F(SsramBankTest, RefusesAnyLengthButFour) {
+  build();
+  payload.set_command(tlm::TLM_WRITE_COMMAND);
+  data.fill(0xFF);
+  for (const unsigned length : {1U, 3U, 5U, 8U}) {
+    payload.set_data_length(length);
+    payload.set_streaming_width(8);
+    expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
+    expect_violations(length == 8 ? 0 : 1);
+  }
+}
+
+TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
+  test::ProtocolOptions streaming;
+  streaming.streaming_bursts = true;
+  streaming.whole_words = false;
+  build({kWords}, streaming);
+  payload.set_streaming_width(3);
+  expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
+  payload.set_streaming_width(4);
+  sc_time delay;
+  host.socket->b_transport(payload, delay);
+  EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
+}
+
+TEST_F(SsramBankTest, RefusesByteEnablesOfLengthZero) {
+  build();
+  payload.set_byte_enable_ptr(enables.data());
+  payload.set_byte_enable_length(0);
+  expect_refused(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
+  expect_violations(1);
+}
+
+TEST_F(SsramBankTest, RefusesACommandThatNeitherReadsNorWrites) {
+  build();
+  payload.set_command(tlm::TLM_IGNORE_COMMAND);
+  expect_refused(tlm::TLM_COMMAND_ERROR_RESPONSE);
+}
+
+TEST_F(SsramBankTest, WritesOnlyTheBytesThatAreEnabled) {
+  build();
+  host.write(4, 0x4433'2211);
+  enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED, TLM_BYTE_DISABLED, TLM_BYTE_ENABLED};
+  data = {0xA0, 0xA1, 0xA2, 0xA3};
+  payload.set_command(tlm::TLM_WRITE_COMMAND);
+  payload.set_byte_enable_ptr(enables.data());
+  payload.set_byte_enable_length(4);
+  sc_time delay;
+  host.socket->b_transport(payload, delay);
+  EXPECT_EQ(host.read(4).word, 0xA333'A111U);
+}
+
+TEST_F(SsramBankTest, RepeatsByteEnablesThatAreShorterThanTheWord) {
+  build();
+  host.write(4, 0x4433'2211);
+  enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED};
+  data = {0xA0, 0xA1, 0xA2, 0xA3};
+  payload.set_byte_enable_ptr(enables.data());
+  payload.set_byte_enable_length(2);
+  sc_time delay;
+  host.socket->b_transport(payload, delay);
+  EXPECT_EQ(data, (std::array<unsigned char, 8>{0xA0, 0x22, 0xA2, 0x44}));
+}
+
+TEST_F(SsramBankTest, HandsDebugTransportAnyLengthUpToItsEnd) {
+  build();
+  EXPECT_EQ(host.debug_write((kWords - 2) * 4, {1, 2}), 8U);
+  EXPECT_EQ(host.debug_write((kWords - 1) * 4, {3, 4}), 4U);
+  EXPECT_EQ(host.debug_write(kWords * 4, {5}), 0U);
+  EXPECT_EQ(host.debug_read((kWords - 2) * 4, 5), (std::vector<std::uint32_t>{1, 3}));
+  EXPECT_EQ(host.debug_read(kWords * 4, 1), (std::vector<std::uint32_t>{}));
+  EXPECT_EQ(bank->stats().reads + bank->stats().writes + bank->stats().errors, 0U);
+}
+
+TEST_F(SsramBankTest, HandsDebugTransportSingleBytes) {
+  build();
+  host.debug_write(4, {0x4433'2211});
+  payload.set_address(6);
+  payload.set_data_length(3);
+  EXPECT_EQ(host.socket->transport_dbg(payload), 3U);
+  EXPECT_EQ(data, (std::array<unsigned char, 8>{0x33, 0x44, 0x00}));
+  payload.set_command(tlm::TLM_IGNORE_COMMAND);
+  EXPECT_EQ(host.socket->transport_dbg(payload), 0U);
+}
+
+TEST_F(SsramBankTest, GrantsDirectAccessToTheWholeBank) {
+  build();
+  tlm::tlm_dmi dmi;
+  ASSERT_TRUE(host.dmi((kWords - 1) * 4, dmi));
+  EXPECT_EQ(dmi.get_start_address(), 0U);
+  EXPECT_EQ(dmi.get_end_address(), kWords * 4 - 1);
+  EXPECT_TRUE(dmi.is_read_write_allowed());
+  EXPECT_EQ(dmi.get_read_latency(), sc_time(50, sc_core::SC_NS));
+  EXPECT_EQ(dmi.get_write_latency(), sc_core::SC_ZERO_TIME);
+  reinterpret_cast<std::uint32_t*>(dmi.get_dmi_ptr())[3] = 42;
+  EXPECT_EQ(host.read(12).word, 42U);
+}
+
+TEST_F(SsramBankTest, GrantsNoDirectAccessBehindItsEnd) {
+  build();
+  // The monitor asks for the refused range too: it must contain the address.
+  tlm::tlm_dmi dmi;
+  EXPECT_FALSE(host.dmi(kWords * 4, dmi));
+}
+
+TEST_F(SsramBankTest, HintsAtDirectAccess) {
+  build();
+  sc_time delay;
+  host.socket->b_transport(payload, delay);
+  EXPECT_TRUE(payload.is_dmi_allowed());
+}
+
+TEST_F(SsramBankTest, CompletesANonBlockingAccessAtOnce) {
+  build();
+  EXPECT_EQ(host.request(tlm::TLM_WRITE_COMMAND, 8, 77, sc_time(1, sc_core::SC_NS)), tlm::TLM_COMPLETED);
+  EXPECT_EQ(host.request(tlm::TLM_READ_COMMAND, 8), tlm::TLM_COMPLETED);
+  ASSERT_EQ(host.answers.size(), 2U);
+  EXPECT_EQ(host.answers[0].at, sc_time(1, sc_core::SC_NS));
+  EXPECT_EQ(host.answers[1].word, 77U);
+  EXPECT_EQ(host.answers[1].at, sc_time(50, sc_core::SC_NS));
+  EXPECT_EQ(host.request(tlm::TLM_READ_COMMAND, kWords * 4), tlm::TLM_COMPLETED);
+  EXPECT_EQ(host.answers[2].status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+}
+
+TEST(SsramBank, RefusesAConfigurationWithProblems) {
+  EXPECT_THROW(SsramBank("bank", SsramBankConfig{0}), std::invalid_argument);
+}
+
+TEST_F(SsramBankTest, ServesAWordAccessAgainAndAgain) {
+  build();
+  WordAccess access(host.socket);
+  sc_time delay;
+  EXPECT_TRUE(access.write(4, 9, delay));
+  EXPECT_TRUE(access.read(4, delay));
+  EXPECT_EQ(access.word(), 9U);
+  EXPECT_FALSE(access.read(kWords * 4, delay));
+  EXPECT_EQ(access.status(), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(access.word(), 0U);
+  EXPECT_EQ(delay, sc_time(50, sc_core::SC_NS));
+}
+
+}  // namespace
+}  // namespace stereotlm::memory

@@ -1,0 +1,190 @@
+#include "platform/collect.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "platform/bounds.h"
+#include "tests/unit/platform/preloaded_run.h"
+
+namespace stereotlm::platform {
+namespace {
+
+using std::uint64_t;
+using testing::PreloadedRun;
+using testing::small_board;
+
+constexpr uint64_t kPipeline = 16;
+
+const PortStatistics& port(const Statistics& statistics, const std::string& name) {
+  return *std::find_if(statistics.ports.begin(), statistics.ports.end(),
+                       [&name](const PortStatistics& row) { return row.name == name; });
+}
+
+bool mentions(const std::vector<std::string>& failed, const std::string& text) {
+  return std::any_of(failed.begin(), failed.end(),
+                     [&text](const std::string& line) { return line.find(text) != std::string::npos; });
+}
+
+TEST(CollectStatistics, GivesTheFiguresOfTheFramesThatEnded) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 2);
+  const Statistics statistics = run.finish();
+  const uint64_t frame = 4 + 16 * 6 * 3 + 9 + 1 + kPipeline;
+  EXPECT_EQ(statistics.board, "fpl2003");
+  EXPECT_EQ(statistics.fidelity, "cycle");
+  EXPECT_EQ(statistics.frames, 2U);
+  EXPECT_EQ(statistics.frame_cycles, (std::vector<uint64_t>{frame, frame}));
+  EXPECT_EQ(statistics.cycles, 2 * (frame - kPipeline));
+  EXPECT_DOUBLE_EQ(statistics.frames_per_second.core, 40e6 / static_cast<double>(frame));
+  EXPECT_EQ(statistics.bound.core, core_bound(board, identity_tables(board), 2).core);
+  EXPECT_EQ(statistics.bound.core_limited_by, "matcher");
+  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+}
+
+TEST(CollectStatistics, ListsEveryBankInTheOrderOfTheBoard) {
+  BoardConfig board = small_board();
+  board.banks.push_back({"spare", 16});
+  PreloadedRun run(board, identity_tables(board), 2);
+  const Statistics statistics = run.finish();
+  const auto cycles = static_cast<double>(statistics.cycles);
+  ASSERT_EQ(statistics.banks.size(), 9U);
+  const uint64_t reads = 16 * (6 * 3 - 2);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const BankStatistics& bank = statistics.banks[i];
+    EXPECT_EQ(bank.name, board.banks[i].name);
+    // Images and results alternate between two banks, tables do not.
+    const uint64_t expected_reads = i < 4 ? reads : i == 6 || i == 7 ? 2 * reads : 0;
+    EXPECT_EQ(bank.reads, expected_reads) << i;
+    EXPECT_EQ(bank.writes, i == 4 || i == 5 ? 24U : 0U) << i;
+    EXPECT_EQ(bank.busy_cycles, bank.reads + bank.writes);
+    EXPECT_EQ(bank.idle_cycles, statistics.cycles - bank.busy_cycles);
+    EXPECT_EQ(bank.turnaround_cycles + bank.contended_cycles, 0U);
+    EXPECT_DOUBLE_EQ(bank.utilization, static_cast<double>(bank.busy_cycles) / cycles);
+    EXPECT_DOUBLE_EQ(bank.megabytes_per_second, 4 * static_cast<double>(bank.busy_cycles) * 40 / cycles);
+  }
+}
+
+TEST(CollectStatistics, ListsEveryPortInTheOrderOfTheContract) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 1);
+  const Statistics statistics = run.finish();
+  std::vector<std::string> names;
+  for (const PortStatistics& row : statistics.ports) {
+    names.push_back(row.name);
+    EXPECT_EQ(row.grants + row.stall_cycles + row.passed_cycles + row.idle_cycles + row.blocked_cycles +
+                  row.starved_cycles,
+              statistics.cycles)
+        << row.name;
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"left_lut", "right_lut", "left_pixel", "right_pixel", "result",
+                                             "host"}));
+  const uint64_t slots = 16 * 6 * 3;
+  EXPECT_EQ(port(statistics, "left_lut").grants, slots - 32);
+  EXPECT_EQ(port(statistics, "left_lut").passed_cycles, 32U);
+  EXPECT_EQ(port(statistics, "left_lut").idle_cycles, statistics.cycles - slots);
+  EXPECT_EQ(port(statistics, "result").grants, 24U);
+  EXPECT_EQ(port(statistics, "host").idle_cycles, statistics.cycles);
+  EXPECT_TRUE(statistics.blame.empty());
+}
+
+TEST(CollectStatistics, BlamesStallsInTheOrderOfPortBankAndBy) {
+  BoardConfig board = small_board();
+  for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kSyncBurst, bank.turnaround_cycles = 2;
+  board.allocation = {{"bank1", "bank0"}, {"bank1", "bank0"}, {"bank1", "bank0"}, "bank1", "bank3"};
+  PreloadedRun run(board, identity_tables(board), 2);
+  const Statistics statistics = run.finish();
+  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+  const std::vector<std::string> order = {"left_lut", "right_lut",  "left_pixel", "right_pixel", "result",
+                                          "host",     "turnaround", "bank0",      "bank1",       "bank2"};
+  const auto place = [&order](const std::string& name) {
+    return std::find(order.begin(), order.end(), name) - order.begin();
+  };
+  const auto key = [&place](const BlameRow& row) {
+    return std::make_tuple(place(row.port), row.bank, place(row.by));
+  };
+  EXPECT_TRUE(std::is_sorted(statistics.blame.begin(), statistics.blame.end(),
+                             [&key](const BlameRow& a, const BlameRow& b) { return key(a) < key(b); }));
+  std::map<std::string, uint64_t> blamed;
+  bool by_turnaround = false;
+  bool by_port = false;
+  for (const BlameRow& row : statistics.blame) {
+    EXPECT_GT(row.cycles, 0U);
+    blamed[row.port] += row.cycles;
+    (row.by == "turnaround" ? by_turnaround : by_port) = true;
+  }
+  EXPECT_TRUE(by_turnaround);
+  EXPECT_TRUE(by_port);
+  for (const PortStatistics& row : statistics.ports)
+    EXPECT_EQ(blamed[row.name], row.stall_cycles) << row.name;
+  for (const BankStatistics& bank : statistics.banks) {
+    EXPECT_EQ(bank.busy_cycles + bank.turnaround_cycles + bank.idle_cycles, statistics.cycles);
+    EXPECT_EQ(bank.turnaround_cycles > 0, bank.name == "bank0" || bank.name == "bank1") << bank.name;
+  }
+}
+
+TEST(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 0);
+  const Statistics statistics = run.finish();
+  EXPECT_EQ(statistics.frames, 0U);
+  EXPECT_EQ(statistics.cycles, 0U);
+  EXPECT_EQ(statistics.frames_per_second.core, 0);
+  EXPECT_EQ(statistics.banks.at(0).utilization, 0);
+  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+}
+
+TEST(CollectStatistics, TellsIdentitiesThatDoNotHoldWithBothSides) {
+  // In the middle of a frame the counters belong to no number of frames.
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 2);
+  const uint64_t frame = 4 + 16 * 6 * 3 + 9 + 1 + kPipeline;
+  sc_core::sc_start(sc_core::sc_time(25, sc_core::SC_NS) * static_cast<double>(frame + 100));
+  const Statistics statistics = run.collect();
+  ASSERT_EQ(statistics.frames, 1U);
+  const auto& control = run.system.board.core.control();
+  const uint64_t states = control.port_cycles(memory::Port::kLeftLut).sum();
+  ASSERT_GT(states, frame - kPipeline);
+  EXPECT_TRUE(mentions(statistics.failed, "port left_lut: sum of its states = " + std::to_string(states) +
+                                              ", but cycles = " + std::to_string(frame - kPipeline)));
+  EXPECT_TRUE(
+      mentions(statistics.failed, "left lane: slots consumed = " + std::to_string(control.consumed_left()) +
+                                      ", but slots of the sequence = 288"));
+  EXPECT_TRUE(mentions(statistics.failed, "bank bank1: busy + turnaround + idle cycles = "));
+  EXPECT_FALSE(mentions(statistics.failed, "stall_cycles"));
+  // At the end all of them hold.
+  EXPECT_EQ(run.finish().failed, std::vector<std::string>{});
+}
+
+TEST(CollectStatistics, TellsAFrameRateAboveItsBoundWithBothSides) {
+  // The run had no valid entry to read a pixel for; the tables that the bound is told about have all.
+  BoardConfig board = small_board();
+  board.allocation.left_lut = "bank0";
+  board.allocation.left_image = {"bank0"};
+  board.allocation.right_image = {"bank2"};
+  Tables empty = identity_tables(board);
+  std::fill(empty.left->entries.begin(), empty.left->entries.end(), 0U);
+  PreloadedRun run(board, empty, 1);
+  EXPECT_EQ(run.finish().failed, std::vector<std::string>{});
+  const Statistics statistics = collect_statistics(board, identity_tables(board), run.system.board);
+  ASSERT_EQ(statistics.failed.size(), 1U);
+  EXPECT_EQ(statistics.failed[0],
+            "frames_per_second.core = " + std::to_string(statistics.frames_per_second.core) +
+                ", but bound.core = " + std::to_string(statistics.bound.core));
+  EXPECT_GT(statistics.frames_per_second.core, statistics.bound.core);
+}
+
+TEST(CollectStatistics, CountsNoDebugTransportAsAnAccess) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 2);
+  run.finish();
+  for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+    const auto& accesses = run.system.board.banks[bank].stats();
+    EXPECT_EQ(accesses.reads + accesses.writes, run.collect().banks[bank].busy_cycles) << bank;
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::platform
