@@ -1,0 +1,124 @@
+#include "tests/integration/core/preloaded_run.h"
+
+#include <gtest/gtest.h>
+
+#include <systemc>
+
+#include "platform/collect.h"
+#include "platform/preloaded_system.h"
+#include "tests/support/monitoring_binder.h"
+
+namespace stereotlm::test {
+namespace {
+
+class PairsInTurn : public host::FrameSource {
+ public:
+  explicit PairsInTurn(const std::vector<host::StereoPair>& pairs) : pairs_(pairs) {}
+  const host::StereoPair& pair(std::uint64_t frame) override { return pairs_[frame % pairs_.size()]; }
+
+ private:
+  const std::vector<host::StereoPair>& pairs_;
+};
+
+class KeptFrames : public host::FrameSink {
+ public:
+  void take(std::uint64_t frame, const kernels::GrayImage& disparity) override {
+    EXPECT_EQ(frame, disparities.size());
+    disparities.push_back(disparity);
+  }
+  std::vector<kernels::GrayImage> disparities;
+};
+
+std::string frame_key(std::size_t frame) { return "frame " + std::to_string(frame) + " cycles"; }
+
+std::string blame_key(const std::string& port, const std::string& bank, const std::string& by) {
+  return port + " blames " + by + " in " + bank;
+}
+
+}  // namespace
+
+PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
+                           const std::vector<host::StereoPair>& pairs, std::uint64_t frames) {
+  PairsInTurn source(pairs);
+  KeptFrames sink;
+  MonitoringBinder binder;
+  platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder);
+  sc_core::sc_start();
+  EXPECT_TRUE(system.host.finished());
+  // Two of the host, three to five from the ports of the core, one to each bank.
+  const std::size_t tables_bound = (tables.left ? 1U : 0U) + (tables.right ? 1U : 0U);
+  EXPECT_EQ(binder.monitors().size(), 5 + tables_bound + board.banks.size());
+  return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities)};
+}
+
+Figures figures(const platform::Statistics& statistics) {
+  Figures all{{"frames", statistics.frames}, {"cycles", statistics.cycles}};
+  for (const std::uint64_t cycles : statistics.frame_cycles) all[frame_key(all.size() - 2)] = cycles;
+  for (const platform::PortStatistics& port : statistics.ports) {
+    all[port.name + " granted"] = port.grants;
+    all[port.name + " stalled"] = port.stall_cycles;
+    all[port.name + " passed"] = port.passed_cycles;
+    all[port.name + " idle"] = port.idle_cycles;
+    all[port.name + " blocked"] = port.blocked_cycles;
+    all[port.name + " starved"] = port.starved_cycles;
+  }
+  for (const platform::BankStatistics& bank : statistics.banks) {
+    all[bank.name + " reads"] = bank.reads;
+    all[bank.name + " writes"] = bank.writes;
+    all[bank.name + " busy"] = bank.busy_cycles;
+    all[bank.name + " turnaround"] = bank.turnaround_cycles;
+    all[bank.name + " idle"] = bank.idle_cycles;
+    all[bank.name + " contended"] = bank.contended_cycles;
+  }
+  for (const platform::BlameRow& row : statistics.blame)
+    all[blame_key(row.port, row.bank, row.by)] = row.cycles;
+  return all;
+}
+
+Figures figures(const PlainCycleResult& result) {
+  Figures all{{"frames", result.frame_cycles.size()}, {"cycles", result.counted_cycles}};
+  for (const std::uint64_t cycles : result.frame_cycles) all[frame_key(all.size() - 2)] = cycles;
+  for (std::size_t index = 0; index < kPlainPortCount; ++index) {
+    const PlainPortStates& port = result.ports[index];
+    const std::string name = name_of(static_cast<PlainPort>(index));
+    all[name + " granted"] = port.granted;
+    all[name + " stalled"] = port.stalled;
+    all[name + " passed"] = port.passed;
+    all[name + " idle"] = port.idle;
+    all[name + " blocked"] = port.blocked;
+    all[name + " starved"] = port.starved;
+  }
+  for (std::size_t index = 0; index < result.banks.size(); ++index) {
+    const PlainBankStates& bank = result.banks[index];
+    const std::string name = "bank" + std::to_string(index);
+    all[name + " reads"] = bank.reads;
+    all[name + " writes"] = bank.writes;
+    all[name + " busy"] = bank.busy;
+    all[name + " turnaround"] = bank.turnaround;
+    all[name + " idle"] = bank.idle;
+    all[name + " contended"] = bank.contended;
+  }
+  for (const auto& [row, cycles] : result.blame) {
+    all[blame_key(name_of(row.port), "bank" + std::to_string(row.bank),
+                  row.by ? name_of(*row.by) : "turnaround")] = cycles;
+  }
+  return all;
+}
+
+std::string differences(const Figures& model, const Figures& expected) {
+  std::string text;
+  const auto value = [](const Figures& all, const std::string& name) {
+    const auto found = all.find(name);
+    return found == all.end() ? std::string("absent") : std::to_string(found->second);
+  };
+  Figures names = model;
+  names.insert(expected.begin(), expected.end());
+  for (const auto& [name, unused] : names) {
+    const std::string got = value(model, name);
+    const std::string wanted = value(expected, name);
+    if (got != wanted) text += name + " = " + got + ", expected " + wanted + "\n";
+  }
+  return text;
+}
+
+}  // namespace stereotlm::test

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "models/host/ideal_host.h"
+#include "platform/board_config.h"
+#include "platform/statistics.h"
+#include "platform/tables.h"
+#include "tests/support/plain_cycle_loop.h"
+
+namespace stereotlm::test {
+
+struct PreloadedRun {
+  platform::Statistics statistics;
+  std::vector<kernels::GrayImage> disparity;  // per frame
+};
+
+// Simulates `frames` frames, frame f with pair f mod length, every memory-mapped link under a protocol
+// monitor (a violation fails the test). Once per process.
+PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
+                           const std::vector<host::StereoPair>& pairs, std::uint64_t frames);
+
+// Every counter under a name of its own, "left_lut granted", "bank0 reads", "left_lut blames result in
+// bank0", "frame 0 cycles": of the model and of the plain loop alike.
+using Figures = std::map<std::string, std::uint64_t>;
+Figures figures(const platform::Statistics& statistics);
+Figures figures(const PlainCycleResult& result);
+
+// One line for each figure that is not the same in both; empty if all are.
+std::string differences(const Figures& model, const Figures& expected);
+
+}  // namespace stereotlm::test

@@ -1,0 +1,216 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "platform/board_yaml.h"
+#include "tests/integration/core/preloaded_run.h"
+#include "tests/support/board_of_random.h"
+#include "tests/support/fork.h"
+#include "tests/support/random_board.h"
+
+// Whole runs on random boards, each in a process of its own, against the plain cycle loop and the literal
+// arithmetic.
+namespace stereotlm::test {
+namespace {
+
+constexpr std::uint64_t kMaxFrameCycles = 20'000'000;
+const std::string kHang = "the plain cycle loop hangs";
+
+std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? std::stoull(text) : otherwise;
+}
+
+int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+PreloadedRun run_board(const RandomBoard& board, const platform::BoardConfig& config) {
+  std::vector<host::StereoPair> pairs;
+  for (std::size_t pair = 0; pair < board.pictures.size(); ++pair)
+    pairs.push_back(stereo_pair(board, static_cast<int>(pair)));
+  return run_preloaded(config, board_tables(board), pairs, static_cast<std::uint64_t>(board.frames));
+}
+
+std::string pixel_differences(const kernels::GrayImage& image, const std::vector<std::uint8_t>& expected) {
+  for (std::size_t index = 0; index < expected.size(); ++index) {
+    if (image.pixels[index] == expected[index]) continue;
+    const auto width = static_cast<std::size_t>(image.width);
+    return "pixel (" + std::to_string(index % width) + ", " + std::to_string(index / width) +
+           ") = " + std::to_string(image.pixels[index]) + ", expected " + std::to_string(expected[index]) +
+           "\n";
+  }
+  return {};
+}
+
+// What differs between the model and the references; kHang if there is nothing to compare with.
+std::string compare_with_references(const RandomBoard& board) {
+  const PlainCycleResult expected = run_plain_cycle_loop(cycle_input(board), board.frames, kMaxFrameCycles);
+  if (expected.hang) return kHang;
+  const PreloadedRun run = run_board(board, board_config(board));
+  std::string text = differences(figures(run.statistics), figures(expected));
+  for (const std::string& failed : run.statistics.failed) text += failed + "\n";
+  EXPECT_LE(run.statistics.frames_per_second.core, run.statistics.bound.core);
+  EXPECT_EQ(run.disparity.size(), static_cast<std::size_t>(board.frames));
+  for (std::size_t frame = 0; frame < run.disparity.size(); ++frame) {
+    const auto reference = compute_reference(reference_input(board, static_cast<int>(frame)));
+    const std::string wrong = pixel_differences(run.disparity[frame], reference.disparity);
+    if (!wrong.empty()) text += "frame " + std::to_string(frame) + ": " + wrong;
+  }
+  return text;
+}
+
+TEST(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmetic) {
+  const std::uint64_t first = from_environment("STEREOTLM_RANDOM_FIRST", 0);
+  const std::uint64_t count = from_environment("STEREOTLM_RANDOM_BOARDS", 300);
+  std::vector<ChildWork> jobs;
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+    jobs.push_back([seed] { return compare_with_references(make_random_board(seed)); });
+  const std::vector<ChildResult> results = run_in_children(jobs, processors());
+  std::uint64_t hangs = 0;
+  for (std::size_t job = 0; job < results.size(); ++job) {
+    if (results[job].text == kHang) {
+      ++hangs;
+    } else if (!results[job].ok()) {
+      ADD_FAILURE() << results[job].text << "\n" << describe(make_random_board(first + job));
+    }
+  }
+  RecordProperty("hangs", std::to_string(hangs));
+  EXPECT_LE(hangs, count / 100);
+}
+
+// A file that a child writes and this process reads.
+class Notes {
+ public:
+  Notes() : path_(testing::TempDir() + "stereotlm_notes_" + std::to_string(getpid())) {}
+  ~Notes() { std::remove(path_.c_str()); }
+  Notes(const Notes&) = delete;
+  Notes& operator=(const Notes&) = delete;
+  const std::string& path() const { return path_; }
+  void write(const std::string& text) const { std::ofstream(path_) << text; }
+  std::string read() const {
+    std::ifstream file(path_);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+
+ private:
+  std::string path_;
+};
+
+std::string text_of(const std::vector<kernels::GrayImage>& disparities) {
+  std::string text;
+  for (const kernels::GrayImage& image : disparities) {
+    for (const std::uint8_t pixel : image.pixels) text += std::to_string(pixel) + ' ';
+    text += '\n';
+  }
+  return text;
+}
+
+std::string text_of(const platform::Statistics& statistics) {
+  std::string text;
+  for (const auto& [name, value] : figures(statistics)) text += name + " = " + std::to_string(value) + '\n';
+  for (const double value : {statistics.frames_per_second.core, statistics.bound.core}) {
+    char exact[40];
+    std::snprintf(exact, sizeof exact, "%a\n", value);
+    text += exact;
+  }
+  return text + statistics.bound.core_limited_by;
+}
+
+// Leaves the heap full of `byte`, so that a value that nobody has set is not the same in two runs.
+void dirty_heap(char byte) {
+  for (std::size_t size = 16; size < (1U << 20U); size = size * 5 / 4) {
+    const std::vector<std::string> blocks(8, std::string(size, byte));
+    ASSERT_EQ(blocks.back().back(), byte);
+  }
+}
+
+TEST(RandomBoards, GiveTheSameStatisticsAgain) {
+  for (std::uint64_t seed = 10'000; seed < 10'020; ++seed) {
+    const RandomBoard board = make_random_board(seed);
+    SCOPED_TRACE(describe(board));
+    std::vector<std::string> runs;
+    for (const char byte : {'\x5A', '\xFF'}) {
+      const Notes notes;
+      const ChildResult result = run_in_child([&] {
+        dirty_heap(byte);
+        const PreloadedRun run = run_board(board, board_config(board));
+        notes.write(text_of(run.statistics) + text_of(run.disparity));
+        return std::string();
+      });
+      ASSERT_TRUE(result.ok()) << result.text;
+      runs.push_back(notes.read());
+    }
+    EXPECT_GT(runs[0].size(), 100U);
+    EXPECT_EQ(runs[0], runs[1]);
+  }
+}
+
+// All buffers in one bank, a bank for each, and the board's own sharing.
+std::vector<platform::BoardConfig> allocations_of(const RandomBoard& board) {
+  RandomBoard one_bank = board;
+  one_bank.banks = {PlainBank{PlainBankKind::kSyncBurst, 3}};
+  for (auto* list : {&one_bank.left_image, &one_bank.right_image, &one_bank.disparity})
+    std::fill(list->begin(), list->end(), 0);
+  RandomBoard spread = board;
+  int next = 0;
+  for (auto* list : {&spread.left_image, &spread.right_image, &spread.disparity}) {
+    for (int& bank : *list) bank = next++;
+  }
+  for (auto* lut : {&spread.left_lut, &spread.right_lut}) {
+    if (*lut) *lut = next++;
+  }
+  spread.banks.assign(static_cast<std::size_t>(next), PlainBank{PlainBankKind::kZbtFlowThrough, 0});
+  for (auto* lut : {&one_bank.left_lut, &one_bank.right_lut}) {
+    if (*lut) *lut = 0;
+  }
+  return {board_config(board), board_config(one_bank), board_config(spread)};
+}
+
+TEST(RandomBoards, GiveTheSameDisparityImageWithAnyAllocation) {
+  for (std::uint64_t seed = 20'000; seed < 20'020; ++seed) {
+    const RandomBoard board = make_random_board(seed);
+    SCOPED_TRACE(describe(board));
+    std::vector<std::string> images;
+    for (const platform::BoardConfig& config : allocations_of(board)) {
+      const Notes notes;
+      const ChildResult result = run_in_child([&] {
+        notes.write(text_of(run_board(board, config).disparity));
+        return std::string();
+      });
+      ASSERT_TRUE(result.ok()) << result.text;
+      images.push_back(notes.read());
+    }
+    EXPECT_FALSE(images[0].empty());
+    EXPECT_EQ(images[0], images[1]);
+    EXPECT_EQ(images[0], images[2]);
+  }
+}
+
+// What a failure prints is the board that failed.
+TEST(RandomBoards, AreTheBoardsOfTheirDescription) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const RandomBoard board = make_random_board(seed);
+    const Notes notes;
+    const std::string path = notes.path() + ".yaml";
+    std::ofstream(path) << describe(board);
+    platform::BoardConfig read;
+    ASSERT_NO_THROW(read = platform::load_board(path)) << describe(board);
+    std::remove(path.c_str());
+    const platform::BoardConfig expected = board_config(board);
+    EXPECT_EQ(platform::problems(expected), std::vector<std::string>());
+    ASSERT_EQ(read.banks.size(), expected.banks.size());
+    for (std::size_t bank = 0; bank < read.banks.size(); ++bank)
+      read.banks[bank].words = expected.banks[bank].words;
+    EXPECT_TRUE(read == expected) << describe(board) << platform::to_yaml(expected);
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::test
