@@ -1,0 +1,43 @@
+#include "sw/cli/board_options.h"
+
+#include "platform/board_yaml.h"
+
+namespace stereotlm::cli {
+
+void BoardOptions::add_to(CLI::App& command) {
+  board_option_ =
+      command
+          .add_option(
+              "BOARD", board_,
+              "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml")
+          ->option_text(" ");
+  command
+      .add_option("--set", sets_,
+                  "Give a key of the board another value, a YAML flow value; again for further keys "
+                  "(see stereotlm keys)")
+      ->option_text("KEY=VALUE")
+      ->allow_extra_args(false);
+  unbuilt_.add(command, "--calibration", 1);
+}
+
+void BoardOptions::check_usage(Problems& problems) const {
+  unbuilt_.report(problems);
+  if (board_option_->count() == 0) problems.add("BOARD: missing: a preset or the path of a board file");
+}
+
+void BoardOptions::check_usage() const {
+  Problems problems;
+  check_usage(problems);
+  problems.check();
+}
+
+std::optional<platform::BoardConfig> BoardOptions::load(Problems& problems) const {
+  try {
+    return platform::load_board(board_, sets_);
+  } catch (const platform::BoardError& error) {
+    problems.add(error);
+    return std::nullopt;
+  }
+}
+
+}  // namespace stereotlm::cli

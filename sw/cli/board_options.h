@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/board_config.h"
+#include "sw/cli/problems.h"
+#include "sw/cli/unbuilt.h"
+
+namespace stereotlm::cli {
+
+// BOARD and the options that go with every command that takes one.
+class BoardOptions {
+ public:
+  // Adds them to a command, before it is parsed.
+  void add_to(CLI::App& command);
+
+  // While the command's callback runs: reports what is missing or not in this version, or throws Refused.
+  void check_usage(Problems& problems) const;
+  void check_usage() const;
+
+  // The board; nothing if it is wrong, with every reason reported.
+  std::optional<platform::BoardConfig> load(Problems& problems) const;
+
+ private:
+  const CLI::Option* board_option_ = nullptr;
+  std::string board_;
+  std::vector<std::string> sets_;
+  UnbuiltOptions unbuilt_;
+};
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,39 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "sw/cli/board_options.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/streams.h"
+
+namespace stereotlm::cli {
+namespace {
+
+std::string summary(const platform::BoardConfig& board) {
+  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n", board.name,
+                     board.image.width, board.image.height, board.matcher.window, board.matcher.window,
+                     board.matcher.disparities, board.banks.size(), board.fpga.clock_mhz);
+}
+
+int check(const BoardOptions& options) {
+  Problems problems;
+  const auto board = options.load(problems);
+  problems.check();
+  print(summary(*board));
+  return kDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("check", "Validate a board and nothing else");
+  const auto options = std::make_shared<BoardOptions>();
+  options->add_to(*command);
+  command->callback([options, &action] {
+    options->check_usage();
+    action = [options] { return check(*options); };
+  });
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,101 @@
+#include "sw/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "platform/board_keys.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/problems.h"
+#include "sw/cli/streams.h"
+#include "sw/cli/text.h"
+#include "sw/cli/unbuilt.h"
+#include "sw/cli/version.h"
+
+namespace stereotlm::cli {
+namespace {
+
+// CLI11's, with descriptions in lines of at most kTextColumns columns.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { label("SUBCOMMAND", "COMMAND"); }
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return paragraph("  " + make_option_name(option, is_positional) + make_option_opts(option), kIndent,
+                     make_option_desc(option));
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return paragraph("  " + command->get_name(), kIndent, command->get_description());
+  }
+  // The only positional, BOARD, is required.
+  std::string make_option_usage(const CLI::Option* option) const override { return option->get_name(); }
+
+ private:
+  static constexpr std::size_t kIndent = 30;
+};
+
+// The first argument must be a command, or ask for help or the version.
+void check_first_argument(const CLI::App& program, int argc, const char* const* argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  std::vector<std::string> commands;
+  bool is_known = program.get_option_no_throw(first) != nullptr;
+  for (const CLI::App* command : program.get_subcommands({})) {
+    is_known = is_known || command->get_name() == first;
+    if (!is_unbuilt(*command)) commands.push_back(command->get_name());
+  }
+  const std::string all = platform::listed(commands);
+  if (is_known) return;
+  if (first.empty()) refuse("a command is missing: one of " + all);
+  if (first[0] == '-') refuse(fmt::format("'{}': a command comes first: one of {}", first, all));
+  refuse(fmt::format("'{}': unknown command; nearest: {}; commands: {}", first,
+                     platform::nearest_word(first, commands), all));
+}
+
+std::string help_of(const CLI::App& program) {
+  const auto commands = program.get_subcommands();
+  return "stereotlm " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help";
+}
+
+}  // namespace
+
+Action parse_command_line(int argc, const char* const* argv) {
+  CLI::App program(
+      "A SystemC/TLM-2.0 model of the stereo vision board of Miyajima and Maruyama (FPL 2003): runs stereo\n"
+      "pairs through it and accounts for every cycle of its memory banks.",
+      "stereotlm");
+  program.formatter(std::make_shared<HelpFormatter>());
+  program.set_help_flag("-h,--help", "Print this help; after a command, the command's");
+  program.set_version_flag("--version", std::string("stereotlm ") + kVersion, "Print the version");
+  program.require_subcommand(1);
+  program.footer(
+      "Exit status: 0 done; 1 failed after the first simulated cycle; 2 refused before it; 130\n"
+      "interrupted. Not in this version: " +
+      unbuilt_commands() + ".");
+  Action action;
+  add_run(program, action);
+  add_check(program, action);
+  add_boards(program, action);
+  add_keys(program, action);
+  add_bounds(program, action);
+  for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
+  add_unbuilt_commands(program);
+  check_first_argument(program, argc, argv);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& request) {
+    std::ostringstream text;
+    program.exit(request, text, text);
+    return [text = text.str()] {
+      print(text);
+      return kDone;
+    };
+  } catch (const CLI::ParseError& error) {
+    refuse(fmt::format("{} (see {})", error.what(), help_of(program)));
+  }
+  return action;
+}
+
+}  // namespace stereotlm::cli

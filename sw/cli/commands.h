@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace stereotlm::cli {
+
+// What the command line asks for; returns the exit status. Throws Refused before it has done anything.
+using Action = std::function<int()>;
+
+// Each puts one command into the program, whose parsing sets `action` if the command line holds that command,
+// and throws Refused if its options are wrong.
+void add_run(CLI::App& program, Action& action);
+void add_check(CLI::App& program, Action& action);
+void add_boards(CLI::App& program, Action& action);
+void add_keys(CLI::App& program, Action& action);
+void add_bounds(CLI::App& program, Action& action);
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,51 @@
+#include <cstdlib>
+#include <exception>
+#include <systemc>
+
+#include "sw/cli/command_line.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/problems.h"
+#include "sw/cli/streams.h"
+
+namespace stereotlm::cli {
+namespace {
+
+std::string text_of(const sc_core::sc_report& report) {
+  return std::string(report.get_msg_type()) + ": " + report.get_msg();
+}
+
+// SystemC prints to standard output. An error goes on to where it is caught.
+void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
+  if (report.get_severity() == sc_core::SC_WARNING) say("warning", text_of(report));
+  sc_core::sc_report_handler::default_handler(
+      report, actions & ~static_cast<sc_core::sc_actions>(sc_core::SC_DISPLAY));
+}
+
+int run_program(int argc, const char* const* argv) {
+  try {
+    return parse_command_line(argc, argv)();
+  } catch (const Refused& refused) {
+    for (const std::string& line : refused.lines()) std::fprintf(stderr, "%s\n", line.c_str());
+    return kRefused;
+  } catch (const sc_core::sc_report& report) {
+    say("error", "the model stopped: " + text_of(report));
+  } catch (const std::exception& error) {
+    say("error", error.what());
+  }
+  return kFailed;
+}
+
+}  // namespace
+}  // namespace stereotlm::cli
+
+int sc_main(int argc, char** argv) {
+  sc_core::sc_report_handler::set_handler(stereotlm::cli::handle_report);
+  stereotlm::cli::prepare_streams();
+  return stereotlm::cli::run_program(argc, argv);
+}
+
+// Takes the place of libsystemc's own main, which prints the copyright banner before sc_main can turn it off.
+int main(int argc, char** argv) {
+  setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
+  return sc_core::sc_elab_and_sim(argc, argv);
+}

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "platform/board_yaml.h"
+
+namespace stereotlm::cli {
+
+// A command is refused before it has done anything: exit status 2. Lines for standard error.
+class Refused : public std::exception {
+ public:
+  explicit Refused(std::vector<std::string> lines) : lines_(std::move(lines)) {}
+  const std::vector<std::string>& lines() const { return lines_; }
+  const char* what() const noexcept override { return "the command is refused"; }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+// Everything wrong with a command, collected so that it can be said at once.
+class Problems {
+ public:
+  void add(const std::string& text) { lines_.push_back("stereotlm: error: " + text); }
+  // The diagnostics of a board name file and position themselves.
+  void add(const platform::BoardError& error) { lines_.emplace_back(error.what()); }
+
+  // Throws Refused if there is any.
+  void check() const {
+    if (!lines_.empty()) throw Refused(lines_);
+  }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+// One problem alone.
+[[noreturn]] inline void refuse(const std::string& text) { throw Refused({"stereotlm: error: " + text}); }
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace stereotlm::cli {
+
+// How far a run is. A frame in progress counts by its simulated cycles.
+struct RunState {
+  std::uint64_t frames = 0;  // to do, all in all
+  std::uint64_t frames_done = 0;
+  std::uint64_t cycles_of_done = 0;      // FPGA cycles of the finished frames
+  std::uint64_t cycles = 0;              // FPGA cycles simulated
+  std::uint64_t least_frame_cycles = 1;  // stands for the length of a frame until one has finished
+};
+
+// "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
+std::string progress_text(const RunState& state, double seconds);
+
+// The progress line of a run, on standard error if that is a terminal; otherwise nothing. The line is erased
+// at the end.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine() { erase(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  // Draws the line anew, at most a few times a second.
+  void show(const RunState& state);
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+
+  void erase();
+
+  bool is_terminal_;
+  Time start_;
+  Time next_;
+  std::size_t columns_drawn_ = 0;
+};
+
+}  // namespace stereotlm::cli

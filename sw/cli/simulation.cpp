@@ -1,0 +1,32 @@
+#include "sw/cli/simulation.h"
+
+#include "platform/collect.h"
+
+namespace stereotlm::cli {
+namespace {
+
+constexpr double kSliceCycles = 40'000;
+
+}  // namespace
+
+Simulation::Simulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                       const host::StereoPair& pair, std::uint64_t frames)
+    : board_(board),
+      tables_(tables),
+      pair_(pair),
+      slice_(kSliceCycles / board.fpga.clock_mhz, sc_core::SC_US),
+      system_("system", board, tables, frames, *this, *this, binder_) {}
+
+void Simulation::advance() { sc_core::sc_start(slice_); }
+
+const host::StereoPair& Simulation::pair(std::uint64_t /*frame*/) { return pair_; }
+
+// The figures are collected at each frame's end, because the counters of a frame under way would be mixed
+// into them when the run is interrupted.
+void Simulation::take(std::uint64_t /*frame*/, const kernels::GrayImage& disparity) {
+  statistics_ = platform::collect_statistics(board_, tables_, system_.board);
+  disparity_ = disparity;
+  cycles_of_done_ += statistics_.frame_cycles.back();
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <systemc>
+
+#include "models/host/ideal_host.h"
+#include "platform/preloaded_system.h"
+#include "platform/statistics.h"
+
+namespace stereotlm::cli {
+
+// The board on one pair of pictures, the same for every frame. One of these a process: SystemC elaborates
+// once.
+class Simulation : private host::FrameSource, private host::FrameSink {
+ public:
+  // All but `frames` outlives the simulation. Throws std::exception if the board cannot be built.
+  Simulation(const platform::BoardConfig& board, const platform::Tables& tables, const host::StereoPair& pair,
+             std::uint64_t frames);
+
+  // Simulates about 40,000 FPGA cycles. Throws sc_core::sc_report if a model reports an error.
+  void advance();
+
+  bool finished() const { return system_.host.finished(); }
+  std::uint64_t frames_done() const { return statistics_.frames; }
+  std::uint64_t cycles_of_done() const { return cycles_of_done_; }     // of the finished frames
+  std::uint64_t cycles() const { return system_.board.core.cycle(); }  // so far
+
+  // Of the frames finished so far: their figures, and the disparities of the last one.
+  const platform::Statistics& statistics() const { return statistics_; }
+  const kernels::GrayImage& disparity() const { return disparity_; }
+
+ private:
+  const host::StereoPair& pair(std::uint64_t frame) override;
+  void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
+
+  const platform::BoardConfig& board_;
+  const platform::Tables& tables_;
+  const host::StereoPair& pair_;
+  sc_core::sc_time slice_;
+  platform::Statistics statistics_;
+  kernels::GrayImage disparity_;
+  std::uint64_t cycles_of_done_ = 0;
+  Binder binder_;
+  platform::PreloadedSystem system_;
+};
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sw/cli/problems.h"
+
+namespace stereotlm::cli {
+
+// Options and commands of contract section 5 that this version does not have are known, so that they can be
+// refused as that instead of as typing errors.
+class UnbuiltOptions {
+ public:
+  // An option with at most `values` values.
+  void add(CLI::App& command, const std::string& name, int values);
+
+  // Names each one that was given.
+  void report(Problems& problems) const;
+
+ private:
+  std::vector<std::pair<std::string, const CLI::Option*>> options_;
+};
+
+inline constexpr const char* kNotInThisVersion = "not in this version";
+
+// "calibrate, explain, .."
+std::string unbuilt_commands();
+void add_unbuilt_commands(CLI::App& program);
+bool is_unbuilt(const CLI::App& command);
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,146 @@
+"""check, boards, keys and bounds."""
+
+import program
+from program import SMALL, ProgramTest, run
+
+PRESETS = [
+    "fpl2003",
+    "fpl2003-no-calibration",
+    "fpl2003-line-buffer",
+    "fpl2003-qvga",
+    "fpl2003-syncburst",
+    "fpl2003-triple",
+]
+
+
+class Check(ProgramTest):
+    def test_accepts_every_preset_in_one_line(self):
+        for name in PRESETS:
+            text = self.succeeds(run("check", name))
+            self.assertRegex(text, rf"\A{name}: ok: [^\n]*\n\Z")
+
+    def test_sums_up_the_board_as_set(self):
+        text = self.succeeds(run("check", "fpl2003", *SMALL, "--set", "matcher.window=5"))
+        self.assertEqual(text, "fpl2003: ok: 32x24, window 5x5, 80 disparities, 8 banks, 40 MHz\n")
+
+    def test_takes_a_path(self):
+        path = self.file("mine.yaml", b"extends: fpl2003-qvga\nname: mine\n")
+        self.assertTrue(self.succeeds(run("check", path)).startswith("mine: ok: 320x240"))
+
+    def test_says_everything_that_is_wrong_with_its_place(self):
+        path = self.file("mine.yaml", b"extends: fpl2003\nimage: {width: 3, hight: 2}\n")
+        lines = self.refused(run("check", path, "--set", "matcher.window=4"))
+        self.assertEqual(len(lines), 3)
+        self.assertTrue(lines[0].startswith(f"{path}:2:16: image.width = 3: "), lines[0])
+        self.assertTrue(lines[1].startswith(f"{path}:2:19: image.hight = 2: unknown key"), lines[1])
+        self.assertTrue(lines[2].startswith("--set matcher.window: matcher.window = 4: "), lines[2])
+
+    def test_refuses_a_bank_that_is_too_small(self):
+        self.refused_in_one_line(
+            run("check", "fpl2003", "--set", "ssram.banks.bank6.words=307199"),
+            "--set ssram.banks.bank6.words: ssram.banks.bank6.words = 307199: 1 words missing",
+        )
+        self.succeeds(run("check", "fpl2003", "--set", "ssram.banks.bank6.words=307200"))
+
+    def test_refuses_boards_that_do_not_exist(self):
+        self.refused_in_one_line(run("check", "fpl2004"), "fpl2004: not a preset", "nearest: fpl2003")
+        self.refused_in_one_line(run("check", "./none.yaml"), "./none.yaml: cannot be read: No such file")
+        self.refused_in_one_line(run("check", ""), "(empty): not a preset")
+
+    def test_a_set_takes_one_value_each_time(self):
+        self.succeeds(run("check", "--set", "matcher.window=5", "fpl2003"))
+        self.succeeds(run("check", "--set=allocation.disparity=[bank0, bank1]", "fpl2003"))
+        self.refused_in_one_line(run("check", "fpl2003", "--set", "x"), "--set x: x = (nothing)")
+        self.refused_in_one_line(run("check", "fpl2003", "--set", "[a,b]"), "--set [a,b]: [a,b] = (nothing)")
+
+
+class Boards(ProgramTest):
+    def test_lists_every_preset_with_what_it_is_for(self):
+        text = self.succeeds(run("boards"))
+        lines = text.splitlines()
+        for line in lines:
+            self.assertLessEqual(len(line), 100)
+        self.assertEqual([line.split()[0] for line in lines if not line.startswith(" ")], PRESETS)
+        self.assertIn("320x240", text)
+        self.assertNotIn("#", text)
+
+    def test_shows_a_file_that_can_be_run(self):
+        for name in PRESETS:
+            text = self.succeeds(run("boards", "--show", name))
+            self.assertTrue(text.startswith("# "), text)
+            copy = self.file("copy.yaml", text.encode())
+            self.assertEqual(self.succeeds(run("check", copy)), self.succeeds(run("check", name)))
+
+    def test_refuses_an_unknown_name_with_the_nearest(self):
+        for name in ("fpl2003-trible", ""):
+            self.refused_in_one_line(run("boards", "--show", name), f"--show = {name}: not a preset; nearest: fpl2003")
+        self.refused_in_one_line(run("boards", "--show", "fpl2003-trible"), "nearest: fpl2003-triple;")
+
+
+class Keys(ProgramTest):
+    def test_lists_every_key_in_a_hundred_columns(self):
+        text = self.succeeds(run("keys"))
+        lines = text.splitlines()
+        for line in lines:
+            self.assertLessEqual(len(line), 100)
+        keys = [line.split()[0] for line in lines if not line.startswith(" ")][1:]
+        self.assertEqual(len(keys), len(set(keys)))
+        for key in ("extends", "image.width", "ssram.banks.NAME.turnaround_cycles", "matcher.lr_tolerance"):
+            self.assertIn(key, keys)
+        at = next(i for i, line in enumerate(lines) if line.startswith("image.width "))
+        self.assertEqual(lines[at].split(), "image.width pixels width of the images".split())
+        self.assertEqual(lines[at + 1].strip(), "4..2048, a multiple of 4")
+
+
+class Bounds(ProgramTest):
+    def rows(self, *arguments):
+        """For each frame the resources with their numbers; and the last line."""
+        lines = self.succeeds(run("bounds", *arguments)).splitlines()
+        frames = []
+        for line in lines[:-1]:
+            if line.startswith("frame "):
+                frames.append({})
+            elif not line.split()[0] == "resource":
+                *resource, cycles, rate, headroom = line.split()
+                frames[-1][" ".join(resource)] = (int(cycles), float(rate), float(headroom))
+        return frames, lines[-1]
+
+    def test_lists_each_resource_of_each_frame(self):
+        frames, last = self.rows("fpl2003")
+        self.assertEqual(len(frames), 2)
+        self.assertIn("bank bank0", frames[0])
+        self.assertIn("bank bank1", frames[1])
+        self.assertNotIn("bank bank1", frames[0])
+        self.assertEqual(frames[0]["matcher"], (2151016, 18.596, 0.0))
+        self.assertEqual(last, "bound of the core: 18.596 frames/s, limited by matcher")
+
+    def test_headroom_is_what_the_limiting_resource_takes_longer(self):
+        frames, _ = self.rows("fpl2003", *SMALL)
+        most = max(cycles for cycles, _, _ in frames[0].values())
+        for cycles, rate, headroom in frames[0].values():
+            self.assertAlmostEqual(rate, 40e6 / cycles, places=3)
+            self.assertAlmostEqual(headroom, 100 * (1 - cycles / most), places=2)
+
+    def test_names_the_bank_that_limits_when_two_buffers_share_it(self):
+        frames, last = self.rows("fpl2003", "--set", "allocation.left_lut=bank0")
+        self.assertEqual(frames[0]["bank bank0"][2], 0.0)
+        self.assertLess(frames[1]["bank bank1"][0], frames[0]["bank bank0"][0])
+        self.assertTrue(last.endswith("limited by bank bank0"), last)
+
+    def test_follows_the_allocation_lists(self):
+        self.assertEqual(len(self.rows("fpl2003-triple")[0]), 6)
+        self.assertEqual(len(self.rows("fpl2003", "--set", "allocation.disparity=bank4")[0]), 2)
+        frames, _ = self.rows("fpl2003-no-calibration")
+        self.assertNotIn("port left_lut", frames[0])
+
+    def test_a_run_reaches_the_bound_that_is_printed(self):
+        _, last = self.rows("fpl2003", *SMALL)
+        table = self.succeeds(self.run_small("--frames", "2"))
+        self.assertEqual(table.splitlines()[1].split()[1], last.split()[4])
+
+    def test_refuses_wrong_boards(self):
+        self.refused_in_one_line(run("bounds", "fpl2003", "--set", "image.width=3"), "image.width = 3")
+
+
+if __name__ == "__main__":
+    program.main()

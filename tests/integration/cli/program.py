@@ -1,0 +1,136 @@
+"""Drives the program stereotlm from the outside; what the tests of this folder share.
+
+The path of the program is the first argument of each test script.
+"""
+
+import json
+import os
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+PROGRAM = None  # set by main()
+
+WIDTH = 32
+HEIGHT = 24
+SMALL = ["--set", f"image.width={WIDTH}", "--set", f"image.height={HEIGHT}"]
+BUILT = ["--source", "preloaded", "--fidelity", "cycle"]
+RESULT_FILES = ["config.yaml", "disparity.pfm", "disparity.png", "disparity_color.png", "run.json", "stats.json"]
+
+
+def run(*arguments, **options):
+    """The finished process, with text output."""
+    command = [PROGRAM] + [str(argument) for argument in arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, **options)
+
+
+def pgm(width, height, pixels):
+    return b"P5\n%d %d\n255\n" % (width, height) + bytes(pixels)
+
+
+def noise(width, height, seed):
+    generator = random.Random(seed)
+    return bytes(generator.randrange(256) for _ in range(width * height))
+
+
+def png_chunks(data):
+    at = 8
+    while at < len(data):
+        (length,) = struct.unpack(">I", data[at : at + 4])
+        yield data[at + 4 : at + 8], data[at + 8 : at + 8 + length]
+        at += 12 + length
+
+
+def read_png(path):
+    """(width, height, channels, rows of bytes) of an 8-bit PNG, not interlaced."""
+    chunks = list(png_chunks(pathlib.Path(path).read_bytes()))
+    width, height, depth, kind, _, _, interlaced = struct.unpack(">IIBBBBB", chunks[0][1])
+    assert depth == 8 and interlaced == 0 and kind in (0, 2)
+    channels = 3 if kind == 2 else 1
+    raw = zlib.decompress(b"".join(data for name, data in chunks if name == b"IDAT"))
+    stride = width * channels
+    rows = []
+    above = bytes(stride)
+    for y in range(height):
+        start = y * (stride + 1)
+        row = bytearray(raw[start + 1 : start + 1 + stride])
+        unfilter(raw[start], row, above, channels)
+        above = bytes(row)
+        rows.append(above)
+    return width, height, channels, rows
+
+
+def unfilter(method, row, above, channels):
+    for i, value in enumerate(row):
+        left = row[i - channels] if i >= channels else 0
+        up = above[i]
+        corner = above[i - channels] if i >= channels else 0
+        estimate = left + up - corner
+        nearest = min((left, up, corner), key=lambda candidate: abs(estimate - candidate))
+        row[i] = (value + (0, left, up, (left + up) // 2, nearest)[method]) & 0xFF
+
+
+def read_pfm(path):
+    """(width, height, rows of floats from the top)."""
+    kind, size, scale, data = pathlib.Path(path).read_bytes().split(b"\n", 3)
+    assert kind == b"Pf" and float(scale) == -1.0
+    width, height = map(int, size.split())
+    values = struct.unpack(f"<{width * height}f", data)
+    rows = [list(values[y * width : (y + 1) * width]) for y in range(height)]
+    return width, height, rows[::-1]
+
+
+class ProgramTest(unittest.TestCase):
+    """A test with a folder of its own, and a small pair in it: self.left, self.right."""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.left = self.file("left.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 1)))
+        self.right = self.file("right.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 2)))
+        self.out = self.folder / "out"
+
+    def file(self, name, data):
+        path = self.folder / name
+        path.write_bytes(data)
+        return path
+
+    def run_arguments(self, *more, board="fpl2003", left=None, right=None):
+        pair = ["--left", self.left if left is None else left, "--right", self.right if right is None else right]
+        return ["run", board, *SMALL, *BUILT, *pair, *more]
+
+    def run_small(self, *more, **pair):
+        return run(*self.run_arguments(*more, **pair))
+
+    def succeeds(self, process):
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return process.stdout
+
+    def refused(self, process, *texts):
+        """Refused before the first cycle: the lines on standard error, with nothing on standard output."""
+        self.assertEqual(process.returncode, 2, process.stderr)
+        self.assertEqual(process.stdout, "")
+        for text in texts:
+            self.assertIn(str(text), process.stderr)
+        return process.stderr.splitlines()
+
+    def refused_in_one_line(self, process, *texts):
+        self.assertEqual(len(self.refused(process, *texts)), 1, process.stderr)
+
+    def result(self, folder=None):
+        """The bytes of all files of a result folder, by name."""
+        return {path.name: path.read_bytes() for path in (folder or self.out).iterdir()}
+
+    def stats(self):
+        return json.loads((self.out / "stats.json").read_text())
+
+
+def main():
+    sys.modules["program"].PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

@@ -1,0 +1,56 @@
+#include "sw/cli/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include "platform/board_yaml.h"
+#include "tests/support/expected_report.h"
+
+namespace stereotlm::cli {
+namespace {
+
+platform::BoardConfig small_board() {
+  return platform::load_board("fpl2003", {"image.width=32", "image.height=24"});
+}
+
+TEST(Simulation, AdvancesInSlicesUntilTheLastFrame) {
+  const platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  const host::StereoPair pair = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
+  Simulation simulation(board, tables, pair, 10);
+  EXPECT_FALSE(simulation.finished());
+  EXPECT_EQ(simulation.frames_done(), 0U);
+
+  simulation.advance();
+  // A frame has 5992 cycles, a slice 40,000.
+  EXPECT_EQ(simulation.frames_done(), 6U);
+  EXPECT_EQ(simulation.statistics().frame_cycles, std::vector<std::uint64_t>(6, 5992));
+  EXPECT_TRUE(simulation.statistics().failed.empty());
+  EXPECT_EQ(simulation.cycles_of_done(), 6U * 5992);
+  EXPECT_GE(simulation.cycles(), 40'000U);
+  EXPECT_FALSE(simulation.finished());
+
+  simulation.advance();
+  EXPECT_TRUE(simulation.finished());
+  EXPECT_EQ(simulation.frames_done(), 10U);
+  EXPECT_EQ(simulation.disparity().width, 32);
+}
+
+TEST(Simulation, PassesOnWhatAModelReports) {
+  const platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  const host::StereoPair pair = {kernels::GrayImage(32, 24), kernels::GrayImage(28, 24)};
+  Simulation simulation(board, tables, pair, 1);
+  const test::ExpectedReport expected("/stereotlm/ideal_host");
+  EXPECT_THROW(simulation.advance(), sc_core::sc_report);
+}
+
+TEST(Simulation, CannotBeBuiltOfAWrongBoard) {
+  platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  const host::StereoPair pair;
+  board.matcher.window = 4;
+  EXPECT_THROW(Simulation(board, tables, pair, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::cli

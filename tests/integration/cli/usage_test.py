@@ -1,0 +1,165 @@
+"""Help, and every way to use the command line wrongly."""
+
+import program
+from program import BUILT, ProgramTest, run
+
+COMMANDS = ["run", "check", "boards", "keys", "bounds"]
+UNBUILT_COMMANDS = ["calibrate", "explain", "sweep", "merge", "allocate", "paper", "plot", "diff", "report"]
+UNBUILT_RUN_OPTIONS = [
+    ["--sequence", "frames"],
+    ["--video", "a.avi"],
+    ["--video", "a.avi", "b.avi"],
+    ["--video-layout", "two"],
+    ["--synthetic", "1"],
+    ["--timing-only"],
+    ["--verify"],
+    ["--calibration", "rig.yaml"],
+    ["--trace", "vcd"],
+    ["--save-frames"],
+]
+
+
+class Help(ProgramTest):
+    def test_of_the_program_names_every_command_and_the_exit_statuses(self):
+        for option in ("--help", "-h"):
+            text = self.succeeds(run(option))
+            for command in COMMANDS + UNBUILT_COMMANDS:
+                self.assertIn(command, text)
+            self.assertIn("Exit status: 0", text)
+
+    def test_of_a_command_names_its_options_and_defaults(self):
+        text = self.succeeds(run("run", "--help"))
+        for option in ("BOARD", "--left", "--right", "--truth", "--truth-scale", "--set", "--out"):
+            self.assertIn(option, text)
+        self.assertIn("default 1", text)
+        for command in COMMANDS:
+            self.assertIn(f"Usage: stereotlm {command}", self.succeeds(run(command, "--help")))
+
+    def test_fits_into_a_hundred_columns(self):
+        for arguments in [[]] + [[command] for command in COMMANDS]:
+            for line in self.succeeds(run(*arguments, "--help")).splitlines():
+                self.assertLessEqual(len(line), 104, line)
+
+    def test_version(self):
+        self.assertRegex(self.succeeds(run("--version")), r"^stereotlm \d+\.\d+\.\d+\n$")
+
+
+class UnknownThings(ProgramTest):
+    def test_a_command_is_needed(self):
+        self.refused_in_one_line(run(), "a command is missing", "run, check, boards, keys or bounds")
+
+    def test_an_unknown_command_names_the_nearest(self):
+        self.refused_in_one_line(run("bound", "fpl2003"), "'bound': unknown command; nearest: bounds")
+
+    def test_the_command_comes_first(self):
+        for arguments in (["--bogus"], ["--"], ["--frames", "1", "run", "fpl2003"]):
+            self.refused_in_one_line(run(*arguments), f"'{arguments[0]}': a command comes first")
+        self.refused_in_one_line(run(""), "a command is missing")
+
+    def test_unknown_options(self):
+        for command in COMMANDS:
+            self.refused_in_one_line(run(command, "--bogus"), "--bogus", f"stereotlm {command} --help")
+
+    def test_more_arguments_than_a_command_takes(self):
+        self.refused_in_one_line(run("check", "fpl2003", "fpl2003-qvga"), "fpl2003-qvga")
+        self.refused_in_one_line(run("keys", "fpl2003"), "fpl2003")
+
+    def test_an_option_without_its_value_or_twice(self):
+        for option in ("--left", "--frames", "--out", "--set", "--source"):
+            self.refused_in_one_line(run("run", "fpl2003", option), option)
+        for option in ("--left", "--frames", "--out", "--source"):
+            self.refused_in_one_line(run("run", "fpl2003", option, "1", option, "1"), option)
+
+    def test_a_board_is_needed(self):
+        for command in ("run", "check", "bounds"):
+            self.refused(run(command), "stereotlm: error: BOARD: missing")
+
+    def test_a_board_that_has_the_name_of_a_command_is_a_board(self):
+        self.refused_in_one_line(run("check", "keys"), "keys: not a preset")
+
+
+class NotInThisVersion(ProgramTest):
+    def test_commands(self):
+        for command in UNBUILT_COMMANDS:
+            for rest in ([], ["fpl2003"], ["--help"], ["--out", "a", "b", "--bogus", "3"]):
+                self.refused_in_one_line(run(command, *rest), f"error: {command}: not in this version")
+
+    def test_options_of_run(self):
+        for option in UNBUILT_RUN_OPTIONS:
+            text = f"error: {option[0]}: not in this version"
+            self.refused_in_one_line(self.run_small(*option), text)
+            self.refused_in_one_line(run("run", "fpl2003", *option), text)
+            self.refused_in_one_line(run("run", "fpl2003", option[0]), text)
+
+    def test_all_at_once(self):
+        lines = self.refused(run("run", "fpl2003", "--verify", "--save-frames", "--trace", "vcd"))
+        self.assertEqual(len(lines), 3)
+
+    def test_calibration_with_every_command_that_takes_a_board(self):
+        for command in ("check", "bounds"):
+            self.refused_in_one_line(
+                run(command, "fpl2003", "--calibration", "rig.yaml"), "--calibration: not in this version"
+            )
+
+    def test_defaults_that_are_not_built_are_not_replaced(self):
+        pair = ["--left", self.left, "--right", self.right]
+        source = "--source camera, the default: not in this version; built: --source preloaded"
+        fidelity = "--fidelity fast, the default: not in this version; built: --fidelity cycle"
+        self.assertEqual(len(self.refused(run("run", "fpl2003", *pair), source, fidelity)), 2)
+        self.refused_in_one_line(run("run", "fpl2003", *pair, "--fidelity", "cycle"), source)
+        self.refused_in_one_line(run("run", "fpl2003", *pair, "--source", "preloaded"), fidelity)
+
+    def test_values_that_are_not_built(self):
+        pair = ["--left", self.left, "--right", self.right]
+        self.refused_in_one_line(
+            run("run", "fpl2003", *pair, "--source", "camera", "--fidelity", "cycle"),
+            "--source camera: not in this version; built: --source preloaded",
+        )
+        self.refused_in_one_line(
+            run("run", "fpl2003", *pair, "--source", "preloaded", "--fidelity", "fast"),
+            "--fidelity fast: not in this version; built: --fidelity cycle",
+        )
+
+
+class WrongValues(ProgramTest):
+    def refused_value(self, process, *texts):
+        self.refused_in_one_line(process, *texts)
+        self.assertNotIn("not in this version", process.stderr)
+
+    def test_source_and_fidelity_name_their_values(self):
+        pair = ["--left", self.left, "--right", self.right]
+        for value in ("foo", "Preloaded", ""):
+            self.refused_value(
+                run("run", "fpl2003", *pair, "--fidelity", "cycle", "--source", value),
+                f"--source = {value}: must be camera or preloaded",
+            )
+            self.refused_value(
+                run("run", "fpl2003", *pair, "--source", "preloaded", "--fidelity", value),
+                f"--fidelity = {value}: must be cycle or fast",
+            )
+
+    def test_frames_are_an_integer_from_one(self):
+        for value in ("0", "-1", "1.5", "1e3", "x", "", "+1", " 1", "0x10", "18446744073709551616"):
+            self.refused_value(
+                self.run_small("--frames", value), f"--frames = {value}: must be an integer, 1 or more"
+            )
+
+    def test_the_truth_scale_is_a_positive_number(self):
+        for value in ("0", "-1", "nan", "inf", "x", "", "1e400", "2x"):
+            self.refused_value(
+                self.run_small("--truth", self.left, "--truth-scale", value),
+                f"--truth-scale = {value}: must be a number above 0",
+            )
+
+    def test_a_truth_scale_needs_a_truth(self):
+        self.refused_value(self.run_small("--truth-scale", "2"), "--truth-scale: goes with --truth F")
+
+    def test_a_pair_has_two_pictures(self):
+        run_it = ["run", "fpl2003", *BUILT]
+        self.refused_value(run(*run_it, "--left", self.left), "--right: missing")
+        self.refused_value(run(*run_it, "--right", self.right), "--left: missing")
+        self.assertEqual(len(self.refused(run(*run_it), "--left: missing", "--right: missing")), 2)
+
+
+if __name__ == "__main__":
+    program.main()
