@@ -21,6 +21,8 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
       banks("bank", config.memory.banks.size()),
       config_(config),
       clock_(config.core.clock_mhz),
+      period_ps_(clock_.edge_ps(1)),
+      period_(Clock::to_time(period_ps_)),
       control_(config.core) {
   SC_HAS_PROCESS(StereoCore);
   bind_memory(binder);
@@ -150,6 +152,8 @@ void StereoCore::run_ahead() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   const auto horizon_after = [now] { return now + Clock::to_ps(sc_core::sc_time_to_pending_activity()); };
   std::uint64_t horizon = horizon_after();
+  sc_core::sc_time at;  // of the cycle, from now; mostly one period later than that of the last
+  std::uint64_t offset_before = 0;
   for (const std::uint64_t last = cycle_ + kQuantumCycles;; ++cycle_) {
     if (state_ != State::kRunning) {
       // There is nothing to step before the next request.
@@ -169,7 +173,10 @@ void StereoCore::run_ahead() {
       wait(Clock::to_time(edge + 1 - now));
       return;
     }
-    step(edge, now);
+    const std::uint64_t offset = edge > now ? edge - now : 0;
+    at = offset == offset_before + period_ps_ ? at + period_ : Clock::to_time(offset);
+    offset_before = offset;
+    step(edge, at);
     if (crossbar_.socket_requests() != 0) horizon = horizon_after();  // an answer may have set others going
   }
 }
@@ -184,7 +191,7 @@ void StereoCore::finish_frame(std::uint64_t now_ps) {
   }
 }
 
-void StereoCore::step(std::uint64_t edge_ps, std::uint64_t now_ps) {
+void StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   if (state_ != State::kRunning) {
     crossbar_.arbitrate(cycle_, edge_ps, 0);
     return;
@@ -193,7 +200,6 @@ void StereoCore::step(std::uint64_t edge_ps, std::uint64_t now_ps) {
   const PortMask granted = crossbar_.arbitrate(cycle_, edge_ps, decision.requests());
   const auto moving = static_cast<PortMask>(granted | decision.passes());
 
-  const sc_core::sc_time at = Clock::to_time(edge_ps > now_ps ? edge_ps - now_ps : 0);
   if (has(moving, Port::kLeftLut)) sequencer_.issue(Side::kLeft, at);
   if (has(moving, Port::kRightLut)) sequencer_.issue(Side::kRight, at);
   if (has(moving, Port::kLeftPixel)) left_lut_ ? left_pixel_.handle(at) : sequencer_.issue(Side::kLeft, at);

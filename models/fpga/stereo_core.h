@@ -88,12 +88,14 @@ class StereoCore : public sc_core::sc_module {
   void run();
   void run_ahead();
   void finish_frame(std::uint64_t now_ps);
-  void step(std::uint64_t edge_ps, std::uint64_t now_ps);
+  void step(std::uint64_t edge_ps, const sc_core::sc_time& at);
   void end_frame();
   std::uint64_t access_errors() const;
 
   StereoCoreConfig config_;
   Clock clock_;
+  std::uint64_t period_ps_;
+  sc_core::sc_time period_;
   CoreControl control_;
   memory::Crossbar crossbar_{"crossbar", config_.memory};
   RegisterFile register_file_{"register_file"};

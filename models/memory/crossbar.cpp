@@ -82,10 +82,12 @@ PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMas
   socket_requests_ = pending_ == 0 ? PortMask{0} : ready_socket_requests(edge_ps);
   const auto all = static_cast<PortMask>(requests | socket_requests_);
   PortMask granted = 0;
-  for (std::size_t i = 0; i < used_bank_count_; ++i) {
-    const auto asking = static_cast<PortMask>(all & used_banks_[i].ports);
-    if (asking == 0) continue;
-    granted = static_cast<PortMask>(granted | used_banks_[i].arbiter->arbitrate(cycle, asking, writes_));
+  const PortMask writes = writes_;
+  const UsedBank* const end = used_banks_.data() + used_bank_count_;
+  for (const UsedBank* used = used_banks_.data(); used != end; ++used) {
+    const auto asking = static_cast<PortMask>(all & used->ports);
+    if (asking != 0)
+      granted = static_cast<PortMask>(granted | used->arbiter->arbitrate(cycle, asking, writes));
   }
   granted_ = static_cast<PortMask>(granted & ~socket_requests_);
   auto served = static_cast<PortMask>(granted & socket_requests_);

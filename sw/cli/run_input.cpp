@@ -30,7 +30,8 @@ class InputLoader {
     attempt([&] {
       input_.tables = platform::identity_tables(input_.board);
       input_.config_yaml = platform::to_yaml(input_.board);
-      input_.run_json = run_json();
+      input_.described = describe();
+      report::run_json(input_.described);  // refuses now what it would refuse after the run
     });
     problems_.check();
     for (const std::string& path : converted_) say("note", "'" + path + "': colour, converted to grey");
@@ -79,7 +80,7 @@ class InputLoader {
     return {std::filesystem::absolute(path).string(), report::sha256_file(path)};
   }
 
-  std::string run_json() const {
+  report::RunOptions describe() const {
     report::RunOptions run;
     run.program_version = kVersion;
     run.source = "preloaded";
@@ -89,7 +90,7 @@ class InputLoader {
     run.right = file(options_.right);
     if (options_.truth) run.truth = file(*options_.truth);
     run.truth_scale = options_.truth_scale;
-    return report::run_json(run);
+    return run;
   }
 
   const RunOptions& options_;

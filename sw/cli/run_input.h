@@ -10,6 +10,7 @@
 #include "sw/cli/run_options.h"
 #include "sw/media/truth.h"
 #include "sw/report/result_folder.h"
+#include "sw/report/run_json.h"
 
 namespace stereotlm::cli {
 
@@ -19,8 +20,8 @@ struct RunInput {
   platform::Tables tables;
   host::StereoPair pair;
   std::optional<media::Truth> truth;
-  std::string config_yaml;  // the texts of these two result files
-  std::string run_json;
+  std::string config_yaml;                       // the text of that result file
+  report::RunOptions described;                  // what run.json says; frames: those asked for
   std::unique_ptr<report::ResultFolder> folder;  // null: nothing is written
 };
 

@@ -19,7 +19,9 @@ void write_files(RunInput& input, const platform::Statistics& statistics, const 
              media.encode_disparity_color_png(disparity, input.board.matcher.disparities));
   folder.add("stats.json", report::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
-  folder.add("run.json", input.run_json);
+  // An interrupted run is the same as a whole one of the frames that it finished.
+  input.described.frames = statistics.frames;
+  folder.add("run.json", report::run_json(input.described));
   folder.commit();
 }
 

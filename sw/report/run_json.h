@@ -15,17 +15,16 @@ struct InputFile {
 // gives the same bytes.
 struct RunOptions {
   std::string program_version;
-  std::string source;        // "preloaded"
-  std::string fidelity;      // "cycle"
-  std::uint64_t frames = 1;  // asked for
+  std::string source;    // "preloaded"
+  std::string fidelity;  // "cycle"
+  std::uint64_t frames = 1;
   std::optional<InputFile> left;
   std::optional<InputFile> right;
   std::optional<InputFile> truth;
   double truth_scale = 1;  // written if there is a truth
 };
 
-// The text of run.json: keys are the names of the options, one not given is absent. Everything in it is known
-// before the first cycle. Throws std::runtime_error naming a path that is not absolute or not UTF-8.
+// The text of run.json: keys are the names of the options, one not given is absent. Throws std::runtime_error naming a path that is not absolute or not UTF-8.
 std::string run_json(const RunOptions& options);
 
 }  // namespace stereotlm::report
