@@ -24,7 +24,8 @@ struct RunOptions {
   double truth_scale = 1;  // written if there is a truth
 };
 
-// The text of run.json: keys are the names of the options, one not given is absent. Throws std::runtime_error naming a path that is not absolute or not UTF-8.
+// The text of run.json: keys are the names of the options, one not given is absent. Throws std::runtime_error
+// naming a path that is not absolute or not UTF-8.
 std::string run_json(const RunOptions& options);
 
 }  // namespace stereotlm::report
