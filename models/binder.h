@@ -13,7 +13,7 @@ using TargetSocket = tlm::tlm_base_target_socket_b<32>;  // whether or not it ma
 class Binder {
  public:
   virtual ~Binder() = default;
-  // `link` names the connection, unique within the platform: "left_pixel_to_crossbar", "crossbar_to_bank0".
+  // `link` names the connection, unique within one board: "left_pixel_to_crossbar", "crossbar_to_bank0".
   virtual void bind(InitiatorSocket& from, TargetSocket& to, const std::string& link) {
     static_cast<void>(link);
     from.bind(to);

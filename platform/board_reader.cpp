@@ -273,6 +273,8 @@ class BoardReader {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;
     if (!given.value || !kind.value || is_sync_burst(*kind.value)) return;
+    // A preset's own, under a kind that the file or `--set` has put in its place, is inherited.
+    if (given.place.source == Place::kPreset) return;
     const auto name = memory::kBankKindNames[static_cast<std::size_t>(*kind.value)];
     values_.report(latest(given.place, kind.place), path + ".turnaround_cycles", std::to_string(*given.value),
                    fmt::format("only where the kind is sync_burst, and it is {}", name));

@@ -32,7 +32,7 @@ tlm::tlm_response_status RegisterFile::check(const tlm::tlm_generic_payload& acc
   return tlm::TLM_OK_RESPONSE;
 }
 
-void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time& /*delay*/) {
+void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   const tlm::tlm_response_status status = check(access);
   access.set_response_status(status);
   if (status != tlm::TLM_OK_RESPONSE) {
@@ -47,7 +47,7 @@ void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time&
   } else {
     ++stats_.writes;
     std::memcpy(&value, access.get_data_ptr(), 4);
-    write(access.get_address(), value);
+    write(access.get_address(), value, delay);
   }
 }
 
@@ -72,7 +72,7 @@ std::uint32_t RegisterFile::read(std::uint64_t address) const {
   }
 }
 
-void RegisterFile::write(std::uint64_t address, std::uint32_t value) {
+void RegisterFile::write(std::uint64_t address, std::uint32_t value, const sc_core::sc_time& delay) {
   if (address != registers::kControl) {
     bases_[base_index(address)] = value;
     return;
@@ -82,16 +82,16 @@ void RegisterFile::write(std::uint64_t address, std::uint32_t value) {
     error_ = false;
     done_changed_.notify(sc_core::SC_ZERO_TIME);
   }
-  if ((value & registers::kControlStart) != 0) start();
+  if ((value & registers::kControlStart) != 0) start(delay);
 }
 
-void RegisterFile::start() {
+void RegisterFile::start(const sc_core::sc_time& delay) {
   if (busy_) {
     error_ = true;
     return;
   }
   busy_ = true;
-  start_out->push({bases_[0], bases_[1], bases_[2], bases_[3], bases_[4]});
+  start_out->push({bases_[0], bases_[1], bases_[2], bases_[3], bases_[4], delay});
 }
 
 void RegisterFile::refuse_start() {

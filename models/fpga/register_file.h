@@ -19,6 +19,7 @@ struct FrameStart {
   std::uint32_t disparity = 0;
   std::uint32_t left_lut = 0;
   std::uint32_t right_lut = 0;
+  sc_core::sc_time delay{};  // of the strobe, from now
 };
 
 // The register file of register_map.h: start strobe, status, frame base addresses, done interrupt. Register
@@ -26,6 +27,7 @@ struct FrameStart {
 // TLM_ADDRESS_ERROR_RESPONSE, a length other than 4 or a streaming width below it TLM_BURST_ERROR_RESPONSE,
 // byte enables TLM_BYTE_ENABLE_ERROR_RESPONSE, a read of a write-only register, a write of a read-only one or
 // a command that does neither TLM_COMMAND_ERROR_RESPONSE. Debug transport reads.
+// A start strobe counts at the time that its access is annotated with.
 class RegisterFile : public sc_core::sc_module {
  public:
   struct Stats {
@@ -51,8 +53,8 @@ class RegisterFile : public sc_core::sc_module {
   unsigned debug(tlm::tlm_generic_payload& access);
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
   std::uint32_t read(std::uint64_t address) const;
-  void write(std::uint64_t address, std::uint32_t value);
-  void start();
+  void write(std::uint64_t address, std::uint32_t value, const sc_core::sc_time& delay);
+  void start(const sc_core::sc_time& delay);
   void drive_done();
 
   std::array<std::uint32_t, 5> bases_{};  // from kLeftImageBase on

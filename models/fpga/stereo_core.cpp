@@ -135,7 +135,7 @@ void StereoCore::start_frame(const FrameStart& start) {
 
   // Cycle 0 is the first that begins at or after the strobe.
   state_ = State::kRunning;
-  cycle_ = std::max(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp())));
+  cycle_ = std::max(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay)));
   first_cycle_ = cycle_;
   crossbar_.begin_counting(first_cycle_);
   start_event_.notify(sc_core::SC_ZERO_TIME);

@@ -42,7 +42,8 @@ struct StereoCoreConfig {
 class StereoCore : public sc_core::sc_module {
  public:
   tlm::tlm_target_socket<32> registers{"registers"};  // register_map.h
-  tlm::tlm_target_socket<32> host{"host"};            // the crossbar's host port: nb_transport, debug, DMI
+  tlm::tlm_target_socket<32> host{
+      "host"};  // the crossbar's host port: nb_transport (no b_transport), debug, DMI
   sc_core::sc_vector<tlm::tlm_initiator_socket<32>> banks;  // in the order of the configuration
   sc_core::sc_out<bool> done{"done"};                       // interrupt
 

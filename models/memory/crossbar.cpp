@@ -181,7 +181,12 @@ unsigned Crossbar::debug(tlm::tlm_generic_payload& access) {
 
 bool Crossbar::grant_dmi(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
   const std::uint64_t address = access.get_address();
-  if (!has_bank(address)) return false;
+  if (!has_bank(address)) {
+    dmi.allow_read_write();
+    dmi.set_start_address(crossbar_address(arbiters_.size(), 0));
+    dmi.set_end_address(UINT64_MAX);
+    return false;
+  }
   access.set_address(address & kOffsetMask);
   const bool granted = banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi);
   access.set_address(address);
@@ -193,8 +198,12 @@ bool Crossbar::grant_dmi(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
 
 void Crossbar::invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end) {
   const std::uint64_t base = static_cast<std::uint64_t>(bank) << kBankAddressBits;
-  for (std::size_t port = 0; port < kPortCount; ++port)
-    ports[port]->invalidate_direct_mem_ptr(start + base, end + base);
+  const std::uint64_t first = base + std::min<std::uint64_t>(start, kOffsetMask);
+  const std::uint64_t last = base + std::min<std::uint64_t>(end, kOffsetMask);
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    if (ports[port].get_base_port().get_interface() != nullptr)
+      ports[port]->invalidate_direct_mem_ptr(first, last);
+  }
 }
 
 }  // namespace stereotlm::memory

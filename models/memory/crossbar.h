@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <systemc>
 #include <tlm>
 #include <vector>
@@ -42,7 +43,7 @@ struct CrossbarConfig {
 //   request that the bank refuses, the end of the cycle of the grant. One transaction per port at a time: the
 //   next BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
 //
-// An address outside every bank is answered TLM_ADDRESS_ERROR_RESPONSE at once; other errors are the bank's.
+// An address of a bank that does not exist is answered TLM_ADDRESS_ERROR_RESPONSE at once; other errors are the bank's.
 // Debug transport and DMI reach every bank without a grant.
 class Crossbar : public sc_core::sc_module {
  public:

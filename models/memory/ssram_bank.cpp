@@ -87,7 +87,9 @@ unsigned SsramBank::transport_dbg(tlm::tlm_generic_payload& access) {
 
 bool SsramBank::get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
   if (access.get_address() >= bytes()) {
+    dmi.allow_read_write();
     dmi.set_start_address(bytes());
+    dmi.set_end_address(UINT64_MAX);
     return false;
   }
   dmi.set_dmi_ptr(reinterpret_cast<unsigned char*>(words_.get()));

@@ -166,7 +166,6 @@ void ResultFolder::add(const std::string& name, std::string_view bytes) {
     fs::remove(path, ignored);
     refuse(fmt::format("'{}' cannot be written: {}", name, error.code().message()));
   }
-  added_.insert(name);
 }
 
 void ResultFolder::add(const std::string& name, const std::vector<std::uint8_t>& bytes) {
