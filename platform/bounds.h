@@ -13,7 +13,7 @@ namespace stereotlm::platform {
 // The fewest cycles that one resource of the core needs for a frame, pipeline latency included. No run can be
 // faster:
 //   port P      one slot or word a cycle
-//   bank B      one access a cycle; after the last read the matcher's drain and the last write
+//   bank B      one access a cycle, turnaround left out; after the last read the drain and the last write
 //   lane S      with F places in the lane, slot s+F is not taken before slot s has left it, latencies later
 //   matcher     the latencies of the first slot, one slot a cycle, the drain, the last write
 struct ResourceBound {
