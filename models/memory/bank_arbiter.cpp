@@ -27,6 +27,19 @@ BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
   }
 }
 
+void BankArbiter::grant_alone(PortMask port, bool write, std::uint64_t cycles) {
+  if (cycles == 0) return;
+  const std::size_t situation = place_ * kMasks + port;
+  if (counting_) {
+    outcomes_[situation][std::size_t{write}] += cycles;
+    // Wherever they lay: what remains up to the next call was idle.
+    next_uncounted_cycle_ += cycles;
+  } else {
+    uncounted_accesses_ += cycles;
+  }
+  place_ = winners_[situation].next_place;
+}
+
 void BankArbiter::begin_counting(std::uint64_t first_cycle) {
   counting_ = true;
   next_uncounted_cycle_ = first_cycle;

@@ -53,11 +53,16 @@ class BankArbiter {
     return winner.port;
   }
 
+  // The same for `cycles` cycles since the last call, in each of which this port alone asked: for a bank that
+  // needs no turnaround.
+  void grant_alone(PortMask port, bool write, std::uint64_t cycles);
+
   // Only the cycles from `first_cycle` on, up to but not including `end_cycle`, are counted in stats(); of
   // the others only the accesses, in uncounted_accesses().
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
 
+  bool needs_turnaround() const { return other_direction_cycles_ > 1; }
   ArbiterStats stats() const;
   std::uint64_t uncounted_accesses() const { return uncounted_accesses_; }
 
@@ -75,7 +80,7 @@ class BankArbiter {
   std::uint64_t other_direction_cycles_;        // from an access to the first in the other direction
   std::array<std::uint64_t, 2> ready_cycle_{};  // from which a read, a write can be granted
   bool counting_ = false;
-  std::uint64_t next_uncounted_cycle_ = 0;  // the first cycle not yet in the statistics
+  std::uint64_t next_uncounted_cycle_ = 0;  // all counted cycles before it are in the statistics
   std::uint64_t idle_cycles_ = 0;
   // How often each thing happened: with the winners it says all that stats() reports.
   std::array<std::array<std::uint64_t, kOutcomeCount>, kPortCount * kMasks> outcomes_{};  // [situation]

@@ -20,7 +20,6 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
       ports("port", kPortCount),
       banks("bank", config.banks.size()),
       clock_(config.banks.empty() ? 1 : config.banks.front().clock_mhz),
-      bank_targets_(config.banks.size(), nullptr),
       request_event_("request") {
   auto found = problems(config.arbiter);
   if (config.banks.empty() || config.banks.size() > 64) {
@@ -41,23 +40,45 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
   }
 }
 
-void Crossbar::end_of_elaboration() {
-  for (std::size_t bank = 0; bank < banks.size(); ++bank) bank_targets_[bank] = banks[bank].operator->();
-}
-
 void Crossbar::route(Port port, std::size_t bank, bool write) {
-  routes_[index_of(port)] = {bank, write};
+  settle();
+  targets_[index_of(port)].route(bank, write, *banks[bank].operator->());
   routed_ = static_cast<PortMask>(routed_ | mask_of(port));
   writes_ = 0;
-  used_bank_count_ = 0;
+  alone_ = 0;
+  shared_bank_count_ = 0;
+  std::array<PortMask, kPortCount> together{};  // [port]: the ports on its bank
   for (std::size_t i = 0; i < kPortCount; ++i) {
     if ((routed_ >> i & 1U) == 0) continue;
-    writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
-    std::size_t used = 0;
-    BankArbiter* arbiter = &arbiters_[routes_[i].bank];
-    while (used < used_bank_count_ && used_banks_[used].arbiter != arbiter) ++used;
-    if (used == used_bank_count_) used_banks_[used_bank_count_++] = {arbiter, 0};
-    used_banks_[used].ports = static_cast<PortMask>(used_banks_[used].ports | 1U << i);
+    writes_ = static_cast<PortMask>(writes_ | unsigned{targets_[i].writes()} << i);
+    for (std::size_t other = 0; other < kPortCount; ++other) {
+      const bool meet = (routed_ >> other & 1U) != 0 && targets_[other].bank() == targets_[i].bank();
+      together[i] = static_cast<PortMask>(together[i] | unsigned{meet} << other);
+    }
+  }
+  for (std::size_t i = 0; i < kPortCount; ++i) {
+    const auto port_mask = static_cast<PortMask>(1U << i);
+    BankArbiter& arbiter = arbiters_[targets_[i].bank()];
+    if (together[i] == 0 || lowest(together[i]) != i) continue;
+    if (together[i] == port_mask && (sockets_ & port_mask) == 0 && !arbiter.needs_turnaround()) {
+      alone_ = static_cast<PortMask>(alone_ | port_mask);
+    } else {
+      shared_banks_[shared_bank_count_++] = {&arbiter, together[i]};
+    }
+  }
+}
+
+// Tells the arbiters what was granted without them.
+void Crossbar::settle() {
+  std::array<std::uint64_t, kPortCount> cycles{};
+  for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
+    for (std::size_t port = 0; port < kPortCount; ++port)
+      cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
+  }
+  alone_cycles_ = {};
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    arbiters_[targets_[port].bank()].grant_alone(static_cast<PortMask>(1U << port), targets_[port].writes(),
+                                                 cycles[port]);
   }
 }
 
@@ -78,16 +99,17 @@ std::uint64_t Crossbar::earliest_request_ps() const {
   return earliest;
 }
 
-PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests) {
+// The rest of arbitrate(): `requests` of stages that are not alone on their banks, and those of the sockets.
+PortMask Crossbar::arbitrate_shared(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests) {
   socket_requests_ = pending_ == 0 ? PortMask{0} : ready_socket_requests(edge_ps);
   const auto all = static_cast<PortMask>(requests | socket_requests_);
-  PortMask granted = 0;
-  const PortMask writes = writes_;
-  const UsedBank* const end = used_banks_.data() + used_bank_count_;
-  for (const UsedBank* used = used_banks_.data(); used != end; ++used) {
-    const auto asking = static_cast<PortMask>(all & used->ports);
-    if (asking != 0)
-      granted = static_cast<PortMask>(granted | used->arbiter->arbitrate(cycle, asking, writes));
+  PortMask granted = granted_;
+  const SharedBank* const end = shared_banks_.data() + shared_bank_count_;
+  for (const SharedBank* shared = shared_banks_.data(); shared != end; ++shared) {
+    const auto asking = static_cast<PortMask>(all & shared->ports);
+    if (asking != 0) {
+      granted = static_cast<PortMask>(granted | shared->arbiter->arbitrate(cycle, asking, writes_));
+    }
   }
   granted_ = static_cast<PortMask>(granted & ~socket_requests_);
   auto served = static_cast<PortMask>(granted & socket_requests_);
@@ -96,28 +118,40 @@ PortMask Crossbar::arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMas
 }
 
 void Crossbar::begin_counting(std::uint64_t first_cycle) {
+  settle();
   for (BankArbiter& arbiter : arbiters_) arbiter.begin_counting(first_cycle);
 }
 
 void Crossbar::end_counting(std::uint64_t end_cycle) {
+  settle();
   for (BankArbiter& arbiter : arbiters_) arbiter.end_counting(end_cycle);
 }
 
-void Crossbar::access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+void Crossbar::PortTarget::route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target) {
+  bank_ = bank;
+  write_ = write;
+  bank_base_ = crossbar_address(bank, 0);
+  bank_port_ = &target;
+}
+
+void Crossbar::PortTarget::access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) const {
   const std::uint64_t address = access.get_address();
-  access.set_address(address & kOffsetMask);
-  bank_targets_[bank_of_address(address)]->b_transport(access, delay);
+  access.set_address(address - bank_base_);
+  bank_port_->b_transport(access, delay);
   access.set_address(address);
 }
 
-void Crossbar::transport(std::size_t port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  const Route& route = routes_[port];
-  if ((granted_ >> port & 1U) != 0 && bank_of_address(access.get_address()) == route.bank &&
-      access.is_write() == route.write) {
-    granted_ = static_cast<PortMask>(granted_ & ~(1U << port));
-    access_bank(access, delay);
+void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+  if ((crossbar_.granted_ & port_mask_) == 0 || bank_base(access.get_address()) != bank_base_ ||
+      access.is_write() != write_) {
+    crossbar_.refuse(access);
     return;
   }
+  crossbar_.granted_ = static_cast<PortMask>(crossbar_.granted_ & ~port_mask_);
+  access_bank(access, delay);
+}
+
+void Crossbar::refuse(tlm::tlm_generic_payload& access) const {
   access.set_response_status(has_bank(access.get_address()) ? tlm::TLM_GENERIC_ERROR_RESPONSE
                                                             : tlm::TLM_ADDRESS_ERROR_RESPONSE);
 }
@@ -143,6 +177,7 @@ tlm::tlm_sync_enum Crossbar::forward(std::size_t port, tlm::tlm_generic_payload&
   waiting.from_ps = Clock::to_ps(sc_core::sc_time_stamp() + delay);
   access.acquire();
   pending_ = static_cast<PortMask>(pending_ | 1U << port);
+  sockets_ = static_cast<PortMask>(sockets_ | 1U << port);
   route(static_cast<Port>(port), bank_of_address(access.get_address()), access.is_write());
   request_event_.notify(delay);
   return tlm::TLM_ACCEPTED;
@@ -153,11 +188,11 @@ void Crossbar::respond(std::size_t port, std::uint64_t cycle) {
   tlm::tlm_generic_payload& access = *waiting.access;
   pending_ = static_cast<PortMask>(pending_ & ~(1U << port));
   sc_core::sc_time delay;
-  access_bank(access, delay);
+  targets_[port].access_bank(access, delay);
   // A word read is usable from the beginning of its cycle on, anything else is done at the end of the cycle. The time
   // is that of an edge: periods added up would drift.
   const bool reads = access.is_read() && access.is_response_ok();
-  const int cycles = reads ? read_latencies_[bank_of_address(access.get_address())] : 1;
+  const int cycles = reads ? read_latencies_[targets_[port].bank()] : 1;
   delay =
       Clock::to_time(clock_.edge_ps(cycle + static_cast<std::uint64_t>(cycles))) - sc_core::sc_time_stamp();
   waiting.responding = true;

@@ -60,7 +60,16 @@ class Crossbar : public sc_core::sc_module {
   void route(Port port, std::size_t bank, bool write);
   // One cycle, which begins at `edge_ps`: decides the requests of the stages together with those that wait in
   // the sockets, carries out the latter's accesses, and returns the ports granted.
-  PortMask arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests);
+  PortMask arbitrate(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests) {
+    granted_ = static_cast<PortMask>(requests & alone_);
+    ++alone_cycles_[granted_];
+    const auto others = static_cast<PortMask>(requests & ~alone_);
+    if (pending_ == 0 && others == 0) {
+      socket_requests_ = 0;
+      return granted_;
+    }
+    return arbitrate_shared(cycle, edge_ps, others);
+  }
   // Ports whose nb_transport request took part in the last arbitrate().
   PortMask socket_requests() const { return socket_requests_; }
   // Whether an nb_transport request waits for a cycle; `request_event` is notified when one arrives.
@@ -69,7 +78,8 @@ class Crossbar : public sc_core::sc_module {
   std::uint64_t earliest_request_ps() const;
   const sc_core::sc_event& request_event() const { return request_event_; }
 
-  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics.
+  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
+  // counting has ended.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const std::vector<BankArbiter>& arbiters() const { return arbiters_; }
@@ -81,13 +91,16 @@ class Crossbar : public sc_core::sc_module {
     bool responding = false;  // BEGIN_RESP sent, END_RESP to come
   };
 
-  // The target behind one port's socket.
+  // The target behind one port's socket, and where its requests go.
   class PortTarget : public tlm::tlm_fw_transport_if<> {
    public:
-    PortTarget(Crossbar& crossbar, std::size_t port) : crossbar_(crossbar), port_(port) {}
-    void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override {
-      crossbar_.transport(port_, access, delay);
-    }
+    PortTarget(Crossbar& crossbar, std::size_t port)
+        : crossbar_(crossbar), port_(port), port_mask_(mask_of(static_cast<Port>(port))) {}
+    void route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target);
+    std::size_t bank() const { return bank_; }
+    bool writes() const { return write_; }
+    void access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) const;
+    void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
     tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay) override {
       return crossbar_.forward(port_, access, phase, delay);
@@ -100,26 +113,27 @@ class Crossbar : public sc_core::sc_module {
    private:
     Crossbar& crossbar_;
     std::size_t port_;
+    PortMask port_mask_;
+    bool write_ = false;
+    std::size_t bank_ = 0;
+    std::uint64_t bank_base_ = 0;                            // its first address
+    tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // found once, for speed
   };
-  struct Route {
-    std::size_t bank = 0;
-    bool write = false;
-  };
-  // A bank that ports are routed to.
-  struct UsedBank {
+  // A bank whose ports meet, or which needs turnaround.
+  struct SharedBank {
     BankArbiter* arbiter = nullptr;
     PortMask ports = 0;
   };
 
-  void end_of_elaboration() override;
-  void transport(std::size_t port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  void refuse(tlm::tlm_generic_payload& access) const;
   tlm::tlm_sync_enum forward(std::size_t port, tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
                              sc_core::sc_time& delay);
   unsigned debug(tlm::tlm_generic_payload& access);
   bool grant_dmi(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi);
   void invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end);
   bool has_bank(std::uint64_t address) const { return bank_of_address(address) < arbiters_.size(); }
-  void access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  void settle();
+  PortMask arbitrate_shared(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests);
   PortMask ready_socket_requests(std::uint64_t edge_ps) const;
   void respond(std::size_t port, std::uint64_t cycle);
 
@@ -127,15 +141,17 @@ class Crossbar : public sc_core::sc_module {
   std::vector<BankArbiter> arbiters_;
   std::vector<int> read_latencies_;  // cycles, of each bank
   std::deque<PortTarget> targets_;
-  std::vector<tlm::tlm_blocking_transport_if<>*> bank_targets_;  // found once, for speed
-  std::array<Route, kPortCount> routes_{};
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes
-  std::array<UsedBank, kPortCount> used_banks_{};
-  std::size_t used_bank_count_ = 0;
+  // Stages alone on a bank without turnaround need no arbitration: the arbiter hears of their grants later.
+  PortMask alone_ = 0;
+  std::array<std::uint64_t, std::size_t{1} << kPortCount> alone_cycles_{};  // [ports granted in this way]
+  std::array<SharedBank, kPortCount> shared_banks_{};
+  std::size_t shared_bank_count_ = 0;
   PortMask granted_ = 0;  // to stages, in the current cycle, and not yet used
   std::array<Waiting, kPortCount> waiting_{};
-  PortMask pending_ = 0;  // ports with a waiting request
+  PortMask sockets_ = 0;  // ports that send requests by nb_transport
+  PortMask pending_ = 0;  // of these, with a waiting request
   PortMask socket_requests_ = 0;
   sc_core::sc_event request_event_;
 };
