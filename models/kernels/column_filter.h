@@ -16,9 +16,12 @@ struct MaskedPixel {
   bool valid = false;
 };
 
+// The most rows of a column.
+inline constexpr int kMostRows = 32;
+
 // The rows of one column on their way to the matcher, top first.
 struct PixelColumn {
-  std::array<std::uint8_t, 32> values{};
+  std::array<std::uint8_t, kMostRows> values{};
   std::uint32_t valid = 0;  // bit k: that of row k
 };
 
@@ -29,34 +32,37 @@ struct PixelColumn {
 // is ignored. Without a kernel a column leaves as it enters.
 class ColumnFilter {
  public:
-  // Throws std::invalid_argument if the kernel has problems.
+  // Throws std::invalid_argument if the kernel has problems, the image has no pixels, or `rows_per_column` is
+  // outside 1..kMostRows.
   ColumnFilter(int width, int height, int rows_per_column, const std::optional<FilterKernel>& kernel);
 
   // Next comes the first row of column 0 of a strip whose first new row is `first_row` (may be negative).
   void start_frame(int first_row);
   // True if the column is complete: then output() is what leaves with it, `rows_per_column` rows.
   bool push(MaskedPixel pixel) {
-    entered_.values[static_cast<std::size_t>(k_)] = pixel.value;
-    entered_valid_[static_cast<std::size_t>(k_)] = pixel.valid;
+    if (k_ == rows_per_column_) begin_column();
+    const auto k = static_cast<std::size_t>(k_);
+    if (entered_ != nullptr) {
+      entered_[k] = static_cast<float>(pixel.value);
+    } else {
+      output_.values[k] = pixel.value;
+    }
+    entered_valid_ |= std::uint64_t{pixel.valid} << k;
     if (++k_ < rows_per_column_) return false;
-    k_ = 0;
     finish_column();
     return true;
   }
+  // Until the next push().
   const PixelColumn& output() const { return output_; }
 
  private:
-  static constexpr int kRing = 32;         // columns kept, at least the kernel's 31
-  static constexpr int kColumnRoom = 112;  // 2h + n <= 61 rows, and what vector loads read beyond
-  struct Column {
-    std::array<float, kColumnRoom> values{};
-    std::uint64_t valid = 0;  // bit e: that of values[e]
-  };
-
+  void begin_column();
   void finish_column();
-  void enter(Column& column) const;
+  void repeat_edges();
   void leave();
-  void filter_wide(const float* const* taps);
+  const float* columns_around(int centre, std::size_t centre_position);
+  void filter_wide(const float* columns);
+  float* column_at(std::size_t position) { return columns_.data() + position * stride_; }
 
   int width_;
   int height_;
@@ -66,15 +72,24 @@ class ColumnFilter {
   bool wide_ = false;           // a sum may leave 24 bits, in which a float is exact
   std::vector<float> weights_;  // column by column
 
-  std::vector<float> line_values_;         // line memories: 2h rows per image column
-  std::vector<std::uint64_t> line_valid_;  // the ninth bit of their words: bit e per row
-  std::array<Column, kRing> ring_{};
-  std::uint64_t column_count_ = 0;
-  int column_ = 0;     // of the image, of the pixel that enters next
-  int k_ = 0;          // row within the column, of the pixel that enters next
-  int first_row_ = 0;  // row of the image at k = 0
-  PixelColumn entered_;
-  std::array<bool, 32> entered_valid_{};
+  // Line memories: per image column 2h rows, in whole blocks, and the ninth bit of their words: bit e for row e.
+  std::size_t line_stride_ = 0;
+  std::vector<float> line_values_;
+  std::vector<std::uint64_t> line_valid_;
+  // The last columns, 2h + rows_per_column rows each, the newest at position_. At the end of the memory the last
+  // ones move to its beginning.
+  std::size_t stride_ = 0;
+  std::vector<float> columns_;
+  std::vector<std::uint64_t> columns_valid_;
+  std::vector<float> repeated_;  // the columns around one near the left or right edge
+  std::size_t position_ = 0;
+  std::uint64_t column_count_ = 0;  // since the start of the frame, without the one that enters
+
+  int column_ = 0;            // of the image, of the pixel that entered last
+  int k_ = 0;                 // rows entered of the column
+  int first_row_ = 0;         // row of the image at k = 0
+  float* entered_ = nullptr;  // where they enter; null without kernel
+  std::uint64_t entered_valid_ = 0;
   PixelColumn output_;
 };
 

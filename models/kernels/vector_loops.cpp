@@ -13,9 +13,9 @@ namespace stereotlm::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Capped, so that no vector is longer than the padding.
-using Tag16 = hn::CappedTag<std::int16_t, kLanePadding>;
-using Tag32 = hn::CappedTag<std::int32_t, kLanePadding / 2>;
+// Capped: longer vectors gain nothing here, and no vector may be longer than the padding.
+using Tag16 = hn::CappedTag<std::int16_t, kLaneAlignment / sizeof(std::int16_t)>;
+using Tag32 = hn::CappedTag<std::int32_t, kLaneAlignment / sizeof(std::int32_t)>;
 
 void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
                   std::int16_t* leaving, std::int32_t* windows) {
@@ -75,44 +75,50 @@ std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes) {
 
 // The usual sizes are compiled for themselves: kSize is 0 for any other.
 template <int kSize>
-void filter_column_of(const float* const* taps, const float* weights, int any_size, int rows, int shift,
-                      std::uint8_t* out) {
+void filter_column_of(const float* columns, std::ptrdiff_t stride, const float* weights, int any_size,
+                      int rows, int shift, std::uint8_t* out) {
   const int size = kSize != 0 ? kSize : any_size;
-  const hn::CappedTag<float, 8> df;
+  const hn::CappedTag<float, kFilterBlock> df;
   const hn::RebindToSigned<decltype(df)> d32;
   const hn::Rebind<std::uint8_t, decltype(df)> d8;
-  HWY_ALIGN std::uint8_t levels[48];
   for (int k = 0; k < rows; k += static_cast<int>(hn::Lanes(df))) {
-    // Two sums, because one alone would wait for itself.
+    // Four sums, because one alone would wait for itself.
     auto even = hn::Zero(df);
     auto odd = even;
+    auto even_before = even;
+    auto odd_before = even;
     const float* weight = weights;
-    for (int i = 0; i < size; ++i, weight += size) {
-      const float* tap = taps[i] + k;
+    const float* tap = columns + k;
+    for (int i = 0; i < size; ++i, weight += size, tap += stride) {
       for (int j = 0; j + 1 < size; j += 2) {
         even = hn::MulAdd(hn::LoadU(df, tap + j), hn::Set(df, weight[j]), even);
         odd = hn::MulAdd(hn::LoadU(df, tap + j + 1), hn::Set(df, weight[j + 1]), odd);
       }
-      even = hn::MulAdd(hn::LoadU(df, tap + size - 1), hn::Set(df, weight[size - 1]), even);  // sizes are odd
+      even = hn::MulAdd(hn::LoadU(df, tap + size - 1), hn::Set(df, weight[size - 1]), even);
+      const auto even_now = even;
+      const auto odd_now = odd;
+      even = even_before;
+      odd = odd_before;
+      even_before = even_now;
+      odd_before = odd_now;
     }
-    const auto sum = hn::ConvertTo(d32, hn::Add(even, odd));
+    const auto sum = hn::ConvertTo(d32, hn::Add(hn::Add(even, even_before), hn::Add(odd, odd_before)));
     const auto level = hn::Add(hn::ShiftRightSame(sum, shift), hn::Set(d32, 128));
-    hn::StoreU(hn::DemoteTo(d8, hn::Min(hn::Max(level, hn::Zero(d32)), hn::Set(d32, 255))), d8, levels + k);
+    hn::StoreU(hn::DemoteTo(d8, hn::Min(hn::Max(level, hn::Zero(d32)), hn::Set(d32, 255))), d8, out + k);
   }
-  std::copy_n(levels, rows, out);
 }
 
-void filter_column(const float* const* taps, const float* weights, int size, int rows, int shift,
-                   std::uint8_t* out) {
+void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
+                   int shift, std::uint8_t* out) {
   switch (size) {
     case 3:
-      return filter_column_of<3>(taps, weights, size, rows, shift, out);
+      return filter_column_of<3>(columns, stride, weights, size, rows, shift, out);
     case 5:
-      return filter_column_of<5>(taps, weights, size, rows, shift, out);
+      return filter_column_of<5>(columns, stride, weights, size, rows, shift, out);
     case 7:
-      return filter_column_of<7>(taps, weights, size, rows, shift, out);
+      return filter_column_of<7>(columns, stride, weights, size, rows, shift, out);
     default:
-      return filter_column_of<0>(taps, weights, size, rows, shift, out);
+      return filter_column_of<0>(columns, stride, weights, size, rows, shift, out);
   }
 }
 
@@ -142,9 +148,9 @@ std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes) {
   return HWY_DYNAMIC_DISPATCH(smallest_key)(sums, candidates, lanes);
 }
 
-void filter_column(const float* const* taps, const float* weights, int size, int rows, int shift,
-                   std::uint8_t* out) {
-  HWY_DYNAMIC_DISPATCH(filter_column)(taps, weights, size, rows, shift, out);
+void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
+                   int shift, std::uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(filter_column)(columns, stride, weights, size, rows, shift, out);
 }
 
 }  // namespace stereotlm::kernels

@@ -12,9 +12,9 @@ namespace stereotlm::kernels {
 
 // Arrays that hold one value per disparity are padded to a multiple of this, and may be read and written up
 // to there.
-inline constexpr int kLanePadding = 32;
-// Bytes to which those arrays are aligned.
-inline constexpr int kLaneAlignment = 64;
+inline constexpr int kLanePadding = 16;
+// Bytes to which those arrays are aligned: the longest vector that the loops use.
+inline constexpr int kLaneAlignment = 32;
 
 constexpr int padded_lanes(int disparities) {
   return (disparities + kLanePadding - 1) / kLanePadding * kLanePadding;
@@ -51,11 +51,15 @@ void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::
 // Unit B: the smallest key(d), as above.
 std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes);
 
-// Filters `rows` (at most 32) pixels of one column with a size x size kernel:
-// out[k] = clamp(128 + floor(S / 2^shift), 0, 255), S = sum over i, j of weights[i * size + j] * taps[i][k +
-// j]. Exact as long as no partial sum leaves -2^24..2^24. `taps` are read up to size - 1 beyond a multiple of
-// 16 rows.
-void filter_column(const float* const* taps, const float* weights, int size, int rows, int shift,
-                   std::uint8_t* out);
+// Columns are filtered in blocks of this many rows.
+inline constexpr int kFilterBlock = 8;
+constexpr int padded_rows(int rows) { return (rows + kFilterBlock - 1) / kFilterBlock * kFilterBlock; }
+
+// Filters `rows` pixels of one column with a size x size kernel (size odd):
+// out[k] = clamp(128 + floor(S / 2^shift), 0, 255), S = sum over i, j of weights[i * size + j] * column i [k + j],
+// where column i starts at columns + i * stride. Exact as long as no partial sum leaves -2^24..2^24. Columns are
+// read up to padded_rows(rows) + size - 1, and `out` is written up to padded_rows(rows).
+void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
+                   int shift, std::uint8_t* out);
 
 }  // namespace stereotlm::kernels
