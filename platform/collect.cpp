@@ -108,8 +108,8 @@ void audit_flow(const Board& board, std::uint64_t frames, Audit& audit) {
   const fpga::CoreControl& control = board.core.control();
   const std::uint64_t slots = frames * control.geometry().slots;
   const std::uint64_t words = frames * control.geometry().result_words;
-  audit.equal("left lane: slots consumed", control.consumed_left(), "slots of the sequence", slots);
-  audit.equal("right lane: slots consumed", control.consumed_right(), "slots of the sequence", slots);
+  audit.equal("left lane: slots consumed", control.left().consumed(), "slots of the sequence", slots);
+  audit.equal("right lane: slots consumed", control.right().consumed(), "slots of the sequence", slots);
   audit.equal("left lane: slots issued", board.core.sequencer().stats(fpga::Side::kLeft).slots,
               "slots of the sequence", slots);
   audit.equal("right lane: slots issued", board.core.sequencer().stats(fpga::Side::kRight).slots,

@@ -131,8 +131,8 @@ class CoreControl {
   const FrameGeometry& geometry() const { return geometry_; }
   // Over all frames, for the cycles from the start of each to its last write.
   const PortCycles& port_cycles(memory::Port port) const;
-  std::uint64_t consumed_left() const { return left_.consumed(); }
-  std::uint64_t consumed_right() const { return right_.consumed(); }
+  const LaneControl& left() const { return left_; }
+  const LaneControl& right() const { return right_; }
 
  private:
   FrameGeometry geometry_;

@@ -55,33 +55,31 @@ class SlotCursor {
       : width_(geometry.width),
         height_(geometry.height),
         slots_per_column_(geometry.slots_per_column),
-        row_(geometry.first_row),
+        strip_row_(geometry.first_row),
         left_(geometry.slots) {}
 
   bool done() const { return left_ == 0; }
   int column() const { return column_; }
-  int row() const { return row_; }  // may lie outside the image
+  int row() const { return strip_row_ + k_; }  // may lie outside the image
   // A slot outside the image makes no access, but takes its turn.
-  bool empty() const { return static_cast<unsigned>(row_) >= static_cast<unsigned>(height_); }
+  bool empty() const { return static_cast<unsigned>(row()) >= static_cast<unsigned>(height_); }
 
   void advance() {
     --left_;
-    ++row_;
     if (++k_ < slots_per_column_) return;
-    row_ -= k_;
     k_ = 0;
     if (++column_ < width_) return;
     column_ = 0;
-    ++row_;
+    ++strip_row_;
   }
 
  private:
   int width_ = 0;
   int height_ = 0;
   int slots_per_column_ = 1;
+  int strip_row_ = 0;  // of the first slot of each column of the strip
   int column_ = 0;
   int k_ = 0;  // within the column
-  int row_ = 0;
   std::uint64_t left_ = 0;
 };
 

@@ -34,25 +34,6 @@ class PortCycles {
   std::array<std::uint64_t, 6> cycles_{};  // [intent], requests only while not granted
 };
 
-// A running count as it was some cycles ago: what entered in cycle c is seen from cycle c + latency on.
-class DelayedCount {
- public:
-  void start(int latency_cycles) {
-    latency_ = latency_cycles;
-    ends_ = {};
-  }
-  std::uint64_t seen() const { return ends_[static_cast<std::size_t>(latency_ - 1)]; }
-  // `count`: at the end of this cycle.
-  void end_of_cycle(std::uint64_t count) {
-    ends_[1] = ends_[0];
-    ends_[0] = count;
-  }
-
- private:
-  int latency_ = 1;                      // 1 or 2
-  std::array<std::uint64_t, 2> ends_{};  // the count at the end of the last cycle, and of the one before
-};
-
 // One side of the core, from the sequence of slots to the matcher: which port asks for what in each cycle,
 // and what follows from the grants. Plain C++: the single description of the lane's timing, whatever steps
 // it.
@@ -65,18 +46,23 @@ class LaneControl {
     Intent pixel = Intent::kIdle;
   };
 
+  static constexpr std::uint64_t kMostSlots = 64;
+
+  // `fifo_slots`: the most slots in the lane, 1..kMostSlots.
   LaneControl(const FrameGeometry& geometry, bool has_table, int fifo_slots)
       : geometry_(geometry), has_table_(has_table), fifo_slots_(static_cast<std::uint64_t>(fifo_slots)) {}
 
-  // Latencies of the banks that hold this frame's table and image.
+  // Latencies of the banks that hold this frame's table and image: 1 or 2 cycles.
   void start_frame(int table_latency_cycles, int image_latency_cycles) {
-    cursor_ = SlotCursor(geometry_);
+    next_slot_ = SlotCursor(geometry_);
+    consumed_before_frame_ += consumed_;
     taken_ = 0;
     handled_ = 0;
     consumed_ = 0;
-    marks_ = 0;
-    taken_seen_.start(has_table_ ? table_latency_cycles : 1);
-    handled_seen_.start(image_latency_cycles);
+    arrived_entries_ = 0;
+    arrived_pixels_ = 0;
+    table_takes_two_cycles_ = has_table_ && table_latency_cycles == 2;
+    image_takes_two_cycles_ = image_latency_cycles == 2;
   }
 
   Decision decide() const {
@@ -84,7 +70,7 @@ class LaneControl {
     return {take_intent(), handle_intent()};
   }
   // Whether the matcher can consume a slot of this lane.
-  bool ready() const { return handled_seen_.seen() > consumed_; }
+  bool ready() const { return arrived_pixels_ > consumed_; }
 
   // `lut_granted`, `pixel_granted`: the request was granted. `entry_valid`: of the table entry that the LUT
   // port has just read; without effect otherwise. `consumes`: the matcher consumes a slot in this cycle.
@@ -92,54 +78,58 @@ class LaneControl {
     lut_cycles_.count(decision.lut, lut_granted);
     pixel_cycles_.count(decision.pixel, pixel_granted);
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
-    bool takes = pixel_moves;
-    if (has_table_) {
-      takes = lut_granted || decision.lut == Intent::kPass;
-      if (pixel_moves) marks_ >>= 1U;
-      // The slots between the ports are those taken before this cycle and not handled by its end.
-      const std::uint64_t between = taken_ - handled_ - std::uint64_t{pixel_moves};
-      if (takes) marks_ |= std::uint64_t{lut_granted && entry_valid} << between;
-    }
+    const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
+    // What enters in cycle c is seen from cycle c + latency on.
+    const std::uint64_t taken_before = taken_;
+    const std::uint64_t handled_before = handled_;
     if (takes) {
-      cursor_.advance();
+      const std::uint64_t mark = std::uint64_t{1} << taken_ % kMostSlots;
+      marks_ = lut_granted && entry_valid ? marks_ | mark : marks_ & ~mark;
+      next_slot_.advance();
       ++taken_;
     }
     handled_ += std::uint64_t{pixel_moves};
     consumed_ += std::uint64_t{consumes};
-    all_consumed_ += std::uint64_t{consumes};
-    taken_seen_.end_of_cycle(taken_);
-    handled_seen_.end_of_cycle(handled_);
+    arrived_entries_ = table_takes_two_cycles_ ? taken_before : taken_;
+    arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
+  // The slot that the lane takes next.
+  const SlotCursor& next_slot() const { return next_slot_; }
   const PortCycles& lut_cycles() const { return lut_cycles_; }
   const PortCycles& pixel_cycles() const { return pixel_cycles_; }
-  std::uint64_t consumed() const { return all_consumed_; }  // slots, over all frames
+  // Slots, over all frames.
+  std::uint64_t consumed() const { return consumed_before_frame_ + consumed_; }
 
  private:
   Intent take_intent() const {
-    if (cursor_.done()) return Intent::kIdle;
+    if (next_slot_.done()) return Intent::kIdle;
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;
-    return cursor_.empty() ? Intent::kPass : Intent::kRequest;
+    return next_slot_.empty() ? Intent::kPass : Intent::kRequest;
   }
   Intent handle_intent() const {
-    if (taken_seen_.seen() > handled_) return (marks_ & 1U) != 0 ? Intent::kRequest : Intent::kPass;
-    return taken_seen_.seen() == 0 || handled_ == geometry_.slots ? Intent::kIdle : Intent::kStarved;
+    if (arrived_entries_ > handled_) {
+      return (marks_ >> handled_ % kMostSlots & 1U) != 0 ? Intent::kRequest : Intent::kPass;
+    }
+    return arrived_entries_ == 0 || handled_ == geometry_.slots ? Intent::kIdle : Intent::kStarved;
   }
 
   FrameGeometry geometry_;
   bool has_table_;
   std::uint64_t fifo_slots_;
-  SlotCursor cursor_;
+  bool table_takes_two_cycles_ = false;
+  bool image_takes_two_cycles_ = false;
+  SlotCursor next_slot_;
   // Slots of this frame, until now.
   std::uint64_t taken_ = 0;
   std::uint64_t handled_ = 0;
   std::uint64_t consumed_ = 0;
-  DelayedCount taken_seen_;    // by the pixel port
-  DelayedCount handled_seen_;  // by the matcher
-  std::uint64_t marks_ = 0;    // per slot taken and not yet handled, oldest lowest: needs an access
+  std::uint64_t arrived_entries_ = 0;  // of those taken: the pixel port can handle them
+  std::uint64_t arrived_pixels_ = 0;   // of those handled: the matcher can consume them
+  std::uint64_t marks_ = 0;            // [slot % kMostSlots] of those taken and not handled: needs an access
   PortCycles lut_cycles_;
   PortCycles pixel_cycles_;
-  std::uint64_t all_consumed_ = 0;
+  std::uint64_t consumed_before_frame_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -53,12 +53,4 @@ void PixelReader::pass() {
   pixels_[pixels_stored_++ % kRing] = MaskedPixel{};
 }
 
-void PixelReader::release() {
-  if (pixels_released_ == pixels_stored_) {
-    SC_REPORT_ERROR("/stereotlm/pixel_reader", "release: no pixel waits");
-    return;
-  }
-  pixels_out->push(pixels_[pixels_released_++ % kRing]);
-}
-
 }  // namespace stereotlm::fpga

@@ -42,7 +42,13 @@ class PixelReader : public sc_core::sc_module {
   // Reads or passes the oldest entry that waits, in the cycle at `at` from now.
   void handle(const sc_core::sc_time& at);
   // The matcher consumes the oldest pixel.
-  void release();
+  void release() {
+    if (pixels_released_ == pixels_stored_) {
+      SC_REPORT_ERROR("/stereotlm/pixel_reader", "release: no pixel waits");
+      return;
+    }
+    pixels_out->push(pixels_[pixels_released_++ % kRing]);
+  }
   // A cycle of the drain: a pixel that no result depends on.
   void release_blank() { pixels_out->push(MaskedPixel{}); }
   const Stats& stats() const { return stats_; }

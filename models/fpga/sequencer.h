@@ -10,7 +10,8 @@
 
 namespace stereotlm::fpga {
 
-// Issues the slots of a frame to both lanes, each at its own pace.
+// Sends the slots of a frame to both lanes, each at its own pace. Where a lane is in the sequence, and in which
+// cycle it takes its next slot, is the control's decision.
 class Sequencer : public sc_core::sc_module {
  public:
   struct Stats {
@@ -21,16 +22,18 @@ class Sequencer : public sc_core::sc_module {
   StreamOut<Slot> left_out{"left_out"};
   StreamOut<Slot> right_out{"right_out"};
 
-  Sequencer(const sc_core::sc_module_name& name, const FrameGeometry& geometry);
+  explicit Sequencer(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  void start_frame();
-  // The next slot of a side, in the cycle at `at` from now.
-  void issue(Side side, const sc_core::sc_time& at);
+  // The slot at this place of the sequence to one side, in the cycle at `at` from now.
+  void issue(Side side, const SlotCursor& place, const sc_core::sc_time& at) {
+    Stats& stats = stats_[static_cast<std::size_t>(side)];
+    ++stats.slots;
+    stats.empty_slots += std::uint64_t{place.empty()};
+    (side == Side::kLeft ? left_out : right_out)->push({place.column(), place.row(), place.empty(), at});
+  }
   const Stats& stats(Side side) const { return stats_[static_cast<std::size_t>(side)]; }
 
  private:
-  FrameGeometry geometry_;
-  std::array<SlotCursor, 2> cursors_;
   std::array<Stats, 2> stats_{};
 };
 

@@ -108,7 +108,6 @@ void StereoCore::start_frame(const FrameStart& start) {
     return address;
   };
   FrameLatencies latencies;
-  sequencer_.start_frame();
   if (left_lut_) {
     left_lut_->start_frame(route(Port::kLeftLut, start.left_lut, false));
     latencies.left_lut = latency_of(start.left_lut);
@@ -200,11 +199,12 @@ void StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const PortMask granted = crossbar_.arbitrate(cycle_, edge_ps, decision.requests());
   const auto moving = static_cast<PortMask>(granted | decision.passes());
 
-  if (has(moving, Port::kLeftLut)) sequencer_.issue(Side::kLeft, at);
-  if (has(moving, Port::kRightLut)) sequencer_.issue(Side::kRight, at);
-  if (has(moving, Port::kLeftPixel)) left_lut_ ? left_pixel_.handle(at) : sequencer_.issue(Side::kLeft, at);
-  if (has(moving, Port::kRightPixel))
-    right_lut_ ? right_pixel_.handle(at) : sequencer_.issue(Side::kRight, at);
+  const auto issue_left = [this, &at] { sequencer_.issue(Side::kLeft, control_.left().next_slot(), at); };
+  const auto issue_right = [this, &at] { sequencer_.issue(Side::kRight, control_.right().next_slot(), at); };
+  if (has(moving, Port::kLeftLut)) issue_left();
+  if (has(moving, Port::kRightLut)) issue_right();
+  if (has(moving, Port::kLeftPixel)) left_lut_ ? left_pixel_.handle(at) : issue_left();
+  if (has(moving, Port::kRightPixel)) right_lut_ ? right_pixel_.handle(at) : issue_right();
   if (has(granted, Port::kResult)) result_writer_.write(at);
   if (decision.consume) {
     if (decision.drain) {

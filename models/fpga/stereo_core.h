@@ -100,7 +100,7 @@ class StereoCore : public sc_core::sc_module {
   CoreControl control_;
   memory::Crossbar crossbar_{"crossbar", config_.memory};
   RegisterFile register_file_{"register_file"};
-  Sequencer sequencer_{"sequencer", control_.geometry()};
+  Sequencer sequencer_{"sequencer"};
   std::unique_ptr<LutReader> left_lut_;
   std::unique_ptr<LutReader> right_lut_;
   PixelReader left_pixel_{"left_pixel", config_.core.width};

@@ -174,8 +174,8 @@ TEST(CoreControl, ConsumesBothLanesTogether) {
   const std::uint64_t alone = core.geometry().slots + core.geometry().drain_cycles + 1 + 2;
   // The first slot is empty; the second is refused in cycles 1 to 9.
   EXPECT_EQ(run_frame(core, mask_of(Port::kRightLut), 10), alone + 9);
-  EXPECT_EQ(core.consumed_left(), core.geometry().slots);
-  EXPECT_EQ(core.consumed_right(), core.geometry().slots);
+  EXPECT_EQ(core.left().consumed(), core.geometry().slots);
+  EXPECT_EQ(core.right().consumed(), core.geometry().slots);
 }
 
 TEST(CoreControl, PutsEachPortIntoOneStateACycle) {

@@ -37,21 +37,21 @@ void preload(Socket& socket, std::uint64_t address, std::vector<std::uint32_t> w
   ASSERT_EQ(socket->transport_dbg(payload), words.size() * 4);
 }
 
-TEST(Sequencer, IssuesTheSlotsOfEachSideAtItsOwnPace) {
+TEST(Sequencer, SendsEachSideItsSlots) {
   CoreConfig config;
   config.width = 4;
   config.height = 2;
   config.window = 3;
   config.filter.reset();
-  Sequencer sequencer("sequencer", FrameGeometry(config));
+  Sequencer sequencer("sequencer");
   Collected<Slot> left;
   Collected<Slot> right;
   sequencer.left_out.bind(left);
   sequencer.right_out.bind(right);
   elaborate();
-  sequencer.start_frame();
-  for (int slot = 0; slot < 24; ++slot) sequencer.issue(Side::kLeft, kAt);
-  sequencer.issue(Side::kRight, sc_time());
+  SlotCursor place{FrameGeometry(config)};
+  for (; !place.done(); place.advance()) sequencer.issue(Side::kLeft, place, kAt);
+  sequencer.issue(Side::kRight, SlotCursor{FrameGeometry(config)}, sc_time());
   ASSERT_EQ(left.beats.size(), 24U);
   ASSERT_EQ(right.beats.size(), 1U);
   std::uint64_t empty = 0;
@@ -66,12 +66,11 @@ TEST(Sequencer, IssuesTheSlotsOfEachSideAtItsOwnPace) {
   EXPECT_EQ(sequencer.stats(Side::kLeft).slots, 24U);
   EXPECT_EQ(sequencer.stats(Side::kLeft).empty_slots, empty);
   EXPECT_EQ(empty, 8U);
+  EXPECT_EQ(right.beats.front().column, 0);
+  EXPECT_EQ(right.beats.front().row, -1);
+  EXPECT_EQ(right.beats.front().at, sc_time());
   EXPECT_EQ(sequencer.stats(Side::kRight).slots, 1U);
   EXPECT_EQ(sequencer.stats(Side::kRight).empty_slots, 1U);
-  sequencer.start_frame();
-  sequencer.issue(Side::kLeft, sc_time());
-  EXPECT_EQ(left.beats.back().row, -1);
-  EXPECT_EQ(left.beats.back().column, 0);
 }
 
 class LutReaderTest : public testing::Test {

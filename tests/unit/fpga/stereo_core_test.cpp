@@ -163,7 +163,7 @@ TEST_F(StereoCoreTest, CountsTheSameAtAllItsStages) {
   const FrameGeometry& geometry = core->control().geometry();
   const std::uint64_t columns = (geometry.slots + geometry.drain_cycles) / 3;
   EXPECT_EQ(core->sequencer().stats(Side::kRight).slots, geometry.slots);
-  EXPECT_EQ(core->control().consumed_left(), geometry.slots);
+  EXPECT_EQ(core->control().left().consumed(), geometry.slots);
   EXPECT_EQ(core->left_lut_reader()->stats().reads, port(Port::kLeftLut).granted());
   EXPECT_EQ(core->left_pixel_reader().stats().reads, port(Port::kLeftPixel).granted());
   EXPECT_EQ(core->right_pixel_reader().stats().passed_slots, port(Port::kRightPixel).passed());

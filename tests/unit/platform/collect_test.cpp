@@ -150,7 +150,7 @@ TEST(CollectStatistics, TellsIdentitiesThatDoNotHoldWithBothSides) {
   EXPECT_TRUE(mentions(statistics.failed, "port left_lut: sum of its states = " + std::to_string(states) +
                                               ", but cycles = " + std::to_string(frame - kPipeline)));
   EXPECT_TRUE(
-      mentions(statistics.failed, "left lane: slots consumed = " + std::to_string(control.consumed_left()) +
+      mentions(statistics.failed, "left lane: slots consumed = " + std::to_string(control.left().consumed()) +
                                       ", but slots of the sequence = 288"));
   EXPECT_TRUE(mentions(statistics.failed, "bank bank1: busy + turnaround + idle cycles = "));
   EXPECT_FALSE(mentions(statistics.failed, "stall_cycles"));
