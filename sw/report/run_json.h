@@ -25,7 +25,7 @@ struct RunOptions {
 };
 
 // The text of run.json: keys are the names of the options, one not given is absent. Throws std::runtime_error
-// naming a path that is not absolute or not UTF-8.
+// naming the option whose path is not absolute or not UTF-8.
 std::string run_json(const RunOptions& options);
 
 }  // namespace stereotlm::report

@@ -26,12 +26,12 @@ def png(width, height, depth, kind, rows):
 class Pictures(ProgramTest):
     def refused_picture(self, path, text):
         """On either side and as the truth, whatever the folder for results."""
-        for arguments in (
-            self.run_arguments("--out", self.out, left=path),
-            self.run_arguments("--out", self.out, right=path),
-            self.run_arguments("--out", self.out, "--truth", path),
+        for option, arguments in (
+            ("--left", self.run_arguments("--out", self.out, left=path)),
+            ("--right", self.run_arguments("--out", self.out, right=path)),
+            ("--truth", self.run_arguments("--out", self.out, "--truth", path)),
         ):
-            self.refused_in_one_line(run(*arguments), "stereotlm: error: ", f"'{path}'", text)
+            self.refused_in_one_line(run(*arguments), f"stereotlm: error: {option} '{path}': ", text)
             self.assertFalse(self.out.exists())
 
     def test_missing(self):
@@ -44,7 +44,7 @@ class Pictures(ProgramTest):
     @unittest.skipIf(os.geteuid() == 0, "permissions do not bind root")
     def test_unreadable(self):
         self.left.chmod(0)
-        self.refused_in_one_line(self.run_small(), f"'{self.left}': Permission denied")
+        self.refused_in_one_line(self.run_small(), f"--left '{self.left}': Permission denied")
 
     def test_empty(self):
         self.refused_picture(self.file("empty.png", b""), "an empty file")
@@ -83,7 +83,7 @@ class Pictures(ProgramTest):
 
     def test_a_truth_in_colour(self):
         colour = self.file("colour.ppm", b"P6\n%d %d\n255\n" % (WIDTH, HEIGHT) + noise(3 * WIDTH, HEIGHT, 1))
-        self.refused_in_one_line(self.run_small("--truth", colour), f"'{colour}': 8-bit colour")
+        self.refused_in_one_line(self.run_small("--truth", colour), f"--truth '{colour}': 8-bit colour")
 
     def test_a_path_that_run_json_cannot_name(self):
         strange = os.fsencode(self.folder) + b"/\xff.pgm"
@@ -93,7 +93,7 @@ class Pictures(ProgramTest):
             capture_output=True, timeout=60, check=False,
         )
         self.assertEqual((process.returncode, process.stdout), (2, b""))
-        self.assertIn(b"not UTF-8", process.stderr)
+        self.assertRegex(process.stderr, rb"\Astereotlm: error: --left '.*': a path that is not UTF-8")
 
 
 class Boards(ProgramTest):
@@ -102,7 +102,7 @@ class Boards(ProgramTest):
         lines = self.refused(self.run_small("--set", "matcher.window=4", "--out", self.left, left=none))
         self.assertEqual(len(lines), 3)
         self.assertTrue(lines[0].startswith("--set matcher.window: matcher.window = 4: 3..31"), lines[0])
-        self.assertTrue(lines[1].startswith(f"stereotlm: error: '{none}': no such file"), lines[1])
+        self.assertTrue(lines[1].startswith(f"stereotlm: error: --left '{none}': no such file"), lines[1])
         self.assertTrue(lines[2].startswith(f"stereotlm: error: result folder '{self.left}': not a folder"), lines[2])
 
     def test_that_cannot_be_found(self):
@@ -141,6 +141,42 @@ class OutputFolders(ProgramTest):
         self.out.mkdir(mode=0o555)
         self.refused_folder(self.out, "cannot be written to: Permission denied")
         self.refused_folder(self.out / "deeper", "cannot be written to: Permission denied")
+
+    def refused_inside(self, out, path, *names):
+        """The pictures of these options lie in this folder, in which nothing changes."""
+        before = {file: file.read_bytes() for file in self.out.rglob("*") if file.is_file()}
+        pair = {name: path for name in names if name != "truth"}
+        truth = ["--truth", path] if "truth" in names else []
+        lines = self.refused(run(*self.run_arguments("--out", out, *truth, **pair), cwd=self.folder))
+        rule = f"inside the result folder '{out}', which is replaced whole: a picture must lie outside the folder of --out"
+        self.assertEqual(lines, [f"stereotlm: error: --{name} '{path}': {rule}" for name in names])
+        self.assertEqual({file: file.read_bytes() for file in self.out.rglob("*") if file.is_file()}, before)
+
+    def test_with_a_picture_of_the_run(self):
+        self.succeeds(self.run_small("--out", self.out))
+        for names in (["left"], ["right"], ["truth"], ["left", "right", "truth"]):
+            self.refused_inside(self.out, self.out / "disparity.png", *names)
+
+    def test_with_a_picture_below(self):
+        self.succeeds(self.run_small("--out", self.out))
+        for place in ("frames", ".partial/earlier"):
+            (self.out / place).mkdir(parents=True)
+            shutil.copy(self.left, self.out / place / "000000.png")
+            self.refused_inside(self.out, self.out / place / "000000.png", "left")
+
+    def test_with_a_picture_however_the_paths_are_written(self):
+        self.succeeds(self.run_small("--out", self.out))
+        (self.folder / "link.png").symlink_to(self.out / "disparity.png")
+        (self.folder / "link").symlink_to(self.out)
+        for path in ("out/disparity.png", "./out//disparity.png", "out/../out/disparity.png", "link.png"):
+            for out in ("out", "out/", "link", self.out, f"{self.out}/../out/."):
+                self.refused_inside(out, path, "left")
+
+    def test_beside_a_picture_of_the_run(self):
+        self.out.mkdir()
+        shutil.copy(self.left, self.folder / "out.pgm")  # its name begins like the folder's
+        for left in (self.folder / "out.pgm", self.out / ".." / "left.pgm"):
+            self.succeeds(self.run_small("--out", self.out, left=left))
 
     def test_a_refused_run_leaves_no_folder(self):
         self.refused(self.run_small("--out", self.out / "a" / "b", left=self.folder / "none.pgm"))

@@ -127,7 +127,7 @@ class Matching(ProgramTest):
         left = self.file("colour.ppm", colour)
         process = self.run_small("--out", self.out, left=left)
         self.succeeds(process)
-        self.assertEqual(process.stderr, f"stereotlm: note: '{left}': colour, converted to grey\n")
+        self.assertEqual(process.stderr, f"stereotlm: note: --left '{left}': colour, converted to grey\n")
         self.succeeds(self.run_small("--out", self.folder / "grey"))
         self.assertEqual(
             (self.out / "disparity.png").read_bytes(), (self.folder / "grey" / "disparity.png").read_bytes()

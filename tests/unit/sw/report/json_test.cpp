@@ -147,9 +147,15 @@ TEST(RunJson, RefusesPathsThatCannotBeFoundAgain) {
   RunOptions options = pair_of_pictures();
   options.left->path = "left.png";
   EXPECT_EQ(test::message_of([&] { run_json(options); }),
-            "'left.png': not an absolute path: run.json needs one");
-  options.left->path = "/in/\xFF.png";
-  EXPECT_THAT(test::message_of([&] { run_json(options); }), HasSubstr("a path that is not UTF-8"));
+            "--left 'left.png': not an absolute path: run.json needs one");
+  options = pair_of_pictures();
+  options.right->path = "/in/\xFF.png";
+  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+            "--right '/in/\xFF.png': a path that is not UTF-8: run.json cannot name it");
+  options = pair_of_pictures();
+  options.truth = InputFile{"truth.png", ""};
+  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+            "--truth 'truth.png': not an absolute path: run.json needs one");
 }
 
 }  // namespace
