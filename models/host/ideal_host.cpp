@@ -1,5 +1,6 @@
 #include "models/host/ideal_host.h"
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +15,12 @@ constexpr char kReport[] = "/stereotlm/ideal_host";
 
 std::uint32_t in_turn(const std::vector<std::uint32_t>& list, std::uint64_t frame) {
   return list[frame % list.size()];
+}
+
+std::string with_value(const char* base, std::uint32_t value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%s 0x%08x", base, value);
+  return text;
 }
 
 std::vector<std::uint32_t> entries_of(const kernels::RectificationTable* table, bool expected,
@@ -81,15 +88,22 @@ bool IdealHost::start_frame() {
   preload(right, pair.right.pixels.data(), pair.right.pixels.size());
   write_register(registers_of::kLeftImageBase, left);
   write_register(registers_of::kRightImageBase, right);
-  write_register(registers_of::kDisparityBase, in_turn(config_.disparities, frames_done_));
+  const std::uint32_t disparity = in_turn(config_.disparities, frames_done_);
+  write_register(registers_of::kDisparityBase, disparity);
   write_register(registers_of::kControl, registers_of::kControlAcknowledge | registers_of::kControlStart);
-  return true;
+  if ((read_status() & registers_of::kStatusBusy) != 0) return true;
+  std::string bases = with_value("left_image", left) + with_value(", right_image", right) +
+                      with_value(", disparity", disparity);
+  if (config_.left_lut) bases += with_value(", left_lut", *config_.left_lut);
+  if (config_.right_lut) bases += with_value(", right_lut", *config_.right_lut);
+  SC_REPORT_ERROR(kReport, ("frame " + std::to_string(frames_done_) +
+                            ": the core refuses to start with the bases " + bases)
+                               .c_str());
+  return false;
 }
 
 bool IdealHost::end_frame() {
-  sc_core::sc_time delay;
-  access_.read(registers_of::kStatus, delay);
-  if ((access_.word() & registers_of::kStatusError) != 0) {
+  if ((read_status() & registers_of::kStatusError) != 0) {
     SC_REPORT_ERROR(kReport,
                     ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
     return false;
@@ -105,6 +119,15 @@ void IdealHost::write_register(std::uint64_t address, std::uint32_t value) {
   if (!access_.write(address, value, delay)) {
     SC_REPORT_ERROR(kReport, ("register " + std::to_string(address) + " refuses a write").c_str());
   }
+}
+
+std::uint32_t IdealHost::read_status() {
+  sc_core::sc_time delay;
+  if (!access_.read(registers_of::kStatus, delay)) {
+    SC_REPORT_ERROR(kReport,
+                    ("register " + std::to_string(registers_of::kStatus) + " refuses a read").c_str());
+  }
+  return access_.word();
 }
 
 void IdealHost::preload(std::uint32_t base, const void* bytes, std::size_t size) {

@@ -48,13 +48,19 @@ struct IdealHostConfig {
 // A host without a computer around it (contract section 2, `preloaded`): tables are in their banks before
 // cycle 0, pictures appear in their buffers and results leave them in zero time, and each frame starts when
 // the last one ends. It drives the core's registers, and reaches the memory by debug transport.
+//
+// A picture of the wrong size, a register or memory that refuses an access, a core that does not start and an
+// error that it raises are reported with SC_REPORT_ERROR (type /stereotlm/ideal_host). The host does no more
+// then: finished() stays false.
 class IdealHost : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};
   tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
   sc_core::sc_in<bool> done{"done"};
 
-  // The tables are copied; null for a side without one. `source` and `sink` outlive the host.
+  // The tables are copied; null for a side without one. `source` and `sink` outlive the host. Throws
+  // std::invalid_argument if a list of buffers is empty, or a side has a table but no buffer for it, or the
+  // other way round.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
@@ -68,6 +74,7 @@ class IdealHost : public sc_core::sc_module {
   bool start_frame();  // false, like end_frame(): an error has been reported, the host stops
   bool end_frame();
   void write_register(std::uint64_t address, std::uint32_t value);
+  std::uint32_t read_status();
   // Moves whole buffers; reports an error if the memory does not take them.
   void preload(std::uint32_t base, const void* bytes, std::size_t size);
   void read_back(std::uint32_t base, void* bytes, std::size_t size);

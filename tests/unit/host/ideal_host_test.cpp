@@ -58,8 +58,8 @@ class Sink : public FrameSink {
   std::vector<sc_time> times;
 };
 
-// Registers and memory of a core that works kFrameTime on a frame and then fills the disparity buffer with
-// the sum of a left and a right pixel.
+// Registers and memory of a core that is busy for kFrameTime with a frame and then fills the disparity buffer
+// with the sum of a left and a right pixel.
 class IdealHostTest : public testing::Test {
  protected:
   void build(const IdealHostConfig& host_config, const kernels::RectificationTable* left_table = nullptr,
@@ -79,6 +79,7 @@ class IdealHostTest : public testing::Test {
                             buffer(registers_of::kRightImageBase)[kPixels - 1]});
         std::fill_n(buffer(registers_of::kDisparityBase), kPixels,
                     static_cast<std::uint8_t>(pictures.back()[0] + pictures.back()[1]));
+        status = status_of_done;
         done.write(true);
       }
     });
@@ -102,12 +103,15 @@ class IdealHostTest : public testing::Test {
     }
     payload.set_response_status(tlm::TLM_OK_RESPONSE);
     if (payload.is_read()) {
+      if (refuse_reads_from-- <= 0) payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
       *word = status;
       return;
     }
     written[payload.get_address()].push_back(*word);
     if (payload.get_address() == registers_of::kControl) {
       controls.push_back(*word);
+      if (!starts) return;
+      status = registers_of::kStatusBusy;
       strobe.notify(sc_core::SC_ZERO_TIME);
     }
   }
@@ -141,7 +145,10 @@ class IdealHostTest : public testing::Test {
   std::array<std::array<std::uint8_t, 256>, 6> banks{};
   std::size_t most_bytes = 256;  // that the memory takes at once
   bool refuse_registers = false;
-  std::uint32_t status = registers_of::kStatusDone;
+  int refuse_reads_from = 1000;  // the number of the first read of a register that is refused
+  bool starts = true;            // false: the core ignores the strobe
+  std::uint32_t status = 0;
+  std::uint32_t status_of_done = registers_of::kStatusDone;
   std::map<std::uint64_t, std::vector<std::uint32_t>> written;
   std::vector<std::uint32_t> controls;
   std::vector<std::array<std::uint8_t, 2>> pictures;  // the last pixels of each frame's pair
@@ -253,11 +260,53 @@ TEST_F(IdealHostTest, ReportsARightPictureOfAnotherSize) {
 
 TEST_F(IdealHostTest, ReportsAnErrorOfTheCore) {
   build(config(2));
-  status = registers_of::kStatusDone | registers_of::kStatusError;
+  status_of_done = registers_of::kStatusDone | registers_of::kStatusError;
   ExpectedReport report("/stereotlm/ideal_host");
   EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
   EXPECT_EQ(report.text(), "frame 0: the core reports an error");
   EXPECT_TRUE(sink.frames.empty());
+}
+
+TEST_F(IdealHostTest, ReportsACoreThatDoesNotStart) {
+  build(config(2));
+  starts = false;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(),
+            "frame 0: the core refuses to start with the bases left_image 0x00000000, "
+            "right_image 0x04000000, disparity 0x08000000");
+  EXPECT_TRUE(sink.frames.empty());
+  EXPECT_FALSE(host->finished());
+}
+
+TEST_F(IdealHostTest, ReportsACoreThatDoesNotStartASecondTime) {
+  IdealHostConfig lists = config(2);
+  lists.disparities = {registers_of::base(2, 0), registers_of::base(2, 8)};
+  lists.left_lut = registers_of::base(3, 0);
+  lists.right_lut = registers_of::base(4, 0);
+  const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
+  build(lists, &table, &table);
+  ExpectedReport report("/stereotlm/ideal_host");
+  sc_core::sc_start(kFrameTime / 2);
+  starts = false;
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(
+      report.text(),
+      "frame 1: the core refuses to start with the bases left_image 0x00000000, right_image 0x04000000, "
+      "disparity 0x08000008, left_lut 0x0c000000, right_lut 0x10000000");
+  EXPECT_EQ(host->frames_done(), 1U);
+}
+
+// With an error that does not end the simulation, there is nothing left that could.
+TEST_F(IdealHostTest, DoesNoMoreAfterAnErrorThatIsNotThrown) {
+  build(config(2));
+  starts = false;
+  sc_core::sc_report_handler::set_actions("/stereotlm/ideal_host", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+  ExpectedReport report("/stereotlm/ideal_host");
+  sc_core::sc_start();
+  EXPECT_FALSE(sc_core::sc_pending_activity());
+  EXPECT_FALSE(host->finished());
+  EXPECT_EQ(controls.size(), 1U);
 }
 
 TEST_F(IdealHostTest, ReportsMemoryThatDoesNotTakeAWholeBuffer) {
@@ -274,6 +323,25 @@ TEST_F(IdealHostTest, ReportsARegisterThatRefusesAWrite) {
   ExpectedReport report("/stereotlm/ideal_host");
   EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
   EXPECT_EQ(report.text(), "register 16 refuses a write");
+}
+
+TEST_F(IdealHostTest, ReportsAStatusRegisterThatRefusesARead) {
+  build(config(1));
+  refuse_reads_from = 0;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "register 4 refuses a read");
+  EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
+}
+
+TEST_F(IdealHostTest, ReportsAStatusRegisterThatRefusesAReadAtTheEndOfAFrame) {
+  build(config(1));
+  refuse_reads_from = 1;
+  ExpectedReport report("/stereotlm/ideal_host");
+  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "register 4 refuses a read");
+  EXPECT_EQ(sc_core::sc_time_stamp(), kFrameTime);
+  EXPECT_TRUE(sink.frames.empty());
 }
 
 TEST_F(IdealHostTest, RefusesATableWithoutBufferAndABufferWithoutTable) {
