@@ -1,5 +1,9 @@
 #include "sw/cli/simulation.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 #include "platform/collect.h"
 
 namespace stereotlm::cli {
@@ -17,7 +21,14 @@ Simulation::Simulation(const platform::BoardConfig& board, const platform::Table
       slice_(kSliceCycles / board.fpga.clock_mhz, sc_core::SC_US),
       system_("system", board, tables, frames, *this, *this, binder_) {}
 
-void Simulation::advance() { sc_core::sc_start(slice_); }
+void Simulation::advance() {
+  sc_core::sc_start(slice_);
+  if (!finished() && !sc_core::sc_pending_activity()) {
+    throw std::runtime_error(
+        fmt::format("the simulation has ended after {} frames: nothing is left that could finish the next",
+                    frames_done()));
+  }
+}
 
 const host::StereoPair& Simulation::pair(std::uint64_t /*frame*/) { return pair_; }
 

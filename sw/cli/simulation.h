@@ -17,7 +17,8 @@ class Simulation : private host::FrameSource, private host::FrameSink {
   Simulation(const platform::BoardConfig& board, const platform::Tables& tables, const host::StereoPair& pair,
              std::uint64_t frames);
 
-  // Simulates about 40,000 FPGA cycles. Throws sc_core::sc_report if a model reports an error.
+  // Simulates about 40,000 FPGA cycles. Throws sc_core::sc_report if a model reports an error, and
+  // std::runtime_error if nothing is left to happen before the last frame is finished.
   void advance();
 
   bool finished() const { return system_.host.finished(); }

@@ -12,6 +12,15 @@ platform::BoardConfig small_board() {
   return platform::load_board("fpl2003", {"image.width=32", "image.height=24"});
 }
 
+std::string message_of_advancing(Simulation& simulation) {
+  try {
+    simulation.advance();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 TEST(Simulation, AdvancesInSlicesUntilTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
@@ -42,6 +51,21 @@ TEST(Simulation, PassesOnWhatAModelReports) {
   Simulation simulation(board, tables, pair, 1);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
   EXPECT_THROW(simulation.advance(), sc_core::sc_report);
+}
+
+TEST(Simulation, SaysThatItHasEndedBeforeTheLastFrame) {
+  const platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  host::StereoPair pair = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
+  Simulation simulation(board, tables, pair, 10);
+  simulation.advance();
+  ASSERT_EQ(simulation.frames_done(), 6U);
+  // An error that is not thrown: the host does no more.
+  sc_core::sc_report_handler::set_actions("/stereotlm/ideal_host", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+  const test::ExpectedReport expected("/stereotlm/ideal_host");
+  pair.right = kernels::GrayImage(28, 24);
+  EXPECT_EQ(message_of_advancing(simulation),
+            "the simulation has ended after 7 frames: nothing is left that could finish the next");
 }
 
 TEST(Simulation, CannotBeBuiltOfAWrongBoard) {
