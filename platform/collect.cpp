@@ -10,7 +10,6 @@ namespace stereotlm::platform {
 namespace {
 
 using memory::ArbiterStats;
-using memory::BankArbiter;
 using memory::kPortCount;
 using memory::Port;
 
@@ -55,14 +54,12 @@ PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
 }
 
 // In the order of ports, banks and ports, turnaround last.
-std::vector<BlameRow> blame_rows(const BoardConfig& config, const std::vector<BankArbiter>& arbiters) {
-  std::vector<ArbiterStats> stats;
-  for (const BankArbiter& arbiter : arbiters) stats.push_back(arbiter.stats());
+std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters& counters) {
   std::vector<BlameRow> rows;
   for (std::size_t victim = 0; victim < kPortCount; ++victim) {
-    for (std::size_t bank = 0; bank < stats.size(); ++bank) {
+    for (std::size_t bank = 0; bank < counters.banks.size(); ++bank) {
       for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
-        const std::uint64_t cycles = stats[bank].blame[victim][by];
+        const std::uint64_t cycles = counters.banks[bank].arbiter.blame[victim][by];
         if (cycles == 0) continue;
         rows.push_back({memory::kPortNames[victim], config.banks[bank].name,
                         by == ArbiterStats::kTurnaround ? "turnaround" : memory::kPortNames[by], cycles});
@@ -72,18 +69,16 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const std::vector<Ba
   return rows;
 }
 
-void audit_ports(const Board& board, std::uint64_t cycles, Audit& audit) {
-  const auto& arbiters = board.core.crossbar().arbiters();
+void audit_ports(const BoardCounters& counters, std::uint64_t cycles, Audit& audit) {
   for (std::size_t index = 0; index < kPortCount; ++index) {
-    const fpga::PortCycles& port = board.core.control().port_cycles(static_cast<Port>(index));
+    const fpga::PortCycles& port = counters.ports[index];
     const std::string name = std::string("port ") + memory::kPortNames[index];
     std::uint64_t blamed = 0;
     std::uint64_t granted = 0;
-    for (const BankArbiter& arbiter : arbiters) {
-      const ArbiterStats stats = arbiter.stats();
-      const auto& row = stats.blame[index];
+    for (const BoardCounters::Bank& bank : counters.banks) {
+      const auto& row = bank.arbiter.blame[index];
       blamed = std::accumulate(row.begin(), row.end(), blamed);
-      granted += stats.grants[index];
+      granted += bank.arbiter.grants[index];
     }
     audit.equal(name + ": sum of its states", port.sum(), "cycles", cycles);
     audit.equal(name + ": stall_cycles", port.stalled(), "blamed by the arbiters", blamed);
@@ -91,61 +86,78 @@ void audit_ports(const Board& board, std::uint64_t cycles, Audit& audit) {
   }
 }
 
-void audit_banks(const BoardConfig& config, const Board& board, std::uint64_t cycles, Audit& audit) {
-  for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
-    const BankArbiter& arbiter = board.core.crossbar().arbiters()[bank];
-    const ArbiterStats stats = arbiter.stats();
-    const memory::SsramBank::Stats& accesses = board.banks[bank].stats();
-    const std::string name = "bank " + config.banks[bank].name;
+void audit_banks(const BoardConfig& config, const BoardCounters& counters, std::uint64_t cycles,
+                 Audit& audit) {
+  for (std::size_t index = 0; index < counters.banks.size(); ++index) {
+    const BoardCounters::Bank& bank = counters.banks[index];
+    const ArbiterStats& stats = bank.arbiter;
+    const std::string name = "bank " + config.banks[index].name;
     audit.equal(name + ": busy + turnaround + idle cycles",
                 stats.reads + stats.writes + stats.turnaround_cycles + stats.idle_cycles, "cycles", cycles);
-    audit.equal(name + ": accesses", accesses.reads + accesses.writes + accesses.errors,
-                "granted by its arbiter", stats.reads + stats.writes + arbiter.uncounted_accesses());
+    audit.equal(name + ": accesses", bank.accesses, "granted by its arbiter",
+                stats.reads + stats.writes + bank.uncounted_grants);
   }
 }
 
-void audit_flow(const Board& board, std::uint64_t frames, Audit& audit) {
-  const fpga::CoreControl& control = board.core.control();
-  const std::uint64_t slots = frames * control.geometry().slots;
-  const std::uint64_t words = frames * control.geometry().result_words;
-  audit.equal("left lane: slots consumed", control.left().consumed(), "slots of the sequence", slots);
-  audit.equal("right lane: slots consumed", control.right().consumed(), "slots of the sequence", slots);
-  audit.equal("left lane: slots issued", board.core.sequencer().stats(fpga::Side::kLeft).slots,
-              "slots of the sequence", slots);
-  audit.equal("right lane: slots issued", board.core.sequencer().stats(fpga::Side::kRight).slots,
-              "slots of the sequence", slots);
-  audit.equal("result packer: words", board.core.result_packer().stats().words, "words of the images", words);
-  audit.equal("result writer: words", board.core.result_writer().stats().writes, "words of the images",
-              words);
+void audit_flow(const fpga::FrameGeometry& geometry, const BoardCounters& counters, Audit& audit) {
+  const std::uint64_t slots = counters.frames * geometry.slots;
+  const std::uint64_t words = counters.frames * geometry.result_words;
+  audit.equal("left lane: slots consumed", counters.left.consumed, "slots of the sequence", slots);
+  audit.equal("right lane: slots consumed", counters.right.consumed, "slots of the sequence", slots);
+  audit.equal("left lane: slots issued", counters.left.issued, "slots of the sequence", slots);
+  audit.equal("right lane: slots issued", counters.right.issued, "slots of the sequence", slots);
+  audit.equal("result packer: words", counters.packed_words, "words of the images", words);
+  audit.equal("result writer: words", counters.written_words, "words of the images", words);
 }
 
 }  // namespace
 
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board) {
+BoardCounters counters_of(const Board& board) {
+  const fpga::StereoCore& core = board.core;
+  BoardCounters counters;
+  counters.frames = core.frame_cycles().size();
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    counters.ports[port] = core.control().port_cycles(static_cast<Port>(port));
+  }
+  counters.banks.reserve(board.banks.size());
+  for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+    const memory::BankArbiter& arbiter = core.crossbar().arbiters()[bank];
+    const memory::SsramBank::Stats& stats = board.banks[bank].stats();
+    counters.banks.push_back(
+        {arbiter.stats(), arbiter.uncounted_accesses(), stats.reads + stats.writes + stats.errors});
+  }
+  counters.left = {core.sequencer().stats(fpga::Side::kLeft).slots, core.control().consumed_left()};
+  counters.right = {core.sequencer().stats(fpga::Side::kRight).slots, core.control().consumed_right()};
+  counters.packed_words = core.result_packer().stats().words;
+  counters.written_words = core.result_writer().stats().writes;
+  return counters;
+}
+
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
+                              const BoardCounters& counters) {
   Statistics statistics;
   statistics.board = config.name;
   statistics.fidelity = "cycle";
-  statistics.frame_cycles = board.core.frame_cycles();
-  statistics.frames = statistics.frame_cycles.size();
+  statistics.frames = counters.frames;
+  const auto first = board.core.frame_cycles().begin();
+  statistics.frame_cycles.assign(first, first + static_cast<std::ptrdiff_t>(counters.frames));
   const std::uint64_t all_cycles =
       std::accumulate(statistics.frame_cycles.begin(), statistics.frame_cycles.end(), std::uint64_t{0});
   const auto pipeline = static_cast<std::uint64_t>(config.fpga.pipeline_latency_cycles);
   statistics.cycles = all_cycles - statistics.frames * pipeline;
   for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
-    statistics.banks.push_back(bank_statistics(config.banks[bank].name,
-                                               board.core.crossbar().arbiters()[bank].stats(),
+    statistics.banks.push_back(bank_statistics(config.banks[bank].name, counters.banks[bank].arbiter,
                                                statistics.cycles, config.fpga.clock_mhz));
   }
   for (std::size_t port = 0; port < kPortCount; ++port) {
-    statistics.ports.push_back(
-        port_statistics(static_cast<Port>(port), board.core.control().port_cycles(static_cast<Port>(port))));
+    statistics.ports.push_back(port_statistics(static_cast<Port>(port), counters.ports[port]));
   }
-  statistics.blame = blame_rows(config, board.core.crossbar().arbiters());
+  statistics.blame = blame_rows(config, counters);
 
   Audit audit;
-  audit_ports(board, statistics.cycles, audit);
-  audit_banks(config, board, statistics.cycles, audit);
-  audit_flow(board, statistics.frames, audit);
+  audit_ports(counters, statistics.cycles, audit);
+  audit_banks(config, counters, statistics.cycles, audit);
+  audit_flow(board.core.control().geometry(), counters, audit);
   if (statistics.frames > 0) {
     statistics.frames_per_second.core = config.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) /
                                         static_cast<double>(all_cycles);

@@ -4,8 +4,6 @@
 
 #include <stdexcept>
 
-#include "platform/collect.h"
-
 namespace stereotlm::cli {
 namespace {
 
@@ -19,7 +17,8 @@ Simulation::Simulation(const platform::BoardConfig& board, const platform::Table
       tables_(tables),
       pair_(pair),
       slice_(kSliceCycles / board.fpga.clock_mhz, sc_core::SC_US),
-      system_("system", board, tables, frames, *this, *this, binder_) {}
+      system_("system", board, tables, frames, *this, *this, binder_),
+      counters_(platform::counters_of(system_.board)) {}
 
 void Simulation::advance() {
   sc_core::sc_start(slice_);
@@ -30,14 +29,18 @@ void Simulation::advance() {
   }
 }
 
+platform::Statistics Simulation::statistics() const {
+  return platform::collect_statistics(board_, tables_, system_.board, counters_);
+}
+
 const host::StereoPair& Simulation::pair(std::uint64_t /*frame*/) { return pair_; }
 
-// The figures are collected at each frame's end, because the counters of a frame under way would be mixed
-// into them when the run is interrupted.
+// Counters are taken at each frame's end, because those of a frame under way would be mixed into them when the
+// run is interrupted.
 void Simulation::take(std::uint64_t /*frame*/, const kernels::GrayImage& disparity) {
-  statistics_ = platform::collect_statistics(board_, tables_, system_.board);
+  counters_ = platform::counters_of(system_.board);
   disparity_ = disparity;
-  cycles_of_done_ += statistics_.frame_cycles.back();
+  cycles_of_done_ += system_.board.core.frame_cycles().back();
 }
 
 }  // namespace stereotlm::cli

@@ -4,6 +4,7 @@
 #include <systemc>
 
 #include "models/host/ideal_host.h"
+#include "platform/collect.h"
 #include "platform/preloaded_system.h"
 #include "platform/statistics.h"
 
@@ -22,12 +23,12 @@ class Simulation : private host::FrameSource, private host::FrameSink {
   void advance();
 
   bool finished() const { return system_.host.finished(); }
-  std::uint64_t frames_done() const { return statistics_.frames; }
+  std::uint64_t frames_done() const { return counters_.frames; }
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }     // of the finished frames
   std::uint64_t cycles() const { return system_.board.core.cycle(); }  // so far
 
-  // Of the frames finished so far: their figures, and the disparities of the last one.
-  const platform::Statistics& statistics() const { return statistics_; }
+  // Of the frames finished so far: their figures, which take their time, and the disparities of the last one.
+  platform::Statistics statistics() const;
   const kernels::GrayImage& disparity() const { return disparity_; }
 
  private:
@@ -38,11 +39,11 @@ class Simulation : private host::FrameSource, private host::FrameSink {
   const platform::Tables& tables_;
   const host::StereoPair& pair_;
   sc_core::sc_time slice_;
-  platform::Statistics statistics_;
   kernels::GrayImage disparity_;
   std::uint64_t cycles_of_done_ = 0;
   Binder binder_;
   platform::PreloadedSystem system_;
+  platform::BoardCounters counters_;  // at the end of the last finished frame
 };
 
 }  // namespace stereotlm::cli
