@@ -1,5 +1,7 @@
 #include "platform/collect.h"
 
+#include <fmt/format.h>
+
 #include <numeric>
 #include <utility>
 
@@ -18,11 +20,11 @@ class Audit {
  public:
   void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
     if (left == right) return;
-    failed_.push_back(what + " = " + std::to_string(left) + ", but " + as + " = " + std::to_string(right));
+    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, left, as, right));
   }
   void at_most(const std::string& what, double value, const std::string& as, double limit) {
     if (value <= limit) return;
-    failed_.push_back(what + " = " + std::to_string(value) + ", but " + as + " = " + std::to_string(limit));
+    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
   }
   std::vector<std::string> failed() && { return std::move(failed_); }
 
