@@ -34,12 +34,14 @@ Json to_json(const platform::BlameRow& row) {
 }
 
 Json to_json(const Accuracy& accuracy) {
-  const auto number = [](const std::optional<double>& percent) {
-    return percent ? Json(*percent) : Json(nullptr);
+  Json result = Json::object();
+  const auto add = [&result](const char* key, const std::optional<double>& percent) {
+    if (percent) result[key] = *percent;
   };
-  return {{"bad_1_percent", number(accuracy.bad_1_percent)},
-          {"bad_2_percent", number(accuracy.bad_2_percent)},
-          {"answered_percent", number(accuracy.answered_percent)}};
+  add("bad_1_percent", accuracy.bad_1_percent);
+  add("bad_2_percent", accuracy.bad_2_percent);
+  add("answered_percent", accuracy.answered_percent);
+  return result;
 }
 
 template <typename Row>

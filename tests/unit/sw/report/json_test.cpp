@@ -64,7 +64,7 @@ platform::Statistics small_run() {
 }
 
 TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
-  EXPECT_EQ(stats_json(small_run(), Accuracy{4.25, std::nullopt, 81.5}),
+  EXPECT_EQ(stats_json(small_run(), Accuracy{4.25, 2, 81.5}),
             R"({
   "schema": 1,
   "board": "small",
@@ -87,7 +87,7 @@ TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
   "blame": [
     {"port": "left_lut", "bank": "bank0", "by": "left_pixel", "cycles": 40}
   ],
-  "accuracy": {"bad_1_percent": 4.25, "bad_2_percent": null, "answered_percent": 81.5}
+  "accuracy": {"bad_1_percent": 4.25, "bad_2_percent": 2, "answered_percent": 81.5}
 }
 )");
 }
@@ -99,6 +99,12 @@ TEST(StatsJson, LeavesOutWhatDoesNotApply) {
   EXPECT_THAT(text, HasSubstr("  \"blame\": []\n}\n"));
   EXPECT_THAT(text, Not(HasSubstr("failed")));
   EXPECT_THAT(text, Not(HasSubstr("accuracy")));
+}
+
+TEST(StatsJson, LeavesOutPercentagesOfNothing) {
+  EXPECT_THAT(stats_json(small_run(), Accuracy{std::nullopt, std::nullopt, 0}),
+              HasSubstr("  \"accuracy\": {\"answered_percent\": 0}\n}\n"));
+  EXPECT_THAT(stats_json(small_run(), Accuracy{}), HasSubstr("  \"accuracy\": {}\n}\n"));
 }
 
 TEST(StatsJson, ListsTheIdentitiesThatFailed) {
