@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "models/fpga/frame_geometry.h"
 
@@ -79,15 +80,6 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const std::uint64_t after_last_slot = geometry.drain_cycles + 1 + pipeline;  // the drain and the last write
 
-  std::vector<ResourceBound> bounds;
-  for (const SideOfFrame& side : sides) {
-    if (side.lut) bounds.push_back({std::string("port ") + side.name + "_lut", geometry.slots + pipeline});
-  }
-  for (const SideOfFrame& side : sides) {
-    bounds.push_back({std::string("port ") + side.name + "_pixel", geometry.slots + pipeline});
-  }
-  bounds.push_back({"port result", geometry.result_words + pipeline});
-
   struct BankDemand {
     std::uint64_t reads = 0;
     std::uint64_t writes = 0;
@@ -101,7 +93,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
     demand.reads += count;
   };
   std::uint64_t first_slot = 0;
-  std::vector<ResourceBound> lanes;
+  std::vector<ResourceBound> luts;
+  std::vector<ResourceBound> pixels;
   for (const SideOfFrame& side : sides) {
     const std::uint64_t image_latency = latency(side.image);
     const std::uint64_t lane_latency = image_latency + (side.lut ? latency(*side.lut) : 0);
@@ -109,10 +102,17 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
     if (side.lut && side.accesses.lut > 0) read(*side.lut, side.accesses.lut, lane_latency);
     if (side.accesses.pixel > 0) read(side.image, side.accesses.pixel, image_latency);
     const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
-    lanes.push_back({std::string("lane ") + side.name, (geometry.slots - 1) / places * (lane_latency + 1) +
-                                                           lane_latency + 1 + after_last_slot});
+    const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
+    const std::uint64_t taking = std::max(slot_a_cycle, (geometry.slots - 1) / places * (lane_latency + 1) +
+                                                            lane_latency + 1 + after_last_slot);
+    if (side.lut) luts.push_back({std::string("port ") + side.name + "_lut", taking});
+    pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
   }
   demands[disparity].writes += geometry.result_words;
+
+  std::vector<ResourceBound> bounds = std::move(luts);
+  bounds.insert(bounds.end(), pixels.begin(), pixels.end());
+  bounds.push_back({"port result", geometry.result_words + pipeline});
   for (const auto& [bank, demand] : demands) {
     std::uint64_t cycles = demand.reads + demand.writes + pipeline;
     // The matcher consumes the last slot read no earlier than its latency after the grant, in the cycle after
@@ -120,7 +120,6 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
     if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
     bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});
   }
-  bounds.insert(bounds.end(), lanes.begin(), lanes.end());
   bounds.push_back({"matcher", first_slot + geometry.slots + after_last_slot});
   return bounds;
 }

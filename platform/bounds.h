@@ -12,16 +12,17 @@ namespace stereotlm::platform {
 
 // The fewest cycles that one resource of the core needs for a frame, pipeline latency included. No run can be
 // faster:
-//   port P      one slot or word a cycle
+//   port P      one slot or word a cycle. For the port that takes the slots of a side (of its table, or of its
+//               images if it has none) also: with F places in the lane, slot s+F is not taken before slot s
+//               has left it, latencies later
 //   bank B      one access a cycle, turnaround left out; after the last read the drain and the last write
-//   lane S      with F places in the lane, slot s+F is not taken before slot s has left it, latencies later
 //   matcher     the latencies of the first slot, one slot a cycle, the drain, the last write
 struct ResourceBound {
-  std::string resource;  // "port left_lut", "bank bank0", "lane left", "matcher"
+  std::string resource;  // "port left_lut", "bank bank0", "matcher"
   std::uint64_t cycles = 0;
 };
 
-// For frame number `frame` with these tables, in the order: ports, banks of the frame, lanes, matcher. Throws
+// For frame number `frame` with these tables, in the order: ports, banks of the frame, matcher. Throws
 // std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
 

@@ -63,7 +63,7 @@ int bounds(const BoardOptions& options) {
 
 void add_bounds(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
-      "bounds", "Say what each port, bank and lane of the FPGA core limits the frame rate to");
+      "bounds", "Say what each port and bank of the FPGA core, and its matcher, limit the frame rate to");
   command->footer(
       "For each frame of the allocation's cycle: the fewest FPGA cycles that a frame costs each resource\n"
       "alone, the frames a second that follow, and how much of the slowest resource's time it has to spare.\n"

@@ -43,15 +43,14 @@ constexpr uint64_t kWords = 16 * 6 / 4;
 constexpr uint64_t kPipeline = 16;
 constexpr uint64_t kAfter = kDrain + 1 + kPipeline;
 
-TEST(FrameBounds, ListPortsThenBanksThenLanesThenTheMatcher) {
+TEST(FrameBounds, ListPortsThenBanksThenTheMatcher) {
   const BoardConfig board = small_board();
   std::vector<std::string> names;
   for (const ResourceBound& bound : frame_bounds(board, identity_tables(board), 1))
     names.push_back(bound.resource);
   EXPECT_EQ(names, (std::vector<std::string>{"port left_lut", "port right_lut", "port left_pixel",
                                              "port right_pixel", "port result", "bank bank1", "bank bank3",
-                                             "bank bank5", "bank bank6", "bank bank7", "lane left",
-                                             "lane right", "matcher"}));
+                                             "bank bank5", "bank bank6", "bank bank7", "matcher"}));
 }
 
 TEST(FrameBounds, GiveAPortOneSlotOrWordACycle) {
@@ -129,16 +128,28 @@ TEST(FrameBounds, KnowNoTableThatDoesNotExist) {
   EXPECT_EQ(bound_of(board, "matcher"), 2 + kSlots + kAfter);
 }
 
-TEST(FrameBounds, GiveALaneItsPlacesForAsLongAsASlotStays) {
+// A slot stays for the latencies and the cycle in which it is consumed: 2 + 2 + 1 cycles with a table.
+TEST(FrameBounds, GiveThePortThatTakesSlotsThePlacesOfTheLaneForAsLongAsASlotStays) {
   BoardConfig board = small_board();
-  for (const int places : {1, 2, 4, 5, 64}) {
+  for (const int places : {1, 2, 4, 5, 6, 64}) {
     board.fpga.lane_fifo_slots = places;
     const uint64_t rounds = (kSlots - 1) / static_cast<uint64_t>(places);
-    const uint64_t least = rounds * 5 + 5 + kAfter;
-    ASSERT_TRUE(bound_of(board, "lane left"));
-    EXPECT_GE(*bound_of(board, "lane left"), least) << places;
-    EXPECT_LT(*bound_of(board, "lane left"), least + static_cast<uint64_t>(places)) << places;
+    const uint64_t expected = std::max(kSlots + kPipeline, rounds * 5 + 5 + kAfter);
+    EXPECT_EQ(expected > kSlots + kPipeline, places < 6) << "both sides of the gate";
+    EXPECT_EQ(bound_of(board, "port left_lut"), expected) << places;
+    EXPECT_EQ(bound_of(board, "port right_lut"), expected) << places;
+    EXPECT_EQ(bound_of(board, "port left_pixel"), kSlots + kPipeline) << places;
   }
+}
+
+TEST(FrameBounds, GiveThePixelPortThePlacesOfTheLaneWhereThereIsNoTable) {
+  BoardConfig board = small_board();
+  board.allocation.left_lut.reset();
+  board.fpga.lane_fifo_slots = 2;
+  const uint64_t rounds = (kSlots - 1) / 2;
+  EXPECT_EQ(bound_of(board, "port left_pixel"), rounds * 3 + 3 + kAfter);
+  EXPECT_EQ(bound_of(board, "port right_pixel"), kSlots + kPipeline);
+  EXPECT_EQ(bound_of(board, "port right_lut"), rounds * 5 + 5 + kAfter);
 }
 
 TEST(FrameBounds, RefuseABoardWithProblems) {
@@ -295,7 +306,7 @@ TEST_P(FewPlaces, TakeLessThanARoundLongerThanTheirBound) {
   PreloadedRun run(named.board, named.tables, 1);
   const Statistics statistics = run.finish();
   const uint64_t bound = largest(named.board, named.tables, 0);
-  EXPECT_EQ(core_bound(named.board, named.tables, 1).core_limited_by, "lane right");
+  EXPECT_EQ(core_bound(named.board, named.tables, 1).core_limited_by, "port right_lut");
   EXPECT_GE(statistics.frame_cycles.at(0), bound);
   EXPECT_LT(statistics.frame_cycles.at(0), bound + static_cast<uint64_t>(named.board.fpga.lane_fifo_slots));
 }
