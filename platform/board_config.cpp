@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "models/kernels/stereo.h"
 #include "platform/board_keys.h"
 #include "platform/board_rules.h"
 
@@ -81,7 +82,7 @@ class FieldChecker {
       }
     } else if (key.path == "matcher.lr_tolerance" && board_.matcher.lr_tolerance) {
       const int value = *board_.matcher.lr_tolerance;
-      if (!kLrToleranceRule.allows(value)) report(key.path, value, key.rule_text);
+      if (!kernels::kLrToleranceRule.allows(value)) report(key.path, value, key.rule_text);
     }
   }
 

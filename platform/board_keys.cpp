@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "models/kernels/stereo.h"
 #include "platform/yaml_tree.h"
 
 namespace stereotlm::platform {
@@ -140,21 +141,21 @@ std::vector<Key> make_keys() {
       other("allocation.disparity", "banks of the result buffers, used in turn", "", list_rule),
       other("allocation.left_lut", "bank of the left rectification table", "", table_rule),
       other("allocation.right_lut", "bank of the right rectification table", "", table_rule),
-      integer("matcher.window", "rows and columns of the matching window", "pixels", {3, 31, 2},
+      integer("matcher.window", "rows and columns of the matching window", "pixels", kernels::kWindowRule,
               member<&B::matcher, &MatcherConfig::window>),
-      integer("matcher.disparities", "number of candidate disparities", "pixels", {1, 254},
+      integer("matcher.disparities", "number of candidate disparities", "pixels", kernels::kDisparitiesRule,
               member<&B::matcher, &MatcherConfig::disparities>),
       other("matcher.filter", "filter before matching", "", "none, log7 or a map of kernel, shift"),
       other("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
-            "a square list of lists, " + kKernelSizeRule.text() + " rows, entries " +
-                kKernelEntryRule.text() + ", sum 0"),
+            "a square list of lists, " + kernels::kKernelSizeRule.text() + " rows, entries " +
+                kernels::kKernelEntryRule.text() + ", sum 0"),
       other("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
-            kShiftRule.text()),
+            kernels::kShiftRule.text()),
       word<&B::matcher, &MatcherConfig::fetch>(
           "matcher.fetch", "how often a pixel is read: in every column of its window, or once",
           {"column", "line_buffer"}),
       other("matcher.lr_tolerance", "difference that the left-right check tolerates", "pixels",
-            kLrToleranceRule.text() + " or off"),
+            kernels::kLrToleranceRule.text() + " or off"),
   };
 }
 
@@ -178,13 +179,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 }  // namespace
-
-std::string IntegerRule::text() const {
-  std::string out = fmt::format("{}..{}", min, max);
-  if (step == 2 && min % 2 != 0) out += ", odd";
-  if (step > 1 && min % step == 0) out += fmt::format(", a multiple of {}", step);
-  return out;
-}
 
 const std::vector<Key>& board_keys() {
   static const std::vector<Key> table = make_keys();

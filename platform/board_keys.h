@@ -6,21 +6,15 @@
 #include <variant>
 #include <vector>
 
+#include "models/kernels/integer_rule.h"
 #include "platform/board_config.h"
 
 namespace stereotlm::platform {
 
+using kernels::IntegerRule;
+
 // What a board file may hold: every key with its rule, once. The reader, the writer, the checks of a
 // BoardConfig and the `keys` command all work from this table.
-struct IntegerRule {
-  std::int64_t min;
-  std::int64_t max;
-  std::int64_t step = 1;  // allowed: min, min + step, ..
-
-  bool allows(std::int64_t value) const { return value >= min && value <= max && (value - min) % step == 0; }
-  std::string text() const;  // "4..2048, a multiple of 4"
-};
-
 struct IntegerKey {
   IntegerRule rule;
   int& (*field)(BoardConfig&);
@@ -76,10 +70,6 @@ std::string listed(const std::vector<std::string>& words);
 
 inline constexpr IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
 inline constexpr IntegerRule kTurnaroundRule{1, 16};
-inline constexpr IntegerRule kKernelSizeRule{3, 31, 2};
-inline constexpr IntegerRule kKernelEntryRule{-32768, 32767};
-inline constexpr IntegerRule kShiftRule{0, 31};
-inline constexpr IntegerRule kLrToleranceRule{0, 253};
 inline constexpr std::size_t kMaximumBanks = 64;
 inline constexpr std::size_t kMaximumBuffers = 3;  // of an image or disparity list
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "models/kernels/stereo.h"
 #include "platform/board_keys.h"
 #include "platform/board_rules.h"
 #include "platform/value_reader.h"
@@ -169,7 +170,8 @@ class BoardReader {
   void read_tolerance(const Key& key, const YamlNode& node) {
     if (node.is_scalar() && node.text == "off") {
       board_.matcher.lr_tolerance = std::nullopt;
-    } else if (const auto value = values_.read_integer(key.path, node, kLrToleranceRule, key.rule_text)) {
+    } else if (const auto value =
+                   values_.read_integer(key.path, node, kernels::kLrToleranceRule, key.rule_text)) {
       board_.matcher.lr_tolerance = *value;
     }
   }
@@ -192,7 +194,8 @@ class BoardReader {
       if (entries->count("shift") > 0) {
         const Key& shift = board_key("matcher.filter.shift");
         filter.shift =
-            values_.read_integer(shift.path, entries->at("shift")->value, kShiftRule, shift.rule_text)
+            values_
+                .read_integer(shift.path, entries->at("shift")->value, kernels::kShiftRule, shift.rule_text)
                 .value_or(0);
       }
       board_.matcher.filter = std::move(filter);
@@ -202,7 +205,7 @@ class BoardReader {
   void read_kernel(const Key& key, const YamlNode& node, kernels::FilterKernel& filter) {
     if (!values_.check_use(key.path, node)) return;
     const auto size = static_cast<std::int64_t>(node.items.size());
-    if (!node.is_list() || !kKernelSizeRule.allows(size)) {
+    if (!node.is_list() || !kernels::kKernelSizeRule.allows(size)) {
       return values_.report(key.path, node, key.rule_text);
     }
     bool all_read = true;
@@ -215,8 +218,8 @@ class BoardReader {
         all_read = false;
       } else {
         for (const YamlNode& item : row.items) {
-          const auto weight =
-              values_.read_integer(key.path, item, kKernelEntryRule, "entries " + kKernelEntryRule.text());
+          const auto weight = values_.read_integer(key.path, item, kernels::kKernelEntryRule,
+                                                   "entries " + kernels::kKernelEntryRule.text());
           all_read = all_read && weight;
           sum += weight.value_or(0);
           filter.weights.push_back(weight.value_or(0));

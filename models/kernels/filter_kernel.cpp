@@ -22,8 +22,8 @@ FilterKernel log7() {
 
 std::vector<std::string> problems(const FilterKernel& kernel) {
   std::vector<std::string> found;
-  if (kernel.size < 3 || kernel.size > 31 || kernel.size % 2 == 0) {
-    found.push_back("kernel size = " + std::to_string(kernel.size) + ": must be odd, 3..31");
+  if (!kKernelSizeRule.allows(kernel.size)) {
+    found.push_back(kKernelSizeRule.problem("kernel size", kernel.size));
   }
   const auto expected = static_cast<std::size_t>(kernel.size) * static_cast<std::size_t>(kernel.size);
   if (kernel.size > 0 && kernel.weights.size() != expected) {
@@ -31,15 +31,11 @@ std::vector<std::string> problems(const FilterKernel& kernel) {
                     std::to_string(kernel.size) + " rows of " + std::to_string(kernel.size));
   }
   for (const int weight : kernel.weights) {
-    if (weight < -32768 || weight > 32767) {
-      found.push_back("kernel entry = " + std::to_string(weight) + ": must be -32768..32767");
-    }
+    if (!kKernelEntryRule.allows(weight)) found.push_back(kKernelEntryRule.problem("kernel entry", weight));
   }
   const auto sum = std::accumulate(kernel.weights.begin(), kernel.weights.end(), std::int64_t{0});
   if (sum != 0) found.push_back("kernel sum = " + std::to_string(sum) + ": must be 0");
-  if (kernel.shift < 0 || kernel.shift > 31) {
-    found.push_back("shift = " + std::to_string(kernel.shift) + ": must be 0..31");
-  }
+  if (!kShiftRule.allows(kernel.shift)) found.push_back(kShiftRule.problem("shift", kernel.shift));
   return found;
 }
 

@@ -1,21 +1,29 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "models/kernels/integer_rule.h"
+
 namespace stereotlm::kernels {
+
+inline constexpr IntegerRule kKernelSizeRule{3, 31, 2};
+inline constexpr IntegerRule kKernelEntryRule{-32768, 32767};
+inline constexpr IntegerRule kShiftRule{0, 31};
 
 // An integer convolution kernel of contract 1.2: F = clamp(128 + floor(S / 2^shift), 0, 255), S the
 // correlation of the kernel with the image, coordinates clamped to the image.
 struct FilterKernel {
-  int size = 0;              // m: rows and columns, odd, 3..31
+  int size = 0;              // m: rows and columns, kKernelSizeRule
   std::vector<int> weights;  // size * size, rows from j = -h (top), in each i = -h (left)
-                             // first; each -32768..32767, sum 0
-  int shift = 0;             // 0..31
+                             // first; each kKernelEntryRule, sum 0
+  int shift = 0;             // kShiftRule
 
   int half() const { return (size - 1) / 2; }  // h
   int weight(int column, int row) const {      // 0..size-1 each, from the top left
-    return weights[static_cast<std::size_t>(row * size + column)];
+    return weights[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
+                   static_cast<std::size_t>(column)];
   }
   friend bool operator==(const FilterKernel& a, const FilterKernel& b) {
     return a.size == b.size && a.weights == b.weights && a.shift == b.shift;

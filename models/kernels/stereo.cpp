@@ -25,14 +25,12 @@ void require_one_size(const GrayImage& left, const GrayImage& right) {
 
 std::vector<std::string> problems(const StereoConfig& config) {
   std::vector<std::string> found;
-  if (config.window < 3 || config.window > 31 || config.window % 2 == 0) {
-    found.push_back("window = " + std::to_string(config.window) + ": must be odd, 3..31");
+  if (!kWindowRule.allows(config.window)) found.push_back(kWindowRule.problem("window", config.window));
+  if (!kDisparitiesRule.allows(config.disparities)) {
+    found.push_back(kDisparitiesRule.problem("disparities", config.disparities));
   }
-  if (config.disparities < 1 || config.disparities > 254) {
-    found.push_back("disparities = " + std::to_string(config.disparities) + ": must be 1..254");
-  }
-  if (config.lr_tolerance && (*config.lr_tolerance < 0 || *config.lr_tolerance > 253)) {
-    found.push_back("lr_tolerance = " + std::to_string(*config.lr_tolerance) + ": must be 0..253");
+  if (config.lr_tolerance && !kLrToleranceRule.allows(*config.lr_tolerance)) {
+    found.push_back(kLrToleranceRule.problem("lr_tolerance", *config.lr_tolerance));
   }
   if (config.filter) {
     for (const std::string& problem : problems(*config.filter)) found.push_back("filter: " + problem);

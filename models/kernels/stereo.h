@@ -6,17 +6,22 @@
 
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/gray_image.h"
+#include "models/kernels/integer_rule.h"
 #include "models/kernels/rectification_table.h"
 
 namespace stereotlm::kernels {
 
+inline constexpr IntegerRule kWindowRule{3, 31, 2};
+inline constexpr IntegerRule kDisparitiesRule{1, 254};
+inline constexpr IntegerRule kLrToleranceRule{0, 253};
+
 // The whole of contract section 1 on whole images, by the same kernels that the modules of the FPGA run,
-// without memories and time. Disparity images hold 255 where there is none.
+// without memories and time. Disparity images hold kInvalidDisparity where there is none.
 struct StereoConfig {
-  int window = 7;        // n: odd, 3..31
-  int disparities = 80;  // D: 1..254
+  int window = 7;        // n: kWindowRule
+  int disparities = 80;  // D: kDisparitiesRule
   std::optional<FilterKernel> filter = log7();
-  std::optional<int> lr_tolerance = 0;  // 0..253; nullopt: no check
+  std::optional<int> lr_tolerance = 0;  // kLrToleranceRule; nullopt: no check
 };
 
 // Every broken rule as `field = value: rule`.

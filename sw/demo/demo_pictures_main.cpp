@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
@@ -51,8 +52,10 @@ void prepare(const fs::path& source, const fs::path& out) {
 int parse_disparities(std::string_view text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > 254) {
-    throw std::invalid_argument("DISPARITIES = " + std::string(text) + ": must be an integer from 1 to 254");
+  const kernels::IntegerRule& rule = kernels::kDisparitiesRule;
+  if (error != std::errc() || end != text.data() + text.size() || !rule.allows(value)) {
+    throw std::invalid_argument("DISPARITIES = " + std::string(text) + ": must be an integer, " +
+                                rule.text());
   }
   return value;
 }

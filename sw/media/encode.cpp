@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "models/kernels/stereo.h"
+#include "models/kernels/words.h"
 #include "sw/media/color_map.h"
 
 namespace stereotlm::media {
@@ -30,8 +32,8 @@ std::vector<std::uint8_t> encode_png(const cv::Mat& picture) {
 }
 
 cv::Mat in_colors(const kernels::GrayImage& disparity, int disparities) {
-  if (disparities < 1 || disparities > 254) {
-    throw std::invalid_argument(fmt::format("disparities = {}: must be 1..254", disparities));
+  if (!kernels::kDisparitiesRule.allows(disparities)) {
+    throw std::invalid_argument(kernels::kDisparitiesRule.problem("disparities", disparities));
   }
   cv::Mat levels(1, disparities, CV_8UC1);
   for (int d = 0; d < disparities; ++d) {
@@ -45,10 +47,10 @@ cv::Mat in_colors(const kernels::GrayImage& disparity, int disparities) {
   for (int y = 0; y < disparity.height; ++y) {
     for (int x = 0; x < disparity.width; ++x) {
       const int d = disparity.at(x, y);
-      if (d == kInvalidDisparity) continue;
+      if (d == kernels::kInvalidDisparity) continue;
       if (d >= disparities) {
-        throw std::invalid_argument(
-            fmt::format("disparity ({}, {}) = {}: must be 255 or less than {}", x, y, d, disparities));
+        throw std::invalid_argument(fmt::format("disparity ({}, {}) = {}: must be {} or less than {}", x, y,
+                                                d, kernels::kInvalidDisparity, disparities));
       }
       result.at<cv::Vec3b>(y, x) = colors.at<cv::Vec3b>(d);
     }
@@ -71,7 +73,7 @@ std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {
     for (int x = 0; x < disparity.width; ++x) {
       const int d = disparity.at(x, y);
       const float value =
-          d == kInvalidDisparity ? std::numeric_limits<float>::infinity() : static_cast<float>(d);
+          d == kernels::kInvalidDisparity ? std::numeric_limits<float>::infinity() : static_cast<float>(d);
       std::uint32_t bits = 0;
       std::memcpy(&bits, &value, sizeof bits);
       for (unsigned shift = 0; shift < 32; shift += 8)
@@ -82,7 +84,7 @@ std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {
 }
 
 kernels::GrayImage nearest_disparity(const Truth& truth, int disparities) {
-  kernels::GrayImage result(truth.grey.width, truth.grey.height, kInvalidDisparity);
+  kernels::GrayImage result(truth.grey.width, truth.grey.height, kernels::kInvalidDisparity);
   for (std::size_t i = 0; i < truth.grey.pixels.size(); ++i) {
     const double nearest = std::floor(truth.grey.pixels[i] / truth.scale + 0.5);
     if (truth.grey.pixels[i] != 0 && nearest < disparities)

@@ -9,15 +9,13 @@
 
 namespace stereotlm::media {
 
-// Files as bytes in memory. In a disparity image 255 = invalid. An empty image is refused with
-// std::invalid_argument. The same image gives the same bytes.
-
-inline constexpr std::uint8_t kInvalidDisparity = 255;
+// Files as bytes in memory. In a disparity image kernels::kInvalidDisparity is invalid. An empty image is
+// refused with std::invalid_argument. The same image gives the same bytes.
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
 
 // 0 .. disparities-1 from dark blue to dark red (Turbo), invalid black. A value that is neither is refused
-// with std::invalid_argument. disparities: 1..254.
+// with std::invalid_argument. disparities: kernels::kDisparitiesRule.
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities);
 
 // Portable float map: one channel, little endian (scale -1.0), rows bottom to top, invalid = +infinity.

@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "models/kernels/words.h"
+
 namespace stereotlm::report {
 namespace {
-
-constexpr int kInvalidDisparity = 255;
 
 // Column of the right picture that a left pixel is seen at; outside 0..width-1 if it is not in the picture.
 double right_column(int x, int grey, double scale) { return std::floor(x - grey / scale + 0.5); }
@@ -64,7 +64,7 @@ Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth
       if (!counts[static_cast<std::size_t>(x)]) continue;
       ++visible;
       const int d = disparity.at(x, y);
-      if (d == kInvalidDisparity) continue;
+      if (d == kernels::kInvalidDisparity) continue;
       ++answered;
       const double error = std::abs(d - truth.grey.at(x, y) / truth.scale);
       bad_1 += error > 1 ? 1U : 0U;

@@ -14,8 +14,8 @@ struct Accuracy {
   std::optional<double> answered_percent;  // of the known pixels that are not occluded
 };
 
-// `disparity`: left-referenced, 255 = invalid (not answered). Throws std::invalid_argument if the sizes
-// differ.
+// `disparity`: left-referenced; kernels::kInvalidDisparity is not answered. Throws std::invalid_argument if
+// the sizes differ.
 Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth);
 
 }  // namespace stereotlm::report

@@ -39,7 +39,7 @@ TEST(FilterKernel, HasAnOddSizeOf3To31) {
   for (const int size : {3, 5, 29, 31}) EXPECT_EQ(problems(zeros(size)), Problems()) << size;
   for (const int size : {0, 1, 2, 4, 30, 32, 33}) {
     EXPECT_EQ(problems(zeros(size)),
-              Problems{"kernel size = " + std::to_string(size) + ": must be odd, 3..31"});
+              Problems{"kernel size = " + std::to_string(size) + ": must be 3..31, odd"});
   }
 }
 

@@ -202,7 +202,7 @@ TEST(StereoConfig, IsInRange) {
   EXPECT_EQ(found(31, 254, 253), Problems());
   EXPECT_EQ(found(7, 80, std::nullopt), Problems());
   for (const int window : {1, 2, 4, 30, 32, 33})
-    EXPECT_EQ(found(window, 80, 0), Problems{"window = " + std::to_string(window) + ": must be odd, 3..31"});
+    EXPECT_EQ(found(window, 80, 0), Problems{"window = " + std::to_string(window) + ": must be 3..31, odd"});
   for (const int disparities : {0, 255})
     EXPECT_EQ(found(7, disparities, 0),
               Problems{"disparities = " + std::to_string(disparities) + ": must be 1..254"});

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/kernels/words.h"
+
 namespace stereotlm::media {
 namespace {
 
@@ -31,7 +33,7 @@ TEST(EncodePngGray, ReadsBackAsEightBitGrey) {
 
 TEST(EncodeDisparityColorPng, SpreadsTurboOverTheDisparities) {
   kernels::GrayImage disparity(4, 1);
-  disparity.pixels = {0, 40, 80, kInvalidDisparity};
+  disparity.pixels = {0, 40, 80, kernels::kInvalidDisparity};
   const cv::Mat read = cv::imdecode(encode_disparity_color_png(disparity, 81), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(read.type(), CV_8UC3);
   const cv::Mat levels = (cv::Mat_<std::uint8_t>(1, 3) << 0, 128, 255);
@@ -52,7 +54,7 @@ TEST(EncodeDisparityColorPng, TakesDisparitiesBelowTheirNumberOnly) {
 
 TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
   kernels::GrayImage disparity(2, 2);
-  disparity.pixels = {0, 1, kInvalidDisparity, 79};
+  disparity.pixels = {0, 1, kernels::kInvalidDisparity, 79};
   const auto bytes = encode_pfm(disparity);
   const std::string expected(
       "Pf\n2 2\n-1.0\n\x00\x00\x80\x7F\x00\x00\x9E\x42\x00\x00\x00\x00\x00\x00\x80\x3F", 28);
@@ -62,7 +64,7 @@ TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
 TEST(EncodePfm, IsReadByOpenCV) {
   kernels::GrayImage disparity(5, 3, 7);
   disparity.at(1, 0) = 12;
-  disparity.at(4, 2) = kInvalidDisparity;
+  disparity.at(4, 2) = kernels::kInvalidDisparity;
   const cv::Mat read = cv::imdecode(encode_pfm(disparity), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(read.type(), CV_32FC1);
   ASSERT_EQ(read.size(), cv::Size(5, 3));
@@ -84,8 +86,9 @@ TEST(Encoders, RefuseAnImageThatIsEmptyOrNotWhole) {
 TEST(NearestDisparity, RoundsTheTruthAndLeavesOutWhatCannotBeSearched) {
   kernels::GrayImage grey(6, 1);
   grey.pixels = {0, 1, 2, 13, 14, 255};  // scale 4: unknown, 0.25, 0.5, 3.25, 3.5, 63.75
-  EXPECT_EQ(nearest_disparity({grey, 4}, 4).pixels,
-            (std::vector<std::uint8_t>{255, 0, 1, 3, kInvalidDisparity, kInvalidDisparity}));
+  EXPECT_EQ(
+      nearest_disparity({grey, 4}, 4).pixels,
+      (std::vector<std::uint8_t>{255, 0, 1, 3, kernels::kInvalidDisparity, kernels::kInvalidDisparity}));
   EXPECT_EQ(nearest_disparity({grey, 4}, 5).pixels[4], 4);
 }
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace stereotlm::kernels {
+
+// What an integer field of a configuration may hold: min, min + step, .. up to max.
+struct IntegerRule {
+  std::int64_t min;
+  std::int64_t max;
+  std::int64_t step = 1;
+
+  constexpr bool allows(std::int64_t value) const {
+    return value >= min && value <= max && (value - min) % step == 0;
+  }
+
+  // "4..2048, a multiple of 4"
+  std::string text() const {
+    std::string out = std::to_string(min) + ".." + std::to_string(max);
+    if (step == 2 && min % 2 != 0) out += ", odd";
+    if (step > 1 && min % step == 0) out += ", a multiple of " + std::to_string(step);
+    return out;
+  }
+
+  // "window = 4: must be 3..31, odd"
+  std::string problem(const std::string& field, std::int64_t value) const {
+    return field + " = " + std::to_string(value) + ": must be " + text();
+  }
+};
+
+}  // namespace stereotlm::kernels
