@@ -128,8 +128,8 @@ BoardCounters counters_of(const Board& board) {
     counters.banks.push_back(
         {arbiter.stats(), arbiter.uncounted_accesses(), stats.reads + stats.writes + stats.errors});
   }
-  counters.left = {core.sequencer().stats(fpga::Side::kLeft).slots, core.control().consumed_left()};
-  counters.right = {core.sequencer().stats(fpga::Side::kRight).slots, core.control().consumed_right()};
+  counters.left = {core.sequencer().stats(fpga::Side::kLeft).slots, core.control().left().consumed()};
+  counters.right = {core.sequencer().stats(fpga::Side::kRight).slots, core.control().right().consumed()};
   counters.packed_words = core.result_packer().stats().words;
   counters.written_words = core.result_writer().stats().writes;
   return counters;
