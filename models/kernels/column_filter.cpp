@@ -28,10 +28,7 @@ ColumnFilter::ColumnFilter(int width, int height, int rows_per_column,
     throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
                                 ": must have pixels");
   }
-  if (rows_per_column < 1 || rows_per_column > kMostRows) {
-    throw std::invalid_argument("rows_per_column = " + std::to_string(rows_per_column) + ": must be 1.." +
-                                std::to_string(kMostRows));
-  }
+  IntegerRule{1, kMostRows}.required("rows_per_column", rows_per_column);
   if (kernel_) {
     if (const auto found = problems(*kernel_); !found.empty()) throw std::invalid_argument(found.front());
     half_ = kernel_->half();

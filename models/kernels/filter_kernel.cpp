@@ -22,20 +22,16 @@ FilterKernel log7() {
 
 std::vector<std::string> problems(const FilterKernel& kernel) {
   std::vector<std::string> found;
-  if (!kKernelSizeRule.allows(kernel.size)) {
-    found.push_back(kKernelSizeRule.problem("kernel size", kernel.size));
-  }
+  kKernelSizeRule.check("kernel size", kernel.size, found);
   const auto expected = static_cast<std::size_t>(kernel.size) * static_cast<std::size_t>(kernel.size);
   if (kernel.size > 0 && kernel.weights.size() != expected) {
     found.push_back("kernel entries = " + std::to_string(kernel.weights.size()) + ": must be " +
                     std::to_string(kernel.size) + " rows of " + std::to_string(kernel.size));
   }
-  for (const int weight : kernel.weights) {
-    if (!kKernelEntryRule.allows(weight)) found.push_back(kKernelEntryRule.problem("kernel entry", weight));
-  }
+  for (const int weight : kernel.weights) kKernelEntryRule.check("kernel entry", weight, found);
   const auto sum = std::accumulate(kernel.weights.begin(), kernel.weights.end(), std::int64_t{0});
   if (sum != 0) found.push_back("kernel sum = " + std::to_string(sum) + ": must be 0");
-  if (!kShiftRule.allows(kernel.shift)) found.push_back(kShiftRule.problem("shift", kernel.shift));
+  kShiftRule.check("shift", kernel.shift, found);
   return found;
 }
 

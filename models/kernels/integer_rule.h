@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace stereotlm::kernels {
 
@@ -26,6 +28,14 @@ struct IntegerRule {
   // "window = 4: must be 3..31, odd"
   std::string problem(const std::string& field, std::int64_t value) const {
     return field + " = " + std::to_string(value) + ": must be " + text();
+  }
+  void check(const std::string& field, std::int64_t value, std::vector<std::string>& problems) const {
+    if (!allows(value)) problems.push_back(problem(field, value));
+  }
+  // Throws std::invalid_argument if the value is not allowed; else returns it.
+  int required(const std::string& field, int value) const {
+    if (!allows(value)) throw std::invalid_argument(problem(field, value));
+    return value;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "models/kernels/limits.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -23,7 +24,11 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
 // long.
 class LrCheck {
  public:
-  LrCheck(int disparities, std::optional<int> tolerance) : delay_(disparities - 1), tolerance_(tolerance) {}
+  // Throws std::invalid_argument outside kDisparitiesRule and kLrToleranceRule.
+  LrCheck(int disparities, std::optional<int> tolerance)
+      : delay_(kDisparitiesRule.required("disparities", disparities) - 1), tolerance_(tolerance) {
+    if (tolerance) kLrToleranceRule.required("lr_tolerance", *tolerance);
+  }
 
   void start_frame() { time_ = 0; }
 

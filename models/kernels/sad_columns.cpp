@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "models/kernels/limits.h"
+
 namespace stereotlm::kernels {
 namespace {
 
@@ -11,8 +13,8 @@ constexpr int kColumnsBetweenMoves = 1024;
 }  // namespace
 
 SadColumns::SadColumns(int window, int disparities)
-    : window_(window),
-      lanes_(padded_lanes(disparities)),
+    : window_(kWindowRule.required("window", window)),
+      lanes_(padded_lanes(kDisparitiesRule.required("disparities", disparities))),
       right_histories_(static_cast<std::size_t>(window) *
                        static_cast<std::size_t>(kColumnsBetweenMoves + lanes_)),
       newest_(static_cast<std::size_t>(window)),

@@ -21,6 +21,7 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
 // ends at this column.
 class SadColumns {
  public:
+  // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
   SadColumns(int window, int disparities);
 
   void start_frame();

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "models/kernels/limits.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -23,7 +24,7 @@ std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, in
 }
 
 SelectMinChain::SelectMinChain(int disparities)
-    : disparities_(disparities),
+    : disparities_(kDisparitiesRule.required("disparities", disparities)),
       lanes_(padded_lanes(disparities)),
       held_(kBefore + disparities),
       next_(kBefore + disparities) {

@@ -18,6 +18,7 @@ std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, in
 // matching.
 class SelectMinChain {
  public:
+  // Throws std::invalid_argument outside kDisparitiesRule.
   explicit SelectMinChain(int disparities);
 
   void start_frame();

@@ -25,13 +25,9 @@ void require_one_size(const GrayImage& left, const GrayImage& right) {
 
 std::vector<std::string> problems(const StereoConfig& config) {
   std::vector<std::string> found;
-  if (!kWindowRule.allows(config.window)) found.push_back(kWindowRule.problem("window", config.window));
-  if (!kDisparitiesRule.allows(config.disparities)) {
-    found.push_back(kDisparitiesRule.problem("disparities", config.disparities));
-  }
-  if (config.lr_tolerance && !kLrToleranceRule.allows(*config.lr_tolerance)) {
-    found.push_back(kLrToleranceRule.problem("lr_tolerance", *config.lr_tolerance));
-  }
+  kWindowRule.check("window", config.window, found);
+  kDisparitiesRule.check("disparities", config.disparities, found);
+  if (config.lr_tolerance) kLrToleranceRule.check("lr_tolerance", *config.lr_tolerance, found);
   if (config.filter) {
     for (const std::string& problem : problems(*config.filter)) found.push_back("filter: " + problem);
   }

@@ -6,14 +6,10 @@
 
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/gray_image.h"
-#include "models/kernels/integer_rule.h"
+#include "models/kernels/limits.h"
 #include "models/kernels/rectification_table.h"
 
 namespace stereotlm::kernels {
-
-inline constexpr IntegerRule kWindowRule{3, 31, 2};
-inline constexpr IntegerRule kDisparitiesRule{1, 254};
-inline constexpr IntegerRule kLrToleranceRule{0, 253};
 
 // The whole of contract section 1 on whole images, by the same kernels that the modules of the FPGA run,
 // without memories and time. Disparity images hold kInvalidDisparity where there is none.

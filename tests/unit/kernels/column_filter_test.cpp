@@ -144,5 +144,18 @@ TEST(ColumnFilter, RefusesABrokenKernel) {
   EXPECT_THROW(ColumnFilter(8, 8, 3, kernel), std::invalid_argument);
 }
 
+TEST(ColumnFilter, RefusesColumnsOfNoRowsOrTooMany) {
+  EXPECT_NO_THROW(ColumnFilter(8, 8, 1, std::nullopt));
+  EXPECT_NO_THROW(ColumnFilter(8, 8, kMostRows, std::nullopt));
+  EXPECT_THROW(ColumnFilter(8, 8, 0, std::nullopt), std::invalid_argument);
+  EXPECT_THROW(ColumnFilter(8, 8, kMostRows + 1, std::nullopt), std::invalid_argument);
+}
+
+TEST(ColumnFilter, RefusesAnImageWithoutPixels) {
+  EXPECT_NO_THROW(ColumnFilter(1, 1, 3, log7()));
+  EXPECT_THROW(ColumnFilter(0, 8, 3, log7()), std::invalid_argument);
+  EXPECT_THROW(ColumnFilter(8, 0, 3, log7()), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace stereotlm::kernels

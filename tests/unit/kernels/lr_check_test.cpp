@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <vector>
 
 #include "tests/support/random_board.h"
@@ -89,6 +90,15 @@ TEST(LrCheck, StreamsWithADelayOfTheDisparities) {
       }
     }
   }
+}
+
+TEST(LrCheck, RefusesDisparitiesOrToleranceOutsideTheirRange) {
+  EXPECT_NO_THROW(LrCheck(1, 0));
+  EXPECT_NO_THROW(LrCheck(254, 253));
+  EXPECT_THROW(LrCheck(0, 0), std::invalid_argument);
+  EXPECT_THROW(LrCheck(255, 0), std::invalid_argument);
+  EXPECT_THROW(LrCheck(8, -1), std::invalid_argument);
+  EXPECT_THROW(LrCheck(8, 254), std::invalid_argument);
 }
 
 }  // namespace

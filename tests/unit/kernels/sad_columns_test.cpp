@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,15 @@ TEST(SadColumns, HoldTheLargestSum) {
   const std::vector<std::uint8_t> black(31, 0);
   for (int column = 0; column < 300; ++column) sums.push_column(white.data(), black.data());
   for (int d = 0; d < 254; ++d) ASSERT_EQ(sums.window_sums()[d], 31 * 31 * 255);
+}
+
+TEST(SadColumns, RefusesAWindowOrDisparitiesOutsideTheirRange) {
+  EXPECT_NO_THROW(SadColumns(3, 1));
+  EXPECT_NO_THROW(SadColumns(31, 254));
+  for (const auto& [window, disparities] :
+       {std::pair(1, 8), std::pair(4, 8), std::pair(33, 8), std::pair(3, 0), std::pair(3, 255)}) {
+    EXPECT_THROW(SadColumns(window, disparities), std::invalid_argument) << window << ", " << disparities;
+  }
 }
 
 TEST(CandidateCount, CountsTheWindowsInsideBothImages) {

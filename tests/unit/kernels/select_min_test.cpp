@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,13 @@ TEST(SelectMinChain, EqualsALoopOverTheDiagonal) {
       }
     }
   }
+}
+
+TEST(SelectMinChain, RefusesDisparitiesOutsideTheirRange) {
+  EXPECT_NO_THROW(SelectMinChain(1));
+  EXPECT_NO_THROW(SelectMinChain(254));
+  EXPECT_THROW(SelectMinChain(0), std::invalid_argument);
+  EXPECT_THROW(SelectMinChain(255), std::invalid_argument);
 }
 
 TEST(SelectMinChain, ForgetsThePreviousFrame) {

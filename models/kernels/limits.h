@@ -1,0 +1,12 @@
+#pragma once
+
+#include "models/kernels/integer_rule.h"
+
+// What the arithmetic of contract section 1 allows.
+namespace stereotlm::kernels {
+
+inline constexpr IntegerRule kWindowRule{3, 31, 2};
+inline constexpr IntegerRule kDisparitiesRule{1, 254};
+inline constexpr IntegerRule kLrToleranceRule{0, 253};
+
+}  // namespace stereotlm::kernels
