@@ -22,11 +22,12 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
       clock_(config.banks.empty() ? 1 : config.banks.front().clock_mhz),
       request_event_("request") {
   auto found = problems(config.arbiter);
-  if (config.banks.empty() || config.banks.size() > 64) {
-    found.push_back("banks = " + std::to_string(config.banks.size()) + ": must be 1..64");
-  }
+  kBankCountRule.check("banks", static_cast<std::int64_t>(config.banks.size()), found);
   for (const SsramBankConfig& bank : config.banks) {
     for (const std::string& problem : problems(bank)) found.push_back(problem);
+    if (bank.clock_mhz != config.banks.front().clock_mhz) {
+      found.push_back("clock_mhz = " + std::to_string(bank.clock_mhz) + ": must be the same for all banks");
+    }
   }
   if (!found.empty()) throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
   for (std::size_t port = 0; port < kPortCount; ++port) {

@@ -3,21 +3,14 @@
 #include <algorithm>
 
 namespace stereotlm::memory {
-namespace {
-
-constexpr std::uint32_t kMostWords = 1U << 26U;
-
-}  // namespace
 
 std::vector<std::string> problems(const SsramBankConfig& config) {
   std::vector<std::string> found;
-  if (config.words < 1 || config.words > kMostWords) {
-    found.push_back("words = " + std::to_string(config.words) + ": must be 1..67108864");
-  }
+  kBankWordsRule.check("words", config.words, found);
   const bool turns = config.kind == BankKind::kSyncBurst;
-  if (turns ? config.turnaround_cycles < 1 || config.turnaround_cycles > 16 : config.turnaround_cycles != 0) {
-    found.push_back("turnaround_cycles = " + std::to_string(config.turnaround_cycles) +
-                    ": must be 1..16 with sync_burst, else 0");
+  if (turns ? !kTurnaroundRule.allows(config.turnaround_cycles) : config.turnaround_cycles != 0) {
+    found.push_back("turnaround_cycles = " + std::to_string(config.turnaround_cycles) + ": must be " +
+                    kTurnaroundRule.text() + " with sync_burst, else 0");
   }
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");

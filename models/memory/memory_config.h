@@ -6,7 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "models/kernels/integer_rule.h"
+
 namespace stereotlm::memory {
+
+inline constexpr kernels::IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
+inline constexpr kernels::IntegerRule kTurnaroundRule{1, 16};
+inline constexpr kernels::IntegerRule kBankCountRule{1, 64};
 
 // The six ports of the FPGA on the SSRAM banks, in the order in which results list them.
 enum class Port : std::uint8_t { kLeftLut, kRightLut, kLeftPixel, kRightPixel, kResult, kHost };
@@ -37,9 +43,9 @@ struct ArbiterConfig {
 };
 
 struct SsramBankConfig {
-  std::uint32_t words = 524288;  // 32-bit words, 1..2^26
+  std::uint32_t words = 524288;  // 32-bit words, kBankWordsRule
   BankKind kind = BankKind::kZbtPipelined;
-  int turnaround_cycles = 0;  // 1..16 for kSyncBurst; 0 and without effect for the others
+  int turnaround_cycles = 0;  // kTurnaroundRule for kSyncBurst; 0 and without effect for the others
   double clock_mhz = 40;      // of the bank's only clock, 1..1000
 };
 

@@ -203,6 +203,30 @@ TEST(BankArbiter, CountsOnlyAccessesOutsideTheCountedCycles) {
   EXPECT_EQ(stats.idle_cycles, 2U);  // 11 and 20
 }
 
+TEST(BankArbiter, CountsGrantsToAPortAloneWhereverTheyLay) {
+  const ArbiterConfig config{ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority};
+  BankArbiter arbiter(config, 0);
+  const PortMask left = mask_of(Port::kLeftPixel);
+  const PortMask result = mask_of(Port::kResult);
+  arbiter.grant_alone(left, false, 7);
+  EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
+  arbiter.begin_counting(10);
+  arbiter.grant_alone(left, false, 4);
+  arbiter.grant_alone(result, true, 1);
+  arbiter.grant_alone(left, false, 0);
+  // The place is behind the result port, the last that was granted.
+  EXPECT_EQ(arbiter.arbitrate(17, static_cast<PortMask>(left | result), result), left);
+  arbiter.grant_alone(left, false, 2);
+  arbiter.end_counting(30);
+  const ArbiterStats stats = arbiter.stats();
+  EXPECT_EQ(stats.reads, 7U);
+  EXPECT_EQ(stats.writes, 1U);
+  EXPECT_EQ(stats.idle_cycles, 12U);
+  EXPECT_EQ(stats.contended_cycles, 1U);
+  EXPECT_EQ(stats.grants[index_of(Port::kLeftPixel)], 7U);
+  EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
+}
+
 TEST(BankArbiter, RemembersDirectionAndPlaceBetweenCountedPeriods) {
   const ArbiterConfig config{ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority};
   BankArbiter arbiter(config, 3);

@@ -137,6 +137,23 @@ TEST_F(CrossbarStages, ShareABankOneAtATime) {
   EXPECT_EQ(crossbar->arbiters()[kFlowThrough].stats().idle_cycles, 4U);
 }
 
+TEST_F(CrossbarStages, KeepTheirRoundRobinPlaceFromTheTimeAloneOnABank) {
+  build({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority});
+  crossbar->route(Port::kResult, kFlowThrough, true);
+  crossbar->route(Port::kLeftPixel, kPipelined, false);
+  crossbar->begin_counting(0);
+  EXPECT_EQ(arbitrate(0, both(kLeft, kResult)), both(kLeft, kResult));
+  EXPECT_EQ(arbitrate(2, kLeft), kLeft);
+  crossbar->end_counting(4);
+  EXPECT_EQ(crossbar->arbiters()[kPipelined].stats().reads, 2U);
+  EXPECT_EQ(crossbar->arbiters()[kPipelined].stats().idle_cycles, 2U);
+  EXPECT_EQ(crossbar->arbiters()[kFlowThrough].stats().writes, 1U);
+  // The search of the list begins behind the left pixel port: the right one comes before the result.
+  crossbar->route(Port::kResult, kPipelined, true);
+  crossbar->route(Port::kRightPixel, kPipelined, false);
+  EXPECT_EQ(arbitrate(4, both(both(kLeft, kRight), kResult)), kRight);
+}
+
 TEST_F(CrossbarStages, DoNotMeetInDifferentBanks) {
   build();
   crossbar->route(Port::kLeftPixel, kPipelined, false);
@@ -236,6 +253,8 @@ TEST(Crossbar, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(Crossbar("b", CrossbarConfig{twice, {{16}}}), std::invalid_argument);
   EXPECT_THROW(Crossbar("c", CrossbarConfig{sound, {{0}}}), std::invalid_argument);
   EXPECT_THROW(Crossbar("d", CrossbarConfig{sound, std::vector<SsramBankConfig>(65)}), std::invalid_argument);
+  EXPECT_THROW(Crossbar("f", CrossbarConfig{sound, {{16}, {16, BankKind::kZbtPipelined, 0, 50}}}),
+               std::invalid_argument);
   EXPECT_NO_THROW(Crossbar("e", CrossbarConfig{sound, std::vector<SsramBankConfig>(64)}));
 }
 
