@@ -100,7 +100,7 @@ class FieldChecker {
   }
 
   void check_banks() {
-    if (board_.banks.empty() || board_.banks.size() > kMaximumBanks) {
+    if (!memory::kBankCountRule.allows(static_cast<std::int64_t>(board_.banks.size()))) {
       report("ssram.banks", fmt::format("{} banks", board_.banks.size()), rule_text("ssram.banks"));
     }
     std::set<std::string> names;
@@ -108,14 +108,15 @@ class FieldChecker {
       const std::string path = "ssram.banks." + bank.name;
       if (!is_bank_name(bank.name)) report("ssram.banks", bank.name, kBankNameRule);
       if (!names.insert(bank.name).second) report("ssram.banks", bank.name, "repeated name");
-      if (!kBankWordsRule.allows(bank.words)) report(path + ".words", bank.words, kBankWordsRule.text());
+      if (!memory::kBankWordsRule.allows(bank.words))
+        report(path + ".words", bank.words, memory::kBankWordsRule.text());
       const auto kind = static_cast<std::size_t>(bank.kind);
       if (kind >= memory::kBankKindNames.size()) {
         report(path + ".kind", kind, board_key("ssram.banks.NAME.kind").rule_text);
       } else if (bank.kind == memory::BankKind::kSyncBurst) {
-        if (!kTurnaroundRule.allows(bank.turnaround_cycles)) {
+        if (!memory::kTurnaroundRule.allows(bank.turnaround_cycles)) {
           report(path + ".turnaround_cycles", bank.turnaround_cycles,
-                 kTurnaroundRule.text() + " for sync_burst");
+                 memory::kTurnaroundRule.text() + " for sync_burst");
         }
       } else if (bank.turnaround_cycles != 0) {
         report(path + ".turnaround_cycles", bank.turnaround_cycles,

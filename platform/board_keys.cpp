@@ -72,7 +72,7 @@ std::vector<Key> make_keys() {
   const std::string table_rule = "a bank or none";
   const std::string kinds = listed(names(memory::kBankKindNames));
   const std::string turnaround_rule =
-      kTurnaroundRule.text() + "; required where the kind is sync_burst, refused beside another";
+      memory::kTurnaroundRule.text() + "; required where the kind is sync_burst, refused beside another";
   Key trigger_words =
       integer("capture.fifo_trigger_words", "words in the FIFO at which it asks for the PCI bus", "words",
               {1, 4096}, member<&B::capture, &CaptureConfig::fifo_trigger_words>);
@@ -81,9 +81,9 @@ std::vector<Key> make_keys() {
       other("name", "the board's name, as results give it", "",
             "a text of one or more characters without control characters; quoted if it could be read as "
             "a number, a truth value or null"),
-      integer("image.width", "width of the images", "pixels", {4, 2048, 4},
+      integer("image.width", "width of the images", "pixels", fpga::kWidthRule,
               member<&B::image, &ImageConfig::width>),
-      integer("image.height", "height of the images", "pixels", {1, 2048},
+      integer("image.height", "height of the images", "pixels", fpga::kHeightRule,
               member<&B::image, &ImageConfig::height>),
       decimal("cameras.frame_rate_hz", "frame rate of both cameras", "Hz", 0.1, 1000,
               member<&B::cameras, &CamerasConfig::frame_rate_hz>),
@@ -122,17 +122,17 @@ std::vector<Key> make_keys() {
             fmt::format("a list that names each of the six ports once: {}",
                         fmt::join(memory::kPortNames, ", "))),
       integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
-              {1, 64}, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
-      integer("fpga.result_fifo_words", "queue of result words before the result port", "words", {1, 64},
-              member<&B::fpga, &FpgaConfig::result_fifo_words>),
+              fpga::kLaneFifoRule, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
+      integer("fpga.result_fifo_words", "queue of result words before the result port", "words",
+              fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
       integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
-              "cycles", {0, 1024}, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
+              "cycles", fpga::kPipelineLatencyRule, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
       other("ssram.default.words", "depth of a bank that gives none of its own", "words",
-            kBankWordsRule.text()),
+            memory::kBankWordsRule.text()),
       other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
       other("ssram.default.turnaround_cycles", "turnaround of a sync_burst bank that gives none of its own",
             "cycles", turnaround_rule),
-      other("ssram.banks.NAME.words", "depth of the bank NAME", "words", kBankWordsRule.text()),
+      other("ssram.banks.NAME.words", "depth of the bank NAME", "words", memory::kBankWordsRule.text()),
       other("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds),
       other("ssram.banks.NAME.turnaround_cycles",
             "cycles lost when the bank NAME changes between reads and writes", "cycles", turnaround_rule),
@@ -207,7 +207,7 @@ std::string rule_text(std::string_view path) {
   for (const Key& key : board_keys()) {
     if (key.path == path) return key.rule_text;
   }
-  if (path == "ssram.banks") return fmt::format("a map of 1..{} banks", kMaximumBanks);
+  if (path == "ssram.banks") return "a map of " + memory::kBankCountRule.text() + " banks";
   return fmt::format("a map of {}", fmt::join(child_keys(path), ", "));
 }
 

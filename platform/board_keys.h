@@ -68,9 +68,6 @@ std::string schema_path(const std::string& path);
 // "a, b or c".
 std::string listed(const std::vector<std::string>& words);
 
-inline constexpr IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
-inline constexpr IntegerRule kTurnaroundRule{1, 16};
-inline constexpr std::size_t kMaximumBanks = 64;
 inline constexpr std::size_t kMaximumBuffers = 3;  // of an image or disparity list
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 

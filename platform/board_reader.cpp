@@ -261,11 +261,11 @@ class BoardReader {
         return values_.read_integer(key, node, rule, rule.text());
       };
     };
-    read("words", bank.words, integer(kBankWordsRule));
+    read("words", bank.words, integer(memory::kBankWordsRule));
     read("kind", bank.kind, [this](const std::string& key, const YamlNode& node) {
       return values_.read_word(key, node, {memory::kBankKindNames.begin(), memory::kBankKindNames.end()});
     });
-    read("turnaround_cycles", bank.turnaround_cycles, integer(kTurnaroundRule));
+    read("turnaround_cycles", bank.turnaround_cycles, integer(memory::kTurnaroundRule));
     check_turnaround_use(path, bank);
     return bank;
   }
@@ -296,7 +296,7 @@ class BoardReader {
     const auto entries = values_.read_entries(path, node, node.place, names, {});
     if (!entries) return;
     const bool names_sound = values_.finding_count() == before;
-    if (node.entries.empty() || node.entries.size() > kMaximumBanks) {
+    if (!memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
       Place place = node.place;
       for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
       return values_.report(place, path, short_text(node),

@@ -4,6 +4,7 @@
 #include <systemc>
 
 #include "models/kernels/column_filter.h"
+#include "models/kernels/words.h"
 
 // What the stages of the FPGA hand to each other.
 namespace stereotlm::fpga {
@@ -34,19 +35,19 @@ struct WindowSums {
   bool left_valid = false;  // the table entry of the left pixel in the middle of the window
 };
 
-// Unit A's result for a right pixel; 255: none.
+// Unit A's result for a right pixel.
 struct RightMatch {
-  std::uint8_t disparity = 255;
+  std::uint8_t disparity = kernels::kInvalidDisparity;
 };
 
-// Unit B's result for a left pixel; 255: none.
+// Unit B's result for a left pixel.
 struct LeftMatch {
-  std::uint8_t disparity = 255;
+  std::uint8_t disparity = kernels::kInvalidDisparity;
   bool left_valid = false;
 };
 
 struct Disparity {
-  std::uint8_t value = 255;
+  std::uint8_t value = kernels::kInvalidDisparity;
 };
 
 struct ResultWord {

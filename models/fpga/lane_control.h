@@ -46,11 +46,11 @@ class LaneControl {
     Intent pixel = Intent::kIdle;
   };
 
-  static constexpr std::uint64_t kMostSlots = 64;
-
-  // `fifo_slots`: the most slots in the lane, 1..kMostSlots.
+  // `fifo_slots`: the most slots in the lane. Throws std::invalid_argument outside kLaneFifoRule.
   LaneControl(const FrameGeometry& geometry, bool has_table, int fifo_slots)
-      : geometry_(geometry), has_table_(has_table), fifo_slots_(static_cast<std::uint64_t>(fifo_slots)) {}
+      : geometry_(geometry),
+        has_table_(has_table),
+        fifo_slots_(static_cast<std::uint64_t>(kLaneFifoRule.required("lane_fifo_slots", fifo_slots))) {}
 
   // Latencies of the banks that hold this frame's table and image: 1 or 2 cycles.
   void start_frame(int table_latency_cycles, int image_latency_cycles) {
@@ -102,6 +102,8 @@ class LaneControl {
   std::uint64_t consumed() const { return consumed_before_frame_ + consumed_; }
 
  private:
+  static constexpr std::uint64_t kMostSlots = kLaneFifoRule.max;
+
   Intent take_intent() const {
     if (next_slot_.done()) return Intent::kIdle;
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;

@@ -7,6 +7,7 @@
 #include <systemc>
 
 #include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
 
@@ -54,7 +55,7 @@ class PixelReader : public sc_core::sc_module {
   const Stats& stats() const { return stats_; }
 
  private:
-  static constexpr std::size_t kRing = 64;  // the most slots in a lane
+  static constexpr std::size_t kRing = kLaneFifoRule.max;
 
   void read(std::uint64_t column, std::uint64_t row, const sc_core::sc_time& at);
   void pass();

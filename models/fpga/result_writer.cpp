@@ -5,7 +5,8 @@
 namespace stereotlm::fpga {
 
 ResultWriter::ResultWriter(const sc_core::sc_module_name& name, int fifo_words)
-    : sc_module(name), fifo_words_(static_cast<std::size_t>(fifo_words)) {}
+    : sc_module(name),
+      fifo_words_(static_cast<std::size_t>(kResultFifoRule.required("result_fifo_words", fifo_words))) {}
 
 void ResultWriter::start_frame(std::uint64_t disparity_address) {
   next_address_ = disparity_address;

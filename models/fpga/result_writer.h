@@ -7,6 +7,7 @@
 #include <systemc>
 
 #include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
 
@@ -30,7 +31,7 @@ class ResultWriter : public sc_core::sc_module {
  public:
   StreamIn<ResultWord, ResultWriter, &ResultWriter::store> words_in{"words_in", this};
 
-  // `fifo_words`: depth of the queue, 1..64.
+  // `fifo_words`: depth of the queue. Throws std::invalid_argument outside kResultFifoRule.
   ResultWriter(const sc_core::sc_module_name& name, int fifo_words);
 
   // Byte address of the disparity buffer on the port.
@@ -40,7 +41,7 @@ class ResultWriter : public sc_core::sc_module {
   const Stats& stats() const { return stats_; }
 
  private:
-  static constexpr std::size_t kRing = 64;
+  static constexpr std::size_t kRing = kResultFifoRule.max;
 
   std::size_t fifo_words_;
   std::uint64_t next_address_ = 0;

@@ -1,6 +1,7 @@
 #include "models/fpga/stereo_core.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 namespace stereotlm::fpga {
@@ -25,6 +26,11 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
       period_(Clock::to_time(period_ps_)),
       control_(config.core) {
   SC_HAS_PROCESS(StereoCore);
+  if (const double banks_mhz = config.memory.banks.front().clock_mhz; banks_mhz != config.core.clock_mhz) {
+    throw std::invalid_argument(std::string(this->name()) +
+                                ": clock_mhz = " + std::to_string(config.core.clock_mhz) +
+                                ": must be that of the banks, " + std::to_string(banks_mhz));
+  }
   bind_memory(binder);
   bind_streams();
   SC_THREAD(run);

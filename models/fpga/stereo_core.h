@@ -42,13 +42,13 @@ struct StereoCoreConfig {
 class StereoCore : public sc_core::sc_module {
  public:
   tlm::tlm_target_socket<32> registers{"registers"};  // register_map.h
-  tlm::tlm_target_socket<32> host{
-      "host"};  // the crossbar's host port: nb_transport (no b_transport), debug, DMI
+  // The crossbar's host port: nb_transport (no b_transport), debug, DMI.
+  tlm::tlm_target_socket<32> host{"host"};
   sc_core::sc_vector<tlm::tlm_initiator_socket<32>> banks;  // in the order of the configuration
   sc_core::sc_out<bool> done{"done"};                       // interrupt
 
   // `binder` binds the stages to the crossbar. Throws std::invalid_argument if the configuration has
-  // problems.
+  // problems, or the banks another clock than the core.
   StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
 
   const CoreControl& control() const { return control_; }

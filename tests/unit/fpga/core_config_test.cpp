@@ -30,14 +30,14 @@ TEST(CoreConfig, AcceptsBothEndsOfEachRange) {
 
 TEST(CoreConfig, RefusesWhatLiesBeyondThem) {
   const std::vector<std::pair<Change, std::string>> cases = {
-      {[](CoreConfig& c) { c.width = 0; }, "width = 0: must be a multiple of 4, 4..2048"},
-      {[](CoreConfig& c) { c.width = 6; }, "width = 6: must be a multiple of 4, 4..2048"},
-      {[](CoreConfig& c) { c.width = 2052; }, "width = 2052: must be a multiple of 4, 4..2048"},
+      {[](CoreConfig& c) { c.width = 0; }, "width = 0: must be 4..2048, a multiple of 4"},
+      {[](CoreConfig& c) { c.width = 6; }, "width = 6: must be 4..2048, a multiple of 4"},
+      {[](CoreConfig& c) { c.width = 2052; }, "width = 2052: must be 4..2048, a multiple of 4"},
       {[](CoreConfig& c) { c.height = 0; }, "height = 0: must be 1..2048"},
       {[](CoreConfig& c) { c.height = 2049; }, "height = 2049: must be 1..2048"},
-      {[](CoreConfig& c) { c.window = 1; }, "window = 1: must be odd, 3..31"},
-      {[](CoreConfig& c) { c.window = 8; }, "window = 8: must be odd, 3..31"},
-      {[](CoreConfig& c) { c.window = 33; }, "window = 33: must be odd, 3..31"},
+      {[](CoreConfig& c) { c.window = 1; }, "window = 1: must be 3..31, odd"},
+      {[](CoreConfig& c) { c.window = 8; }, "window = 8: must be 3..31, odd"},
+      {[](CoreConfig& c) { c.window = 33; }, "window = 33: must be 3..31, odd"},
       {[](CoreConfig& c) { c.disparities = 0; }, "disparities = 0: must be 1..254"},
       {[](CoreConfig& c) { c.disparities = 255; }, "disparities = 255: must be 1..254"},
       {[](CoreConfig& c) { c.lr_tolerance = -1; }, "lr_tolerance = -1: must be 0..253"},

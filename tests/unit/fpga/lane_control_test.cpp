@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <stdexcept>
 
 namespace stereotlm::fpga {
 namespace {
@@ -226,6 +227,14 @@ TEST(LaneControl, CountsEveryCycleOnceAtEachPort) {
   }
   EXPECT_EQ(lane.control.lut_cycles().sum(), 60U);
   EXPECT_EQ(lane.control.pixel_cycles().sum(), 60U);
+}
+
+TEST(LaneControl, RefusesADepthOutsideItsRange) {
+  const FrameGeometry geometry(config(2));
+  EXPECT_NO_THROW(LaneControl(geometry, true, 1));
+  EXPECT_NO_THROW(LaneControl(geometry, true, 64));
+  EXPECT_THROW(LaneControl(geometry, true, 0), std::invalid_argument);
+  EXPECT_THROW(LaneControl(geometry, true, 65), std::invalid_argument);
 }
 
 TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {

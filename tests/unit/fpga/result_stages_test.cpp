@@ -1,6 +1,7 @@
 // The stages from matches to the disparity buffer, each alone.
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <vector>
 
 #include "models/fpga/lr_check.h"
@@ -134,6 +135,13 @@ TEST(ResultPacker, BeginsAFrameWithAnEmptyWord) {
   for (int pixel = 0; pixel < 4; ++pixel) packer.disparities_in->push({0xFF});
   ASSERT_EQ(words.beats.size(), 1U);
   EXPECT_EQ(words.beats[0].word, 0xFFFF'FFFFU);
+}
+
+TEST(ResultWriter, RefusesADepthOutsideItsRange) {
+  EXPECT_NO_THROW(ResultWriter("a", 1));
+  EXPECT_NO_THROW(ResultWriter("b", 64));
+  EXPECT_THROW(ResultWriter("c", 0), std::invalid_argument);
+  EXPECT_THROW(ResultWriter("d", 65), std::invalid_argument);
 }
 
 class ResultWriterTest : public testing::Test {

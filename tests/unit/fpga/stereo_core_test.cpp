@@ -314,6 +314,9 @@ TEST_F(StereoCoreTest, RefusesAConfigurationWithProblems) {
   StereoCoreConfig no_banks = small_board();
   no_banks.memory.banks.clear();
   EXPECT_THROW(StereoCore("b", no_banks, binder), std::invalid_argument);
+  StereoCoreConfig two_clocks = small_board();
+  two_clocks.core.clock_mhz += 1;
+  EXPECT_THROW(StereoCore("c", two_clocks, binder), std::invalid_argument);
 }
 
 }  // namespace
