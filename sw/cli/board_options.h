@@ -17,6 +17,9 @@ class BoardOptions {
   // Adds them to a command, before it is parsed.
   void add_to(CLI::App& command);
 
+  // Options of every such command that are not in this version: "--calibration, .."
+  std::string unbuilt_names() const { return unbuilt_.names(); }
+
   // While the command's callback runs: reports what is missing or not in this version, or throws Refused.
   void check_usage(Problems& problems) const;
   void check_usage() const;

@@ -59,6 +59,24 @@ std::string help_of(const CLI::App& program) {
   return "stereotlm " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help";
 }
 
+// Refuses the options that the parsed command does not have, if there are any among what it could not use.
+void check_options(const CLI::App& program) {
+  Problems problems;
+  for (const CLI::App* command : program.get_subcommands()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+    for (const std::string& argument : command->remaining()) {
+      if (argument.empty() || argument[0] != '-') continue;
+      const std::string name = argument.substr(0, argument.find('='));
+      problems.add(fmt::format("{}: unknown option; nearest: {} (see {})", name,
+                               platform::nearest_word(name, known), help_of(program)));
+    }
+  }
+  problems.check();
+}
+
 }  // namespace
 
 Action parse_command_line(int argc, const char* const* argv) {
@@ -93,6 +111,7 @@ Action parse_command_line(int argc, const char* const* argv) {
       return kDone;
     };
   } catch (const CLI::ParseError& error) {
+    check_options(program);
     refuse(fmt::format("{} (see {})", error.what(), help_of(program)));
   }
   return action;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "platform/board_keys.h"
+#include "sw/cli/text.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -31,10 +32,12 @@ const Choice& fidelity_choice() {
   return choice;
 }
 
+std::string unbuilt_value(const Choice& choice) { return fmt::format("{} {}", choice.name, choice.usual); }
+
 void check_choice(const Choice& choice, bool is_given, const std::string& text, Problems& problems) {
   if (!is_given) {
-    problems.add(fmt::format("{} {}, the default: {}; built: {} {}", choice.name, choice.usual,
-                             kNotInThisVersion, choice.name, choice.built));
+    problems.add(fmt::format("{}, the default: {}; built: {} {}", unbuilt_value(choice), kNotInThisVersion,
+                             choice.name, choice.built));
   } else if (std::find(choice.values.begin(), choice.values.end(), text) == choice.values.end()) {
     problems.add(fmt::format("{} = {}: must be {}", choice.name, text, platform::listed(choice.values)));
   } else if (text != choice.built) {
@@ -64,10 +67,10 @@ void RunOptions::add_to(CLI::App& command) {
   add(command, left_, "--left", "F", "The left picture of the pair, 8-bit, as large as the board's images");
   add(command, right_, "--right", "F", "The right picture");
   add(command, frames_, "--frames", "N", "Frames to deliver, 1 or more, each of the same pair (default 1)");
-  add(command, source_, "--source", "camera|preloaded",
+  add(command, source_, source_choice().name, fmt::format("{}", fmt::join(source_choice().values, "|")),
       "Where pictures come from (default camera; this version has preloaded: they appear in their buffers "
       "in no time)");
-  add(command, fidelity_, "--fidelity", "cycle|fast",
+  add(command, fidelity_, fidelity_choice().name, fmt::format("{}", fmt::join(fidelity_choice().values, "|")),
       "How exact the timing is (default fast; this version has cycle: every bank and port, cycle by cycle)");
   add(command, truth_, "--truth", "F", "Ground truth of the left picture, 8-bit grey, 0 = unknown");
   add(command, truth_scale_, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)");
@@ -83,8 +86,9 @@ void RunOptions::add_to(CLI::App& command) {
   unbuilt_.add(command, "--trace", 1);
   unbuilt_.add(command, "--save-frames", 0);
   command.footer(
-      "Not in this version: --sequence, --video, --video-layout, --synthetic, --timing-only, --verify,\n"
-      "--calibration, --trace, --save-frames; --source camera, --fidelity fast.\n"
+      paragraph("", 0,
+                fmt::format("Not in this version: {}, {}; {}, {}.", unbuilt_.names(), board.unbuilt_names(),
+                            unbuilt_value(source_choice()), unbuilt_value(fidelity_choice()))) +
       "Ctrl-C ends the run with the results of the frames that are finished.");
 }
 

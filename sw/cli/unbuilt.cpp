@@ -16,6 +16,12 @@ void UnbuiltOptions::add(CLI::App& command, const std::string& name, int values)
   options_.emplace_back(name, option->take_all()->group(""));
 }
 
+std::string UnbuiltOptions::names() const {
+  std::string names;
+  for (const auto& [name, option] : options_) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 void UnbuiltOptions::report(Problems& problems) const {
   for (const auto& [name, option] : options_) {
     if (option->count() > 0) problems.add(name + ": " + kNotInThisVersion);

@@ -16,6 +16,9 @@ class UnbuiltOptions {
   // An option with at most `values` values.
   void add(CLI::App& command, const std::string& name, int values);
 
+  // "--sequence, --video, .."
+  std::string names() const;
+
   // Names each one that was given.
   void report(Problems& problems) const;
 

@@ -32,6 +32,8 @@ class Help(ProgramTest):
         for option in ("BOARD", "--left", "--right", "--truth", "--truth-scale", "--set", "--out"):
             self.assertIn(option, text)
         self.assertIn("default 1", text)
+        for option in UNBUILT_RUN_OPTIONS:
+            self.assertIn(option[0], text)
         for command in COMMANDS:
             self.assertIn(f"Usage: stereotlm {command}", self.succeeds(run(command, "--help")))
 
@@ -59,6 +61,16 @@ class UnknownThings(ProgramTest):
     def test_unknown_options(self):
         for command in COMMANDS:
             self.refused_in_one_line(run(command, "--bogus"), "--bogus", f"stereotlm {command} --help")
+
+    def test_unknown_options_name_the_nearest(self):
+        for typed, nearest in (("--fames", "--frames"), ("--rigth", "--right"), ("--sett", "--set"), ("--verfy", "--verify")):
+            for arguments in ([typed, "3"], [f"{typed}=3"]):
+                self.refused_in_one_line(
+                    run("run", "fpl2003", *arguments),
+                    f"stereotlm: error: {typed}: unknown option; nearest: {nearest} (see stereotlm run --help)",
+                )
+        lines = self.refused(run("run", "fpl2003", "--fames", "3", "--out", "a", "--verfy"))
+        self.assertEqual([line.split()[2] for line in lines], ["--fames:", "--verfy:"])
 
     def test_more_arguments_than_a_command_takes(self):
         self.refused_in_one_line(run("check", "fpl2003", "fpl2003-qvga"), "fpl2003-qvga")
