@@ -21,6 +21,10 @@ void require_one_size(const GrayImage& left, const GrayImage& right) {
   }
 }
 
+void require_sound(const StereoConfig& config) {
+  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+}
+
 }  // namespace
 
 std::vector<std::string> problems(const StereoConfig& config) {
@@ -35,6 +39,7 @@ std::vector<std::string> problems(const StereoConfig& config) {
 }
 
 GrayImage filter_image(const GrayImage& image, const FilterKernel& kernel) {
+  if (image.pixels.empty()) throw std::invalid_argument("image to be filtered: must not be empty");
   ColumnFilter filter(image.width, image.height, 1, kernel);
   filter.start_frame(0);
   GrayImage filtered(image.width, image.height);
@@ -55,6 +60,7 @@ GrayImage filter_image(const GrayImage& image, const FilterKernel& kernel) {
 
 Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities) {
   require_one_size(left, right);
+  require_sound({window, disparities, std::nullopt, std::nullopt});
   const int width = left.width;
   const int height = left.height;
   const int radius = (window - 1) / 2;
@@ -90,7 +96,7 @@ Matches match(const GrayImage& left, const GrayImage& right, int window, int dis
 GrayImage disparity_image(const GrayImage& left, const GrayImage& right, const RectificationTable* left_table,
                           const RectificationTable* right_table, const StereoConfig& config) {
   require_one_size(left, right);
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+  require_sound(config);
   const auto prepare = [&config](const GrayImage& source, const RectificationTable* table) {
     GrayImage rectified = table != nullptr ? rectify(source, *table) : source;
     return config.filter ? filter_image(rectified, *config.filter) : rectified;

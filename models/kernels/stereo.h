@@ -23,18 +23,20 @@ struct StereoConfig {
 // Every broken rule as `field = value: rule`.
 std::vector<std::string> problems(const StereoConfig& config);
 
-// F of contract 1.2. Throws std::invalid_argument if the kernel has problems.
+// F of contract 1.2. Throws std::invalid_argument if the kernel has problems or the image is empty.
 GrayImage filter_image(const GrayImage& image, const FilterKernel& kernel);
 
 struct Matches {
   GrayImage right_based;  // dR
   GrayImage left_based;   // dL
 };
-// Contract 1.3 on two filtered images of one size.
+// Contract 1.3 on two filtered images. Throws std::invalid_argument if they differ in size, or the window or
+// the number of disparities breaks its rule.
 Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities);
 
 // Rectify, filter, match, check. A table that is null does not exist. Throws std::invalid_argument if the
-// images or tables differ in size, or the configuration or a table has problems.
+// images or tables differ in size, the images are to be filtered but empty, or the configuration or a table
+// has problems.
 GrayImage disparity_image(const GrayImage& left, const GrayImage& right, const RectificationTable* left_table,
                           const RectificationTable* right_table, const StereoConfig& config);
 

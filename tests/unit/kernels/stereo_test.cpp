@@ -223,6 +223,10 @@ TEST(Stereo, RefusesWhatDoesNotFitTogether) {
   EXPECT_THROW(disparity_image(image, GrayImage(8, 4), nullptr, nullptr, config), std::invalid_argument);
   EXPECT_THROW(disparity_image(GrayImage(4, 5), image, nullptr, nullptr, config), std::invalid_argument);
   EXPECT_THROW(match(image, GrayImage(8, 4), 3, 2), std::invalid_argument);
+  for (const int window : {1, 4, 33}) EXPECT_THROW(match(image, image, window, 2), std::invalid_argument);
+  for (const int disparities : {0, 255})
+    EXPECT_THROW(match(image, image, 3, disparities), std::invalid_argument);
+  EXPECT_NO_THROW(match(image, image, 3, 254));
   const RectificationTable other = identity_table(8, 4);
   EXPECT_THROW(disparity_image(image, image, &other, &table, config), std::invalid_argument);
   EXPECT_THROW(disparity_image(image, image, &table, &other, config), std::invalid_argument);
@@ -234,6 +238,8 @@ TEST(Stereo, RefusesWhatDoesNotFitTogether) {
   FilterKernel kernel = log7();
   kernel.size = 5;
   EXPECT_THROW(filter_image(image, kernel), std::invalid_argument);
+  EXPECT_THROW(filter_image(GrayImage(), log7()), std::invalid_argument);
+  EXPECT_EQ(filter_image(GrayImage(1, 1, 7), log7()), GrayImage(1, 1, 128));
 }
 
 }  // namespace
