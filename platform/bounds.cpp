@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "models/fpga/frame_geometry.h"
@@ -124,13 +125,14 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
   return bounds;
 }
 
-std::uint64_t frames_of_cycle(const BoardConfig& board) {
-  return std::lcm(std::lcm(board.allocation.left_image.size(), board.allocation.right_image.size()),
-                  board.allocation.disparity.size());
+std::uint64_t allocation_period_frames(const BoardConfig& board) {
+  const BufferLayout layout = layout_buffers(board);
+  return std::lcm(std::lcm(layout.left_image.size(), layout.right_image.size()), layout.disparity.size());
 }
 
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames) {
-  const std::uint64_t period = frames_of_cycle(board);
+  if (frames == 0) throw std::invalid_argument("frames = 0: a bound of no frames");
+  const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t total = 0;
   ResourceBound slowest;
   for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {

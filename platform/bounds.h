@@ -26,11 +26,13 @@ struct ResourceBound {
 // std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
 
-// How many different frames the allocation lists make: the least common multiple of their lengths.
-std::uint64_t frames_of_cycle(const BoardConfig& board);
+// The number of frames after which the allocation lists begin anew together: the least common multiple of
+// their lengths. Throws std::invalid_argument if the board has problems.
+std::uint64_t allocation_period_frames(const BoardConfig& board);
 
 // Frames per second that frames 0..frames-1 cannot exceed, and the resource that limits the slowest of them
-// (of equal ones the last in the order above).
+// (of equal ones the last in the order above). Throws std::invalid_argument if the board has problems, or
+// there are no frames.
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames);
 
 }  // namespace stereotlm::platform

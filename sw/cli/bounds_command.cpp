@@ -49,7 +49,7 @@ int bounds(const BoardOptions& options) {
   const auto board = options.load(problems);
   problems.check();
   const platform::Tables tables = platform::identity_tables(*board);
-  const std::uint64_t frames = platform::frames_of_cycle(*board);
+  const std::uint64_t frames = platform::allocation_period_frames(*board);
   std::string text;
   for (std::uint64_t frame = 0; frame < frames; ++frame) text += frame_lines(*board, tables, frame);
   const platform::Bound bound = platform::core_bound(*board, tables, frames);

@@ -160,12 +160,24 @@ TEST(FrameBounds, RefuseABoardWithProblems) {
 
 TEST(CoreBound, RepeatsWithTheLeastCommonMultipleOfTheLists) {
   BoardConfig board = small_board();
-  EXPECT_EQ(frames_of_cycle(board), 2U);
+  EXPECT_EQ(allocation_period_frames(board), 2U);
   board.allocation.disparity = {"bank4", "bank5", "bank4"};
-  EXPECT_EQ(frames_of_cycle(board), 6U);
+  EXPECT_EQ(allocation_period_frames(board), 6U);
   board.allocation.left_image = {"bank0"};
   board.allocation.right_image = {"bank1"};
-  EXPECT_EQ(frames_of_cycle(board), 3U);
+  EXPECT_EQ(allocation_period_frames(board), 3U);
+}
+
+TEST(CoreBound, RefusesABoardWithProblemsAndNoFrames) {
+  BoardConfig board = small_board();
+  EXPECT_THROW(core_bound(board, identity_tables(board), 0), std::invalid_argument);
+  EXPECT_NO_THROW(core_bound(board, identity_tables(board), 1));
+  board.matcher.window = 4;
+  EXPECT_THROW(core_bound(board, Tables{}, 1), std::invalid_argument);
+  EXPECT_THROW(allocation_period_frames(board), std::invalid_argument);
+  board = small_board();
+  board.allocation.disparity.clear();
+  EXPECT_THROW(core_bound(board, identity_tables(board), 1), std::invalid_argument);
 }
 
 TEST(CoreBound, SumsTheFramesOfTheListsInTurn) {
