@@ -8,6 +8,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -172,7 +173,43 @@ class TreeBuilder : public YAML::EventHandler {
   std::vector<Open> open_;
 };
 
-YamlNode parse_document(const std::string& text, int source) {
+// What a board needs where yaml-cpp gives this message; empty for a message that says so itself.
+std::string_view expectation(std::string_view message) {
+  namespace Message = YAML::ErrorMsg;
+  static const std::array<std::array<std::string_view, 2>, 7> kExpectations = {{
+      {Message::END_OF_MAP, "a key that is indented as the one before it"},
+      {Message::END_OF_MAP_FLOW, "a comma or the } of a map that began with {"},
+      {Message::END_OF_SEQ_FLOW, "a comma or the ] of a list that began with ["},
+      {Message::FLOW_END, "brackets in matching pairs"},
+      {Message::MAP_VALUE,
+       "one key: value on each line; a text that holds a colon and a space stands in quotes"},
+      {Message::TAB_IN_INDENTATION, "spaces for indentation, not tabs"},
+      {Message::UNKNOWN_TOKEN, "a value; one that begins with this character stands in quotes"},
+  }};
+  for (const auto& [known, expected] : kExpectations) {
+    if (message == known) return expected;
+  }
+  return "";
+}
+
+// The rule that the text breaks at an error of yaml-cpp. What lies behind `size` is not the writer's.
+std::string syntax_rule(const std::string& text, std::size_t size, const YAML::Exception& error) {
+  const std::size_t at = std::min(static_cast<std::size_t>(std::max(error.mark.pos, 0)), size);
+  const std::size_t line = text.substr(0, at).rfind('\n') + 1;
+  const std::size_t indentation = text.find_first_not_of(" \t", line);
+  const bool has_tab = text.substr(line, indentation - line).find('\t') != std::string::npos;
+  const std::string_view expected = expectation(has_tab ? YAML::ErrorMsg::TAB_IN_INDENTATION : error.msg);
+  if (expected.empty()) return "not YAML: " + error.msg;
+  YamlNode rest;
+  rest.kind = YamlNode::Kind::kScalar;
+  rest.text = text.substr(at, std::min(text.find('\n', at), size) - at);
+  const bool is_end = text.find_first_not_of(" \t\r\n", at) >= size;
+  return fmt::format("not YAML: found {}, expected {}", is_end ? "the end" : quoted_text(short_text(rest)),
+                     expected);
+}
+
+// `size`: of what somebody wrote; the rest of the text was put behind it.
+YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   check_characters(text, source);
   TreeBuilder builder(text, source);
   try {
@@ -183,7 +220,7 @@ YamlNode parse_document(const std::string& text, int source) {
   } catch (const YAML::DeepRecursion& error) {
     throw YamlError(place_of(text, error.mark, source), "nested too deeply");
   } catch (const YAML::Exception& error) {
-    throw YamlError(place_of(text, error.mark, source), "not YAML: " + error.msg);
+    throw YamlError(place_of(text, error.mark, source), syntax_rule(text, size, error));
   }
   if (!builder.has_document()) throw YamlError({source, 1, 1}, "empty: a board is a map of keys and values");
   return builder.take_root();
@@ -236,14 +273,14 @@ YamlNode::Entry* YamlNode::find(const std::string& key) {
 YamlNode parse_yaml(const std::string& text, int source) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (std::string_view(text).substr(0, kByteOrderMark.size()) == kByteOrderMark) {
-    return parse_document(text.substr(kByteOrderMark.size()), source);
+    return parse_document(text.substr(kByteOrderMark.size()), text.size() - kByteOrderMark.size(), source);
   }
-  return parse_document(text, source);
+  return parse_document(text, text.size(), source);
 }
 
 // Inside a flow list everything is flow style; a comment ends with its line.
 YamlNode parse_flow_value(const std::string& text, int source) {
-  YamlNode list = parse_document("[" + text + "\n]", source);
+  YamlNode list = parse_document("[" + text + "\n]", 1 + text.size(), source);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool is_one_value = list.is_list() && list.items.size() == 1 && first != std::string::npos &&
                             (!list.items[0].is_map() || text[first] == '{');

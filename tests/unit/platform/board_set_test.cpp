@@ -165,7 +165,8 @@ TEST(BoardSet, TakesOneFlowValue) {
               fmt::format("--set image: image = {}{}", value, rule));
   }
   EXPECT_EQ(refusal_of_board("fpl2003", {"image.width=[1"}),
-            "--set image.width: image.width = [1: not YAML: end of sequence flow not found");
+            "--set image.width: image.width = [1: not YAML: found the end, expected a comma or the ] of a "
+            "list that began with [");
   EXPECT_NE(refusal_of_board("fpl2003", {"image.width=4] , [5"}), "");
   EXPECT_NE(refusal_of_board("fpl2003", {"image.width=4]\n---\n[5"}), "");
   EXPECT_NE(refusal_of_board("fpl2003", {"image=- 3"}), "");

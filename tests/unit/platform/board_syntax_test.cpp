@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "platform/board_yaml.h"
@@ -108,11 +109,32 @@ TEST(BoardSyntax, RefusesWhatIsNoBoardFile) {
 }
 
 TEST(BoardSyntax, ReportsTheFirstErrorOfSyntaxAlone) {
-  EXPECT_EQ(refusal_of("name: 7\nimage: [1, 2\n"),
-            "board.yaml:3:1: not YAML: end of sequence flow not found");
-  EXPECT_EQ(refusal_of("name: a: b\n"), "board.yaml:1:8: not YAML: illegal map value");
-  EXPECT_EQ(refusal_of("image:\n\twidth: 3\n"), "board.yaml:2:7: not YAML: illegal map value");
+  EXPECT_EQ(refusal_of("name: 7\nimage: [1, 2\n- 3}\nname: \"x\n"),
+            "board.yaml:3:4: not YAML: found \"}\", expected brackets in matching pairs");
   EXPECT_EQ(refusal_of("name: \"x\n"), "board.yaml:1:7: not YAML: the closing quote is missing");
+}
+
+TEST(BoardSyntax, SaysWhatStandsInTheWayAndWhatIsExpected) {
+  const std::map<std::string, std::string> refusals = {
+      {"name: 7\nimage: [1, 2\n",
+       "3:1: not YAML: found the end, expected a comma or the ] of a list that began with ["},
+      {"image: {width: 4, height\n",
+       "2:1: not YAML: found the end, expected a comma or the } of a map that began with {"},
+      {"image: {width: 4}}\n", "1:18: not YAML: found \"}\", expected brackets in matching pairs"},
+      {"image:\n  width: 4\n height: 3\n",
+       "3:2: not YAML: found \"height: 3\", expected a key that is indented as the one before it"},
+      {"name: a: b\n",
+       "1:8: not YAML: found \": b\", expected one key: value on each line; a text that holds a colon and a "
+       "space stands in quotes"},
+      {"name: @x # y\n",
+       "1:7: not YAML: found \"@x # y\", expected a value; one that begins with this character stands in "
+       "quotes"},
+      {"image:\n\twidth: 3\n", "2:7: not YAML: found \": 3\", expected spaces for indentation, not tabs"},
+      {"name: a\n\timage: 3\n",
+       "2:1: not YAML: found \" image: 3\", expected spaces for indentation, not tabs"},
+      {"name: \"\\q\"\n", "1:10: not YAML: unknown escape character: q"},
+  };
+  for (const auto& [text, refusal] : refusals) EXPECT_EQ(refusal_of(text), "board.yaml:" + refusal) << text;
 }
 
 TEST(BoardSyntax, RefusesAQuoteThatIsNotClosed) {
