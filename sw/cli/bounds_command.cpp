@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "platform/board_rules.h"
 #include "platform/bounds.h"
 #include "platform/tables.h"
 #include "sw/cli/board_options.h"
@@ -16,30 +19,126 @@ namespace stereotlm::cli {
 namespace {
 
 using platform::BoardConfig;
+using platform::Buffer;
 using platform::ResourceBound;
 
-const std::string& in_turn(const std::vector<std::string>& banks, std::uint64_t frame) {
-  return banks[frame % banks.size()];
+using Names = std::vector<std::string>;
+
+void add_new(Names& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-std::string frame_lines(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frame) {
-  const auto bounds = platform::frame_bounds(board, tables, frame);
+// One resource.
+struct Row {
+  std::string role;  // "port left_lut"; of a bank what lies in it, "bank of left_image left_lut"
+  std::uint64_t cycles = 0;
+  Names banks;  // that have this role
+
+  std::string label() const { return banks.empty() ? role : fmt::format("bank {}", fmt::join(banks, ", ")); }
+};
+
+// A list of the allocation.
+struct List {
+  std::string name;  // "left_image"
+  Names banks;       // that it takes
+};
+
+// Frames whose bounds differ in nothing but the names of banks.
+struct Group {
+  std::vector<std::uint64_t> frames;
+  std::vector<List> lists;
+  std::vector<Row> rows;
+};
+
+// The buffers that a frame uses.
+std::vector<Buffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
+  std::vector<Buffer> all = platform::buffers(board.allocation);
+  std::map<std::string, std::uint64_t> lengths;
+  for (const Buffer& buffer : all) ++lengths[buffer.key];
+  const auto is_of_another = [&](const Buffer& buffer) {
+    return buffer.index >= 0 && static_cast<std::uint64_t>(buffer.index) != frame % lengths[buffer.key];
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), is_of_another), all.end());
+  return all;
+}
+
+std::string short_name(const Buffer& buffer) { return buffer.key.substr(buffer.key.find('.') + 1); }
+
+Group group_of(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frame) {
+  const std::string bank = "bank ";
+  Group group;
+  group.frames = {frame};
+  const std::vector<Buffer> buffers = buffers_of(board, frame);
+  for (const Buffer& buffer : buffers) {
+    if (buffer.index >= 0) group.lists.push_back({short_name(buffer), {buffer.bank}});
+  }
+  for (const ResourceBound& bound : platform::frame_bounds(board, tables, frame)) {
+    Row row{bound.resource, bound.cycles, {}};
+    if (bound.resource.compare(0, bank.size(), bank) == 0) {
+      row.banks = {bound.resource.substr(bank.size())};
+      row.role = bank + "of";
+      for (const Buffer& buffer : buffers) {
+        if (buffer.bank == row.banks.front()) row.role += ' ' + short_name(buffer);
+      }
+    }
+    group.rows.push_back(std::move(row));
+  }
+  return group;
+}
+
+// Takes the frame of `other` into the group, if it belongs there.
+bool take_in(Group& group, const Group& other) {
+  const auto is_like = [](const Row& a, const Row& b) { return a.role == b.role && a.cycles == b.cycles; };
+  if (!std::is_permutation(group.rows.begin(), group.rows.end(), other.rows.begin(), other.rows.end(),
+                           is_like))
+    return false;
+  group.frames.insert(group.frames.end(), other.frames.begin(), other.frames.end());
+  for (Row& row : group.rows) {
+    for (const Row& its : other.rows) {
+      for (const std::string& name : its.banks) {
+        if (its.role == row.role) add_new(row.banks, name);
+      }
+    }
+  }
+  for (std::size_t list = 0; list < group.lists.size(); ++list) {
+    add_new(group.lists[list].banks, other.lists[list].banks.front());
+  }
+  return true;
+}
+
+// "frame 0", "frames 0-5", "frames 0, 2-3"
+std::string frames_text(const std::vector<std::uint64_t>& frames) {
+  std::string text = frames.size() == 1 ? "frame " : "frames ";
+  for (std::size_t first = 0; first < frames.size();) {
+    std::size_t last = first;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+    if (first > 0) text += ", ";
+    text += std::to_string(frames[first]);
+    if (last > first) text += fmt::format("-{}", frames[last]);
+    first = last + 1;
+  }
+  return text;
+}
+
+std::string lines_of(const Group& group, double clock_mhz) {
   std::uint64_t most = 0;
   std::size_t width = 16;
-  for (const ResourceBound& bound : bounds) {
-    most = std::max(most, bound.cycles);
-    width = std::max(width, bound.resource.size());
+  for (const Row& row : group.rows) {
+    most = std::max(most, row.cycles);
+    width = std::max(width, row.label().size());
   }
-  std::string text =
-      fmt::format("frame {}: left_image in {}, right_image in {}, disparity in {}\n", frame,
-                  in_turn(board.allocation.left_image, frame), in_turn(board.allocation.right_image, frame),
-                  in_turn(board.allocation.disparity, frame));
+  std::string text = frames_text(group.frames);
+  const char* separator = ": ";
+  for (const List& list : group.lists) {
+    text += fmt::format("{}{} in {}", separator, list.name, fmt::join(list.banks, ", "));
+    separator = "; ";
+  }
   text +=
-      fmt::format("  {:<{}} {:>14} {:>14} {:>12}\n", "resource", width, "cycles", "frames/s", "headroom %");
-  for (const ResourceBound& bound : bounds) {
-    const auto cycles = static_cast<double>(bound.cycles);
-    text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n", bound.resource, width, bound.cycles,
-                        board.fpga.clock_mhz * 1e6 / cycles, 100 * (1 - cycles / static_cast<double>(most)));
+      fmt::format("\n  {:<{}} {:>14} {:>14} {:>12}\n", "resource", width, "cycles", "frames/s", "headroom %");
+  for (const Row& row : group.rows) {
+    const auto cycles = static_cast<double>(row.cycles);
+    text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n", row.label(), width, row.cycles,
+                        clock_mhz * 1e6 / cycles, 100 * (1 - cycles / static_cast<double>(most)));
   }
   return text;
 }
@@ -50,8 +149,15 @@ int bounds(const BoardOptions& options) {
   problems.check();
   const platform::Tables tables = platform::identity_tables(*board);
   const std::uint64_t frames = platform::allocation_period_frames(*board);
+  std::vector<Group> groups;
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    const Group group = group_of(*board, tables, frame);
+    if (std::none_of(groups.begin(), groups.end(), [&](Group& known) { return take_in(known, group); })) {
+      groups.push_back(group);
+    }
+  }
   std::string text;
-  for (std::uint64_t frame = 0; frame < frames; ++frame) text += frame_lines(*board, tables, frame);
+  for (const Group& group : groups) text += lines_of(group, board->fpga.clock_mhz);
   const platform::Bound bound = platform::core_bound(*board, tables, frames);
   text +=
       fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", bound.core, bound.core_limited_by);
@@ -65,8 +171,9 @@ void add_bounds(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "bounds", "Say what each port and bank of the FPGA core, and its matcher, limit the frame rate to");
   command->footer(
-      "For each frame of the allocation's cycle: the fewest FPGA cycles that a frame costs each resource\n"
-      "alone, the frames a second that follow, and how much of the slowest resource's time it has to spare.\n"
+      "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
+      "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
+      "resource's time it has to spare.\n"
       "Tables, where the board has them, are taken as the identity.");
   const auto options = std::make_shared<BoardOptions>();
   options->add_to(*command);
