@@ -20,14 +20,14 @@ void BoardOptions::add_to(CLI::App& command) {
   unbuilt_.add(command, "--calibration", 1);
 }
 
-void BoardOptions::check_usage(Problems& problems) const {
-  unbuilt_.report(problems);
+void BoardOptions::check_given(Problems& problems) const {
   if (board_option_->count() == 0) problems.add("BOARD: missing: a preset or the path of a board file");
 }
 
 void BoardOptions::check_usage() const {
   Problems problems;
-  check_usage(problems);
+  check_built(problems);
+  check_given(problems);
   problems.check();
 }
 

@@ -20,9 +20,14 @@ class BoardOptions {
   // Options of every such command that are not in this version: "--calibration, .."
   std::string unbuilt_names() const { return unbuilt_.names(); }
 
-  // While the command's callback runs: reports what is missing or not in this version, or throws Refused.
-  void check_usage(Problems& problems) const;
+  // While the command's callback runs: reports what is not in this version, and what is missing.
+  void check_built(Problems& problems) const { unbuilt_.report(problems); }
+  void check_given(Problems& problems) const;
+  // Both; throws Refused.
   void check_usage() const;
+
+  // BOARD as it was typed.
+  const std::string& name() const { return board_; }
 
   // The board; nothing if it is wrong, with every reason reported.
   std::optional<platform::BoardConfig> load(Problems& problems) const;

@@ -10,8 +10,8 @@
 namespace stereotlm::cli {
 namespace {
 
-std::string summary(const platform::BoardConfig& board) {
-  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n", board.name,
+std::string summary(const std::string& name, const platform::BoardConfig& board) {
+  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n", name,
                      board.image.width, board.image.height, board.matcher.window, board.matcher.window,
                      board.matcher.disparities, board.banks.size(), board.fpga.clock_mhz);
 }
@@ -20,7 +20,7 @@ int check(const BoardOptions& options) {
   Problems problems;
   const auto board = options.load(problems);
   problems.check();
-  print(summary(*board));
+  print(summary(options.name(), *board));
   return kDone;
 }
 

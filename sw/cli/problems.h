@@ -27,6 +27,10 @@ class Problems {
   // The diagnostics of a board name file and position themselves.
   void add(const platform::BoardError& error) { lines_.emplace_back(error.what()); }
 
+  // Not a problem, but of use to whoever has it.
+  void add_note(const std::string& text) { lines_.push_back("stereotlm: note: " + text); }
+  bool empty() const { return lines_.empty(); }
+
   // Throws Refused if there is any.
   void check() const {
     if (!lines_.empty()) throw Refused(lines_);

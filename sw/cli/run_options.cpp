@@ -15,6 +15,9 @@
 namespace stereotlm::cli {
 namespace {
 
+constexpr const char* kExample =
+    "stereotlm run fpl2003 --source preloaded --fidelity cycle --left left.png --right right.png";
+
 // An option with a few values, of which this version has one; the default is not that one.
 struct Choice {
   const char* name;
@@ -94,12 +97,15 @@ void RunOptions::add_to(CLI::App& command) {
 
 void RunOptions::check_usage() {
   Problems problems;
-  board.check_usage(problems);
+  board.check_built(problems);
   unbuilt_.report(problems);
   problems.check();  // what stands in for the pictures may be among them
-  check_choices(problems);
+  board.check_given(problems);
   check_pictures(problems);
+  const bool is_complete = problems.empty();
+  check_choices(problems);
   check_numbers(problems);
+  if (!is_complete) problems.add_note(std::string("a complete command: ") + kExample);
   problems.check();
   left = left_.text;
   right = right_.text;

@@ -24,8 +24,9 @@ class Check(ProgramTest):
         self.assertEqual(text, "fpl2003: ok: 32x24, window 5x5, 80 disparities, 8 banks, 40 MHz\n")
 
     def test_takes_a_path(self):
-        path = self.file("mine.yaml", b"extends: fpl2003-qvga\nname: mine\n")
-        self.assertTrue(self.succeeds(run("check", path)).startswith("mine: ok: 320x240"))
+        for name in (b"", b"name: mine\n"):
+            path = self.file("mine.yaml", b"extends: fpl2003-qvga\n" + name)
+            self.assertTrue(self.succeeds(run("check", path)).startswith(f"{path}: ok: 320x240"))
 
     def test_says_everything_that_is_wrong_with_its_place(self):
         path = self.file("mine.yaml", b"extends: fpl2003\nimage: {width: 3, hight: 2}\n")
@@ -55,6 +56,10 @@ class Check(ProgramTest):
 
 
 class Boards(ProgramTest):
+    def summary(self, board):
+        """What check says of it, without its name."""
+        return self.succeeds(run("check", board)).removeprefix(f"{board}: ")
+
     def test_lists_every_preset_with_what_it_is_for(self):
         text = self.succeeds(run("boards"))
         lines = text.splitlines()
@@ -69,7 +74,7 @@ class Boards(ProgramTest):
             text = self.succeeds(run("boards", "--show", name))
             self.assertTrue(text.startswith("# "), text)
             copy = self.file("copy.yaml", text.encode())
-            self.assertEqual(self.succeeds(run("check", copy)), self.succeeds(run("check", name)))
+            self.assertEqual(self.summary(copy), self.summary(name))
 
     def test_refuses_an_unknown_name_with_the_nearest(self):
         for name in ("fpl2003-trible", ""):
@@ -93,48 +98,60 @@ class Keys(ProgramTest):
 
 
 class Bounds(ProgramTest):
-    def rows(self, *arguments):
-        """For each frame the resources with their numbers; and the last line."""
+    def groups(self, *arguments):
+        """For each group of frames the line that heads it and its resources with their numbers; the last line."""
         lines = self.succeeds(run("bounds", *arguments)).splitlines()
-        frames = []
+        groups = []
         for line in lines[:-1]:
-            if line.startswith("frame "):
-                frames.append({})
+            if line.startswith("frame"):
+                groups.append((line, {}))
             elif not line.split()[0] == "resource":
                 *resource, cycles, rate, headroom = line.split()
-                frames[-1][" ".join(resource)] = (int(cycles), float(rate), float(headroom))
-        return frames, lines[-1]
+                groups[-1][1][" ".join(resource)] = (int(cycles), float(rate), float(headroom))
+        return groups, lines[-1]
 
-    def test_lists_each_resource_of_each_frame(self):
-        frames, last = self.rows("fpl2003")
-        self.assertEqual(len(frames), 2)
-        self.assertIn("bank bank0", frames[0])
-        self.assertIn("bank bank1", frames[1])
-        self.assertNotIn("bank bank1", frames[0])
-        self.assertEqual(frames[0]["matcher"], (2151016, 18.596, 0.0))
+    def test_lists_each_resource(self):
+        ((head, rows),), last = self.groups("fpl2003")
+        self.assertEqual(
+            head, "frames 0-1: left_image in bank0, bank1; right_image in bank2, bank3; disparity in bank4, bank5"
+        )
+        ports = [f"port {name}" for name in ("left_lut", "right_lut", "left_pixel", "right_pixel", "result")]
+        banks = ["bank bank0, bank1", "bank bank2, bank3", "bank bank4, bank5", "bank bank6", "bank bank7"]
+        self.assertEqual(list(rows), ports + banks + ["matcher"])
+        self.assertEqual(rows["matcher"], (2151016, 18.596, 0.0))
         self.assertEqual(last, "bound of the core: 18.596 frames/s, limited by matcher")
 
     def test_headroom_is_what_the_limiting_resource_takes_longer(self):
-        frames, _ = self.rows("fpl2003", *SMALL)
-        most = max(cycles for cycles, _, _ in frames[0].values())
-        for cycles, rate, headroom in frames[0].values():
+        ((_, rows),), _ = self.groups("fpl2003", *SMALL)
+        most = max(cycles for cycles, _, _ in rows.values())
+        for cycles, rate, headroom in rows.values():
             self.assertAlmostEqual(rate, 40e6 / cycles, places=3)
             self.assertAlmostEqual(headroom, 100 * (1 - cycles / most), places=2)
 
     def test_names_the_bank_that_limits_when_two_buffers_share_it(self):
-        frames, last = self.rows("fpl2003", "--set", "allocation.left_lut=bank0")
-        self.assertEqual(frames[0]["bank bank0"][2], 0.0)
-        self.assertLess(frames[1]["bank bank1"][0], frames[0]["bank bank0"][0])
+        groups, last = self.groups("fpl2003", "--set", "allocation.left_lut=bank0")
+        (first, shared), (second, alone) = groups
+        self.assertEqual(first, "frame 0: left_image in bank0; right_image in bank2; disparity in bank4")
+        self.assertEqual(second, "frame 1: left_image in bank1; right_image in bank3; disparity in bank5")
+        self.assertEqual(shared["bank bank0"][2], 0.0)
+        self.assertLess(alone["bank bank1"][0], shared["bank bank0"][0])
         self.assertTrue(last.endswith("limited by bank bank0"), last)
 
-    def test_follows_the_allocation_lists(self):
-        self.assertEqual(len(self.rows("fpl2003-triple")[0]), 6)
-        self.assertEqual(len(self.rows("fpl2003", "--set", "allocation.disparity=bank4")[0]), 2)
-        frames, _ = self.rows("fpl2003-no-calibration")
-        self.assertNotIn("port left_lut", frames[0])
+    def test_groups_the_frames_that_differ_in_the_names_of_banks_only(self):
+        ((head, rows),), _ = self.groups("fpl2003-triple")
+        self.assertTrue(head.startswith("frames 0-5: left_image in bank0, bank1, bank8; "), head)
+        self.assertIn("bank bank2, bank3, bank9", rows)
+        lists = ["--set", "allocation.left_lut=bank0", "--set", "allocation.disparity=[bank5, bank5, bank1]"]
+        groups, _ = self.groups("fpl2003", *lists)
+        self.assertEqual([head.split(":")[0] for head, _ in groups], ["frames 0, 2, 4", "frames 1, 3", "frame 5"])
+        self.assertIn("bank bank5, bank1", groups[0][1])
+
+    def test_lists_no_port_that_does_not_exist(self):
+        ((_, rows),), _ = self.groups("fpl2003-no-calibration")
+        self.assertNotIn("port left_lut", rows)
 
     def test_a_run_reaches_the_bound_that_is_printed(self):
-        _, last = self.rows("fpl2003", *SMALL)
+        _, last = self.groups("fpl2003", *SMALL)
         table = self.succeeds(self.run_small("--frames", "2"))
         self.assertEqual(table.splitlines()[1].split()[1], last.split()[4])
 

@@ -1,7 +1,7 @@
 """Help, and every way to use the command line wrongly."""
 
 import program
-from program import BUILT, ProgramTest, run
+from program import BUILT, ProgramTest, pgm, run
 
 COMMANDS = ["run", "check", "boards", "keys", "bounds"]
 UNBUILT_COMMANDS = ["calibrate", "explain", "sweep", "merge", "allocate", "paper", "plot", "diff", "report"]
@@ -168,9 +168,27 @@ class WrongValues(ProgramTest):
 
     def test_a_pair_has_two_pictures(self):
         run_it = ["run", "fpl2003", *BUILT]
-        self.refused_value(run(*run_it, "--left", self.left), "--right: missing")
-        self.refused_value(run(*run_it, "--right", self.right), "--left: missing")
-        self.assertEqual(len(self.refused(run(*run_it), "--left: missing", "--right: missing")), 2)
+        for given, path, missing in (("--left", self.left, ["--right"]), ("--right", self.right, ["--left"])):
+            self.assertEqual(self.missing(run(*run_it, given, path)), missing)
+        self.assertEqual(self.missing(run(*run_it)), ["--left", "--right"])
+
+    def missing(self, process):
+        """What is said to be missing; the last line shows a complete command."""
+        *lines, example = self.refused(process)
+        self.assertRegex(example, r"^stereotlm: note: a complete command: stereotlm run fpl2003 .*--left \S+ --right \S+$")
+        return [line.split(": ")[2] for line in lines if ": missing: " in line]
+
+    def test_a_run_without_anything_is_told_all_at_once(self):
+        self.assertEqual(self.missing(run("run")), ["BOARD", "--left", "--right"])
+        self.refused(run("run"), "--source camera, the default", "--fidelity fast, the default")
+        self.assertNotIn("complete command", run("run", "fpl2003", "--left", "a", "--right", "b").stderr)
+
+    def test_the_complete_command_is_one(self):
+        example = self.refused(run("run"))[-1].split(": ")[-1].split()
+        self.assertEqual(example.pop(0), "stereotlm")
+        for name in ("left.png", "right.png"):
+            self.file(name, pgm(640, 480, bytes(640 * 480)))
+        self.succeeds(run(*example, "--set", "matcher.window=3", cwd=self.folder))
 
 
 if __name__ == "__main__":
