@@ -15,7 +15,7 @@ memory::SsramBankConfig bank_config(const BoardConfig& board, const BankConfig& 
 }
 
 fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board) {
-  fpga::StereoCoreConfig config{core_config(board), {board.fpga.arbiter, {}}};
+  fpga::StereoCoreConfig config{core_config(board), {board.fpga.arbiter, {}}, {board.bridge.local_clock_mhz}};
   for (const BankConfig& bank : board.banks) config.memory.banks.push_back(bank_config(board, bank));
   return config;
 }

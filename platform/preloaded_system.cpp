@@ -57,7 +57,7 @@ PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const Boar
       host("host", host_config(config, frames), checked(tables.left, config, "left"),
            checked(tables.right, config, "right"), source, sink) {
   binder.bind(host.registers, board.core.registers, "host_to_registers");
-  binder.bind(host.memory, board.core.host, "host_to_crossbar");
+  binder.bind(host.memory, board.core.local_bus, "host_to_local_bus");
   board.core.done(done_);
   host.done(done_);
 }

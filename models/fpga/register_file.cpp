@@ -16,8 +16,10 @@ RegisterFile::RegisterFile(const sc_core::sc_module_name& name) : sc_module(name
   SC_METHOD(drive_done);
   sensitive << done_changed_;
   dont_initialize();
-  registers.register_b_transport(this, &RegisterFile::transport);
-  registers.register_transport_dbg(this, &RegisterFile::debug);
+  for (auto* socket : {&registers, &local_bus}) {
+    socket->register_b_transport(this, &RegisterFile::transport);
+    socket->register_transport_dbg(this, &RegisterFile::debug);
+  }
 }
 
 tlm::tlm_response_status RegisterFile::check(const tlm::tlm_generic_payload& access) const {

@@ -36,7 +36,9 @@ class RegisterFile : public sc_core::sc_module {
     std::uint64_t errors = 0;  // refused accesses
   };
 
-  tlm_utils::simple_target_socket<RegisterFile> registers{"registers"};
+  // Two ways to the same registers; either may stay unbound.
+  tlm_utils::simple_target_socket_optional<RegisterFile> registers{"registers"};
+  tlm_utils::simple_target_socket_optional<RegisterFile> local_bus{"local_bus"};
   sc_core::sc_out<bool> done{"done"};  // the interrupt: high from the end of a frame until it is acknowledged
   StreamOut<FrameStart> start_out{"start_out"};
 

@@ -52,7 +52,10 @@ void StereoCore::bind_memory(Binder& binder) {
   bind(left_pixel_.port, Port::kLeftPixel);
   bind(right_pixel_.port, Port::kRightPixel);
   bind(result_writer_.port, Port::kResult);
-  host.bind(crossbar_.ports[memory::index_of(Port::kHost)]);
+  local_bus.bind(local_bus_.bus);
+  binder.bind(local_bus_.memory, crossbar_.ports[memory::index_of(Port::kHost)], "host_to_crossbar");
+  binder.bind(local_bus_.registers, register_file_.local_bus, "local_bus_to_registers");
+  local_bus_.route_out.bind(route_in_);
   for (std::size_t bank = 0; bank < banks.size(); ++bank) crossbar_.banks[bank].bind(banks[bank]);
   registers.bind(register_file_.registers);
   register_file_.done(done);
@@ -162,14 +165,14 @@ void StereoCore::run_ahead() {
   for (const std::uint64_t last = cycle_ + kQuantumCycles;; ++cycle_) {
     if (state_ != State::kRunning) {
       // There is nothing to step before the next request.
-      const bool pending = crossbar_.request_pending();
-      if (pending) cycle_ = std::max(cycle_, clock_.edge_at_or_after(crossbar_.earliest_request_ps()));
+      const bool pending = local_bus_.word_waits();
+      if (pending) cycle_ = std::max(cycle_, clock_.edge_at_or_after(local_bus_.request_ps()));
       if (state_ == State::kFinishing && (!pending || cycle_ >= done_cycle_)) {
         finish_frame(now);
         return;
       }
       if (!pending) {
-        wait(start_event_ | crossbar_.request_event());
+        wait(start_event_ | local_bus_.request_event());
         return;
       }
     }
@@ -181,8 +184,7 @@ void StereoCore::run_ahead() {
     const std::uint64_t offset = edge > now ? edge - now : 0;
     at = offset == offset_before + period_ps_ ? at + period_ : Clock::to_time(offset);
     offset_before = offset;
-    step(edge, at);
-    if (crossbar_.socket_requests() != 0) horizon = horizon_after();  // an answer may have set others going
+    if (step(edge, at)) horizon = horizon_after();  // an answer may have set others going
   }
 }
 
@@ -190,19 +192,32 @@ void StereoCore::run_ahead() {
 void StereoCore::finish_frame(std::uint64_t now_ps) {
   const std::uint64_t end = clock_.edge_ps(done_cycle_);
   if (end > now_ps) {
-    wait(Clock::to_time(end - now_ps), crossbar_.request_event());
+    wait(Clock::to_time(end - now_ps), local_bus_.request_event());
   } else {
     end_frame();
   }
 }
 
-void StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
-  if (state_ != State::kRunning) {
-    crossbar_.arbitrate(cycle_, edge_ps, 0);
+void StereoCore::route_host(const HostRoute& route) {
+  if (!route.bank) {
+    crossbar_.unroute(Port::kHost);
     return;
   }
+  crossbar_.route(Port::kHost, *route.bank, route.write);
+  host_read_latency_ =
+      static_cast<std::uint64_t>(memory::read_latency_cycles(config_.memory.banks[*route.bank].kind));
+}
+
+// One cycle. True if a burst of the local bus has been answered in it.
+bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
+  const bool host_requests = local_bus_.requests(edge_ps);
+  const PortMask host_request = host_requests ? memory::mask_of(Port::kHost) : PortMask{0};
+  if (state_ != State::kRunning) {
+    return has(crossbar_.arbitrate(cycle_, host_request), Port::kHost) && access_host(edge_ps, at);
+  }
   const CoreControl::Decision decision = control_.decide();
-  const PortMask granted = crossbar_.arbitrate(cycle_, edge_ps, decision.requests());
+  const PortMask granted =
+      crossbar_.arbitrate(cycle_, static_cast<PortMask>(decision.requests() | host_request));
   const auto moving = static_cast<PortMask>(granted | decision.passes());
 
   const auto issue_left = [this, &at] { sequencer_.issue(Side::kLeft, control_.left().next_slot(), at); };
@@ -223,12 +238,18 @@ void StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   }
   control_.commit(decision, granted, left_lut_ && left_lut_->entry_valid(),
                   right_lut_ && right_lut_->entry_valid());
-  control_.count_host(has(crossbar_.socket_requests(), Port::kHost), has(granted, Port::kHost));
+  control_.count_host(host_requests, has(granted, Port::kHost));
   if (control_.frame_done()) {
     state_ = State::kFinishing;
     done_cycle_ = cycle_ + 1 + static_cast<std::uint64_t>(config_.core.pipeline_latency_cycles);
     crossbar_.end_counting(cycle_ + 1);
   }
+  return has(granted, Port::kHost) && access_host(edge_ps, at);
+}
+
+bool StereoCore::access_host(std::uint64_t edge_ps, const sc_core::sc_time& at) {
+  local_bus_.access(at, edge_ps, clock_.edge_ps(cycle_ + host_read_latency_));
+  return !local_bus_.word_waits();
 }
 
 void StereoCore::end_frame() {

@@ -10,6 +10,7 @@
 #include "models/clock.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/local_bus.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
 #include "models/fpga/lut_reader.h"
@@ -30,6 +31,7 @@ namespace stereotlm::fpga {
 struct StereoCoreConfig {
   CoreConfig core;
   memory::CrossbarConfig memory;
+  LocalBusConfig local_bus;
 };
 
 // The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the register
@@ -38,12 +40,13 @@ struct StereoCoreConfig {
 //
 // The process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
 // have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every access carries its
-// own time. It sleeps while no frame runs and no request waits at the host port.
+// own time. It sleeps while no frame runs and no word waits at the local bus.
 class StereoCore : public sc_core::sc_module {
  public:
-  tlm::tlm_target_socket<32> registers{"registers"};  // register_map.h
-  // The crossbar's host port: nb_transport (no b_transport), debug, DMI.
-  tlm::tlm_target_socket<32> host{"host"};
+  // register_map.h, without the local bus and its time; may stay unbound.
+  tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1, sc_core::SC_ZERO_OR_MORE_BOUND> registers{
+      "registers"};
+  tlm::tlm_target_socket<32> local_bus{"local_bus"};        // local_bus.h: the banks and the registers
   sc_core::sc_vector<tlm::tlm_initiator_socket<32>> banks;  // in the order of the configuration
   sc_core::sc_out<bool> done{"done"};                       // interrupt
 
@@ -76,6 +79,7 @@ class StereoCore : public sc_core::sc_module {
   const ResultPacker& result_packer() const { return result_packer_; }
   const ResultWriter& result_writer() const { return result_writer_; }
   const RegisterFile& register_file() const { return register_file_; }
+  const LocalBus& local_bus_port() const { return local_bus_; }
 
  private:
   enum class State { kIdle, kRunning, kFinishing };
@@ -83,13 +87,15 @@ class StereoCore : public sc_core::sc_module {
   void bind_memory(Binder& binder);
   void bind_streams();
   void start_frame(const FrameStart& start);
+  void route_host(const HostRoute& route);
   bool has_bank(std::uint32_t base) const;
   int latency_of(std::uint32_t base) const;
 
   void run();
   void run_ahead();
   void finish_frame(std::uint64_t now_ps);
-  void step(std::uint64_t edge_ps, const sc_core::sc_time& at);
+  bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
+  bool access_host(std::uint64_t edge_ps, const sc_core::sc_time& at);
   void end_frame();
   std::uint64_t access_errors() const;
 
@@ -100,6 +106,7 @@ class StereoCore : public sc_core::sc_module {
   CoreControl control_;
   memory::Crossbar crossbar_{"crossbar", config_.memory};
   RegisterFile register_file_{"register_file"};
+  LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   Sequencer sequencer_{"sequencer"};
   std::unique_ptr<LutReader> left_lut_;
   std::unique_ptr<LutReader> right_lut_;
@@ -116,12 +123,14 @@ class StereoCore : public sc_core::sc_module {
   ResultPacker result_packer_{"result_packer"};
   ResultWriter result_writer_{"result_writer", config_.core.result_fifo_words};
   StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
+  StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};
 
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;        // of the clock, the next to run
   std::uint64_t first_cycle_ = 0;  // of the running frame
   std::uint64_t done_cycle_ = 0;   // the first after the finishing frame
   std::uint64_t errors_before_ = 0;
+  std::uint64_t host_read_latency_ = 2;  // cycles, of the bank that the host is routed to
   sc_core::sc_event start_event_{"start_event"};
   std::vector<std::uint64_t> frame_cycles_;
 };

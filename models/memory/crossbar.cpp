@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/clock.h"
-
 namespace stereotlm::memory {
 namespace {
 
@@ -16,11 +14,7 @@ constexpr std::uint64_t bank_base(std::uint64_t address) { return address & ~kOf
 }  // namespace
 
 Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
-    : sc_module(name),
-      ports("port", kPortCount),
-      banks("bank", config.banks.size()),
-      clock_(config.banks.empty() ? 1 : config.banks.front().clock_mhz),
-      request_event_("request") {
+    : sc_module(name), ports("port", kPortCount), banks("bank", config.banks.size()) {
   auto found = problems(config.arbiter);
   kBankCountRule.check("banks", static_cast<std::int64_t>(config.banks.size()), found);
   for (const SsramBankConfig& bank : config.banks) {
@@ -31,12 +25,11 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
   }
   if (!found.empty()) throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
   for (std::size_t port = 0; port < kPortCount; ++port) {
-    targets_.emplace_back(*this, port);
+    targets_.emplace_back(*this, static_cast<Port>(port));
     ports[port].bind(targets_.back());
   }
   for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
     arbiters_.emplace_back(config.arbiter, config.banks[bank].turnaround_cycles);
-    read_latencies_.push_back(read_latency_cycles(config.banks[bank].kind));
     banks[bank].register_invalidate_direct_mem_ptr(this, &Crossbar::invalidate_dmi, static_cast<int>(bank));
   }
 }
@@ -45,6 +38,17 @@ void Crossbar::route(Port port, std::size_t bank, bool write) {
   settle();
   targets_[index_of(port)].route(bank, write, *banks[bank].operator->());
   routed_ = static_cast<PortMask>(routed_ | mask_of(port));
+  share_banks();
+}
+
+void Crossbar::unroute(Port port) {
+  settle();
+  routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
+  share_banks();
+}
+
+// Which ports meet in which banks.
+void Crossbar::share_banks() {
   writes_ = 0;
   alone_ = 0;
   shared_bank_count_ = 0;
@@ -61,7 +65,7 @@ void Crossbar::route(Port port, std::size_t bank, bool write) {
     const auto port_mask = static_cast<PortMask>(1U << i);
     BankArbiter& arbiter = arbiters_[targets_[i].bank()];
     if (together[i] == 0 || lowest(together[i]) != i) continue;
-    if (together[i] == port_mask && (sockets_ & port_mask) == 0 && !arbiter.needs_turnaround()) {
+    if (together[i] == port_mask && !arbiter.needs_turnaround()) {
       alone_ = static_cast<PortMask>(alone_ | port_mask);
     } else {
       shared_banks_[shared_bank_count_++] = {&arbiter, together[i]};
@@ -83,39 +87,17 @@ void Crossbar::settle() {
   }
 }
 
-PortMask Crossbar::ready_socket_requests(std::uint64_t edge_ps) const {
-  PortMask ready = 0;
-  for (PortMask left = pending_; left != 0; left = static_cast<PortMask>(left & (left - 1))) {
-    const std::size_t port = lowest(left);
-    if (waiting_[port].from_ps <= edge_ps) ready = static_cast<PortMask>(ready | 1U << port);
-  }
-  return ready;
-}
-
-std::uint64_t Crossbar::earliest_request_ps() const {
-  std::uint64_t earliest = UINT64_MAX;
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    if ((pending_ >> port & 1U) != 0) earliest = std::min(earliest, waiting_[port].from_ps);
-  }
-  return earliest;
-}
-
-// The rest of arbitrate(): `requests` of stages that are not alone on their banks, and those of the sockets.
-PortMask Crossbar::arbitrate_shared(std::uint64_t cycle, std::uint64_t edge_ps, PortMask requests) {
-  socket_requests_ = pending_ == 0 ? PortMask{0} : ready_socket_requests(edge_ps);
-  const auto all = static_cast<PortMask>(requests | socket_requests_);
+// The rest of arbitrate(): requests of ports that are not alone on their banks.
+void Crossbar::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
   PortMask granted = granted_;
   const SharedBank* const end = shared_banks_.data() + shared_bank_count_;
   for (const SharedBank* shared = shared_banks_.data(); shared != end; ++shared) {
-    const auto asking = static_cast<PortMask>(all & shared->ports);
+    const auto asking = static_cast<PortMask>(requests & shared->ports);
     if (asking != 0) {
       granted = static_cast<PortMask>(granted | shared->arbiter->arbitrate(cycle, asking, writes_));
     }
   }
-  granted_ = static_cast<PortMask>(granted & ~socket_requests_);
-  auto served = static_cast<PortMask>(granted & socket_requests_);
-  for (; served != 0; served = static_cast<PortMask>(served & (served - 1))) respond(lowest(served), cycle);
-  return granted;
+  granted_ = granted;
 }
 
 void Crossbar::begin_counting(std::uint64_t first_cycle) {
@@ -135,75 +117,22 @@ void Crossbar::PortTarget::route(std::size_t bank, bool write, tlm::tlm_blocking
   bank_port_ = &target;
 }
 
-void Crossbar::PortTarget::access_bank(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) const {
-  const std::uint64_t address = access.get_address();
-  access.set_address(address - bank_base_);
-  bank_port_->b_transport(access, delay);
-  access.set_address(address);
-}
-
 void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  if ((crossbar_.granted_ & port_mask_) == 0 || bank_base(access.get_address()) != bank_base_ ||
+  const std::uint64_t address = access.get_address();
+  if ((crossbar_.granted_ & port_mask_) == 0 || bank_base(address) != bank_base_ ||
       access.is_write() != write_) {
     crossbar_.refuse(access);
     return;
   }
   crossbar_.granted_ = static_cast<PortMask>(crossbar_.granted_ & ~port_mask_);
-  access_bank(access, delay);
+  access.set_address(address - bank_base_);
+  bank_port_->b_transport(access, delay);
+  access.set_address(address);
 }
 
 void Crossbar::refuse(tlm::tlm_generic_payload& access) const {
   access.set_response_status(has_bank(access.get_address()) ? tlm::TLM_GENERIC_ERROR_RESPONSE
                                                             : tlm::TLM_ADDRESS_ERROR_RESPONSE);
-}
-
-tlm::tlm_sync_enum Crossbar::forward(std::size_t port, tlm::tlm_generic_payload& access,
-                                     tlm::tlm_phase& phase, sc_core::sc_time& delay) {
-  Waiting& waiting = waiting_[port];
-  if (phase == tlm::END_RESP && waiting.responding) {
-    waiting.responding = false;
-    waiting.access = nullptr;
-    return tlm::TLM_COMPLETED;
-  }
-  if (phase != tlm::BEGIN_REQ || waiting.access != nullptr) {
-    SC_REPORT_ERROR("/stereotlm/crossbar",
-                    (std::string(name()) + ": port " + kPortNames[port] + ": phase out of order").c_str());
-    return tlm::TLM_ACCEPTED;
-  }
-  if (!has_bank(access.get_address())) {
-    access.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    return tlm::TLM_COMPLETED;
-  }
-  waiting.access = &access;
-  waiting.from_ps = Clock::to_ps(sc_core::sc_time_stamp() + delay);
-  access.acquire();
-  pending_ = static_cast<PortMask>(pending_ | 1U << port);
-  sockets_ = static_cast<PortMask>(sockets_ | 1U << port);
-  route(static_cast<Port>(port), bank_of_address(access.get_address()), access.is_write());
-  request_event_.notify(delay);
-  return tlm::TLM_ACCEPTED;
-}
-
-void Crossbar::respond(std::size_t port, std::uint64_t cycle) {
-  Waiting& waiting = waiting_[port];
-  tlm::tlm_generic_payload& access = *waiting.access;
-  pending_ = static_cast<PortMask>(pending_ & ~(1U << port));
-  sc_core::sc_time delay;
-  targets_[port].access_bank(access, delay);
-  // A word read is usable from the beginning of its cycle on, anything else is done at the end of the cycle. The time
-  // is that of an edge: periods added up would drift.
-  const bool reads = access.is_read() && access.is_response_ok();
-  const int cycles = reads ? read_latencies_[targets_[port].bank()] : 1;
-  delay =
-      Clock::to_time(clock_.edge_ps(cycle + static_cast<std::uint64_t>(cycles))) - sc_core::sc_time_stamp();
-  waiting.responding = true;
-  tlm::tlm_phase phase = tlm::BEGIN_RESP;
-  const tlm::tlm_sync_enum answer = ports[port]->nb_transport_bw(access, phase, delay);
-  if (answer == tlm::TLM_COMPLETED || (answer == tlm::TLM_UPDATED && phase == tlm::END_RESP)) {
-    waiting.responding = false;
-    waiting.access = nullptr;
-  }
-  access.release();
 }
 
 unsigned Crossbar::debug(tlm::tlm_generic_payload& access) {

@@ -9,14 +9,16 @@
 
 namespace stereotlm::test {
 
-// An initiator that a test drives: words by b_transport and nb_transport, blocks by debug transport, and DMI.
+// An initiator that a test drives: words by b_transport, words and bursts by nb_transport, blocks by debug transport,
+// and DMI.
 // It ends a response of nb_transport as `ending` says, and records every answer.
 class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
  public:
   struct Answer {
     tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;
     std::uint32_t word = 0;
-    sc_core::sc_time at;  // absolute
+    sc_core::sc_time at;               // absolute
+    std::vector<std::uint32_t> words;  // of a burst, `word` first
   };
   enum class Ending { kCompleted, kUpdated, kAccepted };  // what it returns to BEGIN_RESP
 
@@ -35,10 +37,14 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
   }
 
-  // One word by nb_transport that asks from now + delay on; does not wait. Returns what the target returned.
+  // Words by nb_transport, from now + delay on; does not wait. Returns what the target returned.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
                              sc_core::sc_time delay = {}) {
-    Transaction& transaction = prepare(command, address, word);
+    return request(command, address, std::vector<std::uint32_t>{word}, delay);
+  }
+  tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address,
+                             std::vector<std::uint32_t> words, sc_core::sc_time delay = {}) {
+    Transaction& transaction = prepare(command, address, std::move(words));
     transaction.payload.set_mm(&manager_);
     transaction.payload.acquire();
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
@@ -58,7 +64,10 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
   // In a thread process: request(), and waits until the answer's time.
   Answer access(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0) {
-    if (request(command, address, word) == tlm::TLM_ACCEPTED) sc_core::wait(answered_);
+    return access(command, address, std::vector<std::uint32_t>{word});
+  }
+  Answer access(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
+    if (request(command, address, std::move(words)) == tlm::TLM_ACCEPTED) sc_core::wait(answered_);
     return answers.back();
   }
 
@@ -99,30 +108,32 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
  private:
   struct Transaction {
     tlm::tlm_generic_payload payload;
-    std::uint32_t word = 0;
+    std::vector<std::uint32_t> words;
   };
   // Transactions live as long as the host.
   class Manager : public tlm::tlm_mm_interface {
     void free(tlm::tlm_generic_payload* /*payload*/) override {}
   };
 
-  Transaction& prepare(tlm::tlm_command command, std::uint64_t address, std::uint32_t word) {
+  Transaction& prepare(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
     Transaction& transaction = transactions_.emplace_back();
-    transaction.word = word;
+    transaction.words = std::move(words);
+    const auto bytes = static_cast<unsigned>(transaction.words.size() * 4);
     transaction.payload.set_command(command);
     transaction.payload.set_address(address);
-    transaction.payload.set_data_ptr(reinterpret_cast<unsigned char*>(&transaction.word));
-    transaction.payload.set_data_length(4);
-    transaction.payload.set_streaming_width(4);
+    transaction.payload.set_data_ptr(reinterpret_cast<unsigned char*>(transaction.words.data()));
+    transaction.payload.set_data_length(bytes);
+    transaction.payload.set_streaming_width(bytes);
     return transaction;
   }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word, sc_core::sc_time delay) {
-    Transaction& transaction = prepare(command, address, word);
+    Transaction& transaction = prepare(command, address, {word});
     socket->b_transport(transaction.payload, delay);
     return answer_of(transaction, delay);
   }
   static Answer answer_of(const Transaction& transaction, sc_core::sc_time delay) {
-    return {transaction.payload.get_response_status(), transaction.word, sc_core::sc_time_stamp() + delay};
+    return {transaction.payload.get_response_status(), transaction.words.front(),
+            sc_core::sc_time_stamp() + delay, transaction.words};
   }
   void record(const Transaction& transaction, sc_core::sc_time delay) {
     answers.push_back(answer_of(transaction, delay));

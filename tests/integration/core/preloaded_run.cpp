@@ -47,7 +47,7 @@ PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::T
   EXPECT_TRUE(system.host.finished());
   // Two of the host, three to five from the ports of the core, one to each bank.
   const std::size_t tables_bound = (tables.left ? 1U : 0U) + (tables.right ? 1U : 0U);
-  EXPECT_EQ(binder.monitors().size(), 5 + tables_bound + board.banks.size());
+  EXPECT_EQ(binder.monitors().size(), 7 + tables_bound + board.banks.size());
   return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities)};
 }
 

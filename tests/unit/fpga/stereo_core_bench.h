@@ -21,7 +21,7 @@
 namespace stereotlm::fpga {
 
 // The core of an 8 x 6 board with six banks of 64 words: left image, right image, disparity, left table,
-// right table, and one that no frame uses. Hosts drive its registers and its host port, every link under a
+// right table, and one that no frame uses. Hosts drive its registers and its local bus, every link under a
 // monitor; the times at which the interrupt rises are recorded.
 class StereoCoreBench : public testing::Test {
  protected:
@@ -51,7 +51,7 @@ class StereoCoreBench : public testing::Test {
       binder.bind(core->banks[bank], banks.back()->port, "crossbar_to_bank" + number);
     }
     binder.bind(registers.socket, core->registers, "host_to_registers");
-    binder.bind(memory.socket, core->host, "host_to_crossbar");
+    binder.bind(memory.socket, core->local_bus, "host_to_local_bus");
     core->done(done);
     sc_core::sc_spawn([this] {
       for (;;) {

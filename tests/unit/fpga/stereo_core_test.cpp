@@ -248,8 +248,8 @@ TEST_F(StereoCoreTest, KeepsItsTimesInAFrameOfManyThousandCycles) {
   });
   run_until(edge(20'000));
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(1 + cycles)});
-  EXPECT_EQ(memory.answers.at(0).at, edge(17'002));
-  EXPECT_EQ(memory.answers.at(1).at, edge(17'004));
+  EXPECT_EQ(memory.answers.at(0).at, edge(17'006));
+  EXPECT_EQ(memory.answers.at(1).at, edge(17'012));
   EXPECT_EQ(port(Port::kHost).granted(), 2U);
   EXPECT_EQ(result_words(), expected_words());
 }

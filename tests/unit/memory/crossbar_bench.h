@@ -44,7 +44,7 @@ class CrossbarBench : public testing::Test {
   test::TestHost& at(Port port) { return hosts[index_of(port)]; }
   // Cycle number `cycle`, with these stages asking.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests = 0) {
-    return crossbar->arbitrate(cycle, cycle * kPeriodPs, requests);
+    return crossbar->arbitrate(cycle, requests);
   }
   static sc_core::sc_time cycles(std::uint64_t count) {
     return sc_core::sc_time::from_value(count * kPeriodPs);
