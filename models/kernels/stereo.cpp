@@ -75,9 +75,9 @@ Matches match(const GrayImage& left, const GrayImage& right, int window, int dis
     // `column` ends the window around left pixel column - radius; unit A runs on until its last pixel has
     // left it.
     for (int column = 0; column < width + radius + disparities - 1; ++column) {
-      for (int j = -radius; j <= radius && column < width; ++j) {
-        left_pixels[static_cast<std::size_t>(j + radius)] = left.at(column, row + j);
-        right_pixels[static_cast<std::size_t>(j + radius)] = right.at(column, row + j);
+      for (int k = 0; k < window && column < width; ++k) {
+        left_pixels[static_cast<std::size_t>(k)] = left.at(column, row - radius + k);
+        right_pixels[static_cast<std::size_t>(k)] = right.at(column, row - radius + k);
       }
       sums.push_column(left_pixels.data(), right_pixels.data());
       const int centre = column - radius;
