@@ -12,8 +12,8 @@ namespace stereotlm::platform {
 
 // The fewest cycles that one resource of the core needs for a frame, pipeline latency included. No run can be
 // faster:
-//   port P      one slot or word a cycle. For the port that takes the slots of a side (of its table, or of its
-//               images if it has none) also: with F places in the lane, slot s+F is not taken before slot s
+//   port P      one slot or word a cycle. For the port that takes the slots of a side (of its table, or if it
+//               has none of its images) also: with F places in the lane, slot s+F is not taken before slot s
 //               has left it, latencies later
 //   bank B      one access a cycle, turnaround left out; after the last read the drain and the last write
 //   matcher     the latencies of the first slot, one slot a cycle, the drain, the last write

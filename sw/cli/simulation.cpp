@@ -35,8 +35,8 @@ platform::Statistics Simulation::statistics() const {
 
 const host::StereoPair& Simulation::pair(std::uint64_t /*frame*/) { return pair_; }
 
-// Counters are taken at each frame's end, because those of a frame under way would be mixed into them when the
-// run is interrupted.
+// Counters are taken at each frame's end, because those of a frame under way would be mixed into them when
+// the run is interrupted.
 void Simulation::take(std::uint64_t /*frame*/, const kernels::GrayImage& disparity) {
   counters_ = platform::counters_of(system_.board);
   disparity_ = disparity;

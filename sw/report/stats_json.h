@@ -8,8 +8,8 @@
 
 namespace stereotlm::report {
 
-// The text of stats.json (contract section 6), its keys in that order. What does not apply is absent: `failed`
-// unless an identity failed, `accuracy` unless it is given, a percentage of nothing.
+// The text of stats.json (contract section 6), its keys in that order. What does not apply is absent:
+// `failed` unless an identity failed, `accuracy` unless it is given, a percentage of nothing.
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
 
 }  // namespace stereotlm::report

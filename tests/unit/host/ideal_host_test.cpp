@@ -25,7 +25,7 @@ using test::ExpectedReport;
 
 constexpr int kWidth = 4;
 constexpr int kHeight = 2;
-constexpr std::size_t kPixels = kWidth * kHeight;
+constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
 const sc_time kFrameTime(100, sc_core::SC_NS);
 
 // Frame f: left pixels 10 f + 1, right pixels 10 f + 2.
@@ -133,7 +133,7 @@ class IdealHostTest : public testing::Test {
   }
   std::vector<std::uint32_t> words(std::uint32_t bank, std::uint32_t first, std::size_t count) {
     std::vector<std::uint32_t> copy(count);
-    std::memcpy(copy.data(), banks.at(bank).data() + 4 * first, 4 * count);
+    std::memcpy(copy.data(), banks.at(bank).data() + std::size_t{4} * first, 4 * count);
     return copy;
   }
 

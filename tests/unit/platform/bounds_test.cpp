@@ -36,9 +36,9 @@ uint64_t largest(const BoardConfig& board, const Tables& tables, uint64_t frame)
 
 // small_board(): slots of 16 columns of 6 rows, 3 each; two of the 18 row fetches lie outside the image. The
 // drain has D - 1 + r columns.
-constexpr uint64_t kSlots = 16 * 6 * 3;
-constexpr uint64_t kReads = 16 * (6 * 3 - 2);
-constexpr uint64_t kDrain = 3 * (3 - 1 + 1);
+constexpr uint64_t kSlots = uint64_t{16} * 6 * 3;
+constexpr uint64_t kReads = uint64_t{16} * (6 * 3 - 2);
+constexpr uint64_t kDrain = uint64_t{3} * (3 - 1 + 1);
 constexpr uint64_t kWords = 16 * 6 / 4;
 constexpr uint64_t kPipeline = 16;
 constexpr uint64_t kAfter = kDrain + 1 + kPipeline;
@@ -89,7 +89,7 @@ TEST(FrameBounds, CountTheReadsOfLineBuffers) {
   BoardConfig board = small_board();
   board.matcher.fetch = fpga::Fetch::kLineBuffer;
   const uint64_t after = (3 - 1 + 1) + 1 + kPipeline;
-  EXPECT_EQ(bound_of(board, "port left_lut"), 16 * 7 + kPipeline);
+  EXPECT_EQ(bound_of(board, "port left_lut"), uint64_t{16} * 7 + kPipeline);
   EXPECT_EQ(bound_of(board, "bank bank0"), 16 * 6 + 2 + after);
   EXPECT_EQ(bound_of(board, "matcher"), 4 + 16 * 7 + after);
 }
@@ -97,7 +97,7 @@ TEST(FrameBounds, CountTheReadsOfLineBuffers) {
 TEST(FrameBounds, CountTheReadsOfALargeFilter) {
   BoardConfig board = small_board();
   board.matcher.filter = kernels::log7();  // two strips more, rows 0..5 of -2+3-1 = 0 on
-  const uint64_t drain = 3 * (3 - 1 + 1 + 3);
+  const uint64_t drain = uint64_t{3} * (3 - 1 + 1 + 3);
   EXPECT_EQ(bound_of(board, "matcher"), 4 + 16 * 8 * 3 + drain + 1 + kPipeline);
   // Strips start at rows 0 .. 7: six rows of three, less those below the image.
   EXPECT_EQ(bound_of(board, "bank bank0"), 16 * (4 * 3 + 2 + 1) + 2 + drain + 1 + kPipeline);

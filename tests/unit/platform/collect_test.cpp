@@ -52,7 +52,7 @@ TEST(CollectStatistics, ListsEveryBankInTheOrderOfTheBoard) {
   const Statistics statistics = run.finish();
   const auto cycles = static_cast<double>(statistics.cycles);
   ASSERT_EQ(statistics.banks.size(), 9U);
-  const uint64_t reads = 16 * (6 * 3 - 2);
+  const uint64_t reads = uint64_t{16} * (6 * 3 - 2);
   for (std::size_t i = 0; i < 9; ++i) {
     const BankStatistics& bank = statistics.banks[i];
     EXPECT_EQ(bank.name, board.banks[i].name);
@@ -82,7 +82,7 @@ TEST(CollectStatistics, ListsEveryPortInTheOrderOfTheContract) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"left_lut", "right_lut", "left_pixel", "right_pixel", "result",
                                              "host"}));
-  const uint64_t slots = 16 * 6 * 3;
+  const uint64_t slots = uint64_t{16} * 6 * 3;
   EXPECT_EQ(port(statistics, "left_lut").grants, slots - 32);
   EXPECT_EQ(port(statistics, "left_lut").passed_cycles, 32U);
   EXPECT_EQ(port(statistics, "left_lut").idle_cycles, statistics.cycles - slots);

@@ -4,8 +4,8 @@
 
 namespace stereotlm::test {
 
-// A scripted link with two correct managed transactions, acquired once each, and calls of nb_transport in both
-// directions.
+// A scripted link with two correct managed transactions, acquired once each, and calls of nb_transport in
+// both directions.
 class ScriptedHandshake : public ScriptedLink {
  protected:
   using Payload = tlm::tlm_generic_payload;
@@ -20,7 +20,7 @@ class ScriptedHandshake : public ScriptedLink {
 
   // The next forward (backward) call is answered with this.
   void target_returns(tlm::tlm_sync_enum status, tlm::tlm_phase phase = tlm::UNINITIALIZED_PHASE,
-                      sc_core::sc_time added = {}) {
+                      const sc_core::sc_time& added = {}) {
     target.on_forward = [=](Payload& received, tlm::tlm_phase& returned, sc_core::sc_time& annotated) {
       if (phase != tlm::UNINITIALIZED_PHASE) returned = phase;
       if (status == tlm::TLM_COMPLETED || phase == tlm::BEGIN_RESP) {
