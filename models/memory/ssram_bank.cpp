@@ -1,8 +1,6 @@
 #include "models/memory/ssram_bank.h"
 
-#include <algorithm>
 #include <cstring>
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -10,22 +8,28 @@
 
 namespace stereotlm::memory {
 
-SsramBank::SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
-    : sc_module(name), config_(config) {
+namespace {
+
+const SsramBankConfig& checked(const char* name, const SsramBankConfig& config) {
   if (const auto found = problems(config); !found.empty()) {
-    throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
+    throw std::invalid_argument(std::string(name) + ": " + found.front());
   }
+  return config;
+}
+
+}  // namespace
+
+SsramBank::SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
+    : sc_module(name), config_(checked(this->name(), config)), ram_(std::uint64_t{config.words} * 4) {
   const auto latency = static_cast<std::uint64_t>(read_latency_cycles(config.kind));
   read_time_ = Clock::to_time(Clock(config.clock_mhz).edge_ps(latency));
-  words_.reset(static_cast<std::uint32_t*>(std::calloc(config.words, sizeof(std::uint32_t))));
-  if (words_ == nullptr) throw std::bad_alloc();
   port.bind(*this);
 }
 
 tlm::tlm_response_status SsramBank::check(const tlm::tlm_generic_payload& access) const {
   if (access.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
   if (access.get_data_length() != 4 || access.get_streaming_width() < 4) return tlm::TLM_BURST_ERROR_RESPONSE;
-  if (access.get_address() % 4 != 0 || access.get_address() >= bytes())
+  if (access.get_address() % 4 != 0 || access.get_address() >= ram_.bytes())
     return tlm::TLM_ADDRESS_ERROR_RESPONSE;
   if (access.get_byte_enable_ptr() != nullptr && access.get_byte_enable_length() == 0) {
     return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
@@ -41,19 +45,14 @@ void SsramBank::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
     return;
   }
   access.set_dmi_allowed(true);
-  auto* stored = reinterpret_cast<unsigned char*>(words_.get() + access.get_address() / 4);
-  unsigned char* data = access.get_data_ptr();
   const bool reads = access.is_read();
-  if (const unsigned char* enables = access.get_byte_enable_ptr()) {
-    const unsigned length = access.get_byte_enable_length();
-    for (unsigned byte = 0; byte < 4; ++byte) {
-      if (enables[byte % length] != TLM_BYTE_ENABLED) continue;
-      (reads ? data[byte] : stored[byte]) = reads ? stored[byte] : data[byte];
-    }
+  unsigned char* stored = ram_.data() + access.get_address();
+  if (access.get_byte_enable_ptr() != nullptr) {
+    ram_.move(access);
   } else if (reads) {
-    std::memcpy(data, stored, 4);
+    std::memcpy(access.get_data_ptr(), stored, 4);
   } else {
-    std::memcpy(stored, data, 4);
+    std::memcpy(stored, access.get_data_ptr(), 4);
   }
   if (reads) {
     ++stats_.reads;
@@ -71,34 +70,10 @@ tlm::tlm_sync_enum SsramBank::nb_transport_fw(tlm::tlm_generic_payload& access, 
   return tlm::TLM_COMPLETED;
 }
 
-unsigned SsramBank::transport_dbg(tlm::tlm_generic_payload& access) {
-  const std::uint64_t address = access.get_address();
-  if (access.get_command() == tlm::TLM_IGNORE_COMMAND || address >= bytes()) return 0;
-  const auto length =
-      static_cast<unsigned>(std::min<std::uint64_t>(access.get_data_length(), bytes() - address));
-  auto* stored = reinterpret_cast<unsigned char*>(words_.get()) + address;
-  if (access.is_read()) {
-    std::memcpy(access.get_data_ptr(), stored, length);
-  } else {
-    std::memcpy(stored, access.get_data_ptr(), length);
-  }
-  return length;
-}
+unsigned SsramBank::transport_dbg(tlm::tlm_generic_payload& access) { return ram_.debug(access); }
 
 bool SsramBank::get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
-  if (access.get_address() >= bytes()) {
-    dmi.allow_read_write();
-    dmi.set_start_address(bytes());
-    dmi.set_end_address(UINT64_MAX);
-    return false;
-  }
-  dmi.set_dmi_ptr(reinterpret_cast<unsigned char*>(words_.get()));
-  dmi.set_start_address(0);
-  dmi.set_end_address(bytes() - 1);
-  dmi.allow_read_write();
-  dmi.set_read_latency(read_time_);
-  dmi.set_write_latency(sc_core::SC_ZERO_TIME);
-  return true;
+  return ram_.grant_dmi(access, read_time_, dmi);
 }
 
 }  // namespace stereotlm::memory

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <systemc>
 #include <tlm>
 
 #include "models/memory/memory_config.h"
+#include "models/memory/ram.h"
 
 namespace stereotlm::memory {
 
@@ -35,24 +34,19 @@ class SsramBank : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> 
   const SsramBankConfig& config() const { return config_; }
   const Stats& stats() const { return stats_; }
   // The words, for whoever owns the bank.
-  const std::uint32_t* words() const { return words_.get(); }
+  const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(ram_.data()); }
 
  private:
-  struct Free {
-    void operator()(void* memory) const { std::free(memory); }
-  };
-
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay) override;
   unsigned transport_dbg(tlm::tlm_generic_payload& access) override;
   bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override;
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
-  std::uint64_t bytes() const { return std::uint64_t{config_.words} * 4; }
 
   SsramBankConfig config_;
   sc_core::sc_time read_time_;
-  std::unique_ptr<std::uint32_t[], Free> words_;  // zeros, untouched pages cost no memory
+  Ram ram_;
   Stats stats_;
 };
 
