@@ -1,0 +1,70 @@
+#include "models/pci/pci_load.h"
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "models/clock.h"
+
+namespace stereotlm::pci {
+
+PciLoad::PciLoad(const sc_core::sc_module_name& name, const PciLoadConfig& config)
+    : sc_module(name), config_(config) {
+  SC_HAS_PROCESS(PciLoad);
+  if (const auto found = problems(config); !found.empty()) {
+    throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
+  }
+  device.register_b_transport(this, &PciLoad::answer);
+  SC_METHOD(request);
+  sensitive << due_;
+  dont_initialize();
+  due_.notify(Clock::to_time(config.first_request_ps));
+}
+
+void PciLoad::request() { pci->request(*this); }
+
+PciBurst PciLoad::begin_burst(std::uint64_t /*address_clock_ps*/) {
+  words_.resize(static_cast<std::size_t>(config_.burst_words) - words_done_);
+  return {false, config_.address + 4 * words_done_, &words_};
+}
+
+void PciLoad::end_burst(const BurstResult& result) {
+  if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) {
+    SC_REPORT_ERROR(
+        "/stereotlm/pci_load",
+        (std::string(name()) + ": address = " + std::to_string(config_.address) + ": " +
+         (result.end == BurstEnd::kMasterAbort ? "no target answers" : "the target answers with an error"))
+            .c_str());
+    return;
+  }
+  words_done_ += result.words;
+  if (result.end != BurstEnd::kComplete) {
+    request();
+    return;
+  }
+  words_done_ = 0;
+  ++transfers_;
+  const std::uint64_t due_ps = config_.first_request_ps + transfers_ * config_.interval_ps;
+  const std::uint64_t now_ps = Clock::to_ps(sc_core::sc_time_stamp());
+  if (due_ps <= now_ps) {
+    request();
+  } else {
+    due_.notify(Clock::to_time(due_ps - now_ps));
+  }
+}
+
+void PciLoad::answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+  if (!access.is_read()) {
+    access.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
+  } else if (access.get_data_length() % 4 != 0 || access.get_streaming_width() < access.get_data_length()) {
+    access.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
+  } else if (access.get_byte_enable_ptr() != nullptr) {
+    access.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
+  } else {
+    std::memset(access.get_data_ptr(), 0, access.get_data_length());
+    delay += Clock::to_time(config_.access_ps);
+    access.set_response_status(tlm::TLM_OK_RESPONSE);
+  }
+}
+
+}  // namespace stereotlm::pci

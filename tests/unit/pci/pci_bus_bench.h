@@ -1,0 +1,205 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <systemc>
+#include <tlm>
+#include <utility>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/pci/pci_bus.h"
+#include "tests/support/monitoring_binder.h"
+
+namespace stereotlm::pci {
+
+// A word that tells where it is.
+constexpr std::uint32_t word_at(std::uint64_t address) {
+  return static_cast<std::uint32_t>(address / 4 + 0x1000);
+}
+
+struct Script {
+  bool write = true;
+  std::uint64_t address = 0;
+  std::size_t words = 1;
+};
+
+// A master that asks for its bursts one after the other: the next at once when one has ended, or only when it
+// is told to. Written words are word_at(their address).
+class TestMaster : public sc_core::sc_module, public PciMasterIf {
+ public:
+  struct Ended {
+    BurstResult result;
+    std::uint64_t address_ps = 0;
+    std::uint64_t granted_ps = 0;  // when begin_burst was called
+    std::uint64_t end_ps = 0;
+    std::vector<std::uint32_t> words;
+  };
+
+  PciMasterPort pci{"pci"};
+  std::deque<Script> bursts;
+  bool at_once = true;
+  std::vector<Ended> ended;
+  std::function<void()> on_begin = [] {};
+  std::function<void()> on_end = [] {};
+
+  explicit TestMaster(const sc_core::sc_module_name& name) : sc_module(name) {}
+  void request() { pci->request(*this); }
+  std::size_t words_done() const {
+    std::size_t words = 0;
+    for (const Ended& burst : ended) words += burst.result.words;
+    return words;
+  }
+
+  PciBurst begin_burst(std::uint64_t address_clock_ps) override {
+    ++grants;
+    on_begin();
+    if (bursts.empty()) return {};
+    now_.address_ps = address_clock_ps;
+    now_.granted_ps = Clock::to_ps(sc_core::sc_time_stamp());
+    const Script script = bursts.front();
+    bursts.pop_front();
+    words_.assign(script.words, 0);
+    for (std::size_t i = 0; script.write && i < script.words; ++i)
+      words_[i] = word_at(script.address + 4 * i);
+    return {script.write, script.address, &words_};
+  }
+  void end_burst(const BurstResult& result) override {
+    now_.result = result;
+    now_.end_ps = Clock::to_ps(sc_core::sc_time_stamp());
+    now_.words = words_;
+    ended.push_back(now_);
+    on_end();
+    if (at_once && !bursts.empty()) request();
+  }
+  int grants = 0;
+
+ private:
+  Ended now_;
+  std::vector<std::uint32_t> words_;
+};
+
+// A target that answers correctly, after the time that the test says, and records what came.
+class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>, public PciStopIf {
+ public:
+  struct Access {
+    bool write = false;
+    std::uint64_t address = 0;
+    std::vector<std::uint32_t> words;
+    std::uint64_t at_ps = 0;  // with its delay
+  };
+
+  tlm::tlm_target_socket<32> socket{"socket"};
+  sc_core::sc_time read_waits;   // by wait(), after the delay that came
+  sc_core::sc_time read_delays;  // by annotation
+  sc_core::sc_time write_delays;
+  tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE;
+  std::function<std::size_t(std::uint64_t, std::size_t)> writable = [](auto, auto words) { return words; };
+  std::vector<Access> accesses;
+
+  explicit TestTarget(const sc_core::sc_module_name& name) : sc_module(name) { socket.bind(*this); }
+
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override {
+    Access& access = accesses.emplace_back();
+    access.write = payload.is_write();
+    access.address = payload.get_address();
+    access.at_ps = Clock::to_ps(sc_core::sc_time_stamp() + delay);
+    access.words.resize(payload.get_data_length() / 4);
+    if (payload.is_read()) {
+      for (std::size_t i = 0; i < access.words.size(); ++i) access.words[i] = word_at(access.address + 4 * i);
+      std::memcpy(payload.get_data_ptr(), access.words.data(), payload.get_data_length());
+    } else {
+      std::memcpy(access.words.data(), payload.get_data_ptr(), payload.get_data_length());
+    }
+    if (access.write) {
+      delay += write_delays;
+    } else {
+      if (read_waits != sc_core::SC_ZERO_TIME) {
+        wait(delay + read_waits);
+        delay = sc_core::SC_ZERO_TIME;
+      }
+      delay += read_delays;
+    }
+    payload.set_response_status(response);
+  }
+  std::size_t writable_words(std::uint64_t address, std::size_t words) const override {
+    return writable(address, words);
+  }
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload&, tlm::tlm_phase&, sc_core::sc_time&) override {
+    ADD_FAILURE() << "the bus uses b_transport";
+    return tlm::TLM_COMPLETED;
+  }
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+  unsigned transport_dbg(tlm::tlm_generic_payload&) override { return 0; }
+};
+
+// A bus with masters m0, m1, .. and a monitored target behind each window.
+class PciBusBench {
+ public:
+  explicit PciBusBench(PciBusConfig config, std::size_t masters_count = 1) : config_(std::move(config)) {
+    for (std::size_t i = 0; i < masters_count; ++i) config_.masters.push_back("m" + std::to_string(i));
+    bus = std::make_unique<PciBus>("bus", config_);
+    for (std::size_t i = 0; i < masters_count; ++i) {
+      masters.push_back(std::make_unique<TestMaster>(config_.masters[i].c_str()));
+      masters[i]->pci.bind(bus->slots[i]);
+    }
+    for (std::size_t i = 0; i < config_.windows.size(); ++i) {
+      const std::string name = "t" + std::to_string(i);
+      targets.push_back(std::make_unique<TestTarget>(name.c_str()));
+      binder.bind(bus->targets[i], targets[i]->socket, "bus_to_" + name);
+    }
+  }
+  // Window 0 of 64 KiB at 0x10000 alone.
+  static PciBusConfig with_window(int wait_clocks, int latency_timer_clocks = 255) {
+    PciBusConfig config;
+    config.latency_timer_clocks = latency_timer_clocks;
+    config.windows = {{kBase, kBytes, wait_clocks}};
+    return config;
+  }
+  void bind_stop() { bus->stops[0].bind(*targets[0]); }
+
+  // In simulation, at an absolute time.
+  void at(std::uint64_t time_ps, std::function<void()> body, int deltas = 0) {
+    sc_core::sc_spawn([time_ps, deltas, body = std::move(body)] {
+      if (time_ps > 0) sc_core::wait(Clock::to_time(time_ps));
+      for (int i = 0; i < deltas; ++i) sc_core::wait(sc_core::SC_ZERO_TIME);
+      body();
+    });
+  }
+  void request_at(std::uint64_t time_ps, std::size_t master = 0) {
+    at(time_ps, [this, master] { masters[master]->request(); });
+  }
+  std::uint64_t edge(std::uint64_t clock) const { return Clock(config_.clock_mhz).edge_ps(clock); }
+
+  static constexpr std::uint32_t kBase = 0x1'0000;
+  static constexpr std::uint32_t kBytes = 0x1'0000;
+
+  test::MonitoringBinder binder;
+  std::unique_ptr<PciBus> bus;
+  std::vector<std::unique_ptr<TestMaster>> masters;
+  std::vector<std::unique_ptr<TestTarget>> targets;
+
+ private:
+  PciBusConfig config_;
+};
+
+inline Script write_of(std::size_t words, std::uint64_t offset = 0) {
+  return {true, PciBusBench::kBase + offset, words};
+}
+inline Script read_of(std::size_t words, std::uint64_t offset = 0) {
+  return {false, PciBusBench::kBase + offset, words};
+}
+// What a target or a master of a burst of `count` words from this offset of the window on should have got.
+inline std::vector<std::uint32_t> words_from(std::uint64_t address, std::size_t count) {
+  std::vector<std::uint32_t> words;
+  for (std::size_t i = 0; i < count; ++i) words.push_back(word_at(address + 4 * i));
+  return words;
+}
+
+}  // namespace stereotlm::pci
