@@ -1,0 +1,107 @@
+#include "models/host/cpu.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+namespace stereotlm::host {
+namespace {
+
+constexpr char kReport[] = "/stereotlm/cpu";
+constexpr int kStackBytes = 1 << 20;  // of the program, which is no SystemC code and may not know it is short
+
+std::string hex(std::uint64_t value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+std::string text_of(tlm::tlm_response_status status) {
+  tlm::tlm_generic_payload payload;
+  payload.set_response_status(status);
+  return payload.get_response_string();
+}
+
+}  // namespace
+
+Cpu::Cpu(const sc_core::sc_module_name& name, const CpuConfig& config, Program& program)
+    : sc_module(name),
+      interrupts("interrupt", static_cast<std::size_t>(kInterruptCountRule.required(
+                                  std::string(this->name()) + ": interrupts", config.interrupts))),
+      config_(config),
+      program_(program) {
+  SC_HAS_PROCESS(Cpu);
+  SC_THREAD(run);
+  set_stack_size(kStackBytes);
+}
+
+void Cpu::run() {
+  for (const auto& interrupt : interrupts) rising_ |= interrupt.posedge_event();
+  std::optional<std::string> problem;
+  try {
+    program_.run(*this);
+    finished_ = true;
+    finished_event_.notify(sc_core::SC_ZERO_TIME);
+  } catch (const sc_core::sc_unwind_exception&) {
+    throw;  // the kernel ends the process
+  } catch (const sc_core::sc_report&) {
+    throw;  // a model has reported its own error
+  } catch (const std::exception& exception) {
+    problem = exception.what();
+  } catch (...) {
+    problem = "exception of an unknown type";
+  }
+  if (problem) SC_REPORT_ERROR(kReport, (std::string(name()) + ": " + *problem).c_str());
+}
+
+std::uint32_t Cpu::read(std::uint64_t address) {
+  sc_core::sc_time delay;
+  const bool ok = access_.read(address, delay);
+  const std::uint32_t word = access_.word();
+  end_access(ok, "read", address, delay);
+  return word;
+}
+
+void Cpu::write(std::uint64_t address, std::uint32_t value) {
+  sc_core::sc_time delay;
+  const bool ok = access_.write(address, value, delay);
+  end_access(ok, "write", address, delay);
+}
+
+void Cpu::end_access(bool ok, const char* what, std::uint64_t address, const sc_core::sc_time& delay) {
+  accessed_ = true;
+  if (delay != sc_core::SC_ZERO_TIME) wait(delay);
+  if (!ok) throw BusError(std::string(what) + " of " + hex(address) + ": " + text_of(access_.status()));
+}
+
+bool Cpu::interrupted() const {
+  return std::any_of(interrupts.begin(), interrupts.end(), [](const auto& line) { return line.read(); });
+}
+
+void Cpu::wait_for_interrupt() {
+  if (interrupted() && !accessed_) {
+    throw std::logic_error(
+        "wait_for_interrupt: the line is still asserted, and no register was accessed since it returned "
+        "last");
+  }
+  while (!interrupted()) wait(rising_);
+  accessed_ = false;
+}
+
+std::uint8_t* Cpu::memory(std::uint64_t address, std::uint64_t bytes) {
+  const std::uint64_t offset = address - config_.memory_base;
+  tlm::tlm_generic_payload request;
+  request.set_command(tlm::TLM_WRITE_COMMAND);
+  request.set_address(offset);
+  tlm::tlm_dmi dmi;
+  if (address < config_.memory_base || !host_memory->get_direct_mem_ptr(request, dmi) ||
+      !dmi.is_read_write_allowed() || (bytes > 0 && bytes - 1 > dmi.get_end_address() - offset)) {
+    throw std::out_of_range(std::to_string(bytes) + " bytes at " + hex(address) + ": must be host memory");
+  }
+  return dmi.get_dmi_ptr() + (offset - dmi.get_start_address());
+}
+
+}  // namespace stereotlm::host
