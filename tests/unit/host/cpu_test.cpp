@@ -236,15 +236,15 @@ TEST_F(CpuTest, ReportsMemoryThatIsNoneWithItsAddress) {
   expect_report([](HostBus& bus) { bus.memory(0x1000, 16); }, "16 bytes at 0x1000: must be host memory");
 }
 
-// 200 KiB of locals in a program that knows nothing of the size of a simulated process.
+// 800 KiB of locals in a program that knows nothing of the size of a simulated process.
 TEST_F(CpuTest, GivesTheProgramARoomyStack) {
   unsigned sum = 0;
   simulate([&sum](HostBus&) {
-    volatile unsigned char bytes[200 * 1024];
+    volatile unsigned char bytes[800 * 1024];
     for (std::size_t i = 0; i < sizeof bytes; ++i) bytes[i] = 1;
     for (std::size_t i = 0; i < sizeof bytes; ++i) sum += bytes[i];
   });
-  EXPECT_EQ(sum, 200U * 1024);
+  EXPECT_EQ(sum, 800U * 1024);
 }
 
 TEST(Cpu, RefusesANumberOfInterruptsOutsideItsRule) {

