@@ -1,0 +1,208 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <memory>
+#include <string>
+#include <systemc>
+#include <tlm>
+#include <utility>
+#include <vector>
+
+#include "models/host/host_memory.h"
+#include "models/pci/pci_bridge.h"
+#include "models/pci/pci_bus.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/unit/pci/pci_bus_bench.h"
+
+namespace stereotlm::pci {
+
+// What lies on the local bus, as far as the bridge can tell: words that keep what is written, and tell where they are
+// before. A burst takes word_time for each word and a word_time more; while it is held, none is answered.
+class LocalTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<> {
+ public:
+  struct Burst {
+    bool write = false;
+    std::uint64_t address = 0;
+    std::vector<std::uint32_t> words;
+    sc_core::sc_time at;
+  };
+
+  tlm::tlm_target_socket<32> socket{"socket"};
+  sc_core::sc_time word_time{25, sc_core::SC_NS};
+  bool held = false;
+  std::uint64_t refused_address = UINT64_MAX;  // a burst that begins there
+  std::vector<Burst> bursts;
+  std::map<std::uint64_t, std::uint32_t> words;
+
+  explicit LocalTarget(const sc_core::sc_module_name& name) : sc_module(name) {
+    SC_HAS_PROCESS(LocalTarget);
+    socket.bind(*this);
+    SC_THREAD(answer);
+  }
+  void release() {
+    held = false;
+    released_.notify(sc_core::SC_ZERO_TIME);
+  }
+  std::uint32_t word(std::uint64_t address) const {
+    const auto found = words.find(address);
+    return found == words.end() ? word_at(address) : found->second;
+  }
+
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) override {
+    EXPECT_EQ(phase, tlm::BEGIN_REQ);
+    Burst& burst = bursts.emplace_back();
+    burst.write = payload.is_write();
+    burst.address = payload.get_address();
+    burst.words.resize(payload.get_data_length() / 4);
+    burst.at = sc_core::sc_time_stamp() + delay;
+    if (burst.address == refused_address) {
+      payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+      return tlm::TLM_COMPLETED;
+    }
+    payload.acquire();
+    payload_ = &payload;
+    begun_.notify(delay);
+    return tlm::TLM_ACCEPTED;
+  }
+  void b_transport(tlm::tlm_generic_payload&, sc_core::sc_time&) override {
+    ADD_FAILURE() << "the local bus takes nb_transport";
+  }
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
+  unsigned transport_dbg(tlm::tlm_generic_payload&) override { return 0; }
+
+ private:
+  void answer() {
+    for (;;) {
+      wait(begun_);
+      while (held) wait(released_);
+      Burst& burst = bursts.back();
+      for (std::size_t i = 0; i < burst.words.size(); ++i) {
+        unsigned char* data = payload_->get_data_ptr() + i * 4;
+        if (burst.write) {
+          std::memcpy(&burst.words[i], data, 4);
+          words[burst.address + i * 4] = burst.words[i];
+        } else {
+          burst.words[i] = word(burst.address + i * 4);
+          std::memcpy(data, &burst.words[i], 4);
+        }
+      }
+      wait(word_time * static_cast<double>(burst.words.size() + 1));
+      payload_->set_response_status(tlm::TLM_OK_RESPONSE);
+      tlm::tlm_phase phase = tlm::BEGIN_RESP;
+      sc_core::sc_time delay;
+      EXPECT_EQ(socket->nb_transport_bw(*payload_, phase, delay), tlm::TLM_COMPLETED);
+      payload_->release();
+    }
+  }
+
+  tlm::tlm_generic_payload* payload_ = nullptr;
+  sc_core::sc_event begun_{"begun"};
+  sc_core::sc_event released_{"released"};
+};
+
+// The bridge on a PCI bus with host memory and a master that the test drives.
+class PciBridgeBench : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kMemory = 0;
+  static constexpr std::uint32_t kMemoryBytes = 0x1'0000;
+  static constexpr std::uint32_t kSlave = 0xD000'0000;
+  static constexpr std::uint32_t kRegisters = 0xE000'0000;
+  static constexpr std::uint32_t kNobody = 0xF000'0000;
+  static constexpr std::uint64_t kCore = std::uint64_t{1} << 34U;
+
+  void build(const PciBridgeConfig& config = {}) {
+    PciBusConfig bus_config;
+    bus_config.masters = {"test", "bridge"};
+    bus_config.windows = {{kMemory, kMemoryBytes, 8},
+                          {kSlave, bridge::kSlaveWindowBytes, 4},
+                          {kRegisters, bridge::kRegisterWindowBytes, 4}};
+    bus = std::make_unique<PciBus>("bus", bus_config);
+    dut = std::make_unique<PciBridge>("bridge", config);
+    master.pci.bind(bus->slots[0]);
+    dut->pci.bind(bus->slots[1]);
+    binder.bind(bus->targets[0], memory.port, "bus_to_memory");
+    binder.bind(bus->targets[1], dut->slave, "bus_to_slave");
+    binder.bind(bus->targets[2], dut->registers, "bus_to_registers");
+    binder.bind(dut->local, local.socket, "bridge_to_local");
+    bus->stops[1].bind(dut->stop);
+    dut->doorbell(doorbell);
+    dut->interrupt(interrupt);
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  }
+  static void run(double microseconds) { sc_core::sc_start(microseconds, sc_core::SC_US); }
+
+  // One burst of the test's master. Written words are word_at(their PCI address).
+  const TestMaster::Ended& burst(bool write, std::uint64_t address, std::size_t words) {
+    master.bursts.push_back({write, address, words});
+    master.request();
+    const std::size_t before = master.ended.size();
+    for (int us = 0; us < 1000 && master.ended.size() == before; ++us) run(1);
+    EXPECT_EQ(master.ended.size(), before + 1);
+    return master.ended.back();
+  }
+  std::uint32_t read_register(std::uint64_t offset) {
+    return burst(false, kRegisters + offset, 1).words.at(0);
+  }
+  void write_register(std::uint64_t offset, std::uint32_t value) {
+    tlm::tlm_generic_payload payload;
+    payload.set_command(tlm::TLM_WRITE_COMMAND);
+    payload.set_address(offset);
+    payload.set_data_ptr(reinterpret_cast<unsigned char*>(&value));
+    payload.set_data_length(4);
+    payload.set_streaming_width(4);
+    sc_core::sc_time delay;
+    bus->targets[2]->b_transport(payload, delay);
+    EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
+    sc_core::sc_start(1, sc_core::SC_NS);
+  }
+
+  struct Descriptor {
+    std::uint32_t pci;
+    std::uint32_t board;
+    std::uint32_t words;  // with bridge::kToPci
+  };
+  void put(std::uint32_t address, std::vector<std::uint32_t> words) {
+    tlm::tlm_generic_payload payload;
+    payload.set_command(tlm::TLM_WRITE_COMMAND);
+    payload.set_address(address);
+    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+    payload.set_data_length(static_cast<unsigned>(words.size() * 4));
+    ASSERT_EQ(bus->targets[0]->transport_dbg(payload), words.size() * 4);
+  }
+  std::vector<std::uint32_t> get(std::uint32_t address, std::size_t count) {
+    std::vector<std::uint32_t> words(count);
+    tlm::tlm_generic_payload payload;
+    payload.set_command(tlm::TLM_READ_COMMAND);
+    payload.set_address(address);
+    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+    payload.set_data_length(static_cast<unsigned>(count * 4));
+    EXPECT_EQ(bus->targets[0]->transport_dbg(payload), count * 4);
+    return words;
+  }
+  // Starts a channel with a chain that lies from `chain` on in host memory.
+  void start(std::uint32_t channel, std::uint32_t chain, const std::vector<Descriptor>& descriptors) {
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      const auto at = static_cast<std::uint32_t>(chain + 16 * i);
+      const bool last = i + 1 == descriptors.size();
+      put(at, {descriptors[i].pci, descriptors[i].board, descriptors[i].words, last ? 0 : at + 16});
+    }
+    write_register(bridge::kDmaDescriptor + channel * bridge::kChannelStride, chain);
+    write_register(bridge::kDmaControl + channel * bridge::kChannelStride, 1);
+  }
+  std::uint32_t status() { return read_register(bridge::kInterruptStatus); }
+
+  test::MonitoringBinder binder;
+  std::unique_ptr<PciBus> bus;
+  std::unique_ptr<PciBridge> dut;
+  host::HostMemory memory{"memory", kMemoryBytes};
+  TestMaster master{"master"};
+  LocalTarget local{"local"};
+  sc_core::sc_signal<bool> doorbell{"doorbell"};
+  sc_core::sc_signal<bool> interrupt{"interrupt"};
+};
+
+}  // namespace stereotlm::pci

@@ -1,0 +1,166 @@
+// The bridge's DMA channels.
+#include <ostream>
+
+#include "tests/unit/pci/pci_bridge_bench.h"
+
+namespace stereotlm::pci {
+namespace {
+
+class PciBridgeDma : public PciBridgeBench {
+ protected:
+  static constexpr std::uint32_t kChain = 0x100;
+  static constexpr std::uint32_t kData = 0x1000;
+
+  static std::vector<std::uint32_t> numbers(std::size_t count, std::uint32_t first = 1) {
+    std::vector<std::uint32_t> words(count);
+    for (std::size_t i = 0; i < count; ++i) words[i] = first + static_cast<std::uint32_t>(i);
+    return words;
+  }
+  std::vector<std::uint32_t> on_board(std::uint64_t address, std::size_t count) const {
+    std::vector<std::uint32_t> words(count);
+    for (std::size_t i = 0; i < count; ++i) words[i] = local.word(address + i * 4);
+    return words;
+  }
+};
+
+TEST_F(PciBridgeDma, MovesWordsToTheBoardInBursts) {
+  build({32, 64, kCore});
+  put(kData, numbers(70));
+  start(0, kChain, {{kData, 3U << 26U | 50U, 70}});
+  run(20);
+  EXPECT_EQ(on_board(3ULL << 28U | 200U, 70), numbers(70));
+  ASSERT_EQ(local.bursts.size(), 3U);
+  EXPECT_EQ(local.bursts[0].words.size(), 32U);
+  EXPECT_EQ(local.bursts[2].words.size(), 6U);
+  EXPECT_EQ(status(), bridge::kDmaDone);
+  EXPECT_EQ(dut->stats().dma_words, 70U);
+  EXPECT_EQ(dut->stats().words_to_board, 70U);
+  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+}
+
+TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
+  build({32, 64, kCore});
+  start(1, kChain, {{kData, 7, 45 | bridge::kToPci}});
+  run(20);
+  EXPECT_EQ(get(kData, 45), on_board(28, 45));
+  EXPECT_EQ(get(kData + 45 * 4, 1), numbers(1, 0));
+  EXPECT_EQ(status(), bridge::kDmaDone << 1U);
+  EXPECT_EQ(dut->stats().dma_words, 45U);
+  EXPECT_EQ(dut->stats().words_to_board, 0U);
+}
+
+TEST_F(PciBridgeDma, FollowsAChain) {
+  build();
+  put(kData, numbers(10));
+  start(0, kChain, {{kData, 0, 4}, {kData + 16, 100, 6}, {kData + 0x800, 100, 6 | bridge::kToPci}});
+  run(20);
+  EXPECT_EQ(on_board(0, 4), numbers(4));
+  EXPECT_EQ(on_board(400, 6), numbers(6, 5));
+  EXPECT_EQ(get(kData + 0x800, 6), numbers(6, 5));
+  EXPECT_EQ(status(), bridge::kDmaDone);
+}
+
+TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrived) {
+  build();
+  local.held = true;
+  start(0, kChain, {{kData, 0, 4}});
+  run(20);
+  EXPECT_EQ(read_register(bridge::kDmaStatus), 1U);
+  EXPECT_EQ(status(), 0U);
+  EXPECT_EQ(dut->stats().words_in_bridge, 4U);
+  local.release();
+  run(5);
+  EXPECT_EQ(read_register(bridge::kDmaStatus), 0U);
+  EXPECT_EQ(status(), bridge::kDmaDone);
+}
+
+// A burst of n words on PCI takes n + wait + 2 clocks, on the local target n + 1 word times.
+TEST_F(PciBridgeDma, OverlapsTheTwoBuses) {
+  build({32, 64, kCore});
+  constexpr std::uint32_t kBursts = 40;
+  for (const bool to_pci : {false, true}) {
+    const std::size_t before = local.bursts.size();
+    start(0, kChain, {{kData, 0, (32 * kBursts) | (to_pci ? bridge::kToPci : 0U)}});
+    run(200);
+    ASSERT_EQ(local.bursts.size(), before + kBursts);
+    const double pci_us = (32 + 8 + 2) / 33.333;
+    // At first there is room for two bursts in the bridge.
+    const double each_us =
+        (local.bursts.back().at - local.bursts[before + 2].at).to_seconds() * 1e6 / (kBursts - 3);
+    EXPECT_GE(each_us, pci_us - 0.001);
+    EXPECT_LE(each_us, pci_us + 3 / 33.333) << to_pci;  // the next request may miss a clock
+  }
+}
+
+TEST_F(PciBridgeDma, RunsBothChannelsSideBySide) {
+  build();
+  put(kData, numbers(300));
+  start(0, kChain, {{kData, 0, 300}});
+  start(1, kChain + 0x40, {{kData + 0x1000, 1U << 26U, 300 | bridge::kToPci}});
+  run(60);
+  EXPECT_EQ(on_board(0, 300), numbers(300));
+  EXPECT_EQ(get(kData + 0x1000, 300), on_board(1ULL << 28U, 300));
+  EXPECT_EQ(status(), bridge::kDmaDone | bridge::kDmaDone << 1U);
+  bool alternated = false;
+  for (std::size_t i = 2; i < local.bursts.size() && !alternated; ++i) {
+    alternated = local.bursts[i].write != local.bursts[i - 1].write &&
+                 local.bursts[i].write == local.bursts[i - 2].write;
+  }
+  EXPECT_TRUE(alternated);
+}
+
+struct Broken {
+  const char* name;
+  std::uint32_t chain;
+  std::uint32_t pci;
+  std::uint32_t words;
+  std::uint64_t refused_address;
+};
+void PrintTo(const Broken& broken, std::ostream* out) { *out << broken.name; }
+
+class PciBridgeDmaError : public PciBridgeDma, public testing::WithParamInterface<Broken> {};
+
+TEST_P(PciBridgeDmaError, StopsTheChannelAndIsRaised) {
+  const Broken& broken = GetParam();
+  build();
+  local.refused_address = broken.refused_address;
+  put(broken.chain / 16 * 16, {broken.pci, 0, broken.words, 0});
+  write_register(bridge::kDmaDescriptor + bridge::kChannelStride, broken.chain);
+  write_register(bridge::kDmaControl + bridge::kChannelStride, 1);
+  run(20);
+  EXPECT_EQ(status(), bridge::kDmaError << 1U);
+  EXPECT_EQ(read_register(bridge::kDmaStatus + bridge::kChannelStride), 0U);
+  EXPECT_GT(dut->stats().errors, 0U);
+  // The channel can be started again.
+  local.refused_address = UINT64_MAX;
+  write_register(bridge::kInterruptStatus, bridge::kAllInterrupts);
+  start(1, kChain, {{kData, 0, 4}});
+  run(20);
+  EXPECT_EQ(status(), bridge::kDmaDone << 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(PciBridge, PciBridgeDmaError,
+                         testing::Values(Broken{"chain_not_aligned", 0x108, 0x1000, 4, UINT64_MAX},
+                                         Broken{"no_words", 0x100, 0x1000, 0, UINT64_MAX},
+                                         Broken{"address_not_aligned", 0x100, 0x1002, 4, UINT64_MAX},
+                                         Broken{"no_target", 0x100, 0xF000'0000, 4, UINT64_MAX},
+                                         Broken{"no_target_for_results", 0x100, 0xF000'0000,
+                                                4 | bridge::kToPci, UINT64_MAX},
+                                         Broken{"refused_by_the_board", 0x100, 0x1000, 4, 0},
+                                         Broken{"refused_to_be_read", 0x100, 0x1000, 4 | bridge::kToPci, 0}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST_F(PciBridgeDma, RefusesAStartWhileItIsBusy) {
+  build();
+  local.held = true;
+  start(0, kChain, {{kData, 0, 4}});
+  write_register(bridge::kDmaControl, 1);
+  EXPECT_EQ(status(), bridge::kDmaError);
+  local.release();
+  run(5);
+  EXPECT_EQ(status(), bridge::kDmaError | bridge::kDmaDone);
+  EXPECT_EQ(local.bursts.size(), 1U);
+}
+
+}  // namespace
+}  // namespace stereotlm::pci

@@ -1,0 +1,154 @@
+// The bridge as a target: posted writes, reads, registers, interrupts.
+#include <stdexcept>
+
+#include "tests/unit/pci/pci_bridge_bench.h"
+
+namespace stereotlm::pci {
+namespace {
+
+class PciBridgeSlave : public PciBridgeBench {};
+
+constexpr std::uint32_t board_word(std::uint32_t bank, std::uint32_t word) { return bank << 26U | word; }
+constexpr std::uint64_t byte_on_bus(std::uint64_t bank, std::uint64_t word) {
+  return bank << 28U | word << 2U;
+}
+
+TEST_F(PciBridgeSlave, PostsWritesToThePageOfTheirAperture) {
+  build();
+  for (std::uint32_t aperture = 0; aperture < bridge::kApertures; ++aperture) {
+    write_register(bridge::kPage + 4 * aperture, board_word(2 * aperture + 1, 100 * aperture));
+    EXPECT_EQ(read_register(bridge::kPage + 4 * aperture), board_word(2 * aperture + 1, 100 * aperture));
+    const std::uint64_t address = kSlave + aperture * bridge::kApertureBytes + 12;
+    EXPECT_EQ(burst(true, address, 5).result.end, BurstEnd::kComplete);
+    run(5);
+    ASSERT_EQ(local.bursts.size(), aperture + 1);
+    EXPECT_TRUE(local.bursts.back().write);
+    EXPECT_EQ(local.bursts.back().address, byte_on_bus(2 * aperture + 1, 100 * aperture + 3));
+    EXPECT_EQ(local.bursts.back().words, words_from(address, 5));
+  }
+  EXPECT_EQ(dut->stats().posted_words, 20U);
+  EXPECT_EQ(dut->stats().words_to_board, 20U);
+  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+}
+
+TEST_F(PciBridgeSlave, LeadsToTheRegistersOfTheCore) {
+  build();
+  burst(true, kSlave + bridge::kCoreRegisters + 8, 1);
+  EXPECT_EQ(burst(false, kSlave + bridge::kCoreRegisters + 4, 1).words.at(0), word_at(kCore + 4));
+  ASSERT_EQ(local.bursts.size(), 2U);
+  EXPECT_EQ(local.bursts[0].address, kCore + 8);
+  EXPECT_EQ(local.bursts[1].address, kCore + 4);
+  EXPECT_EQ(dut->stats().words_to_board, 0U);  // registers are no banks
+}
+
+TEST_F(PciBridgeSlave, TakesNoMoreWordsThanItHasPlaces) {
+  build({32, 10, kCore});
+  local.held = true;
+  EXPECT_EQ(burst(true, kSlave, 10).result.end, BurstEnd::kComplete);
+  EXPECT_EQ(dut->stats().most_posted_words, 10U);
+  const auto& retried = burst(true, kSlave + 40, 4);
+  EXPECT_EQ(retried.result.end, BurstEnd::kDisconnect);
+  EXPECT_EQ(retried.result.words, 0U);
+  EXPECT_EQ(dut->stats().words_in_bridge, 10U);
+  local.release();
+  run(5);
+  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+  EXPECT_EQ(burst(true, kSlave, 11).result.words, 10U);
+  run(5);
+  EXPECT_EQ(local.words.size(), 10U);
+}
+
+TEST_F(PciBridgeSlave, GivesPlacesBackAtTheEndOfTheLocalBurst) {
+  build({4, 8, kCore});
+  local.word_time = sc_core::sc_time(1, sc_core::SC_US);
+  EXPECT_EQ(burst(true, kSlave, 8).result.words, 8U);
+  run(3);
+  EXPECT_EQ(burst(true, kSlave + 32, 1).result.words, 0U);
+  run(2);  // the first four words have taken 5 us
+  EXPECT_EQ(burst(true, kSlave + 32, 5).result.words, 4U);
+}
+
+TEST_F(PciBridgeSlave, SendsWordsInOrderAndJoinsNeighbours) {
+  build({6, 64, kCore});
+  local.held = true;
+  burst(true, kSlave, 1);
+  burst(true, kSlave + 4, 8);
+  burst(true, kSlave + 400, 2);
+  local.release();
+  run(10);
+  std::vector<std::pair<std::uint64_t, std::size_t>> bursts;
+  for (const auto& done : local.bursts) bursts.emplace_back(done.address, done.words.size());
+  EXPECT_EQ(bursts, (std::vector<std::pair<std::uint64_t, std::size_t>>{{0, 1}, {4, 6}, {28, 2}, {400, 2}}));
+}
+
+TEST_F(PciBridgeSlave, ReadsBehindTheWritesThatCameBefore) {
+  build();
+  local.word_time = sc_core::sc_time(500, sc_core::SC_NS);
+  burst(true, kSlave + 8, 3);
+  EXPECT_EQ(burst(false, kSlave + 12, 2).words,
+            (std::vector<std::uint32_t>{word_at(kSlave + 12), word_at(kSlave + 16)}));
+  ASSERT_EQ(local.bursts.size(), 2U);
+  EXPECT_TRUE(local.bursts[0].write);
+  EXPECT_EQ(dut->stats().slave_reads, 2U);
+}
+
+TEST_F(PciBridgeSlave, AnswersAReadThatTheBoardRefusesWithAnError) {
+  build();
+  local.refused_address = 0;
+  EXPECT_EQ(burst(false, kSlave, 1).result.end, BurstEnd::kTargetError);
+  EXPECT_EQ(burst(false, kSlave + 4, 1).result.end, BurstEnd::kComplete);
+}
+
+TEST_F(PciBridgeSlave, RaisesAnErrorForAWriteThatTheBoardRefuses) {
+  build();
+  local.refused_address = 0;
+  burst(true, kSlave, 1);
+  run(2);
+  EXPECT_EQ(status(), bridge::kPostedError);
+  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+  EXPECT_GT(dut->stats().errors, 0U);
+}
+
+TEST_F(PciBridgeSlave, RaisesTheInterruptForWhatIsEnabledUntilItIsCleared) {
+  build();
+  doorbell = true;
+  run(1);
+  EXPECT_FALSE(interrupt.read());
+  EXPECT_EQ(status(), bridge::kDoorbell);
+  write_register(bridge::kInterruptEnable, bridge::kDoorbell);
+  EXPECT_TRUE(interrupt.read());
+  write_register(bridge::kInterruptStatus, bridge::kAllInterrupts & ~bridge::kDoorbell);
+  EXPECT_TRUE(interrupt.read());
+  write_register(bridge::kInterruptStatus, bridge::kDoorbell);
+  EXPECT_FALSE(interrupt.read());
+  run(1);  // the line from the FPGA is still high: it rings when it rises
+  EXPECT_EQ(status(), 0U);
+  doorbell = false;
+  run(1);
+  doorbell = true;
+  run(1);
+  EXPECT_TRUE(interrupt.read());
+}
+
+TEST_F(PciBridgeSlave, RefusesRegisterAccessesThatDoNotExist) {
+  build();
+  EXPECT_EQ(burst(true, kRegisters + bridge::kDmaStatus, 1).result.end, BurstEnd::kTargetError);
+  EXPECT_EQ(burst(false, kRegisters + bridge::kDmaControl, 1).result.end, BurstEnd::kTargetError);
+  EXPECT_EQ(burst(false, kRegisters + 0x18, 1).result.end, BurstEnd::kTargetError);
+  EXPECT_EQ(burst(true, kRegisters + 0x18, 1).result.end, BurstEnd::kTargetError);
+  EXPECT_EQ(burst(false, kRegisters, 2).result.end, BurstEnd::kTargetError);
+  EXPECT_EQ(burst(false, kRegisters + bridge::kDmaStatus, 1).result.end, BurstEnd::kComplete);
+  EXPECT_EQ(dut->stats().errors, 5U);
+}
+
+TEST(PciBridge, RefusesWhatLiesOutsideTheRanges) {
+  EXPECT_NO_THROW(PciBridge("a", {1, 1, 0}));
+  EXPECT_NO_THROW(PciBridge("b", {1024, 4096, 0}));
+  EXPECT_THROW(PciBridge("c", {0, 1, 0}), std::invalid_argument);
+  EXPECT_THROW(PciBridge("d", {1025, 1, 0}), std::invalid_argument);
+  EXPECT_THROW(PciBridge("e", {1, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(PciBridge("f", {1, 4097, 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::pci
