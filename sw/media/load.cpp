@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sw/media/media_file.h"
 #include "sw/media/picture_file.h"
 
 namespace stereotlm::media {

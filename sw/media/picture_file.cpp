@@ -1,8 +1,6 @@
 #include "sw/media/picture_file.h"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -11,12 +9,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
-#include <system_error>
 #include <vector>
+
+#include "sw/media/captured_stderr.h"
+#include "sw/media/media_file.h"
 
 namespace stereotlm::media {
 namespace {
@@ -25,55 +23,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr const char* kRule = "a picture must be 8-bit grey or 8-bit colour, without alpha";
 
-// libpng and libjpeg write to standard error and offer OpenCV's callers no other way; this catches it.
-class CapturedStderr {
- public:
-  CapturedStderr() : capture_(memfd_create("stderr", MFD_CLOEXEC)), saved_(dup(STDERR_FILENO)) {
-    std::fflush(stderr);
-    if (capture_ >= 0 && saved_ >= 0) dup2(capture_, STDERR_FILENO);
-  }
-  ~CapturedStderr() {
-    restore();
-    if (capture_ >= 0) close(capture_);
-  }
-  CapturedStderr(const CapturedStderr&) = delete;
-  CapturedStderr& operator=(const CapturedStderr&) = delete;
-
-  // Ends the capture and returns what was written.
-  std::string text() {
-    restore();
-    std::string result;
-    char buffer[1024];
-    if (capture_ < 0) return result;
-    ssize_t count = 0;
-    while ((count = pread(capture_, buffer, sizeof buffer, static_cast<off_t>(result.size()))) > 0) {
-      result.append(buffer, static_cast<std::size_t>(count));
-    }
-    return result;
-  }
-
- private:
-  void restore() {
-    if (saved_ < 0) return;
-    std::fflush(stderr);
-    dup2(saved_, STDERR_FILENO);
-    close(saved_);
-    saved_ = -1;
-  }
-
-  int capture_;
-  int saved_;
-};
-
 Bytes read_bytes(const std::string& path) {
   constexpr const char* kFileRule = "a picture must be a readable regular file";
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) refuse(path, "no such file", kFileRule);
-  if (error) refuse(path, error.message(), kFileRule);
-  if (std::filesystem::is_directory(status)) refuse(path, "a directory", kFileRule);
-  if (!std::filesystem::is_regular_file(status)) refuse(path, "not a regular file", kFileRule);
-
+  check_regular_file(path, kFileRule);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) refuse(path, std::strerror(errno), kFileRule);
   Bytes bytes;
@@ -191,10 +143,6 @@ std::string description(const cv::Mat& picture) {
 }
 
 }  // namespace
-
-void refuse(const std::string& path, const std::string& found, const std::string& rule) {
-  throw std::runtime_error(fmt::format("'{}': {}: {}", path, found, rule));
-}
 
 cv::Mat read_picture(const std::string& path) {
   const Bytes bytes = read_bytes(path);

@@ -10,7 +10,4 @@ namespace stereotlm::media {
 // The picture in `path` as stored: 8 bits, 1 or 3 channels (BGR). Refuses as load.h says.
 cv::Mat read_picture(const std::string& path);
 
-// The one form of an error about a picture file.
-[[noreturn]] void refuse(const std::string& path, const std::string& found, const std::string& rule);
-
 }  // namespace stereotlm::media
