@@ -1,0 +1,109 @@
+#include "sw/media/video.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <stdexcept>
+
+#include "sw/media/captured_stderr.h"
+#include "sw/media/media_file.h"
+
+namespace stereotlm::media {
+namespace {
+
+using kernels::GrayImage;
+
+// Containers that hold the video themselves: a playlist would bring in files that nobody has named. A packet
+// that FFmpeg knows to be cut is left out.
+constexpr const char* kOptions =
+    "format_whitelist;avi,matroska,webm,mov,mp4,mpeg,mpegts,ogg,asf,flv,yuv4mpegpipe|fflags;discardcorrupt";
+constexpr const char* kRule =
+    "a video must be an AVI, Matroska, WebM, MP4, MPEG, Ogg, ASF, FLV or Y4M file that FFmpeg decodes";
+
+// The first line, without the address in "[h264 @ 0x5603dadfee80] ..".
+std::string first_complaint(const std::string& text) {
+  std::string line = text.substr(0, text.find('\n'));
+  const std::size_t address = line.find(" @ 0x");
+  if (address != std::string::npos) line.erase(address, line.find(']', address) - address);
+  return line;
+}
+
+class FfmpegVideo : public Video {
+ public:
+  explicit FfmpegVideo(const std::string& path) : path_(path) {
+    check_regular_file(path, "a video must be a readable regular file");
+    CapturedStderr captured;
+    if (!open()) {
+      const std::string complaint = captured.text();
+      refuse(path_, complaint.empty() ? "no video" : "'" + first_complaint(complaint) + "'", kRule);
+    }
+    const double stated = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    if (stated >= 1 && stated < 1e15) stated_frames_ = static_cast<std::uint64_t>(stated);
+    count();
+    const std::string complaint = captured.text();
+    if (!complaint.empty()) {
+      refuse(path_, fmt::format("'{}'", first_complaint(complaint)), "a video must decode without errors");
+    }
+    if (frames_ == 0) refuse(path_, "no frame can be decoded", kRule);
+  }
+
+  int width() const override { return size_.width; }
+  int height() const override { return size_.height; }
+  std::uint64_t frames() const override { return frames_; }
+  std::uint64_t stated_frames() const override { return stated_frames_; }
+
+  const GrayImage& frame(std::uint64_t index) override {
+    const CapturedStderr captured;
+    bool is_there = (capture_.isOpened() && index >= next_) || open();
+    while (is_there && next_ <= index) is_there = next_++ < index ? capture_.grab() : capture_.read(picture_);
+    if (!is_there || picture_.size() != size_) {
+      capture_.release();
+      refuse(path_, fmt::format("frame {} cannot be decoded any more", index),
+             "a video must not change during a run");
+    }
+    convert();
+    return image_;
+  }
+
+ private:
+  // At the first frame. An absolute path, because FFmpeg takes what precedes a colon for a protocol.
+  bool open() {
+    setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", kOptions, 1);
+    next_ = 0;
+    const bool is_open =
+        capture_.open(std::filesystem::absolute(path_).string(), cv::CAP_FFMPEG,
+                      {cv::CAP_PROP_HW_ACCELERATION, static_cast<int>(cv::VIDEO_ACCELERATION_NONE)});
+    if (is_open) capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
+    return is_open;
+  }
+
+  // Leaves the video open at its end. OpenCV gives all frames the size of the first.
+  void count() {
+    for (; capture_.read(picture_); ++frames_) size_ = picture_.size();
+    next_ = frames_;
+  }
+
+  void convert() {
+    image_ = GrayImage(size_.width, size_.height);
+    cv::Mat gray(size_, CV_8UC1, image_.pixels.data());
+    cv::cvtColor(picture_, gray, cv::COLOR_BGR2GRAY);
+  }
+
+  std::string path_;
+  cv::VideoCapture capture_;
+  std::uint64_t next_ = 0;  // the frame that the next one read is
+  std::uint64_t frames_ = 0;
+  std::uint64_t stated_frames_ = 0;
+  cv::Size size_;
+  cv::Mat picture_;
+  GrayImage image_;
+};
+
+}  // namespace
+
+std::unique_ptr<Video> open_video(const std::string& path) { return std::make_unique<FfmpegVideo>(path); }
+
+}  // namespace stereotlm::media

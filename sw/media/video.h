@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "models/kernels/gray_image.h"
+
+namespace stereotlm::media {
+
+// The frames of one video file, in grey: decoded as FFmpeg does (never by hardware, not turned as metadata
+// say), then converted with OpenCV's BGR2GRAY. One frame is held at a time.
+class Video {
+ public:
+  virtual ~Video() = default;
+
+  virtual int width() const = 0;   // pixels
+  virtual int height() const = 0;  // pixels
+  // Those that can be decoded, counted; 1 or more.
+  virtual std::uint64_t frames() const = 0;
+  // As the file's header says, which may be an estimate; 0 if it does not say.
+  virtual std::uint64_t stated_frames() const = 0;
+
+  // index: 0 .. frames()-1. The reference is good until the next call. Decodes the frames that it passes
+  // over; to go back it opens the file again. Throws std::runtime_error if the file does not give the frame
+  // any more.
+  virtual const kernels::GrayImage& frame(std::uint64_t index) = 0;
+};
+
+// Decodes the whole file once, to count its frames. Throws one std::runtime_error `'path': what was found:
+// rule` for a file that is missing, not regular, no video in a container that is known, that FFmpeg complains
+// about, or without a frame. Prints nothing: no other thread may write to
+// standard error meanwhile (picture and video files alike), nor during frame().
+std::unique_ptr<Video> open_video(const std::string& path);
+
+}  // namespace stereotlm::media
