@@ -92,6 +92,8 @@ std::optional<std::string> foreign_entry_aside(const fs::path& aside) {
 
 }  // namespace
 
+std::string frame_file_name(std::uint64_t frame) { return fmt::format("{}/{:06}.png", kFrames, frame); }
+
 ResultFolder::ResultFolder(const fs::path& dir) : dir_(dir.empty() ? dir : fs::absolute(dir)) {
   if (dir_.empty()) throw std::runtime_error("result folder '': must be named");
   if (!dir_.has_filename()) dir_ = dir_.parent_path();

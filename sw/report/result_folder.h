@@ -9,6 +9,9 @@
 
 namespace stereotlm::report {
 
+// The name of a frame's disparities in a result folder: "frames/000000.png".
+std::string frame_file_name(std::uint64_t frame);
+
 // The folder of `--out`. It holds an earlier result or nothing until commit(), and the new result whole after
 // it.
 //

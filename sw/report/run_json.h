@@ -3,12 +3,18 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stereotlm::report {
 
 struct InputFile {
   std::string path;    // absolute, UTF-8
   std::string sha256;  // of its content, 64 hexadecimal digits (sha256.h)
+};
+
+struct InputFolder {
+  std::string path;              // absolute, UTF-8
+  std::vector<InputFile> files;  // their paths are names in the folder
 };
 
 // All that `run` was told apart from the board, which config.yaml holds in full. With both, running again
@@ -20,8 +26,13 @@ struct RunOptions {
   std::uint64_t frames = 1;
   std::optional<InputFile> left;
   std::optional<InputFile> right;
+  std::optional<InputFolder> sequence;
+  std::vector<InputFile> video;
+  std::string video_layout;  // written if there is a video
+  std::optional<std::uint64_t> synthetic;
   std::optional<InputFile> truth;
   double truth_scale = 1;  // written if there is a truth
+  bool save_frames = false;
 };
 
 // The text of run.json: keys are the names of the options, one not given is absent. Throws std::runtime_error

@@ -145,8 +145,59 @@ TEST(RunJson, NamesEveryOptionAndTheSumOfEveryInput) {
 )");
 }
 
+RunOptions without_pictures() {
+  RunOptions options = pair_of_pictures();
+  options.left.reset();
+  options.right.reset();
+  return options;
+}
+
+// What stands behind the number of frames.
+std::string pictures_in(const RunOptions& options) {
+  const std::string text = run_json(options);
+  const std::string before = "  \"frames\": 4,\n";
+  return text.substr(text.find(before) + before.size());
+}
+
+TEST(RunJson, NamesEveryPictureOfASequence) {
+  RunOptions options = without_pictures();
+  options.sequence = InputFolder{"/in", {{"left_0.png", "aa"}, {"right_0.png", "bb"}}};
+  options.save_frames = true;
+  EXPECT_EQ(pictures_in(options), R"(  "sequence": {
+    "path": "/in",
+    "files": [
+      {"name": "left_0.png", "sha256": "aa"},
+      {"name": "right_0.png", "sha256": "bb"}
+    ]
+  },
+  "save_frames": true
+}
+)");
+}
+
+TEST(RunJson, NamesVideosWithTheirLayout) {
+  RunOptions options = without_pictures();
+  options.video = {{"/in/l.avi", "aa"}, {"/in/r.avi", "bb"}};
+  options.video_layout = "two";
+  EXPECT_EQ(pictures_in(options), R"(  "video": [
+    {"path": "/in/l.avi", "sha256": "aa"},
+    {"path": "/in/r.avi", "sha256": "bb"}
+  ],
+  "video_layout": "two"
+}
+)");
+}
+
+TEST(RunJson, NamesTheSeedOfASyntheticScene) {
+  RunOptions options = without_pictures();
+  options.synthetic = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_EQ(pictures_in(options), "  \"synthetic\": 18446744073709551615\n}\n");
+}
+
 TEST(RunJson, LeavesOutOptionsThatWereNotGiven) {
-  EXPECT_THAT(run_json(pair_of_pictures()), Not(HasSubstr("truth")));
+  for (const char* key : {"truth", "sequence", "video", "synthetic", "save_frames"}) {
+    EXPECT_THAT(run_json(pair_of_pictures()), Not(HasSubstr(key)));
+  }
 }
 
 TEST(RunJson, RefusesPathsThatCannotBeFoundAgain) {
@@ -162,6 +213,17 @@ TEST(RunJson, RefusesPathsThatCannotBeFoundAgain) {
   options.truth = InputFile{"truth.png", ""};
   EXPECT_EQ(test::message_of([&] { run_json(options); }),
             "--truth 'truth.png': not an absolute path: run.json needs one");
+  options = without_pictures();
+  options.sequence = InputFolder{"in", {}};
+  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+            "--sequence 'in': not an absolute path: run.json needs one");
+  options.sequence = InputFolder{"/in", {{"left_\xFF.png", ""}}};
+  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+            "--sequence 'left_\xFF.png': a path that is not UTF-8: run.json cannot name it");
+  options = without_pictures();
+  options.video = {{"a.avi", ""}};
+  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+            "--video 'a.avi': not an absolute path: run.json needs one");
 }
 
 }  // namespace

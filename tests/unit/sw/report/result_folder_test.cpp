@@ -221,6 +221,15 @@ TEST_F(ResultFolderTest, TakesOnlyFilesThatARunWritesAndEachOnce) {
   }
 }
 
+TEST_F(ResultFolderTest, NumbersFramesWithSixDigitsOrMore) {
+  EXPECT_EQ(frame_file_name(0), "frames/000000.png");
+  EXPECT_EQ(frame_file_name(999'999), "frames/999999.png");
+  EXPECT_EQ(frame_file_name(1'000'000), "frames/1000000.png");
+  ResultFolder folder(out_);
+  folder.add(frame_file_name(999'999), "x");
+  folder.add(frame_file_name(1'000'000), "x");
+}
+
 TEST_F(ResultFolderTest, CommitsOnceAndWithRunJson) {
   ResultFolder folder(out_);
   folder.add("stats.json", "x");
