@@ -1,16 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "models/kernels/gray_image.h"
 #include "sw/media/load.h"
+#include "sw/media/video.h"
 
 namespace stereotlm::cli {
 
-// What this program uses of sw/media (load.h, encode.h). It lies in a library that is loaded when it is first
-// asked for, because OpenCV's own libraries, which come with it, take 90 ms.
+// What this program uses of sw/media. It lies in two libraries that are loaded when they are first asked for,
+// because OpenCV's own libraries, which come with them, take 90 ms, and those for videos 50 ms more.
+
+// load.h, encode.h
 struct MediaFunctions {
   media::LoadedGray (*load_gray)(const std::string& path);
   media::Truth (*load_truth)(const std::string& path, double scale);
@@ -20,7 +24,13 @@ struct MediaFunctions {
   std::vector<std::uint8_t> (*encode_pfm)(const kernels::GrayImage& disparity);
 };
 
-// Throws std::runtime_error if the library cannot be loaded; it lies beside the program, as installed.
+// video.h
+struct VideoFunctions {
+  std::unique_ptr<media::Video> (*open_video)(const std::string& path);
+};
+
+// Throw std::runtime_error if the library cannot be loaded; it lies beside the program, as installed.
 const MediaFunctions& media_functions();
+const VideoFunctions& video_functions();
 
 }  // namespace stereotlm::cli

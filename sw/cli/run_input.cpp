@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <system_error>
+#include <utility>
 
 #include "platform/board_yaml.h"
+#include "sw/cli/interrupt.h"
 #include "sw/cli/media_library.h"
+#include "sw/cli/open_source.h"
+#include "sw/cli/picture_size.h"
 #include "sw/cli/streams.h"
 #include "sw/cli/version.h"
 #include "sw/report/run_json.h"
@@ -18,15 +23,6 @@ namespace stereotlm::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using kernels::GrayImage;
-
-// A picture as the command line names it.
-struct NamedPicture {
-  const char* option;
-  std::string path;
-
-  std::string text() const { return fmt::format("{} '{}'", option, path); }
-};
 
 // Whether the file lies in the folder or below it, whatever links and dots the two paths have. What does not
 // exist lies nowhere.
@@ -45,103 +41,81 @@ class InputLoader {
 
   RunInput load() {
     const auto board = options_.board.load(problems_);
-    attempt(nullptr, [&] { load_pictures(board ? &*board : nullptr); });
+    attempt("", [&] { load_pictures(board ? &*board : nullptr); });
+    catch_interrupts();
     if (options_.out && pictures_survive()) {
-      attempt(nullptr, [&] { input_.folder = std::make_unique<report::ResultFolder>(*options_.out); });
+      attempt("", [&] { input_.folder = std::make_unique<report::ResultFolder>(*options_.out); });
     }
     problems_.check();
     input_.board = *board;
-    attempt(nullptr, [&] {
+    attempt("", [&] {
       input_.tables = platform::identity_tables(input_.board);
       input_.config_yaml = platform::to_yaml(input_.board);
+      describe();
     });
-    describe();
     problems_.check();
-    for (const std::string& picture : converted_) say("note", picture + ": colour, converted to grey");
+    for (const std::string& note : source_.notes) say("note", note);
+    input_.pairs = std::move(source_.pairs);
     return std::move(input_);
   }
 
  private:
-  // `option`: the one that an error of this step comes from, or null.
-  void attempt(const char* option, const std::function<void()>& step) {
+  // `option`: what an error of this step is about, or nothing.
+  void attempt(const std::string& option, const std::function<void()>& step) {
     try {
       step();
     } catch (const std::exception& error) {
-      problems_.add((option != nullptr ? std::string(option) + ' ' : "") + error.what());
+      problems_.add(option + (option.empty() ? "" : " ") + error.what());
     }
   }
 
-  NamedPicture left() const { return {"--left", options_.left}; }
-  NamedPicture right() const { return {"--right", options_.right}; }
-  NamedPicture truth() const { return {"--truth", *options_.truth}; }
-
-  // The sizes that do not fit are reported of the pictures that could be read.
   void load_pictures(const platform::BoardConfig* board) {
-    const MediaFunctions& media = media_functions();
-    const auto load_side = [&](const NamedPicture& picture, GrayImage& image) {
-      attempt(picture.option, [&] {
-        media::LoadedGray loaded = media.load_gray(picture.path);
-        if (loaded.converted_from_colour) converted_.push_back(picture.text());
-        check_size(picture, loaded.image, board);
-        image = std::move(loaded.image);
-      });
-    };
-    load_side(left(), input_.pair.left);
-    load_side(right(), input_.pair.right);
+    source_ = open_source(options_.pictures, board, input_.described, problems_);
     if (!options_.truth) return;
-    attempt(truth().option, [&] {
-      media::Truth loaded = media.load_truth(*options_.truth, options_.truth_scale);
-      check_size(truth(), loaded.grey, board);
-      input_.truth = std::move(loaded);
+    const NamedFile file = {"--truth", *options_.truth};
+    source_.files.push_back(file);
+    attempt(file.option, [&] {
+      media::Truth truth = media_functions().load_truth(file.path, options_.truth_scale);
+      const auto problem =
+          board != nullptr ? size_problem(truth.grey.width, truth.grey.height, *board) : std::nullopt;
+      if (problem) problems_.add(file.text() + *problem);
+      input_.truth = std::move(truth);
+      input_.described.truth = {fs::absolute(file.path).string(), report::sha256_file(file.path)};
     });
-  }
-
-  void check_size(const NamedPicture& picture, const GrayImage& image, const platform::BoardConfig* board) {
-    if (board == nullptr || (image.width == board->image.width && image.height == board->image.height))
-      return;
-    problems_.add(fmt::format("{}: {}x{} pixels: must be as large as the board's images, {}x{}",
-                              picture.text(), image.width, image.height, board->image.width,
-                              board->image.height));
   }
 
   // False, and reported, if one lies in the result folder, which is replaced whole.
   bool pictures_survive() {
-    bool survive = true;
-    std::vector<NamedPicture> pictures = {left(), right()};
-    if (options_.truth) pictures.push_back(truth());
-    for (const NamedPicture& picture : pictures) {
-      if (!lies_in(picture.path, *options_.out)) continue;
+    std::set<std::string> reported;
+    for (const NamedFile& file : source_.files) {
+      if (!lies_in(file.path, *options_.out)) continue;
+      // Of a sequence, one is enough.
+      if (file.option == "--sequence" && reported.count(file.option) > 0) continue;
+      reported.insert(file.option);
       problems_.add(
           fmt::format("{}: inside the result folder '{}', which is replaced whole: "
                       "a picture must lie outside the folder of --out",
-                      picture.text(), *options_.out));
-      survive = false;
+                      file.text(), *options_.out));
     }
-    return survive;
+    return reported.empty();
   }
 
   void describe() {
+    const bool has_end = options_.pictures.sequence || options_.pictures.video;
+    input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
     report::RunOptions& run = input_.described;
     run.program_version = kVersion;
     run.source = "preloaded";
     run.fidelity = "cycle";
-    run.frames = options_.frames;
+    run.frames = input_.frames;
     run.truth_scale = options_.truth_scale;
-    const auto name = [this](const NamedPicture& picture, std::optional<report::InputFile>& file) {
-      attempt(picture.option, [&] {
-        file = {fs::absolute(picture.path).string(), report::sha256_file(picture.path)};
-      });
-    };
-    name(left(), run.left);
-    name(right(), run.right);
-    if (options_.truth) name(truth(), run.truth);
-    problems_.check();
-    attempt(nullptr, [&] { report::run_json(run); });  // refuses now what it would refuse after the run
+    run.save_frames = options_.save_frames;
+    report::run_json(run);  // refuses now what it would refuse after the run
   }
 
   const RunOptions& options_;
   Problems problems_;
-  std::vector<std::string> converted_;
+  OpenedSource source_;
   RunInput input_;
 };
 

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "models/host/ideal_host.h"
 #include "platform/board_config.h"
 #include "platform/tables.h"
+#include "sw/cli/pair_source.h"
 #include "sw/cli/run_options.h"
 #include "sw/media/truth.h"
 #include "sw/report/result_folder.h"
@@ -18,14 +19,17 @@ namespace stereotlm::cli {
 struct RunInput {
   platform::BoardConfig board;
   platform::Tables tables;
-  host::StereoPair pair;
-  std::optional<media::Truth> truth;
+  std::unique_ptr<PairSource> pairs;
+  std::uint64_t frames = 1;                      // to deliver
+  std::optional<media::Truth> truth;             // of the pair that the last one shows
   std::string config_yaml;                       // the text of that result file
   report::RunOptions described;                  // what run.json says; frames: those asked for
   std::unique_ptr<report::ResultFolder> folder;  // null: nothing is written
 };
 
 // Throws Refused with everything that is wrong. Says on standard error which pictures were converted to grey.
+// Once the pictures are checked, which may take long, interrupts are caught; before, they end the process,
+// which has changed nothing.
 RunInput load_run_input(const RunOptions& options);
 
 }  // namespace stereotlm::cli

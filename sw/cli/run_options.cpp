@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "platform/board_keys.h"
@@ -41,53 +37,39 @@ void check_choice(const Choice& choice, bool is_given, const std::string& text, 
   if (!is_given) {
     problems.add(fmt::format("{}, the default: {}; built: {} {}", unbuilt_value(choice), kNotInThisVersion,
                              choice.name, choice.built));
-  } else if (std::find(choice.values.begin(), choice.values.end(), text) == choice.values.end()) {
-    problems.add(fmt::format("{} = {}: must be {}", choice.name, text, platform::listed(choice.values)));
-  } else if (text != choice.built) {
+  } else if (is_one_of(choice.values, choice.name, text, problems) && text != choice.built) {
     problems.add(fmt::format("{} {}: {}; built: {} {}", choice.name, text, kNotInThisVersion, choice.name,
                              choice.built));
   }
 }
 
-// The whole text as a number.
-template <typename Number>
-std::optional<Number> number_of(std::string_view text) {
-  Number number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
 }  // namespace
-
-void RunOptions::add(CLI::App& command, Typed& typed, const std::string& name, const std::string& value,
-                     const std::string& meaning) {
-  typed.option = command.add_option(name, typed.text, meaning)->option_text(value);
-}
 
 void RunOptions::add_to(CLI::App& command) {
   board.add_to(command);
-  add(command, left_, "--left", "F", "The left picture of the pair, 8-bit, as large as the board's images");
-  add(command, right_, "--right", "F", "The right picture");
-  add(command, frames_, "--frames", "N", "Frames to deliver, 1 or more, each of the same pair (default 1)");
-  add(command, source_, source_choice().name, fmt::format("{}", fmt::join(source_choice().values, "|")),
-      "Where pictures come from (default camera; this version has preloaded: they appear in their buffers "
-      "in no time)");
-  add(command, fidelity_, fidelity_choice().name, fmt::format("{}", fmt::join(fidelity_choice().values, "|")),
+  pictures.add_to(command);
+  frames_.add_to(
+      command, "--frames", "N",
+      "Frames to deliver, 1 or more; frame f shows pair f modulo the number of pairs (default 1; with "
+      "--sequence and --video as many as there are pairs)");
+  source_.add_to(command, source_choice().name, fmt::format("{}", fmt::join(source_choice().values, "|")),
+                 "Where pictures come from (default camera; this version has preloaded: they appear in their "
+                 "buffers in no time)");
+  fidelity_.add_to(
+      command, fidelity_choice().name, fmt::format("{}", fmt::join(fidelity_choice().values, "|")),
       "How exact the timing is (default fast; this version has cycle: every bank and port, cycle by cycle)");
-  add(command, truth_, "--truth", "F", "Ground truth of the left picture, 8-bit grey, 0 = unknown");
-  add(command, truth_scale_, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)");
-  add(command, out_, "--out", "DIR",
-      "Folder for the result files: created if missing, else empty or an earlier result, which is replaced "
-      "(default: no files)");
-  unbuilt_.add(command, "--sequence", 1);
-  unbuilt_.add(command, "--video", 2);
-  unbuilt_.add(command, "--video-layout", 1);
-  unbuilt_.add(command, "--synthetic", 1);
+  truth_.add_to(command, "--truth", "F",
+                "Ground truth of the left picture that the last frame shows, 8-bit grey, 0 = unknown");
+  truth_scale_.add_to(command, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)");
+  out_.add_to(command, "--out", "DIR",
+              "Folder for the result files: created if missing, else empty or an earlier result, which is "
+              "replaced (default: no files)");
+  command.add_flag(
+      "--save-frames", save_frames,
+      "Write the disparities of every frame too: frames/000000.png and so on in the folder of --out");
   unbuilt_.add(command, "--timing-only", 0);
   unbuilt_.add(command, "--verify", 0);
   unbuilt_.add(command, "--trace", 1);
-  unbuilt_.add(command, "--save-frames", 0);
   command.footer(
       paragraph("", 0,
                 fmt::format("Not in this version: {}, {}; {}, {}.", unbuilt_.names(), board.unbuilt_names(),
@@ -101,14 +83,14 @@ void RunOptions::check_usage() {
   unbuilt_.report(problems);
   problems.check();  // what stands in for the pictures may be among them
   board.check_given(problems);
-  check_pictures(problems);
+  pictures.check_given(problems);
   const bool is_complete = problems.empty();
+  pictures.check_usage(problems);
   check_choices(problems);
   check_numbers(problems);
+  check_combinations(problems);
   if (!is_complete) problems.add_note(std::string("a complete command: ") + kExample);
   problems.check();
-  left = left_.text;
-  right = right_.text;
   if (truth_.is_given()) truth = truth_.text;
   if (out_.is_given()) out = out_.text;
 }
@@ -118,18 +100,13 @@ void RunOptions::check_choices(Problems& problems) const {
   check_choice(fidelity_choice(), fidelity_.is_given(), fidelity_.text, problems);
 }
 
-void RunOptions::check_pictures(Problems& problems) const {
-  if (!left_.is_given()) problems.add("--left: missing: a run needs --left F and --right F");
-  if (!right_.is_given()) problems.add("--right: missing: a run needs --left F and --right F");
-}
-
 void RunOptions::check_numbers(Problems& problems) {
   if (frames_.is_given()) {
     const auto number = number_of<std::uint64_t>(frames_.text);
     if (!number || *number == 0) {
       problems.add(fmt::format("--frames = {}: must be an integer, 1 or more", frames_.text));
     }
-    frames = number.value_or(1);
+    frames = number;
   }
   if (truth_scale_.is_given()) {
     const auto number = number_of<double>(truth_scale_.text);
@@ -137,8 +114,15 @@ void RunOptions::check_numbers(Problems& problems) {
       problems.add(fmt::format("--truth-scale = {}: must be a number above 0", truth_scale_.text));
     }
     truth_scale = number.value_or(1);
-    if (!truth_.is_given()) problems.add("--truth-scale: goes with --truth F");
   }
+}
+
+void RunOptions::check_combinations(Problems& problems) const {
+  if (truth_scale_.is_given() && !truth_.is_given()) problems.add("--truth-scale: goes with --truth F");
+  if (truth_.is_given() && pictures.synthetic) {
+    problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
+  }
+  if (save_frames && !out_.is_given()) problems.add("--save-frames: goes with --out DIR");
 }
 
 }  // namespace stereotlm::cli

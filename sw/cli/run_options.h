@@ -6,6 +6,8 @@
 #include <string>
 
 #include "sw/cli/board_options.h"
+#include "sw/cli/picture_options.h"
+#include "sw/cli/typed_option.h"
 #include "sw/cli/unbuilt.h"
 
 namespace stereotlm::cli {
@@ -20,30 +22,19 @@ class RunOptions {
   void check_usage();
 
   BoardOptions board;
+  PictureOptions pictures;
   // As check_usage() leaves them.
-  std::string left;
-  std::string right;
-  std::uint64_t frames = 1;
+  std::optional<std::uint64_t> frames;
   std::optional<std::string> truth;
   double truth_scale = 1;
+  bool save_frames = false;
   std::optional<std::string> out;
 
  private:
-  void check_pictures(Problems& problems) const;
   void check_choices(Problems& problems) const;
   void check_numbers(Problems& problems);
+  void check_combinations(Problems& problems) const;
 
-  // An option as it was typed.
-  struct Typed {
-    const CLI::Option* option = nullptr;
-    std::string text;
-    bool is_given() const { return option->count() > 0; }
-  };
-  static void add(CLI::App& command, Typed& typed, const std::string& name, const std::string& value,
-                  const std::string& meaning);
-
-  Typed left_;
-  Typed right_;
   Typed frames_;
   Typed source_;
   Typed fidelity_;

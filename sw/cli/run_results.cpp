@@ -1,5 +1,7 @@
 #include "sw/cli/run_results.h"
 
+#include <fmt/format.h>
+
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
 #include "sw/report/accuracy.h"
@@ -25,14 +27,39 @@ void write_files(RunInput& input, const platform::Statistics& statistics, const 
   folder.commit();
 }
 
+// A made scene's own truth is shown to the user only: stats.json has the accuracy against --truth.
+std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, std::uint64_t frames_done,
+                                                 const kernels::GrayImage& disparity,
+                                                 const std::optional<report::Accuracy>& accuracy) {
+  if (accuracy || !input.pairs || frames_done == 0) return accuracy;
+  const std::optional<media::Truth> truth = input.pairs->truth(frames_done - 1);
+  if (!truth) return std::nullopt;
+  return report::accuracy(disparity, *truth);
+}
+
 }  // namespace
+
+void save_frame(const RunInput& input, std::uint64_t frame, const kernels::GrayImage& disparity) {
+  if (!input.described.save_frames) return;
+  input.folder->add(report::frame_file_name(frame), media_functions().encode_png_gray(disparity));
+}
+
+void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
+  const std::uint64_t length = input.pairs->length();
+  if (!input.truth || (frames_done - 1) % length == (input.frames - 1) % length) return;
+  say("note", fmt::format("--truth is of the pair of frame {}, which was not reached: no accuracy",
+                          input.frames - 1));
+  input.truth.reset();
+  input.described.truth.reset();
+}
 
 bool deliver(RunInput& input, const platform::Statistics& statistics, const kernels::GrayImage& disparity) {
   std::optional<report::Accuracy> accuracy;
   if (input.truth) accuracy = report::accuracy(disparity, *input.truth);
   if (input.folder) write_files(input, statistics, disparity, accuracy);
   for (const std::string& identity : statistics.failed) say("error", "identity does not hold: " + identity);
-  print(report::console_table(statistics, input.board.fpga.clock_mhz, accuracy));
+  print(report::console_table(statistics, input.board.fpga.clock_mhz,
+                              accuracy_to_show(input, statistics.frames, disparity, accuracy)));
   return statistics.failed.empty();
 }
 

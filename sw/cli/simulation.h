@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <systemc>
+#include <vector>
 
 #include "models/host/ideal_host.h"
 #include "platform/collect.h"
@@ -10,17 +12,17 @@
 
 namespace stereotlm::cli {
 
-// The board on one pair of pictures, the same for every frame. One of these a process: SystemC elaborates
-// once.
+// The board on the pairs of a source. One of these a process: SystemC elaborates once.
 class Simulation : private host::FrameSource, private host::FrameSink {
  public:
   // All but `frames` outlives the simulation. Throws std::exception if the board cannot be built.
-  Simulation(const platform::BoardConfig& board, const platform::Tables& tables, const host::StereoPair& pair,
+  Simulation(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
              std::uint64_t frames);
 
-  // Simulates about 40,000 FPGA cycles. Throws sc_core::sc_report if a model reports an error, and
-  // std::runtime_error if nothing is left to happen before the last frame is finished.
-  void advance();
+  // Simulates about 40,000 FPGA cycles and returns the disparities of the frames that have ended in them, in
+  // order. Throws sc_core::sc_report if a model reports an error, what `pairs` throws, and std::runtime_error
+  // if nothing is left to happen before the last frame is finished.
+  std::vector<kernels::GrayImage> advance();
 
   bool finished() const { return system_.host.finished(); }
   std::uint64_t frames_done() const { return counters_.frames; }
@@ -37,9 +39,11 @@ class Simulation : private host::FrameSource, private host::FrameSink {
 
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;
-  const host::StereoPair& pair_;
+  host::FrameSource& pairs_;
   sc_core::sc_time slice_;
+  std::vector<kernels::GrayImage> ended_;  // since the last advance() began
   kernels::GrayImage disparity_;
+  std::exception_ptr failure_;  // of the source
   std::uint64_t cycles_of_done_ = 0;
   Binder binder_;
   platform::PreloadedSystem system_;

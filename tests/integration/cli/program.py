@@ -105,6 +105,10 @@ class ProgramTest(unittest.TestCase):
         pair = ["--left", self.left if left is None else left, "--right", self.right if right is None else right]
         return ["run", board, *SMALL, *BUILT, *pair, *more]
 
+    def run_with(self, *source, board="fpl2003"):
+        """A small run with these options instead of a pair."""
+        return run("run", board, *SMALL, *BUILT, *source)
+
     def run_small(self, *more, **pair):
         return run(*self.run_arguments(*more, **pair))
 
@@ -130,7 +134,8 @@ class ProgramTest(unittest.TestCase):
 
     def result(self, folder=None):
         """The bytes of all files of a result folder, by name."""
-        return {path.name: path.read_bytes() for path in (folder or self.out).iterdir()}
+        folder = folder or self.out
+        return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
     def stats(self):
         return json.loads((self.out / "stats.json").read_text())

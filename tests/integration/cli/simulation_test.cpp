@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "models/kernels/stereo.h"
 #include "platform/board_yaml.h"
 #include "tests/support/expected_report.h"
 
@@ -11,6 +18,34 @@ namespace {
 platform::BoardConfig small_board() {
   return platform::load_board("fpl2003", {"image.width=32", "image.height=24"});
 }
+
+// The same pair for every frame, of which the right picture may be changed.
+class OnePair : public host::FrameSource {
+ public:
+  const host::StereoPair& pair(std::uint64_t /*frame*/) override { return pair_; }
+  host::StereoPair pair_ = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
+};
+
+// Frame f shows noise of its own, and is as the kernels say.
+class Noise : public host::FrameSource {
+ public:
+  const host::StereoPair& pair(std::uint64_t frame) override {
+    if (frame == failing_frame) throw std::runtime_error("the disk is gone");
+    std::mt19937 random(static_cast<std::uint32_t>(frame));
+    for (auto* image : {&pair_.left, &pair_.right}) {
+      for (auto& pixel : image->pixels) pixel = static_cast<std::uint8_t>(random());
+    }
+    return pair_;
+  }
+  kernels::GrayImage disparity(std::uint64_t frame) {
+    const host::StereoPair& shown = pair(frame);
+    return kernels::disparity_image(shown.left, shown.right, nullptr, nullptr, {});
+  }
+  std::optional<std::uint64_t> failing_frame;
+
+ private:
+  host::StereoPair pair_ = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
+};
 
 std::string message_of_advancing(Simulation& simulation) {
   try {
@@ -24,8 +59,8 @@ std::string message_of_advancing(Simulation& simulation) {
 TEST(Simulation, AdvancesInSlicesUntilTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
-  const host::StereoPair pair = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
-  Simulation simulation(board, tables, pair, 10);
+  OnePair pairs;
+  Simulation simulation(board, tables, pairs, 10);
   EXPECT_FALSE(simulation.finished());
   EXPECT_EQ(simulation.frames_done(), 0U);
   EXPECT_EQ(simulation.statistics().frames, 0U);
@@ -50,11 +85,36 @@ TEST(Simulation, AdvancesInSlicesUntilTheLastFrame) {
   EXPECT_EQ(simulation.disparity().width, 32);
 }
 
+TEST(Simulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
+  const platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  Noise pairs;
+  Simulation simulation(board, tables, pairs, 10);
+  std::vector<kernels::GrayImage> ended = simulation.advance();
+  EXPECT_EQ(ended.size(), 6U);
+  for (kernels::GrayImage& disparity : simulation.advance()) ended.push_back(std::move(disparity));
+  ASSERT_EQ(ended.size(), 10U);
+  for (std::uint64_t frame = 0; frame < 10; ++frame) EXPECT_EQ(ended[frame], pairs.disparity(frame)) << frame;
+  EXPECT_EQ(simulation.disparity(), ended.back());
+}
+
+TEST(Simulation, PassesOnWhatTheSourceThrows) {
+  const platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  Noise pairs;
+  pairs.failing_frame = 3;
+  Simulation simulation(board, tables, pairs, 10);
+  const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
+  EXPECT_EQ(message_of_advancing(simulation), "the disk is gone");
+  EXPECT_EQ(simulation.frames_done(), 3U);
+}
+
 TEST(Simulation, PassesOnWhatAModelReports) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
-  const host::StereoPair pair = {kernels::GrayImage(32, 24), kernels::GrayImage(28, 24)};
-  Simulation simulation(board, tables, pair, 1);
+  OnePair pairs;
+  pairs.pair_.right = kernels::GrayImage(28, 24);
+  Simulation simulation(board, tables, pairs, 1);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
   EXPECT_THROW(simulation.advance(), sc_core::sc_report);
 }
@@ -62,14 +122,14 @@ TEST(Simulation, PassesOnWhatAModelReports) {
 TEST(Simulation, SaysThatItHasEndedBeforeTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
-  host::StereoPair pair = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
-  Simulation simulation(board, tables, pair, 10);
+  OnePair pairs;
+  Simulation simulation(board, tables, pairs, 10);
   simulation.advance();
   ASSERT_EQ(simulation.frames_done(), 6U);
   // An error that is not thrown: the host does no more.
   sc_core::sc_report_handler::set_actions("/stereotlm/ideal_host", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
-  pair.right = kernels::GrayImage(28, 24);
+  pairs.pair_.right = kernels::GrayImage(28, 24);
   EXPECT_EQ(message_of_advancing(simulation),
             "the simulation has ended after 7 frames: nothing is left that could finish the next");
 }
@@ -77,9 +137,9 @@ TEST(Simulation, SaysThatItHasEndedBeforeTheLastFrame) {
 TEST(Simulation, CannotBeBuiltOfAWrongBoard) {
   platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
-  const host::StereoPair pair;
+  OnePair pairs;
   board.matcher.window = 4;
-  EXPECT_THROW(Simulation(board, tables, pair, 1), std::invalid_argument);
+  EXPECT_THROW(Simulation(board, tables, pairs, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -6,16 +6,10 @@ from program import BUILT, ProgramTest, pgm, run
 COMMANDS = ["run", "check", "boards", "keys", "bounds"]
 UNBUILT_COMMANDS = ["calibrate", "explain", "sweep", "merge", "allocate", "paper", "plot", "diff", "report"]
 UNBUILT_RUN_OPTIONS = [
-    ["--sequence", "frames"],
-    ["--video", "a.avi"],
-    ["--video", "a.avi", "b.avi"],
-    ["--video-layout", "two"],
-    ["--synthetic", "1"],
     ["--timing-only"],
     ["--verify"],
     ["--calibration", "rig.yaml"],
     ["--trace", "vcd"],
-    ["--save-frames"],
 ]
 
 
@@ -29,7 +23,9 @@ class Help(ProgramTest):
 
     def test_of_a_command_names_its_options_and_defaults(self):
         text = self.succeeds(run("run", "--help"))
-        for option in ("BOARD", "--left", "--right", "--truth", "--truth-scale", "--set", "--out"):
+        for option in ("BOARD", "--left", "--right", "--sequence", "--video F [F2]", "--video-layout", "--synthetic"):
+            self.assertIn(option, text)
+        for option in ("--frames", "--truth", "--truth-scale", "--set", "--out", "--save-frames"):
             self.assertIn(option, text)
         self.assertIn("default 1", text)
         for option in UNBUILT_RUN_OPTIONS:
@@ -104,7 +100,7 @@ class NotInThisVersion(ProgramTest):
             self.refused_in_one_line(run("run", "fpl2003", option[0]), text)
 
     def test_all_at_once(self):
-        lines = self.refused(run("run", "fpl2003", "--verify", "--save-frames", "--trace", "vcd"))
+        lines = self.refused(run("run", "fpl2003", "--verify", "--timing-only", "--trace", "vcd"))
         self.assertEqual(len(lines), 3)
 
     def test_calibration_with_every_command_that_takes_a_board(self):
@@ -170,7 +166,58 @@ class WrongValues(ProgramTest):
         run_it = ["run", "fpl2003", *BUILT]
         for given, path, missing in (("--left", self.left, ["--right"]), ("--right", self.right, ["--left"])):
             self.assertEqual(self.missing(run(*run_it, given, path)), missing)
-        self.assertEqual(self.missing(run(*run_it)), ["--left", "--right"])
+
+    def test_a_run_has_pictures(self):
+        self.assertEqual(self.missing(run("run", "fpl2003", *BUILT)), ["pictures"])
+        sources = "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED"
+        self.refused(run("run", "fpl2003", *BUILT), f"error: pictures: missing: a run needs {sources}")
+
+    def test_a_run_has_pictures_of_one_source(self):
+        pair = ["--left", self.left, "--right", self.right]
+        sequence = ["--sequence", self.folder]
+        video = ["--video", self.left, "--video-layout", "side_by_side"]
+        synthetic = ["--synthetic", "1"]
+        for given, names in (
+            (pair + sequence, "--left, --sequence"),
+            (pair + synthetic, "--left, --synthetic"),
+            (sequence + video, "--sequence, --video"),
+            (pair + sequence + video + synthetic, "--left, --sequence, --video, --synthetic"),
+        ):
+            self.refused_value(self.run_with(*given), f"error: {names}: a run has one source of pictures: --left F")
+
+    def test_a_video_needs_its_layout(self):
+        self.refused_value(self.run_with("--video", "a"), "--video-layout: missing: goes with --video, one of two, side_")
+        self.refused_value(self.run_small("--video-layout", "two"), "--video-layout: goes with --video F [F2]")
+        for value in ("three", "", "Two"):
+            self.refused_value(
+                self.run_with("--video", "a", "--video-layout", value),
+                f"--video-layout = {value}: must be two, side_by_side or top_bottom",
+            )
+
+    def test_a_video_layout_says_how_many_files(self):
+        self.refused_value(
+            self.run_with("--video", "a", "--video-layout", "two"),
+            "--video 'a': must name two files with --video-layout two",
+        )
+        for layout in ("side_by_side", "top_bottom"):
+            self.refused_value(
+                self.run_with("--video", "a", "b", "--video-layout", layout),
+                f"--video 'a' 'b': must name one file with --video-layout {layout}",
+            )
+        self.assertEqual(self.run_with("--video", "a", "b", "c", "--video-layout", "two").returncode, 2)
+
+    def test_a_seed_is_an_integer(self):
+        for value in ("-1", "1.5", "x", "", "18446744073709551616"):
+            self.refused_value(self.run_with("--synthetic", value), f"--synthetic = {value}: must be an integer, 0..2^64-1")
+
+    def test_a_truth_does_not_go_with_a_synthetic_scene(self):
+        self.refused_value(
+            self.run_with("--synthetic", "1", "--truth", self.left),
+            "--truth: does not go with --synthetic, whose scene is its own truth",
+        )
+
+    def test_saved_frames_need_a_folder(self):
+        self.refused_value(self.run_small("--save-frames"), "--save-frames: goes with --out DIR")
 
     def missing(self, process):
         """What is said to be missing; the last line shows a complete command."""
@@ -179,7 +226,7 @@ class WrongValues(ProgramTest):
         return [line.split(": ")[2] for line in lines if ": missing: " in line]
 
     def test_a_run_without_anything_is_told_all_at_once(self):
-        self.assertEqual(self.missing(run("run")), ["BOARD", "--left", "--right"])
+        self.assertEqual(self.missing(run("run")), ["BOARD", "pictures"])
         self.refused(run("run"), "--source camera, the default", "--fidelity fast, the default")
         self.assertNotIn("complete command", run("run", "fpl2003", "--left", "a", "--right", "b").stderr)
 

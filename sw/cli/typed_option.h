@@ -1,0 +1,51 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "platform/board_keys.h"
+#include "sw/cli/problems.h"
+
+namespace stereotlm::cli {
+
+// An option as it was typed.
+template <typename Text>
+struct TypedOption {
+  CLI::Option* option = nullptr;
+  Text text;
+
+  void add_to(CLI::App& command, const std::string& name, const std::string& value,
+              const std::string& meaning) {
+    option = command.add_option(name, text, meaning)->option_text(value);
+  }
+  bool is_given() const { return option->count() > 0; }
+};
+using Typed = TypedOption<std::string>;
+using TypedList = TypedOption<std::vector<std::string>>;
+
+// The whole text as a number.
+template <typename Number>
+std::optional<Number> number_of(std::string_view text) {
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+// False, and reported, if the text is none of the values.
+inline bool is_one_of(const std::vector<std::string>& values, const std::string& name,
+                      const std::string& text, Problems& problems) {
+  if (std::find(values.begin(), values.end(), text) != values.end()) return true;
+  problems.add(fmt::format("{} = {}: must be {}", name, text, platform::listed(values)));
+  return false;
+}
+
+}  // namespace stereotlm::cli
