@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/capture/capture_config.h"
+
+namespace stereotlm::capture {
+
+// When frames begin and pixels arrive, in ps (contract section 3, "Cameras"). A frame lasts 1 / frame_rate_hz
+// and has 525/480 * height line times; the pixels of a line fill the first 52.15/63.56 of its line time,
+// pixel i of width W arrives i/W of that after the line's beginning. The rest of each line and the lines
+// behind the last are blank. Every time is rounded once, halves up, from its exact value, so nothing drifts;
+// the frame rate is the decimal number that was written, not the binary one nearest to it.
+class CameraTiming {
+ public:
+  // Throws std::invalid_argument if the configuration has problems.
+  explicit CameraTiming(const CameraConfig& config);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // From time 0 to the beginning of frame `number` of a free-running camera. A frame lasts frame_ps(1).
+  std::uint64_t frame_ps(std::uint64_t number) const { return frame_.times(number); }
+  // From the beginning of a frame to the arrival of a pixel in it. 0 <= column < width, 0 <= row < height.
+  std::uint64_t pixel_ps(int column, int row) const {
+    return step_.times(row_steps_ * static_cast<std::uint64_t>(row) +
+                       kPixelSteps * static_cast<std::uint64_t>(column));
+  }
+  std::uint64_t row_ps(int row) const { return pixel_ps(0, row); }
+  // How many pixels of a row have arrived so long after the beginning of its frame; one that arrives then
+  // has.
+  int pixels_by(int row, std::uint64_t since_begin_ps) const;
+
+ private:
+  __extension__ typedef unsigned __int128 Wide;
+
+  // A rational number of ps.
+  class Period {
+   public:
+    Period(Wide numerator, Wide denominator);
+    std::uint64_t times(std::uint64_t count) const {
+      // A division of 128 bits takes several times as long.
+      const std::uint64_t doubled_rest =
+          count <= narrow_counts_
+              ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)
+              : static_cast<std::uint64_t>(2 * rest_ * count / denominator_);
+      return whole_ * count + (doubled_rest + 1) / 2;
+    }
+
+   private:
+    std::uint64_t whole_;
+    Wide rest_;  // of denominator_
+    Wide denominator_;
+    std::uint64_t narrow_counts_;  // for which 64 bits are enough
+  };
+
+  // A frame rate of numerator / denominator Hz, both below 10^18.
+  struct Rate {
+    std::uint64_t numerator;
+    std::uint64_t denominator;
+  };
+  CameraTiming(const CameraConfig& config, const Rate& rate);
+  static Rate rate_of(const CameraConfig& config);
+
+  // The step is the largest time of which a line and the distance of two pixels are multiples: 52.15/63.56 =
+  // 745/908.
+  static constexpr std::uint64_t kPixelSteps = 745;
+  static constexpr std::uint64_t kLineSteps = 908;  // per pixel of the width
+
+  int width_;
+  int height_;
+  std::uint64_t row_steps_;
+  Period frame_;
+  Period step_;
+  double steps_per_ps_;  // near enough to guess from
+};
+
+}  // namespace stereotlm::capture

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "models/kernels/integer_rule.h"
+
+namespace stereotlm::capture {
+
+inline constexpr kernels::IntegerRule kWidthRule{4, 2048, 4};
+inline constexpr kernels::IntegerRule kHeightRule{1, 2048};
+inline constexpr double kMinFrameRateHz = 0.1;
+inline constexpr double kMaxFrameRateHz = 1000;
+inline constexpr kernels::IntegerRule kFifoWordsRule{1, 4096};
+
+enum class CameraTrigger : std::uint8_t {
+  kFreeRunning,  // frame k begins at k / frame_rate_hz
+  kOnDemand,     // a frame begins when it is triggered
+};
+inline constexpr std::array<const char*, 2> kCameraTriggerNames = {"free_running", "on_demand"};
+
+struct CameraConfig {
+  int width = 640;   // pixels, kWidthRule
+  int height = 480;  // pixels, kHeightRule
+  double frame_rate_hz =
+      29.97;  // kMinFrameRateHz..kMaxFrameRateHz; the decimal number that it is the nearest to
+  CameraTrigger trigger = CameraTrigger::kFreeRunning;
+};
+
+struct CaptureBoardConfig {
+  int fifo_words = 140;         // 32-bit words, kFifoWordsRule
+  int fifo_trigger_words = 32;  // so many in the FIFO ask for the bus, 1..fifo_words
+};
+
+// Every broken rule as `field = value: rule`; empty if the block can be built.
+std::vector<std::string> problems(const CameraConfig& config);
+std::vector<std::string> problems(const CaptureBoardConfig& config);
+
+}  // namespace stereotlm::capture

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+// The registers of a capture board, 32 bit each, at byte addresses on its `registers` socket (ours: the
+// Bt848's own map is that of a video decoder with a DMA program in memory).
+//
+// | address | name             | access | meaning                                                           |
+// |---------|------------------|--------|-------------------------------------------------------------------|
+// | 0x00    | kControl         | write  | bit 0: arm a capture; bit 1: trigger the cameras (on demand)      |
+// | 0x04    | kStatus          | both   | bit 0: armed; 1: capturing; 2: done; 3: words lost; 4: arming     |
+// |         |                  |        | refused. Bits 2 to 4 stay until a 1 is written to them            |
+// | 0x08    | kBufferAddress   | both   | where the next capture goes: bus address, a multiple of 4         |
+// | 0x0c    | kFrameNumberLow  | read   | camera frame of the last capture that is done, bits 31..0         |
+// | 0x10    | kFrameNumberHigh | read   | bits 63..32                                                       |
+// | 0x14    | kDroppedPixels   | read   | pixels of that capture that were dropped: the FIFO was full       |
+// | 0x18    | kLostWords       | read   | words of that capture that the bus did not take: no target, or    |
+// |         |                  |        | its error                                                         |
+//
+// Arming takes the buffer address. The capture starts at the next beginning of a frame at which both boards
+// of a pair are armed and have no capture running; one armed at that very time takes part. It is done when
+// the last word of the frame has been written, dropped or lost. The next one may be armed meanwhile; arming
+// while armed, or with an address that is not a multiple of 4, is refused. A write may arm and trigger at
+// once. The interrupt is high while `done` or `words lost` is. Nothing ends a capture that runs or is armed.
+namespace stereotlm::capture::registers {
+
+inline constexpr std::uint64_t kControl = 0x00;
+inline constexpr std::uint64_t kStatus = 0x04;
+inline constexpr std::uint64_t kBufferAddress = 0x08;
+inline constexpr std::uint64_t kFrameNumberLow = 0x0c;
+inline constexpr std::uint64_t kFrameNumberHigh = 0x10;
+inline constexpr std::uint64_t kDroppedPixels = 0x14;
+inline constexpr std::uint64_t kLostWords = 0x18;
+inline constexpr std::uint64_t kEnd = 0x1c;
+
+inline constexpr std::uint32_t kControlArm = 1U << 0U;
+inline constexpr std::uint32_t kControlTrigger = 1U << 1U;
+inline constexpr std::uint32_t kStatusArmed = 1U << 0U;
+inline constexpr std::uint32_t kStatusCapturing = 1U << 1U;
+inline constexpr std::uint32_t kStatusDone = 1U << 2U;
+inline constexpr std::uint32_t kStatusWordsLost = 1U << 3U;
+inline constexpr std::uint32_t kStatusArmRefused = 1U << 4U;
+
+}  // namespace stereotlm::capture::registers

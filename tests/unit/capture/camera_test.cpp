@@ -1,0 +1,209 @@
+#include "models/capture/camera.h"
+
+#include <stdexcept>
+
+#include "tests/support/expected_report.h"
+#include "tests/unit/capture/capture_bench.h"
+
+namespace stereotlm::capture {
+namespace {
+
+// Takes the frames that a test names, at once or later.
+class Receiver : public StreamIf<VideoFrame>, public StreamIf<VideoLine> {
+ public:
+  explicit Receiver(Camera& camera) : camera_(camera) {
+    camera.frames_out.bind(*this);
+    camera.lines_out.bind(*this);
+  }
+  void push(const VideoFrame& frame) override {
+    EXPECT_EQ(frame.begin_ps, now_ps());
+    EXPECT_EQ(frame.timing, &camera_.timing());
+    frames.push_back(frame);
+    if (frame.number == takes) take(frame.number);
+  }
+  void push(const VideoLine& line) override {
+    lines.push_back(line);
+    lines_ps.push_back(now_ps());
+  }
+  void take(std::uint64_t number) { camera_.takes_in->push({number}); }
+
+  std::uint64_t takes = UINT64_MAX;
+  std::vector<VideoFrame> frames;
+  std::vector<VideoLine> lines;
+  std::vector<std::uint64_t> lines_ps;
+
+ private:
+  Camera& camera_;
+};
+
+class CameraTest : public testing::Test {
+ protected:
+  void build(CameraTrigger trigger, const CameraConfig& base = {8, 5, 29.97, CameraTrigger::kFreeRunning}) {
+    CameraConfig config = base;
+    config.trigger = trigger;
+    camera.emplace("camera", config, source);
+    receiver.emplace(*camera);
+  }
+  void trigger(std::uint64_t delay_ps = 0) { camera->triggers_in->push({Clock::to_time(delay_ps)}); }
+  std::uint64_t frame_ps(std::uint64_t number) const { return camera->timing().frame_ps(number); }
+
+  NoiseSource source{8, 5};
+  std::optional<Camera> camera;
+  std::optional<Receiver> receiver;
+};
+
+TEST_F(CameraTest, BeginsItsFramesWithTheFrameClock) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(frame_ps(3) - 1);
+  EXPECT_EQ(receiver->frames.size(), 3U);
+  run_to(frame_ps(3));
+  ASSERT_EQ(receiver->frames.size(), 4U);
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(receiver->frames[i].number, i);
+    EXPECT_EQ(receiver->frames[i].begin_ps, frame_ps(i));
+  }
+  EXPECT_EQ(camera->stats().frames, 4U);
+}
+
+TEST_F(CameraTest, SendsNothingOfAFrameThatNobodyTakes) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(frame_ps(3));
+  EXPECT_TRUE(receiver->lines.empty());
+  EXPECT_TRUE(source.asked.empty());
+}
+
+TEST_F(CameraTest, SendsEachLineOfATakenFrameAtItsBeginning) {
+  build(CameraTrigger::kFreeRunning);
+  receiver->takes = 1;
+  run_to(frame_ps(3));
+  EXPECT_EQ(source.asked, std::vector<std::uint64_t>{1});
+  ASSERT_EQ(receiver->lines.size(), 5U);
+  const kernels::GrayImage picture = source.picture(1);
+  for (int row = 0; row < 5; ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    EXPECT_EQ(receiver->lines[i].row, row);
+    EXPECT_EQ(receiver->lines_ps[i], frame_ps(1) + camera->timing().row_ps(row));
+    for (int column = 0; column < 8; ++column)
+      EXPECT_EQ(receiver->lines[i].pixels[column], picture.at(column, row)) << column << ", " << row;
+  }
+}
+
+TEST_F(CameraTest, SendsTheFirstLineWhenTheFrameIsTakenAndTheNextInTime) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(1);
+  receiver->take(0);
+  run_to(frame_ps(1) - 1);
+  ASSERT_EQ(receiver->lines.size(), 5U);
+  EXPECT_EQ(receiver->lines_ps[0], 1U);
+  EXPECT_EQ(receiver->lines_ps[1], camera->timing().row_ps(1));
+}
+
+TEST_F(CameraTest, WaitsForItsTriggerOnDemand) {
+  build(CameraTrigger::kOnDemand);
+  run_to(1'000);
+  EXPECT_TRUE(receiver->frames.empty());
+  trigger();
+  run_to(1'000);
+  ASSERT_EQ(receiver->frames.size(), 1U);
+  EXPECT_EQ(receiver->frames[0].number, 0U);
+  EXPECT_EQ(receiver->frames[0].begin_ps, 1'000U);
+  run_to(3 * frame_ps(1));
+  EXPECT_EQ(receiver->frames.size(), 1U);
+  trigger(500);
+  run_to(3 * frame_ps(1) + 499);
+  EXPECT_EQ(receiver->frames.size(), 1U);
+  run_to(3 * frame_ps(1) + 500);
+  ASSERT_EQ(receiver->frames.size(), 2U);
+  EXPECT_EQ(receiver->frames[1].number, 1U);
+  EXPECT_EQ(camera->stats().frames, 2U);
+  EXPECT_EQ(camera->stats().ignored_triggers, 0U);
+}
+
+TEST_F(CameraTest, IgnoresATriggerUntilTheFrameHasEnded) {
+  build(CameraTrigger::kOnDemand);
+  trigger();
+  run_to(frame_ps(1) - 1);
+  ASSERT_EQ(receiver->frames.size(), 1U);
+  trigger();
+  run_to(frame_ps(1));
+  EXPECT_EQ(receiver->frames.size(), 1U);
+  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+  trigger();
+  run_to(frame_ps(1));
+  ASSERT_EQ(receiver->frames.size(), 2U);
+  EXPECT_EQ(receiver->frames[1].begin_ps, frame_ps(1));
+  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+}
+
+TEST_F(CameraTest, TakesATriggerWhoseDelayEndsWithTheRunningFrame) {
+  build(CameraTrigger::kOnDemand);
+  trigger();
+  run_to(1'000);
+  trigger(frame_ps(1) - 1'001);
+  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+  trigger(frame_ps(1) - 1'000);
+  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+  run_to(frame_ps(1));
+  EXPECT_EQ(receiver->frames.size(), 2U);
+}
+
+TEST_F(CameraTest, IgnoresASecondTriggerBeforeTheFrameBegins) {
+  build(CameraTrigger::kOnDemand);
+  run_to(1'000);
+  trigger(700);
+  trigger(300);
+  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+  run_to(1'699);
+  EXPECT_TRUE(receiver->frames.empty());
+  run_to(1'700);
+  EXPECT_EQ(receiver->frames.size(), 1U);
+}
+
+TEST_F(CameraTest, IgnoresATriggerWhenItRunsFreely) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(1'000);
+  trigger();
+  run_to(frame_ps(2));
+  EXPECT_EQ(receiver->frames.size(), 3U);
+  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+}
+
+TEST_F(CameraTest, ReportsAPictureOfAnotherSize) {
+  build(CameraTrigger::kFreeRunning, {8, 6, 29.97, CameraTrigger::kFreeRunning});
+  run_to(1);
+  test::ExpectedReport expected("/stereotlm/camera");
+  EXPECT_THROW(receiver->take(0), sc_core::sc_report);
+  EXPECT_EQ(expected.text(), "camera: picture of frame 0 = 8 x 5: must be 8 x 6");
+}
+
+TEST_F(CameraTest, ReportsAFrameTakenTwice) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(1);
+  receiver->take(0);
+  test::ExpectedReport expected("/stereotlm/camera");
+  EXPECT_THROW(receiver->take(0), sc_core::sc_report);
+  EXPECT_EQ(expected.text(), "camera: frame 0 taken: must be the running one, once; 1 have begun");
+}
+
+TEST_F(CameraTest, ReportsATakenFrameThatIsNotRunning) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(frame_ps(1));
+  test::ExpectedReport expected("/stereotlm/camera", 2);
+  EXPECT_THROW(receiver->take(0), sc_core::sc_report);
+  EXPECT_THROW(receiver->take(2), sc_core::sc_report);
+}
+
+TEST_F(CameraTest, RefusesAConfigurationWithProblems) {
+  EXPECT_THROW(Camera("refused", CameraConfig{8, 5, 2000, CameraTrigger::kFreeRunning}, source),
+               std::invalid_argument);
+}
+
+TEST(CameraResolution, MustBeOnePicosecond) {
+  sc_core::sc_set_time_resolution(10, sc_core::SC_PS);
+  NoiseSource source(8, 5);
+  EXPECT_THROW(Camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::capture

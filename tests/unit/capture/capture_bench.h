@@ -1,0 +1,138 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <systemc>
+#include <vector>
+
+#include "models/capture/camera.h"
+#include "models/capture/capture_board.h"
+#include "models/clock.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/test_host.h"
+#include "tests/unit/capture/test_bus.h"
+
+namespace stereotlm::capture {
+
+// Pictures of noise, another one for each frame.
+class NoiseSource : public CameraSource {
+ public:
+  NoiseSource(int width, int height) : image_(width, height) {}
+  const kernels::GrayImage& frame(std::uint64_t number) override {
+    asked.push_back(number);
+    image_ = picture(number);
+    return image_;
+  }
+  kernels::GrayImage picture(std::uint64_t number) const {
+    kernels::GrayImage image(image_.width, image_.height);
+    auto random = static_cast<std::uint32_t>(number * 7919 + 1);
+    for (std::uint8_t& pixel : image.pixels) {
+      random = random * 1664525U + 1013904223U;
+      pixel = static_cast<std::uint8_t>(random >> 24U);
+    }
+    return image;
+  }
+  std::vector<std::uint64_t> asked;
+
+ private:
+  kernels::GrayImage image_;
+};
+
+// Camera, board and bus of one side, and a host at its registers.
+struct CaptureSide {
+  CaptureSide(const std::string& prefix, const CameraConfig& camera_config,
+              const CaptureBoardConfig& board_config, double clock_mhz)
+      : host((prefix + "host").c_str()),
+        source(camera_config.width, camera_config.height),
+        camera((prefix + "camera").c_str(), camera_config, source),
+        board((prefix + "board").c_str(), board_config),
+        bus((prefix + "bus").c_str(), clock_mhz),
+        interrupt((prefix + "interrupt").c_str()) {
+    binder.bind(host.socket, board.registers, prefix + "host_to_registers");
+    board.pci.bind(bus.slot);
+    board.interrupt.bind(interrupt);
+    camera.frames_out.bind(board.frames_in);
+    camera.lines_out.bind(board.lines_in);
+    board.takes_out.bind(camera.takes_in);
+  }
+
+  std::uint32_t status() { return host.read(registers::kStatus).word; }
+  void write(std::uint64_t address, std::uint32_t value, sc_core::sc_time delay = {}) {
+    EXPECT_EQ(host.write(address, value, delay).status, tlm::TLM_OK_RESPONSE);
+  }
+  void arm(std::uint32_t address, sc_core::sc_time delay = {}) {
+    write(registers::kBufferAddress, address);
+    write(registers::kControl, registers::kControlArm, delay);
+  }
+
+  // The pixels that the bus has written from `address` on; `fill` where it has written none.
+  std::vector<std::uint8_t> buffer(std::uint64_t address, std::uint8_t fill) const {
+    std::vector<std::uint8_t> pixels(source.picture(0).pixels.size(), fill);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const auto word = bus.memory.find(address + i / 4 * 4);
+      if (word != bus.memory.end()) pixels[i] = static_cast<std::uint8_t>(word->second >> (8 * (i % 4)));
+    }
+    return pixels;
+  }
+
+  test::MonitoringBinder binder;
+  test::TestHost host;
+  NoiseSource source;
+  Camera camera;
+  CaptureBoard board;
+  test::TestBus bus;
+  sc_core::sc_signal<bool> interrupt;
+};
+
+inline std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
+// Runs to a time, and through everything that happens at it.
+inline void run_to(std::uint64_t time_ps) {
+  if (!sc_core::sc_start_of_simulation_invoked()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  if (time_ps > now_ps()) sc_core::sc_start(Clock::to_time(time_ps - now_ps()));
+  while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
+}
+
+// One side on its own. Small pictures, so that every time can be looked at: 16 x 3 pixels, a FIFO of 4 words that asks
+// with 2.
+class CaptureBench : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kAddress = 0x1000;
+
+  void build() { side.emplace("", camera, board, clock_mhz); }
+  // Arms at time 0, in time for frame 0.
+  void build_and_arm() {
+    build();
+    side->arm(kAddress);
+  }
+  std::uint64_t pixel_ps(int column, int row) const { return side->camera.timing().pixel_ps(column, row); }
+  // The arrival of the last pixel of a word.
+  std::uint64_t word_ps(int word, int row) const { return pixel_ps(4 * word + 3, row); }
+  // Runs until a capture that began in frame 0 is over.
+  void run_frame() { run_to(side->camera.timing().frame_ps(1) - 1); }
+  // Deals with one request so, with the others at once.
+  void plan(std::size_t request, const test::BusTurn& turn) {
+    side->bus.plan = [=](std::size_t number) { return number == request ? turn : test::BusTurn{}; };
+  }
+  // Others hold the bus until the address clock of one request is clock `clock`.
+  void grant_in(std::size_t request, std::uint64_t clock) {
+    side->bus.plan = [=](std::size_t number) {
+      test::BusTurn turn;
+      if (number == request) turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(now_ps());
+      return turn;
+    };
+  }
+  std::uint64_t edge_at_or_after(std::uint64_t time_ps) const {
+    return side->bus.clock().edge_at_or_after(time_ps);
+  }
+  const test::TestBus::Burst& burst(std::size_t index) const { return side->bus.bursts.at(index); }
+
+  CameraConfig camera{16, 3, 29.97, CameraTrigger::kFreeRunning};
+  CaptureBoardConfig board{4, 2};
+  double clock_mhz = 33.333;
+  std::optional<CaptureSide> side;
+};
+
+}  // namespace stereotlm::capture

@@ -1,0 +1,252 @@
+// How a capture board writes on the PCI bus.
+#include "tests/support/expected_report.h"
+#include "tests/unit/capture/capture_bench.h"
+
+namespace stereotlm::capture {
+namespace {
+
+using pci::BurstEnd;
+using test::BusTurn;
+
+class CaptureBurst : public CaptureBench {
+ protected:
+  CaptureBoard::Stats stats() const { return side->board.stats(); }
+  std::vector<std::uint8_t> captured() const { return side->buffer(kAddress, 0); }
+  std::vector<std::uint8_t> sent() const { return side->source.picture(0).pixels; }
+  static BusTurn cut(std::size_t words, BurstEnd end) {
+    BusTurn turn;
+    turn.limit = words;
+    turn.cut = end;
+    return turn;
+  }
+};
+
+TEST_F(CaptureBurst, WritesTheFrameRowByRow) {
+  build_and_arm();
+  run_frame();
+  EXPECT_EQ(captured(), sent());
+  EXPECT_EQ(side->bus.memory.size(), 12U);
+  EXPECT_EQ(stats().words, 12U);
+  EXPECT_EQ(stats().bursts, side->bus.bursts.size());
+  EXPECT_EQ(stats().dropped_pixels, 0U);
+  EXPECT_EQ(stats().captured_frames, 1U);
+}
+
+TEST_F(CaptureBurst, PutsTheLowestColumnIntoTheLowestByte) {
+  build_and_arm();
+  run_frame();
+  const auto pixels = sent();
+  EXPECT_EQ(burst(0).words.at(0),
+            pixels[0] | pixels[1] << 8U | pixels[2] << 16U | std::uint32_t{pixels[3]} << 24U);
+}
+
+TEST_F(CaptureBurst, AsksWhenTheTriggerIsReachedAndAtTheEndOfALine) {
+  board = {4, 3};
+  build_and_arm();
+  run_frame();
+  ASSERT_EQ(side->bus.requests_ps.size(), 6U);
+  for (int row = 0; row < 3; ++row) {
+    const auto first = 2 * static_cast<std::size_t>(row);
+    EXPECT_EQ(side->bus.requests_ps[first], word_ps(2, row));
+    EXPECT_EQ(side->bus.requests_ps[first + 1], word_ps(3, row));
+    EXPECT_EQ(burst(first).address, kAddress + 16U * static_cast<unsigned>(row));
+    EXPECT_EQ(burst(first).words.size(), 3U);
+    EXPECT_EQ(burst(first + 1).address, kAddress + 16U * static_cast<unsigned>(row) + 12U);
+    EXPECT_EQ(burst(first + 1).words.size(), 1U);
+  }
+}
+
+TEST_F(CaptureBurst, WritesTheWordsThatAreCompleteAtTheGrant) {
+  // The first edge at or after the third word.
+  board = {4, 1};
+  build_and_arm();
+  grant_in(0, edge_at_or_after(word_ps(2, 0)));
+  run_frame();
+  EXPECT_EQ(burst(0).words.size(), 3U);
+  EXPECT_EQ(captured(), sent());
+}
+
+TEST_F(CaptureBurst, LeavesAWordThatIsCompletedAfterTheGrant) {
+  // The last edge before the third word.
+  board = {4, 1};
+  build_and_arm();
+  grant_in(0, edge_at_or_after(word_ps(2, 0)) - 1);
+  run_frame();
+  EXPECT_EQ(burst(0).words.size(), 2U);
+  EXPECT_EQ(burst(1).address, kAddress + 8);
+  EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);  // it came meanwhile
+  EXPECT_EQ(captured(), sent());
+}
+
+TEST_F(CaptureBurst, TakesTheWordsOfTheAddressClockWhenItIsGrantedAPicosecondLater) {
+  // Edges at whole ns. A frame rate at which word 1 is complete 1 ps after an edge is searched for.
+  board = {4, 1};
+  clock_mhz = 1000;
+  for (int i = 0; i < 100'000 && CameraTiming(camera).pixel_ps(7, 0) % 1000 != 1; ++i)
+    camera.frame_rate_hz = (10'000 + i) / 100.0;
+  build_and_arm();
+  ASSERT_EQ(word_ps(1, 0) % 1000, 1U);
+  BusTurn turn;
+  turn.busy_clocks = word_ps(1, 0) / 1000 - edge_at_or_after(word_ps(0, 0));
+  turn.late = true;
+  plan(0, turn);
+  run_frame();
+  EXPECT_EQ(burst(0).address_clock_ps, word_ps(1, 0) - 1);
+  EXPECT_EQ(burst(0).words.size(), 1U);
+  EXPECT_EQ(captured(), sent());
+}
+
+TEST_F(CaptureBurst, WritesSeveralLinesInOneBurst) {
+  board = {12, 1};
+  build_and_arm();
+  grant_in(0, edge_at_or_after(word_ps(1, 2)));
+  run_frame();
+  EXPECT_EQ(burst(0).words.size(), 10U);
+  EXPECT_EQ(captured(), sent());
+}
+
+TEST_F(CaptureBurst, AsksAgainAtOnceForWhatALatencyTimerLeft) {
+  board = {4, 3};
+  build_and_arm();
+  plan(0, cut(2, BurstEnd::kLatencyTimer));
+  run_frame();
+  EXPECT_EQ(burst(0).result.words, 2U);
+  EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);
+  EXPECT_EQ(burst(1).address, kAddress + 8);
+  EXPECT_EQ(burst(1).words.size(), 1U);
+  EXPECT_EQ(captured(), sent());
+  EXPECT_EQ(stats().words, 12U);
+}
+
+TEST_F(CaptureBurst, AsksAgainAtOnceAfterARetry) {
+  board = {4, 3};
+  build_and_arm();
+  side->bus.plan = [](std::size_t request) {
+    return request < 2 ? cut(0, BurstEnd::kDisconnect) : BusTurn{};
+  };
+  run_frame();
+  EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);
+  EXPECT_EQ(side->bus.requests_ps[2], burst(1).end_ps);
+  EXPECT_EQ(burst(2).address, kAddress);
+  EXPECT_EQ(burst(2).words.size(), 3U);
+  EXPECT_EQ(captured(), sent());
+  EXPECT_EQ(stats().words, 12U);
+}
+
+TEST_F(CaptureBurst, AsksAgainAtOnceAfterADisconnectWithAWord) {
+  board = {4, 3};
+  build_and_arm();
+  side->bus.plan = [](std::size_t request) {
+    return request < 2 ? cut(1, BurstEnd::kDisconnect) : BusTurn{};
+  };
+  run_frame();
+  EXPECT_EQ(side->bus.requests_ps[2], burst(1).end_ps);
+  EXPECT_EQ(burst(2).address, kAddress + 8);
+  EXPECT_EQ(burst(2).words.size(), 1U);
+  EXPECT_EQ(captured(), sent());
+}
+
+TEST_F(CaptureBurst, OutlivesAnyNumberOfRetries) {
+  build_and_arm();
+  side->bus.plan = [](std::size_t request) {
+    return request < 1000 ? cut(0, BurstEnd::kDisconnect) : BusTurn{};
+  };
+  run_frame();
+  EXPECT_EQ(stats().captured_frames, 1U);
+  EXPECT_EQ(stats().words, 12U);
+  EXPECT_GT(stats().bursts, 1000U);
+}
+
+class CaptureBusError : public CaptureBurst, public testing::WithParamInterface<BurstEnd> {};
+
+TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndGoesOn) {
+  build_and_arm();
+  plan(1, cut(0, GetParam()));
+  run_to(word_ps(3, 0));
+  run_to(now_ps() + 60'000);  // in the burst
+  ASSERT_EQ(side->bus.bursts.size(), 2U);
+  run_to(burst(1).end_ps - 1);
+  EXPECT_FALSE(side->interrupt.read());
+  run_to(burst(1).end_ps);
+  EXPECT_TRUE(side->interrupt.read());
+  EXPECT_EQ(side->status(), registers::kStatusCapturing | registers::kStatusWordsLost);
+  side->write(registers::kStatus, registers::kStatusWordsLost);
+  run_to(now_ps());
+  EXPECT_FALSE(side->interrupt.read());
+  run_frame();
+  EXPECT_EQ(side->status(), registers::kStatusDone);
+  EXPECT_EQ(stats().bus_errors, 1U);
+  EXPECT_EQ(stats().lost_words, 2U);
+  EXPECT_EQ(stats().words, 10U);
+  EXPECT_EQ(side->host.read(registers::kLostWords).word, 2U);
+  std::vector<std::uint8_t> expected = sent();
+  std::fill(expected.begin() + 8, expected.begin() + 16, std::uint8_t{0});
+  EXPECT_EQ(captured(), expected);
+}
+
+TEST_P(CaptureBusError, EndsTheCaptureIfTheLastWordsAreLost) {
+  build_and_arm();
+  side->bus.plan = [](std::size_t) { return cut(0, GetParam()); };
+  run_frame();
+  EXPECT_EQ(side->status(), registers::kStatusDone | registers::kStatusWordsLost);
+  EXPECT_EQ(side->board.last_capture()->end_ps, side->bus.bursts.back().end_ps);
+  EXPECT_EQ(side->board.last_capture()->lost_words, 12U);
+  EXPECT_EQ(stats().words, 0U);
+  side->arm(kAddress);
+  side->bus.plan = nullptr;
+  run_to(side->camera.timing().frame_ps(2) - 1);
+  EXPECT_EQ(side->board.last_capture()->lost_words, 0U);
+  EXPECT_EQ(stats().lost_words, 12U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ends, CaptureBusError,
+                         testing::Values(BurstEnd::kMasterAbort, BurstEnd::kTargetError),
+                         [](const auto& end) {
+                           return end.param == BurstEnd::kMasterAbort ? "MasterAbort" : "TargetError";
+                         });
+
+TEST_F(CaptureBurst, ReportsAGrantThatItHasNotAskedFor) {
+  build_and_arm();
+  run_to(word_ps(3, 0));
+  run_to(burst(0).end_ps);
+  test::ExpectedReport expected("/stereotlm/capture_board");
+  run_to(word_ps(3, 0) + 1'000'000);
+  EXPECT_THROW(side->bus.master().begin_burst(now_ps()), sc_core::sc_report);
+}
+
+TEST_F(CaptureBurst, ReportsAGrantFromBeforeItsRequest) {
+  build_and_arm();
+  side->bus.turn.busy_clocks = 10;
+  run_to(word_ps(1, 0));
+  ASSERT_EQ(side->bus.requests_ps.size(), 1U);
+  test::ExpectedReport expected("/stereotlm/capture_board");
+  EXPECT_THROW(side->bus.master().begin_burst(word_ps(1, 0) - 1), sc_core::sc_report);
+  EXPECT_EQ(expected.text(), "board: bus granted from " + std::to_string(word_ps(1, 0) - 1) +
+                                 " ps on: must have been asked for by then");
+}
+
+TEST_F(CaptureBurst, ReportsTheEndOfABurstThatDoesNotFitIt) {
+  build_and_arm();
+  side->bus.turn.wait_clocks = 1'000;
+  run_to(word_ps(1, 0) + 100'000);
+  ASSERT_EQ(burst(0).words.size(), 2U);
+  pci::PciMasterIf& master = side->bus.master();
+  const pci::BurstResult wrong[] = {
+      {BurstEnd::kComplete, 1, 0},     {BurstEnd::kComplete, 3, 0},   {BurstEnd::kLatencyTimer, 2, 0},
+      {BurstEnd::kLatencyTimer, 0, 0}, {BurstEnd::kDisconnect, 2, 0}, {BurstEnd::kMasterAbort, 1, 0},
+      {BurstEnd::kTargetError, 2, 0},
+  };
+  test::ExpectedReport expected("/stereotlm/capture_board", static_cast<int>(std::size(wrong)));
+  for (const pci::BurstResult& result : wrong) EXPECT_THROW(master.end_burst(result), sc_core::sc_report);
+}
+
+TEST_F(CaptureBurst, ReportsTheEndOfABurstThatThereIsNot) {
+  build_and_arm();
+  side->bus.turn.busy_clocks = 1'000;
+  run_to(word_ps(1, 0));
+  test::ExpectedReport expected("/stereotlm/capture_board");
+  EXPECT_THROW(side->bus.master().end_burst({BurstEnd::kDisconnect, 0, 0}), sc_core::sc_report);
+}
+
+}  // namespace
+}  // namespace stereotlm::capture

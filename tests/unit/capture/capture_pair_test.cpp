@@ -1,0 +1,170 @@
+// Two boards of a pair: both take a frame, or neither.
+#include <memory>
+
+#include "tests/unit/capture/capture_bench.h"
+
+namespace stereotlm::capture {
+namespace {
+
+constexpr std::uint32_t kAddress = 0x1000;
+
+// Which side is built, and so called, first.
+class CapturePair : public testing::TestWithParam<bool> {
+ protected:
+  void build(CameraTrigger trigger = CameraTrigger::kFreeRunning, double right_rate_hz = 29.97) {
+    const CameraConfig left_camera{16, 3, 29.97, trigger};
+    const CameraConfig right_camera{16, 3, right_rate_hz, trigger};
+    const CaptureBoardConfig board{8, 2};
+    if (GetParam()) left = std::make_unique<CaptureSide>("left_", left_camera, board, 33.333);
+    right = std::make_unique<CaptureSide>("right_", right_camera, board, 33.333);
+    if (!left) left = std::make_unique<CaptureSide>("left_", left_camera, board, 33.333);
+    left->board.partner.bind(right->board.as_partner);
+    right->board.partner.bind(left->board.as_partner);
+    if (trigger == CameraTrigger::kOnDemand) {
+      left->board.triggers_out.bind(right->camera.triggers_in);
+      left->board.triggers_out.bind(left->camera.triggers_in);
+    }
+  }
+  std::uint64_t frame_ps(std::uint64_t number) const { return left->camera.timing().frame_ps(number); }
+  void expect_started(std::uint64_t frames) const {
+    EXPECT_EQ(left->board.stats().started_frames, frames);
+    EXPECT_EQ(right->board.stats().started_frames, frames);
+  }
+
+  std::unique_ptr<CaptureSide> left;
+  std::unique_ptr<CaptureSide> right;
+};
+
+TEST_P(CapturePair, StartsWhenBothAreArmed) {
+  build();
+  left->arm(kAddress);
+  right->arm(kAddress);
+  run_to(frame_ps(1) - 1);
+  expect_started(1);
+  EXPECT_EQ(left->buffer(kAddress, 0), left->source.picture(0).pixels);
+  EXPECT_EQ(right->buffer(kAddress, 0), right->source.picture(0).pixels);
+}
+
+TEST_P(CapturePair, DropsAFrameOfWhichOneSideIsNotArmed) {
+  build();
+  left->arm(kAddress);
+  run_to(frame_ps(1) - 1);
+  expect_started(0);
+  EXPECT_EQ(left->board.stats().dropped_by_partner, 1U);
+  EXPECT_EQ(left->board.stats().dropped_not_armed, 0U);
+  EXPECT_EQ(right->board.stats().dropped_not_armed, 1U);
+  EXPECT_EQ(right->board.stats().dropped_by_partner, 0U);
+  EXPECT_TRUE(left->source.asked.empty());
+  EXPECT_EQ(left->status(), registers::kStatusArmed);
+  right->arm(kAddress);
+  run_to(frame_ps(2) - 1);
+  expect_started(1);
+  EXPECT_EQ(left->board.last_capture()->frame, 1U);
+  EXPECT_EQ(right->board.last_capture()->frame, 1U);
+}
+
+TEST_P(CapturePair, CountsASideOnItsOwnWhenNeitherIsArmed) {
+  build();
+  run_to(frame_ps(1) - 1);
+  for (const auto* side : {left.get(), right.get()}) {
+    EXPECT_EQ(side->board.stats().dropped_not_armed, 1U);
+    EXPECT_EQ(side->board.stats().dropped_frames(), 1U);
+  }
+}
+
+TEST_P(CapturePair, TakesASideThatIsArmedAtTheVeryBeginning) {
+  build();
+  left->arm(kAddress);
+  run_to(frame_ps(1));  // both cameras have begun frame 1, and nothing else happens at this time
+  right->arm(kAddress);
+  run_to(frame_ps(1) + 1);
+  expect_started(1);
+}
+
+TEST_P(CapturePair, DropsAPairOfWhichOneSideIsArmedAPicosecondLate) {
+  build();
+  left->arm(kAddress);
+  run_to(frame_ps(1) + 1);
+  right->arm(kAddress);
+  run_to(frame_ps(2) - 1);
+  expect_started(0);
+  EXPECT_EQ(left->board.stats().dropped_by_partner, 2U);
+  EXPECT_EQ(right->board.stats().dropped_not_armed, 2U);
+}
+
+TEST_P(CapturePair, DropsAPairOfWhichOneSideIsBusy) {
+  build();
+  left->bus.plan = [this](std::size_t request) {
+    test::BusTurn turn;
+    if (request == 0) turn.busy_clocks = left->bus.clock().edge_at_or_after(frame_ps(1)) + 10;
+    return turn;
+  };
+  left->arm(kAddress);
+  right->arm(kAddress);
+  run_to(frame_ps(1) - 1);
+  EXPECT_EQ(right->board.stats().captured_frames, 1U);
+  left->arm(kAddress);
+  right->arm(kAddress);
+  run_to(frame_ps(2) - 1);
+  expect_started(1);
+  EXPECT_EQ(left->board.stats().dropped_busy, 1U);
+  EXPECT_EQ(right->board.stats().dropped_by_partner, 1U);
+  run_to(frame_ps(3) - 1);
+  expect_started(2);
+  EXPECT_EQ(right->board.last_capture()->frame, 2U);
+}
+
+TEST_P(CapturePair, StartsOnOneTriggerOfBothCameras) {
+  build(CameraTrigger::kOnDemand);
+  run_to(12'345);
+  left->arm(kAddress);
+  right->arm(kAddress);
+  left->write(registers::kControl, registers::kControlTrigger);
+  run_to(2 * frame_ps(1));
+  expect_started(1);
+  EXPECT_EQ(left->board.last_capture()->begin_ps, 12'345U);
+  EXPECT_EQ(right->board.last_capture()->begin_ps, 12'345U);
+  EXPECT_EQ(right->buffer(kAddress, 0), right->source.picture(0).pixels);
+}
+
+TEST_P(CapturePair, DropsFramesThatDoNotBeginTogether) {
+  build(CameraTrigger::kFreeRunning, 29.96);
+  left->arm(kAddress);
+  right->arm(kAddress);
+  run_to(2);
+  expect_started(1);  // frame 0
+  run_to(frame_ps(1) - 1);
+  left->arm(kAddress);
+  right->arm(kAddress);
+  run_to(frame_ps(4) - 1);
+  expect_started(1);
+  EXPECT_EQ(left->board.stats().dropped_by_partner, 3U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Order, CapturePair, testing::Bool(),
+                         [](const auto& order) { return order.param ? "LeftFirst" : "RightFirst"; });
+
+// The partner calls themselves, in either order.
+class Decision : public CapturePair {};
+
+TEST_P(Decision, IsTheSameWhoeverAsksFirst) {
+  build();
+  left->arm(kAddress);
+  right->arm(kAddress);
+  run_to(0);  // frame 0 has begun and is not yet decided
+  CapturePartnerIf& first =
+      GetParam() ? *left->board.as_partner.operator->() : *right->board.as_partner.operator->();
+  EXPECT_TRUE(first.can_start(0, 0));
+  EXPECT_FALSE(first.can_start(1, 0));
+  EXPECT_FALSE(first.can_start(0, 1));
+  run_to(1);
+  expect_started(1);
+  EXPECT_TRUE(left->board.as_partner->can_start(0, 0));  // as it was
+  EXPECT_TRUE(right->board.as_partner->can_start(0, 0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Order, Decision, testing::Bool(),
+                         [](const auto& order) { return order.param ? "LeftFirst" : "RightFirst"; });
+
+}  // namespace
+}  // namespace stereotlm::capture

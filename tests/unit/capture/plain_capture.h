@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+// The camera's times and the capture board written again from contract section 3, one pixel and one word at a time.
+// Shares no code with the models.
+namespace stereotlm::test {
+
+// numerator / denominator Hz
+struct PlainRate {
+  std::int64_t numerator = 2997;
+  std::int64_t denominator = 100;
+};
+struct PlainCamera {
+  int width = 0;
+  int height = 0;
+  PlainRate rate;
+};
+
+std::uint64_t plain_frame_ps(const PlainRate& rate, std::uint64_t number);
+std::uint64_t plain_pixel_ps(const PlainCamera& camera, int column, int row);
+
+// How the bus dealt with one request.
+struct PlainAnswer {
+  std::uint64_t granted_ps = 0;
+  std::vector<std::uint64_t> left_ps;  // of each word transferred
+  std::uint64_t end_ps = 0;
+  bool lost = false;
+};
+
+struct PlainCapture {
+  using Word = std::pair<std::uint64_t, std::uint32_t>;  // address, value
+  std::vector<std::uint64_t> asked_ps;
+  std::vector<std::vector<Word>> bursts;  // as they begin
+  std::uint64_t dropped_pixels = 0;
+  std::optional<std::pair<int, int>> first_dropped;  // column, row
+  std::uint64_t lost_words = 0;
+  std::optional<std::uint64_t> end_ps;  // none: the answers did not suffice
+};
+
+struct PlainBoard {
+  PlainCamera camera;
+  int fifo_words = 0;
+  int trigger_words = 0;
+  std::uint64_t begin_ps = 0;  // of the frame
+  std::uint64_t address = 0;
+};
+
+// One frame, row-major pixels, on a bus that gave these answers.
+PlainCapture plain_capture(const PlainBoard& board, const std::vector<std::uint8_t>& pixels,
+                           const std::vector<PlainAnswer>& answers);
+
+}  // namespace stereotlm::test

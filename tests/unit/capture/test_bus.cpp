@@ -1,0 +1,63 @@
+#include "tests/unit/capture/test_bus.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace stereotlm::test {
+namespace {
+
+std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
+
+}  // namespace
+
+TestBus::TestBus(const sc_core::sc_module_name& name, double clock_mhz) : sc_module(name), clock_(clock_mhz) {
+  SC_HAS_PROCESS(TestBus);
+  SC_METHOD(begin);
+  sensitive << begin_;
+  dont_initialize();
+  SC_METHOD(end);
+  sensitive << end_;
+  dont_initialize();
+  slot.bind(*this);
+}
+
+void TestBus::request(pci::PciMasterIf& master) {
+  EXPECT_EQ(requests_ps.size(), bursts.size()) << "asks again at " << sc_core::sc_time_stamp();
+  master_ = &master;
+  turn_ = plan ? plan(requests_ps.size()) : turn;
+  requests_ps.push_back(now_ps());
+  address_clock_ = std::max(clock_.edge_at_or_after(now_ps()) + turn_.busy_clocks, free_clock_);
+  begin_.notify(Clock::to_time(clock_.edge_ps(address_clock_) + (turn_.late ? 1 : 0) - now_ps()));
+}
+
+void TestBus::begin() {
+  Burst burst;
+  burst.requested_ps = requests_ps.back();
+  burst.address_clock_ps = clock_.edge_ps(address_clock_);
+  const pci::PciBurst asked = master_->begin_burst(burst.address_clock_ps);
+  ASSERT_TRUE(asked.write);
+  ASSERT_NE(asked.words, nullptr);
+  ASSERT_FALSE(asked.words->empty());
+  burst.address = asked.address;
+  burst.words = *asked.words;
+  pci::BurstResult& result = burst.result;
+  result.end = turn_.limit < burst.words.size() ? turn_.cut : pci::BurstEnd::kComplete;
+  result.words = std::min(turn_.limit, burst.words.size());
+  result.first_data_clock = address_clock_ + 1 + turn_.wait_clocks;
+  const std::uint64_t end_clock = result.first_data_clock + std::max<std::size_t>(result.words, 1);
+  burst.end_ps = clock_.edge_ps(end_clock);
+  free_clock_ = end_clock + 1;
+  bursts.push_back(burst);
+  end_.notify(Clock::to_time(burst.end_ps - now_ps()));
+  if (burst_begins) burst_begins(burst);
+}
+
+void TestBus::end() {
+  const Burst& burst = bursts.back();
+  for (std::size_t i = 0; i < burst.result.words; ++i) memory[burst.address + 4 * i] = burst.words[i];
+  const pci::BurstResult result = burst.result;
+  master_->end_burst(result);
+}
+
+}  // namespace stereotlm::test

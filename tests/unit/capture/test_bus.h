@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <systemc>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/pci/pci_slot.h"
+
+namespace stereotlm::test {
+
+// How the test bus treats a request.
+struct BusTurn {
+  std::uint64_t busy_clocks = 0;  // of others, from the first clock at or after the request
+  std::uint64_t wait_clocks = 0;  // between the address clock and the first data clock
+  std::size_t limit = std::numeric_limits<std::size_t>::max();  // words, after which `cut` ends the burst
+  pci::BurstEnd cut = pci::BurstEnd::kLatencyTimer;
+  bool late = false;  // begins the burst 1 ps after the edge
+};
+
+// A PCI bus with one place, which does what the test plans and records it.
+class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
+ public:
+  struct Burst {
+    std::uint64_t requested_ps = 0;
+    std::uint64_t address_clock_ps = 0;
+    std::uint64_t address = 0;
+    std::vector<std::uint32_t> words;
+    pci::BurstResult result;
+    std::uint64_t end_ps = 0;
+  };
+
+  pci::PciSlotExport slot{"slot"};
+  BusTurn turn;                                      // of every request,
+  std::function<BusTurn(std::size_t request)> plan;  // unless there is a plan
+  std::function<void(const Burst&)> burst_begins;    // told of each, if set
+  std::vector<Burst> bursts;                         // the last one may be running
+  std::vector<std::uint64_t> requests_ps;            // the last one may wait
+  std::map<std::uint64_t, std::uint32_t> memory;     // written words by address
+
+  TestBus(const sc_core::sc_module_name& name, double clock_mhz);
+
+  const Clock& clock() const override { return clock_; }
+  // When a word of a burst has left its master.
+  std::uint64_t left_ps(const Burst& burst, std::size_t word) const {
+    return clock_.edge_ps(burst.result.first_data_clock + word + 1);
+  }
+  // What a test calls to break the rules.
+  pci::PciMasterIf& master() { return *master_; }
+
+ private:
+  void request(pci::PciMasterIf& master) override;
+  void begin();
+  void end();
+
+  Clock clock_;
+  pci::PciMasterIf* master_ = nullptr;
+  BusTurn turn_;
+  std::uint64_t address_clock_ = 0;
+  std::uint64_t free_clock_ = 0;  // the first after the last burst
+  sc_core::sc_event begin_{"begin_burst"};
+  sc_core::sc_event end_{"end_burst"};
+};
+
+}  // namespace stereotlm::test
