@@ -60,10 +60,10 @@ struct CaptureSide {
   }
 
   std::uint32_t status() { return host.read(registers::kStatus).word; }
-  void write(std::uint64_t address, std::uint32_t value, sc_core::sc_time delay = {}) {
+  void write(std::uint64_t address, std::uint32_t value, const sc_core::sc_time& delay = {}) {
     EXPECT_EQ(host.write(address, value, delay).status, tlm::TLM_OK_RESPONSE);
   }
-  void arm(std::uint32_t address, sc_core::sc_time delay = {}) {
+  void arm(std::uint32_t address, const sc_core::sc_time& delay = {}) {
     write(registers::kBufferAddress, address);
     write(registers::kControl, registers::kControlArm, delay);
   }
@@ -95,8 +95,8 @@ inline void run_to(std::uint64_t time_ps) {
   while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
 }
 
-// One side on its own. Small pictures, so that every time can be looked at: 16 x 3 pixels, a FIFO of 4 words that asks
-// with 2.
+// One side on its own. Small pictures, so that every time can be looked at: 16 x 3 pixels, a FIFO of 4 words
+// that asks with 2.
 class CaptureBench : public testing::Test {
  protected:
   static constexpr std::uint32_t kAddress = 0x1000;

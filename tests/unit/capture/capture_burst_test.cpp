@@ -36,8 +36,9 @@ TEST_F(CaptureBurst, PutsTheLowestColumnIntoTheLowestByte) {
   build_and_arm();
   run_frame();
   const auto pixels = sent();
-  EXPECT_EQ(burst(0).words.at(0),
-            pixels[0] | pixels[1] << 8U | pixels[2] << 16U | std::uint32_t{pixels[3]} << 24U);
+  std::uint32_t word = 0;
+  for (std::size_t i = 4; i-- > 0;) word = word << 8U | pixels[i];
+  EXPECT_EQ(burst(0).words.at(0), word);
 }
 
 TEST_F(CaptureBurst, AsksWhenTheTriggerIsReachedAndAtTheEndOfALine) {

@@ -1,5 +1,5 @@
-// A capture board that does not get the bus in time (contract section 3), on the paper's board: 640 x 480, 29.97 Hz, a
-// FIFO of 140 words that asks with 32.
+// A capture board that does not get the bus in time (contract section 3), on the paper's board: 640 x 480,
+// 29.97 Hz, a FIFO of 140 words that asks with 32.
 #include <algorithm>
 
 #include "tests/unit/capture/capture_bench.h"
@@ -73,7 +73,7 @@ TEST_F(CaptureOverflow, DropsWholeLinesWhileTheFifoStaysFull) {
   run_frame();
   EXPECT_EQ(side->board.stats().dropped_pixels, 80U + 3 * 640);
   auto expected = side->source.picture(0).pixels;
-  std::fill(expected.begin() + 560, expected.begin() + 4 * 640, std::uint8_t{0});
+  std::fill(expected.begin() + 560, expected.begin() + 2560, std::uint8_t{0});
   EXPECT_EQ(side->buffer(kAddress, 0), expected);
   EXPECT_EQ(side->board.stats().captured_frames, 1U);
 }

@@ -1,5 +1,5 @@
-// Random frames on a random bus against the literal board of plain_capture.h. A case is a process; a process has many
-// boards, because each one is built before the simulation starts.
+// Random frames on a random bus against the literal board of plain_capture.h. A case is a process; a process
+// has many boards, because each one is built before the simulation starts.
 #include <random>
 #include <string>
 

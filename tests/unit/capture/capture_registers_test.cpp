@@ -1,4 +1,5 @@
 // The registers of a capture board, and what a driver sees of a capture.
+#include <array>
 #include <stdexcept>
 
 #include "tests/support/expected_report.h"
@@ -53,12 +54,12 @@ TEST_F(CaptureRegisters, KeepTheBufferAddress) {
 
 TEST_F(CaptureRegisters, RefuseWhatTheHardwareHasNot) {
   build();
-  std::uint32_t word = kControlArm;
+  std::array<std::uint32_t, 2> words{kControlArm, kControlArm};
   tlm::tlm_generic_payload access;
   const auto set = [&](tlm::tlm_command command, std::uint64_t address) {
     access.set_command(command);
     access.set_address(address);
-    access.set_data_ptr(reinterpret_cast<unsigned char*>(&word));
+    access.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
     access.set_data_length(4);
     access.set_streaming_width(4);
     access.set_byte_enable_ptr(nullptr);
@@ -284,8 +285,8 @@ TEST_F(CaptureRegisters, DropAFrameThatBeginsWhileTheLastCaptureRuns) {
 }
 
 TEST_F(CaptureRegisters, StartAFrameThatBeginsWhenTheLastCaptureEndsButNotEarlier) {
-  // The only burst of frame 0 ends in the clock whose end lies at frame 1's beginning (40 ms, a whole number of
-  // clocks), or in the next.
+  // The only burst of frame 0 ends in the clock whose end lies at frame 1's beginning (40 ms, a whole number
+  // of clocks), or in the next.
   camera = {4, 1, 25, CameraTrigger::kFreeRunning};
   clock_mhz = 40;
   build_and_arm();

@@ -26,8 +26,8 @@ class Board {
         const std::vector<PlainAnswer>& answers)
       : board_(board), pixels_(pixels), answers_(answers) {}
 
-  // At every time at which anything happens: words leave, a pixel arrives, a burst ends, the bus is asked for, a burst
-  // begins.
+  // At every time at which anything happens: words leave, a pixel arrives, a burst ends, the bus is asked
+  // for, a burst begins.
   PlainCapture run() {
     while (!result_.end_ps) {
       const auto now = next_time();

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-// The camera's times and the capture board written again from contract section 3, one pixel and one word at a time.
-// Shares no code with the models.
+// The camera's times and the capture board written again from contract section 3, one pixel and one word at a
+// time. Shares no code with the models.
 namespace stereotlm::test {
 
 // numerator / denominator Hz
