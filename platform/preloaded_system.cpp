@@ -2,34 +2,24 @@
 
 #include <stdexcept>
 
-#include "models/fpga/register_map.h"
+#include "platform/buffer_words.h"
 
 namespace stereotlm::platform {
 namespace {
 
 using kernels::RectificationTable;
 
-std::uint32_t base_of(const BufferPlace& place) {
-  return fpga::registers::base(static_cast<std::uint32_t>(place.bank), place.first_word);
-}
-
-std::vector<std::uint32_t> bases_of(const std::vector<BufferPlace>& places) {
-  std::vector<std::uint32_t> bases;
-  for (const BufferPlace& place : places) bases.push_back(base_of(place));
-  return bases;
-}
-
 host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames) {
-  const BufferLayout layout = layout_buffers(board);
+  const BufferWords buffers = buffer_words(board);
   host::IdealHostConfig config;
   config.width = board.image.width;
   config.height = board.image.height;
   config.frames = frames;
-  config.left_images = bases_of(layout.left_image);
-  config.right_images = bases_of(layout.right_image);
-  config.disparities = bases_of(layout.disparity);
-  if (layout.left_lut) config.left_lut = base_of(*layout.left_lut);
-  if (layout.right_lut) config.right_lut = base_of(*layout.right_lut);
+  config.left_images = buffers.left_images;
+  config.right_images = buffers.right_images;
+  config.disparities = buffers.disparities;
+  config.left_lut = buffers.left_lut;
+  config.right_lut = buffers.right_lut;
   return config;
 }
 

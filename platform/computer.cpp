@@ -1,0 +1,100 @@
+#include "platform/computer.h"
+
+namespace stereotlm::platform {
+namespace {
+
+enum Window : std::size_t { kHostMemory, kBridgeSlave, kBridgeRegisters, kLeftRegisters, kRightRegisters };
+enum Interrupt : std::size_t { kBridgeInterrupt, kLeftInterrupt, kRightInterrupt, kInterruptCount };
+
+// Registers on add-in boards answer as fast as the bridge.
+pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes) {
+  const DeviceMap map;
+  const auto window = [](std::uint64_t base, std::uint64_t bytes, int wait_clocks) {
+    return pci::PciWindow{static_cast<std::uint32_t>(base), static_cast<std::uint32_t>(bytes), wait_clocks};
+  };
+  const int bridge_wait = board.pci.bridge_wait_clocks;
+  pci::PciBusConfig config;
+  config.clock_mhz = board.pci.clock_mhz;
+  config.latency_timer_clocks = board.pci.latency_timer_clocks;
+  config.masters = {"host", "left_capture", "right_capture", "bridge"};
+  config.windows = {window(map.host_memory, host_memory_bytes, board.pci.memory_wait_clocks),
+                    window(map.bridge_slave, pci::bridge::kSlaveWindowBytes, bridge_wait),
+                    window(map.bridge_registers, pci::bridge::kRegisterWindowBytes, bridge_wait),
+                    window(map.left_capture, capture::registers::kEnd, bridge_wait),
+                    window(map.right_capture, capture::registers::kEnd, bridge_wait)};
+  return config;
+}
+
+pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
+  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters};
+}
+
+capture::CameraConfig camera_config(const BoardConfig& board) {
+  return {board.image.width, board.image.height, board.cameras.frame_rate_hz,
+          board.cameras.trigger == CameraTrigger::kOnDemand ? capture::CameraTrigger::kOnDemand
+                                                            : capture::CameraTrigger::kFreeRunning};
+}
+
+capture::CaptureBoardConfig capture_config(const BoardConfig& board) {
+  return {board.capture.fifo_words, board.capture.fifo_trigger_words};
+}
+
+}  // namespace
+
+Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& config,
+                   std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
+                   capture::CameraSource& right, Binder& binder)
+    : sc_module(name),
+      board("board", config, binder),
+      pci_bus("pci_bus", pci_config(config, host_memory_bytes)),
+      bridge("bridge", bridge_config(config)),
+      host_memory("host_memory", host_memory_bytes),
+      host_bridge("host_bridge"),
+      cpu("cpu", {kInterruptCount, DeviceMap().host_memory}, program),
+      left_camera("left_camera", camera_config(config), left),
+      right_camera("right_camera", camera_config(config), right),
+      left_capture("left_capture", capture_config(config)),
+      right_capture("right_capture", capture_config(config)),
+      interrupts_("interrupt", kInterruptCount) {
+  bind_pci(binder);
+  bind_capture();
+  binder.bind(cpu.bus, host_bridge.cpu, "cpu_to_host_bridge");
+  binder.bind(cpu.host_memory, host_memory.port, "cpu_to_host_memory");
+  binder.bind(bridge.local, board.core.local_bus, "bridge_to_local_bus");
+  board.core.done(done_);
+  bridge.doorbell(done_);
+  bridge.interrupt(interrupts_[kBridgeInterrupt]);
+  left_capture.interrupt(interrupts_[kLeftInterrupt]);
+  right_capture.interrupt(interrupts_[kRightInterrupt]);
+  for (std::size_t line = 0; line < interrupts_.size(); ++line) cpu.interrupts[line](interrupts_[line]);
+}
+
+void Computer::bind_pci(Binder& binder) {
+  host_bridge.pci.bind(pci_bus.slots[kHost]);
+  left_capture.pci.bind(pci_bus.slots[kLeftCapture]);
+  right_capture.pci.bind(pci_bus.slots[kRightCapture]);
+  bridge.pci.bind(pci_bus.slots[kBridge]);
+  binder.bind(pci_bus.targets[kHostMemory], host_memory.port, "pci_to_host_memory");
+  binder.bind(pci_bus.targets[kBridgeSlave], bridge.slave, "pci_to_bridge_slave");
+  binder.bind(pci_bus.targets[kBridgeRegisters], bridge.registers, "pci_to_bridge_registers");
+  binder.bind(pci_bus.targets[kLeftRegisters], left_capture.registers, "pci_to_left_capture");
+  binder.bind(pci_bus.targets[kRightRegisters], right_capture.registers, "pci_to_right_capture");
+  pci_bus.stops[kBridgeSlave].bind(bridge.stop);
+}
+
+void Computer::bind_capture() {
+  const auto bind = [](capture::Camera& camera, capture::CaptureBoard& grabber) {
+    camera.frames_out.bind(grabber.frames_in);
+    camera.lines_out.bind(grabber.lines_in);
+    grabber.takes_out.bind(camera.takes_in);
+  };
+  bind(left_camera, left_capture);
+  bind(right_camera, right_capture);
+  // The left board's trigger starts both cameras.
+  left_capture.triggers_out.bind(left_camera.triggers_in);
+  left_capture.triggers_out.bind(right_camera.triggers_in);
+  left_capture.partner.bind(right_capture.as_partner);
+  right_capture.partner.bind(left_capture.as_partner);
+}
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <systemc>
+
+#include "models/binder.h"
+#include "models/capture/camera.h"
+#include "models/capture/capture_board.h"
+#include "models/host/cpu.h"
+#include "models/host/host_bridge.h"
+#include "models/host/host_memory.h"
+#include "models/host/program.h"
+#include "models/pci/pci_bridge.h"
+#include "models/pci/pci_bus.h"
+#include "platform/board.h"
+#include "platform/board_config.h"
+#include "platform/device_map.h"
+
+namespace stereotlm::platform {
+
+// The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board behind its PCI
+// bridge, host memory, and the processor that runs `program`. The devices lie where DeviceMap says.
+class Computer : public sc_core::sc_module {
+ public:
+  enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kMasterCount };
+
+  // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has problems, or
+  // `host_memory_bytes` is out of range.
+  Computer(const sc_core::sc_module_name& name, const BoardConfig& config, std::uint64_t host_memory_bytes,
+           host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder);
+
+  Board board;
+  pci::PciBus pci_bus;
+  pci::PciBridge bridge;
+  host::HostMemory host_memory;
+  host::HostBridge host_bridge;
+  host::Cpu cpu;
+  capture::Camera left_camera;
+  capture::Camera right_camera;
+  capture::CaptureBoard left_capture;
+  capture::CaptureBoard right_capture;
+
+ private:
+  void bind_pci(Binder& binder);
+  void bind_capture();
+
+  sc_core::sc_signal<bool> done_{"done"};
+  sc_core::sc_vector<sc_core::sc_signal<bool>> interrupts_;
+};
+
+}  // namespace stereotlm::platform

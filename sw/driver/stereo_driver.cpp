@@ -1,0 +1,276 @@
+#include "sw/driver/stereo_driver.h"
+
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "models/capture/capture_registers.h"
+#include "models/fpga/register_map.h"
+#include "models/pci/bridge_registers.h"
+
+namespace stereotlm::driver {
+namespace {
+
+namespace bridge_map = pci::bridge;
+namespace capture_map = capture::registers;
+namespace core_map = fpga::registers;
+
+constexpr int kToBoard = 0;  // DMA channels
+constexpr int kToHost = 1;
+constexpr std::uint64_t kDescriptorBytes = 16;
+constexpr std::uint64_t kChainBytes = 16 * kDescriptorBytes;  // of one channel
+constexpr std::uint64_t kDataStart = 4096;                    // behind both chains
+
+std::uint64_t table_bytes(const DriverConfig& config) {
+  return static_cast<std::uint64_t>(config.width) * static_cast<std::uint64_t>(config.height) * 4;
+}
+std::uint64_t picture_bytes(const DriverConfig& config) { return table_bytes(config) / 4; }
+
+// The areas in host memory: chains, tables, ring, results.
+std::uint64_t ring_start(const DriverConfig& config) { return kDataStart + 2 * table_bytes(config); }
+std::uint64_t results_start(const DriverConfig& config) {
+  const std::uint64_t pairs = config.capture_to_host ? static_cast<std::uint64_t>(config.host_frames) : 0;
+  return ring_start(config) + pairs * 2 * picture_bytes(config);
+}
+
+[[noreturn]] void fail(const std::string& what) { throw std::runtime_error("stereo driver: " + what); }
+
+}  // namespace
+
+std::vector<std::string> problems(const DriverConfig& config) {
+  std::vector<std::string> found;
+  const auto rule = [&found](bool kept, const std::string& problem) {
+    if (!kept) found.push_back(problem);
+  };
+  rule(config.width >= 4 && config.width % 4 == 0,
+       "width = " + std::to_string(config.width) + ": must be a multiple of 4, at least 4");
+  rule(config.height >= 1, "height = " + std::to_string(config.height) + ": must be at least 1");
+  rule(config.frames >= 1, "frames = 0: must be at least 1");
+  rule(!config.left_images.empty() && config.left_images.size() == config.right_images.size(),
+       "left_images and right_images: must be equally long, and not empty");
+  rule(!config.disparities.empty(), "disparities: must not be empty");
+  rule(!config.capture_to_host || config.host_frames >= 1,
+       "host_frames = " + std::to_string(config.host_frames) + ": must be at least 1");
+  return found;
+}
+
+std::uint64_t host_memory_bytes(const DriverConfig& config) {
+  return results_start(config) + config.disparities.size() * picture_bytes(config);
+}
+
+StereoDriver::StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
+                           std::vector<std::uint32_t> right_table, FrameListener& listener)
+    : config_(config),
+      left_table_(std::move(left_table)),
+      right_table_(std::move(right_table)),
+      listener_(listener) {
+  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+  const auto check = [this](const char* side, const std::optional<std::uint32_t>& lut, std::size_t entries) {
+    const std::uint64_t expected = lut ? table_bytes(config_) / 4 : 0;
+    if (entries != expected) {
+      throw std::invalid_argument(std::string(side) + " table = " + std::to_string(entries) +
+                                  " entries: must have " + std::to_string(expected));
+    }
+  };
+  check("left", config.left_lut, left_table_.size());
+  check("right", config.right_lut, right_table_.size());
+}
+
+void StereoDriver::run(host::HostBus& bus) {
+  bus_ = &bus;
+  upload_tables();
+  bridge(bridge_map::kInterruptEnable, bridge_map::kAllInterrupts);
+  start_what_can_be();
+  while (read_backs_.ended < config_.frames) {
+    bus.wait_for_interrupt();
+    handle_interrupts();
+    if (read_backs_.ended < config_.frames) start_what_can_be();
+  }
+}
+
+void StereoDriver::upload_tables() {
+  std::vector<Piece> pieces;
+  std::uint64_t host = kDataStart;
+  const auto add = [&](const std::optional<std::uint32_t>& lut, const std::vector<std::uint32_t>& table) {
+    if (!lut) return;
+    std::memcpy(bus_->memory(config_.devices.host_memory + host, table.size() * 4), table.data(),
+                table.size() * 4);
+    pieces.push_back({host, *lut, table.size(), false});
+    host += table.size() * 4;
+  };
+  add(config_.left_lut, left_table_);
+  add(config_.right_lut, right_table_);
+  if (pieces.empty()) return;
+  const std::uint32_t done = bridge_map::kDmaDone << unsigned{kToBoard};
+  const std::uint32_t error = bridge_map::kDmaError << unsigned{kToBoard};
+  bridge(bridge_map::kInterruptEnable, done | error);
+  start_dma(kToBoard, pieces);
+  bus_->wait_for_interrupt();
+  const std::uint32_t status = bridge(bridge_map::kInterruptStatus);
+  if ((status & error) != 0) fail("the tables could not be uploaded");
+  bridge(bridge_map::kInterruptStatus, status);
+}
+
+void StereoDriver::handle_interrupts() {
+  const std::uint32_t status = bridge(bridge_map::kInterruptStatus);
+  if (status != 0) bridge(bridge_map::kInterruptStatus, status);
+  for (const int channel : {kToBoard, kToHost}) {
+    if ((status & bridge_map::kDmaError << static_cast<unsigned>(channel)) != 0) {
+      fail("DMA channel " + std::to_string(channel) + " has met an error");
+    }
+  }
+  if ((status & bridge_map::kPostedError) != 0) fail("the board has refused a write");
+  if ((status & bridge_map::kDoorbell) != 0) handle_core();
+  if ((status & bridge_map::kDmaDone << unsigned{kToBoard}) != 0) ++copies_.ended;
+  if ((status & bridge_map::kDmaDone << unsigned{kToHost}) != 0) deliver();
+  if (!captures_.idle()) handle_captures();
+}
+
+void StereoDriver::handle_core() {
+  if ((core(core_map::kStatus) & core_map::kStatusError) != 0) fail("the core has met an error");
+  ++frames_.ended;
+  core_to_acknowledge_ = true;
+}
+
+void StereoDriver::handle_captures() {
+  const std::array<std::uint64_t, 2> boards = {config_.devices.left_capture, config_.devices.right_capture};
+  for (std::size_t side = 0; side < boards.size(); ++side) {
+    if (side_done_[side]) continue;
+    const std::uint32_t status = bus_->read(boards[side] + capture_map::kStatus);
+    if ((status & capture_map::kStatusWordsLost) != 0) fail("a capture board could not write its words");
+    if ((status & capture_map::kStatusDone) == 0) continue;
+    bus_->write(boards[side] + capture_map::kStatus, capture_map::kStatusDone);
+    side_done_[side] = true;
+  }
+  if (!side_done_[0] || !side_done_[1]) return;
+  side_done_ = {};
+  ++captures_.ended;
+  const auto frame = [this](std::uint64_t board) {
+    return std::uint64_t{bus_->read(board + capture_map::kFrameNumberHigh)} << 32U |
+           bus_->read(board + capture_map::kFrameNumberLow);
+  };
+  camera_frames_.push_back(frame(boards[0]));
+  if (frame(boards[1]) != camera_frames_.back()) fail("the capture boards have taken different frames");
+}
+
+void StereoDriver::start_what_can_be() {
+  start_core();
+  arm_capture();
+  copy_pair();
+  read_back();
+}
+
+void StereoDriver::start_core() {
+  const std::uint64_t frame = frames_.begun;
+  const std::uint64_t pairs = config_.capture_to_host ? copies_.ended : captures_.ended;
+  const bool starts = frames_.idle() && frame < config_.frames && frame < pairs &&
+                      frame < read_backs_.ended + config_.disparities.size();
+  if (starts) {
+    const auto input = static_cast<std::size_t>(frame % config_.left_images.size());
+    core(core_map::kLeftImageBase, config_.left_images[input]);
+    core(core_map::kRightImageBase, config_.right_images[input]);
+    core(core_map::kDisparityBase,
+         config_.disparities[static_cast<std::size_t>(frame % config_.disparities.size())]);
+    if (frame == 0 && config_.left_lut) core(core_map::kLeftLutBase, *config_.left_lut);
+    if (frame == 0 && config_.right_lut) core(core_map::kRightLutBase, *config_.right_lut);
+    ++frames_.begun;
+  }
+  if (!starts && !core_to_acknowledge_) return;
+  core(core_map::kControl,
+       (core_to_acknowledge_ ? core_map::kControlAcknowledge : 0U) | (starts ? core_map::kControlStart : 0U));
+  core_to_acknowledge_ = false;
+}
+
+void StereoDriver::arm_capture() {
+  if (!captures_.idle()) return;
+  const std::uint64_t capture = captures_.begun;
+  std::uint64_t left = 0;
+  std::uint64_t right = 0;
+  if (config_.capture_to_host) {
+    if (capture >= copies_.ended + static_cast<std::uint64_t>(config_.host_frames)) return;
+    left = config_.devices.host_memory + pair_in_host(capture);
+    right = left + image_bytes();
+  } else {
+    if (capture >= frames_.ended + config_.left_images.size()) return;
+    const auto input = static_cast<std::size_t>(capture % config_.left_images.size());
+    bridge(bridge_map::kPage + 0, config_.left_images[input]);
+    bridge(bridge_map::kPage + 4, config_.right_images[input]);
+    left = config_.devices.bridge_slave;
+    right = left + bridge_map::kApertureBytes;
+  }
+  ++captures_.begun;
+  bus_->write(config_.devices.left_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(left));
+  bus_->write(config_.devices.right_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(right));
+  bus_->write(config_.devices.right_capture + capture_map::kControl, capture_map::kControlArm);
+  bus_->write(config_.devices.left_capture + capture_map::kControl,
+              capture_map::kControlArm | (config_.trigger_cameras ? capture_map::kControlTrigger : 0U));
+}
+
+void StereoDriver::copy_pair() {
+  const std::uint64_t pair = copies_.begun;
+  if (!config_.capture_to_host || !copies_.idle() || pair >= captures_.ended ||
+      pair >= frames_.ended + config_.left_images.size()) {
+    return;
+  }
+  ++copies_.begun;
+  const auto input = static_cast<std::size_t>(pair % config_.left_images.size());
+  const std::uint64_t host = pair_in_host(pair);
+  start_dma(kToBoard, {{host, config_.left_images[input], image_bytes() / 4, false},
+                       {host + image_bytes(), config_.right_images[input], image_bytes() / 4, false}});
+}
+
+void StereoDriver::read_back() {
+  const std::uint64_t frame = read_backs_.begun;
+  if (!read_backs_.idle() || frame >= frames_.ended) return;
+  ++read_backs_.begun;
+  const auto output = static_cast<std::size_t>(frame % config_.disparities.size());
+  start_dma(kToHost, {{result_in_host(frame), config_.disparities[output], image_bytes() / 4, true}});
+}
+
+void StereoDriver::deliver() {
+  const std::uint64_t frame = read_backs_.ended++;
+  listener_.frame_delivered(
+      {frame, camera_frames_[static_cast<std::size_t>(frame)],
+       bus_->memory(config_.devices.host_memory + result_in_host(frame), image_bytes())});
+}
+
+void StereoDriver::start_dma(int channel, const std::vector<Piece>& pieces) {
+  const std::uint64_t chain = config_.devices.host_memory + static_cast<std::uint64_t>(channel) * kChainBytes;
+  std::uint8_t* to = bus_->memory(chain, pieces.size() * kDescriptorBytes);
+  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+    const bool last = piece + 1 == pieces.size();
+    const std::array<std::uint32_t, 4> descriptor = {
+        static_cast<std::uint32_t>(config_.devices.host_memory + pieces[piece].host), pieces[piece].board,
+        static_cast<std::uint32_t>(pieces[piece].words) | (pieces[piece].to_host ? bridge_map::kToPci : 0U),
+        last ? 0U : static_cast<std::uint32_t>(chain + (piece + 1) * kDescriptorBytes)};
+    std::memcpy(to + piece * kDescriptorBytes, descriptor.data(), kDescriptorBytes);
+  }
+  const std::uint64_t registers = static_cast<std::uint64_t>(channel) * bridge_map::kChannelStride;
+  bridge(bridge_map::kDmaDescriptor + registers, static_cast<std::uint32_t>(chain));
+  bridge(bridge_map::kDmaControl + registers, 1);
+}
+
+std::uint64_t StereoDriver::pair_in_host(std::uint64_t capture) const {
+  return ring_start(config_) + capture % static_cast<std::uint64_t>(config_.host_frames) * 2 * image_bytes();
+}
+
+std::uint64_t StereoDriver::result_in_host(std::uint64_t frame) const {
+  return results_start(config_) + frame % config_.disparities.size() * image_bytes();
+}
+
+std::uint64_t StereoDriver::image_bytes() const { return picture_bytes(config_); }
+
+std::uint32_t StereoDriver::core(std::uint64_t offset) {
+  return bus_->read(config_.devices.bridge_slave + bridge_map::kCoreRegisters + offset);
+}
+void StereoDriver::core(std::uint64_t offset, std::uint32_t value) {
+  bus_->write(config_.devices.bridge_slave + bridge_map::kCoreRegisters + offset, value);
+}
+std::uint32_t StereoDriver::bridge(std::uint64_t offset) {
+  return bus_->read(config_.devices.bridge_registers + offset);
+}
+void StereoDriver::bridge(std::uint64_t offset, std::uint32_t value) {
+  bus_->write(config_.devices.bridge_registers + offset, value);
+}
+
+}  // namespace stereotlm::driver

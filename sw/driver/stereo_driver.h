@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/host/program.h"
+#include "platform/device_map.h"
+
+// The program on the host (contract section 3), against host::HostBus: it runs on the model's CPU, and could on a real
+// machine.
+namespace stereotlm::driver {
+
+struct DriverConfig {
+  int width = 0;   // of the images, pixels
+  int height = 0;  // pixels
+  std::uint64_t frames = 1;
+  // First words of the buffers on the board: bits 31..26 bank, 25..0 word. Lists are used in turn, frame by frame.
+  std::vector<std::uint32_t> left_images;
+  std::vector<std::uint32_t> right_images;
+  std::vector<std::uint32_t> disparities;
+  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table
+  std::optional<std::uint32_t> right_lut;
+  bool capture_to_host = false;  // capture.destination: host_memory
+  int host_frames = 3;           // pairs in the ring in host memory
+  bool trigger_cameras = false;  // cameras.trigger: on_demand
+  platform::DeviceMap devices;
+};
+
+// Every broken rule as `field = value: rule`; empty if a driver can be built.
+std::vector<std::string> problems(const DriverConfig& config);
+
+// Bytes of host memory that the driver uses, from its beginning.
+std::uint64_t host_memory_bytes(const DriverConfig& config);
+
+// A result that has arrived in host memory.
+struct DeliveredFrame {
+  std::uint64_t frame = 0;                  // in the order of the core's frames
+  std::uint64_t camera_frame = 0;           // that the cameras took for it
+  const std::uint8_t* disparity = nullptr;  // width * height pixels, during the call
+};
+
+class FrameListener {
+ public:
+  virtual ~FrameListener() = default;
+  virtual void frame_delivered(const DeliveredFrame& frame) = 0;
+};
+
+// Uploads the tables, then keeps the books of the buffers: a capture is armed when its buffer is free, the core starts when
+// a pair and a free output buffer are there, results are read back by DMA. Each stage counts the frames that it has
+// begun and ended; a buffer is free when the stage behind has ended with the frame that it held.
+//
+// With capture_to_host captures go to a ring in host memory, and a DMA channel copies the oldest pair to the board. run() ends
+// with the last of `frames` deliveries. Throws std::runtime_error if the hardware reports an error, and what HostBus
+// throws.
+class StereoDriver : public host::Program {
+ public:
+  // The tables' entries, row by row (contract 1.1); empty for a side without. `listener` outlives the driver. Throws
+  // std::invalid_argument if the configuration has problems or a table has not one entry per pixel.
+  StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
+               std::vector<std::uint32_t> right_table, FrameListener& listener);
+
+  void run(host::HostBus& bus) override;
+
+ private:
+  // How far one stage has come.
+  struct Stage {
+    std::uint64_t begun = 0;
+    std::uint64_t ended = 0;
+    bool idle() const { return begun == ended; }
+  };
+  // One piece of a DMA.
+  struct Piece {
+    std::uint64_t host = 0;   // bytes, in host memory
+    std::uint32_t board = 0;  // first word
+    std::uint64_t words = 0;
+    bool to_host = false;
+  };
+
+  void upload_tables();
+  void handle_interrupts();
+  void handle_captures();
+  void handle_core();
+  void start_what_can_be();
+  void start_core();
+  void arm_capture();
+  void copy_pair();
+  void read_back();
+  void deliver();
+
+  void start_dma(int channel, const std::vector<Piece>& pieces);
+  std::uint64_t pair_in_host(std::uint64_t capture) const;
+  std::uint64_t result_in_host(std::uint64_t frame) const;
+  std::uint32_t core(std::uint64_t offset);
+  void core(std::uint64_t offset, std::uint32_t value);
+  std::uint32_t bridge(std::uint64_t offset);
+  void bridge(std::uint64_t offset, std::uint32_t value);
+  std::uint64_t image_bytes() const;
+
+  DriverConfig config_;
+  std::vector<std::uint32_t> left_table_;
+  std::vector<std::uint32_t> right_table_;
+  FrameListener& listener_;
+  host::HostBus* bus_ = nullptr;
+
+  Stage captures_;
+  Stage copies_;  // only with capture_to_host
+  Stage frames_;  // of the core
+  Stage read_backs_;
+  std::array<bool, 2> side_done_{};           // of the capture under way
+  std::vector<std::uint64_t> camera_frames_;  // of each capture that has ended
+  bool core_to_acknowledge_ = false;
+};
+
+}  // namespace stereotlm::driver

@@ -1,0 +1,201 @@
+#include "sw/driver/stereo_driver.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/unit/sw/driver/fake_machine.h"
+
+namespace stereotlm::driver {
+namespace {
+
+class Listener : public FrameListener {
+ public:
+  void frame_delivered(const DeliveredFrame& frame) override {
+    std::uint32_t word = 0;
+    std::memcpy(&word, frame.disparity, 4);
+    words.push_back(word);
+    frames.push_back(frame.frame);
+    camera_frames.push_back(frame.camera_frame);
+  }
+  std::vector<std::uint32_t> words;
+  std::vector<std::uint64_t> frames;
+  std::vector<std::uint64_t> camera_frames;
+};
+
+constexpr std::uint32_t word_of_bank(std::uint32_t bank) { return bank << 26U; }
+
+// Pictures of one word, tables of four; each buffer has its own bank.
+DriverConfig small(std::size_t inputs, std::size_t outputs, std::uint64_t frames) {
+  DriverConfig config;
+  config.width = 4;
+  config.height = 1;
+  config.frames = frames;
+  for (std::uint32_t i = 0; i < inputs; ++i) {
+    config.left_images.push_back(word_of_bank(i));
+    config.right_images.push_back(word_of_bank(10 + i));
+  }
+  for (std::uint32_t i = 0; i < outputs; ++i) config.disparities.push_back(word_of_bank(20 + i));
+  config.left_lut = word_of_bank(30);
+  config.right_lut = word_of_bank(31) + 5;
+  return config;
+}
+
+const std::vector<std::uint32_t> kLeftTable = {1, 2, 3, 4};
+const std::vector<std::uint32_t> kRightTable = {5, 6, 7, 8};
+
+struct Buffers {
+  std::size_t inputs;
+  std::size_t outputs;
+  bool to_host;
+  int host_frames;
+};
+void PrintTo(const Buffers& buffers, std::ostream* out) {
+  *out << buffers.inputs << " inputs, " << buffers.outputs << " outputs";
+  if (buffers.to_host) *out << ", " << buffers.host_frames << " in host memory";
+}
+
+class StereoDriverBuffers : public testing::TestWithParam<Buffers> {};
+
+// The machine checks that no buffer is touched by two.
+TEST_P(StereoDriverBuffers, DeliverEveryFrameOnceAndInOrder) {
+  constexpr std::uint64_t kFrames = 40;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    DriverConfig config = small(GetParam().inputs, GetParam().outputs, kFrames);
+    config.capture_to_host = GetParam().to_host;
+    config.host_frames = GetParam().host_frames;
+    Listener listener;
+    FakeMachine machine(seed);
+    StereoDriver driver(config, kLeftTable, kRightTable, listener);
+    driver.run(machine);
+    EXPECT_EQ(machine.core_starts, kFrames);
+    ASSERT_EQ(listener.words.size(), kFrames);
+    for (std::uint64_t frame = 0; frame < kFrames; ++frame) {
+      EXPECT_EQ(listener.frames[frame], frame);
+      EXPECT_EQ(listener.words[frame],
+                FakeMachine::result_word(FakeMachine::pair_word(frame, 0), FakeMachine::pair_word(frame, 1)));
+      EXPECT_EQ(listener.camera_frames[frame], frame * 3);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(StereoDriver, StereoDriverBuffers,
+                         testing::Values(Buffers{1, 1, false, 3}, Buffers{2, 2, false, 3},
+                                         Buffers{3, 3, false, 3}, Buffers{1, 3, false, 3},
+                                         Buffers{3, 1, false, 3}, Buffers{2, 2, true, 3},
+                                         Buffers{1, 1, true, 1}, Buffers{3, 2, true, 2}));
+
+TEST(StereoDriver, UploadsTheTablesBeforeAnythingElse) {
+  Listener listener;
+  FakeMachine machine(1);
+  StereoDriver driver(small(2, 2, 1), kLeftTable, kRightTable, listener);
+  driver.run(machine);
+  EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{
+                                 {word_of_bank(30), 4}, {word_of_bank(31) + 5, 4}}));
+  for (std::uint32_t word = 0; word < 4; ++word) {
+    EXPECT_EQ(machine.board.at(word_of_bank(30) + word), kLeftTable[word]);
+    EXPECT_EQ(machine.board.at(word_of_bank(31) + 5 + word), kRightTable[word]);
+  }
+}
+
+TEST(StereoDriver, NeedsNoTables) {
+  DriverConfig config = small(2, 2, 3);
+  config.left_lut.reset();
+  config.right_lut.reset();
+  Listener listener;
+  FakeMachine machine(1);
+  StereoDriver driver(config, {}, {}, listener);
+  driver.run(machine);
+  EXPECT_TRUE(machine.uploads.empty());
+  EXPECT_EQ(listener.words.size(), 3U);
+}
+
+TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
+  for (const bool on_demand : {false, true}) {
+    DriverConfig config = small(2, 2, 5);
+    config.trigger_cameras = on_demand;
+    Listener listener;
+    FakeMachine machine(1);
+    StereoDriver driver(config, kLeftTable, kRightTable, listener);
+    driver.run(machine);
+    EXPECT_EQ(machine.triggers, on_demand ? machine.captures : 0U);
+  }
+}
+
+TEST(StereoDriver, StopsWithTheErrorOfACapture) {
+  Listener listener;
+  FakeMachine machine(1);
+  machine.failing_capture = 3;
+  StereoDriver driver(small(2, 2, 10), kLeftTable, kRightTable, listener);
+  EXPECT_THROW(driver.run(machine), std::runtime_error);
+  EXPECT_LE(listener.words.size(), 3U);
+}
+
+TEST(StereoDriver, StopsWithTheErrorOfTheCore) {
+  Listener listener;
+  FakeMachine machine(1);
+  machine.failing_core = true;
+  StereoDriver driver(small(2, 2, 10), kLeftTable, kRightTable, listener);
+  EXPECT_THROW(driver.run(machine), std::runtime_error);
+  EXPECT_TRUE(listener.words.empty());
+}
+
+TEST(StereoDriver, StopsWithTheErrorOfADmaChannel) {
+  for (const std::uint32_t channel : {0U, 1U}) {
+    Listener listener;
+    FakeMachine machine(1);
+    machine.failing_channel = channel;
+    StereoDriver driver(small(2, 2, 10), kLeftTable, kRightTable, listener);
+    EXPECT_THROW(driver.run(machine), std::runtime_error);
+    EXPECT_TRUE(listener.words.empty());
+    EXPECT_EQ(machine.core_starts > 0, channel == 1);  // without tables the core is not started
+  }
+}
+
+TEST(StereoDriver, UsesTheMemoryThatItSays) {
+  for (const bool to_host : {false, true}) {
+    DriverConfig config = small(2, 2, 8);
+    config.capture_to_host = to_host;
+    Listener listener;
+    FakeMachine enough(1, host_memory_bytes(config));
+    StereoDriver driver(config, kLeftTable, kRightTable, listener);
+    EXPECT_NO_THROW(driver.run(enough));
+    FakeMachine short_of_a_byte(1, host_memory_bytes(config) - 1);
+    StereoDriver other(config, kLeftTable, kRightTable, listener);
+    EXPECT_THROW(other.run(short_of_a_byte), std::out_of_range);
+  }
+}
+
+TEST(StereoDriver, RefusesAConfigurationWithProblems) {
+  Listener listener;
+  const auto refused = [&](const DriverConfig& config) {
+    EXPECT_EQ(problems(config).size(), 1U);
+    EXPECT_THROW(StereoDriver(config, kLeftTable, kRightTable, listener), std::invalid_argument);
+  };
+  EXPECT_TRUE(problems(small(1, 1, 1)).empty());
+  DriverConfig config = small(1, 1, 0);
+  refused(config);
+  refused(small(0, 1, 1));
+  refused(small(1, 0, 1));
+  config = small(2, 1, 1);
+  config.right_images.pop_back();
+  refused(config);
+  config = small(1, 1, 1);
+  config.width = 6;
+  refused(config);
+  config = small(1, 1, 1);
+  config.height = 0;
+  refused(config);
+  config = small(1, 1, 1);
+  config.capture_to_host = true;
+  config.host_frames = 0;
+  refused(config);
+  EXPECT_THROW(StereoDriver(small(1, 1, 1), {1, 2, 3}, kRightTable, listener), std::invalid_argument);
+  EXPECT_THROW(StereoDriver(small(1, 1, 1), kLeftTable, {}, listener), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::driver
