@@ -1,0 +1,210 @@
+// The whole computer, with the driver on its processor and every memory-mapped link under the monitor. The boards are
+// small, and their cameras as fast in proportion to the core as those of the paper's board.
+#include "platform/computer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "models/fpga/core_control.h"
+#include "models/kernels/stereo.h"
+#include "platform/tables.h"
+#include "sw/driver/board_driver.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/random_board.h"
+
+namespace stereotlm {
+namespace {
+
+using kernels::GrayImage;
+using platform::BoardConfig;
+
+// Camera frame k of one side: noise of its own, the left side shifted by a few pixels.
+class NoiseSource : public capture::CameraSource {
+ public:
+  NoiseSource(const BoardConfig& board, int shift)
+      : shift_(shift), image_(board.image.width, board.image.height) {}
+  const GrayImage& frame(std::uint64_t number) override {
+    image_ = picture(number);
+    return image_;
+  }
+  GrayImage picture(std::uint64_t number) const {
+    GrayImage out(image_.width, image_.height);
+    for (int row = 0; row < out.height; ++row) {
+      for (int column = 0; column < out.width; ++column) {
+        const auto place = static_cast<std::uint32_t>(row * 4096 + column + shift_);
+        const std::uint32_t mixed = (place + static_cast<std::uint32_t>(number) * 77'777U) * 2'654'435'761U;
+        out.at(column, row) = static_cast<std::uint8_t>(mixed >> 24U);
+      }
+    }
+    return out;
+  }
+
+ private:
+  int shift_;
+  GrayImage image_;
+};
+
+class Deliveries : public driver::FrameListener {
+ public:
+  explicit Deliveries(const BoardConfig& board)
+      : pixels_(static_cast<std::size_t>(board.image.width * board.image.height)) {}
+  void frame_delivered(const driver::DeliveredFrame& frame) override {
+    EXPECT_EQ(frame.frame, camera_frames.size());
+    camera_frames.push_back(frame.camera_frame);
+    disparities.emplace_back(frame.disparity, frame.disparity + pixels_);
+    times.push_back(sc_core::sc_time_stamp());
+  }
+  double steady_fps() const {
+    return static_cast<double>(times.size() - 1) / (times.back() - times.front()).to_seconds();
+  }
+  std::vector<std::uint64_t> camera_frames;
+  std::vector<std::vector<std::uint8_t>> disparities;
+  std::vector<sc_core::sc_time> times;
+
+ private:
+  std::size_t pixels_;
+};
+
+// 128 x 80 pixels; the core takes `camera_frames` times the time of a camera frame.
+BoardConfig small_board(double camera_frames) {
+  BoardConfig board;
+  board.image = {128, 80};
+  board.matcher.window = 7;
+  board.matcher.disparities = 16;
+  board.fpga.pipeline_latency_cycles = 16;
+  const fpga::FrameGeometry geometry(platform::core_config(board));
+  const auto cycles = static_cast<double>(4 + geometry.slots + geometry.drain_cycles + 1 + 16);
+  board.cameras.frame_rate_hz = camera_frames * board.fpga.clock_mhz * 1e6 / cycles;
+  board.capture.fifo_words = 140;
+  return board;
+}
+
+class ComputerTest : public testing::Test {
+ protected:
+  void run(const BoardConfig& config, std::uint64_t frames) {
+    board = config;
+    tables = platform::identity_tables(board);
+    left = std::make_unique<NoiseSource>(board, 0);
+    right = std::make_unique<NoiseSource>(board, 5);
+    deliveries = std::make_unique<Deliveries>(board);
+    const driver::DriverConfig driver_config = driver::driver_config(board, frames);
+    const auto entries = [](const std::optional<kernels::RectificationTable>& table) {
+      return table ? table->entries : std::vector<std::uint32_t>{};
+    };
+    driver = std::make_unique<driver::StereoDriver>(driver_config, entries(tables.left),
+                                                    entries(tables.right), *deliveries);
+    computer = std::make_unique<platform::Computer>(
+        "computer", board, driver::host_memory_bytes(driver_config), *driver, *left, *right, binder);
+    for (int ms = 0; ms < 1000 && !computer->cpu.finished(); ++ms) sc_core::sc_start(1, sc_core::SC_MS);
+    ASSERT_TRUE(computer->cpu.finished());
+    ASSERT_EQ(deliveries->times.size(), frames);
+  }
+  // Each result is that of the pictures which the cameras took for it.
+  void expect_results_of_the_captured_pictures() const {
+    const kernels::StereoConfig config{board.matcher.window, board.matcher.disparities, board.matcher.filter,
+                                       board.matcher.lr_tolerance};
+    for (std::size_t frame = 0; frame < deliveries->camera_frames.size(); ++frame) {
+      const std::uint64_t camera_frame = deliveries->camera_frames[frame];
+      const GrayImage expected = kernels::disparity_image(
+          left->picture(camera_frame), right->picture(camera_frame), tables.left ? &*tables.left : nullptr,
+          tables.right ? &*tables.right : nullptr, config);
+      EXPECT_EQ(deliveries->disparities[frame], expected.pixels) << frame;
+    }
+  }
+  void expect_all_words_accounted_for() const {
+    const pci::PciBridge::Stats& bridge = computer->bridge.stats();
+    const fpga::LocalBus::Stats& local = computer->board.core.local_bus_port().stats();
+    EXPECT_EQ(bridge.words_to_board, local.words_written + bridge.words_in_bridge);
+    EXPECT_EQ(bridge.errors, 0U);
+    EXPECT_EQ(local.errors, 0U);
+    for (const auto* grabber : {&computer->left_capture, &computer->right_capture}) {
+      EXPECT_EQ(grabber->stats().dropped_pixels, 0U);
+      EXPECT_EQ(grabber->stats().lost_words, 0U);
+    }
+  }
+  double fps() const { return deliveries->steady_fps(); }
+  double core_fps() const {
+    return board.fpga.clock_mhz * 1e6 / static_cast<double>(computer->board.core.frame_cycles().front());
+  }
+  double camera_fps() const { return board.cameras.frame_rate_hz; }
+
+  test::MonitoringBinder binder;
+  BoardConfig board;
+  platform::Tables tables;
+  std::unique_ptr<NoiseSource> left;
+  std::unique_ptr<NoiseSource> right;
+  std::unique_ptr<Deliveries> deliveries;
+  std::unique_ptr<driver::StereoDriver> driver;
+  std::unique_ptr<platform::Computer> computer;
+};
+
+constexpr double kWindow7 = 1.6116;  // core time of the paper's board in camera frames, 7 x 7
+constexpr double kWindow5 = 1.1536;  // 5 x 5
+constexpr double kOnePercent = 0.01;
+
+TEST_F(ComputerTest, DeliversTheDisparitiesOfTheCapturedPictures) {
+  run(small_board(kWindow7), 12);
+  expect_results_of_the_captured_pictures();
+  expect_all_words_accounted_for();
+}
+
+TEST_F(ComputerTest, DeliversThemThroughHostMemoryToo) {
+  BoardConfig config = small_board(kWindow7);
+  config.capture.destination = platform::CaptureDestination::kHostMemory;
+  run(config, 12);
+  expect_results_of_the_captured_pictures();
+  expect_all_words_accounted_for();
+}
+
+TEST_F(ComputerTest, DeliversThemWithoutTables) {
+  BoardConfig config = small_board(kWindow7);
+  config.allocation.left_lut.reset();
+  config.allocation.right_lut.reset();
+  run(config, 5);
+  expect_results_of_the_captured_pictures();
+}
+
+TEST_F(ComputerTest, DeliversThemWithAllBuffersInOneBank) {
+  BoardConfig config = small_board(0.2);
+  config.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
+  run(config, 5);
+  expect_results_of_the_captured_pictures();
+  expect_all_words_accounted_for();
+}
+
+TEST_F(ComputerTest, BlamesTheHostForItsTrafficOnABankOfTheCore) {
+  BoardConfig config = small_board(kWindow7);
+  config.allocation.left_image = {"bank0", "bank0"};
+  run(config, 6);
+  const auto& arbiter = computer->board.core.crossbar().arbiters()[0];
+  EXPECT_GT(arbiter.stats()
+                .blame[memory::index_of(memory::Port::kLeftPixel)][memory::index_of(memory::Port::kHost)],
+            0U);
+  expect_results_of_the_captured_pictures();
+}
+
+// Free-running cameras write straight into the idle buffer: a capture waits for the next frame, so that frames of
+// the core fall into step with the cameras.
+TEST_F(ComputerTest, TakesThreePairsInFiveCameraFramesWithTwoBuffers) {
+  run(small_board(kWindow7), 31);
+  EXPECT_NEAR(fps() / camera_fps(), 3.0 / 5, kOnePercent * 3 / 5);
+}
+
+TEST_F(ComputerTest, TakesTwoPairsInThreeCameraFramesWithAFasterCore) {
+  run(small_board(kWindow5), 31);
+  EXPECT_NEAR(fps() / camera_fps(), 2.0 / 3, kOnePercent * 2 / 3);
+}
+
+TEST_F(ComputerTest, TakesAPairInThreeCameraFramesWithOneBuffer) {
+  BoardConfig config = small_board(kWindow7);
+  config.allocation.left_image = {"bank0"};
+  config.allocation.right_image = {"bank2"};
+  run(config, 16);
+  EXPECT_NEAR(fps() / camera_fps(), 1.0 / 3, kOnePercent / 3);
+}
+
+}  // namespace
+}  // namespace stereotlm
