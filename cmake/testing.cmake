@@ -6,6 +6,8 @@ include(GoogleTest)
 # memory is unmapped at the end, scanning it crashes.
 set(STEREOTLM_SYSTEMC_ENVIRONMENT LSAN_OPTIONS=use_stacks=0)
 
+set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test programs, behind all others")
+
 # stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label...] [TIMEOUT seconds] [SYSTEMC])
 # One test program; ctest runs each of its cases in a process of its own, because SystemC elaborates once per
 # process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails it.
@@ -19,6 +21,7 @@ function(stereotlm_add_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stereotlm_warnings)
+  target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS})
   set(environment)
   if(arg_SYSTEMC)
     target_link_libraries(${name} PRIVATE stereotlm_systemc_test_main)
