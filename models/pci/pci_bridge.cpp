@@ -229,7 +229,8 @@ void PciBridge::run_local() {
 
 // The words that wait, as far as their addresses follow each other.
 void PciBridge::send_posted() {
-  std::vector<std::uint32_t> words;
+  std::vector<std::uint32_t>& words = posted_burst_;
+  words.clear();
   const std::uint64_t first = posted_.front().address;
   const auto most = std::min(posted_.size(), static_cast<std::size_t>(config_.dma_burst_words));
   while (words.size() < most && posted_[words.size()].address == first + words.size() * 4 &&
@@ -302,7 +303,8 @@ bool PciBridge::run_chain(Channel& channel) {
     channel.pci.words.resize(4);
     start_on_pci(channel.pci);
     if (!finish(channel.pci)) return false;
-    const std::vector<std::uint32_t> descriptor = channel.pci.words;
+    std::array<std::uint32_t, 4> descriptor{};
+    std::copy_n(channel.pci.words.begin(), descriptor.size(), descriptor.begin());
     const std::uint64_t board = bridge::local_address(descriptor[1]);
     const std::size_t words = descriptor[2] & ~bridge::kToPci;
     if (words == 0 || descriptor[0] % 4 != 0) return false;

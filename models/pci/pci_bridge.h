@@ -130,7 +130,8 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   std::uint32_t interrupt_enable_ = 0;
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
   std::deque<PostedWord> posted_;
-  Transfer read_;  // of the slave window
+  std::vector<std::uint32_t> posted_burst_;  // of these, on the local bus
+  Transfer read_;                            // of the slave window
   std::array<Channel, bridge::kChannels> channels_;
   std::size_t next_channel_ = 0;  // on the local bus
   std::deque<Transfer*> pci_queue_;
