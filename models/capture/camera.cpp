@@ -43,7 +43,7 @@ void Camera::trigger(const Trigger& trigger) {
 void Camera::begin_frame() {
   triggered_ = false;
   frame_begin_ps_ = now_ps();
-  next_begin_ps_ = frame_begin_ps_ + timing_.frame_ps(1);
+  next_begin_ps_ = frame_begin_ps_ + timing_.last_pixel_ps();
   image_ = nullptr;
   const std::uint64_t number = stats_.frames++;
   if (trigger_mode_ == CameraTrigger::kFreeRunning)
@@ -59,7 +59,7 @@ void Camera::take(const TakeFrame& taken) {
     SC_REPORT_ERROR(kReport, text.c_str());
     return;
   }
-  const kernels::GrayImage& image = source_.frame(taken.number);
+  const kernels::GrayImage& image = source_.frame(taken.number, frame_begin_ps_);
   if (image.width != timing_.width() || image.height != timing_.height()) {
     const std::string text = std::string(name()) + ": picture of frame " + std::to_string(taken.number) +
                              " = " + size_text(image.width, image.height) + ": must be " +

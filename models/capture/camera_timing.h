@@ -27,6 +27,7 @@ class CameraTiming {
                        kPixelSteps * static_cast<std::uint64_t>(column));
   }
   std::uint64_t row_ps(int row) const { return pixel_ps(0, row); }
+  std::uint64_t last_pixel_ps() const { return pixel_ps(width_ - 1, height_ - 1); }
   // How many pixels of a row have arrived so long after the beginning of its frame; one that arrives then
   // has.
   int pixels_by(int row, std::uint64_t since_begin_ps) const;

@@ -132,6 +132,7 @@ void CaptureBoard::arm(std::uint64_t time_ps) {
 void CaptureBoard::take_frame(const VideoFrame& frame) {
   frame_ = frame;
   readiness_.reset();
+  undecided_ = true;
   decision_.notify(Clock::to_time(1));
 }
 
@@ -155,6 +156,7 @@ bool CaptureBoard::can_start(std::uint64_t frame, std::uint64_t begin_ps) {
 }
 
 void CaptureBoard::decide() {
+  undecided_ = false;
   const bool partner_can = partner.size() == 0 || partner->can_start(frame_->number, frame_->begin_ps);
   switch (readiness()) {
     case Readiness::kNotArmed:

@@ -85,6 +85,8 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
   CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config);
 
   Stats stats() const;
+  // A frame has begun in this very ps: it counts as neither started nor dropped yet.
+  bool undecided() const { return undecided_; }
   // None before the first is done.
   const std::optional<Capture>& last_capture() const { return last_capture_; }
 
@@ -126,6 +128,7 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
 
   std::optional<VideoFrame> frame_;     // that began last
   std::optional<Readiness> readiness_;  // for it, once it has been asked for
+  bool undecided_ = false;
   bool capturing_ = false;
   Capture capture_;  // that runs; its dropped_pixels: of all before
   std::uint32_t address_ = 0;

@@ -26,7 +26,7 @@ class NoiseSource : public capture::CameraSource {
  public:
   NoiseSource(const BoardConfig& board, int shift)
       : shift_(shift), image_(board.image.width, board.image.height) {}
-  const GrayImage& frame(std::uint64_t number) override {
+  const GrayImage& frame(std::uint64_t number, std::uint64_t /*begin_ps*/) override {
     image_ = picture(number);
     return image_;
   }
@@ -115,11 +115,12 @@ class ComputerTest : public testing::Test {
     }
   }
   void expect_all_words_accounted_for() const {
-    const pci::PciBridge::Stats& bridge = computer->bridge.stats();
-    const fpga::LocalBus::Stats& local = computer->board.core.local_bus_port().stats();
-    EXPECT_EQ(bridge.words_to_board, local.words_written + bridge.words_in_bridge);
-    EXPECT_EQ(bridge.errors, 0U);
-    EXPECT_EQ(local.errors, 0U);
+    const fpga::LocalBus& local_bus = computer->board.core.local_bus_port();
+    EXPECT_EQ(computer->bridge.words_taken().total(), computer->bridge.words_held().total() +
+                                                          local_bus.words_to_grant().total() +
+                                                          local_bus.words_granted().total());
+    EXPECT_EQ(computer->bridge.stats().errors, 0U);
+    EXPECT_EQ(local_bus.stats().errors, 0U);
     for (const auto* grabber : {&computer->left_capture, &computer->right_capture}) {
       EXPECT_EQ(grabber->stats().dropped_pixels, 0U);
       EXPECT_EQ(grabber->stats().lost_words, 0U);
@@ -157,6 +158,14 @@ TEST_F(ComputerTest, DeliversThemThroughHostMemoryToo) {
   run(config, 12);
   expect_results_of_the_captured_pictures();
   expect_all_words_accounted_for();
+}
+
+TEST_F(ComputerTest, DeliversThemFromCamerasOnDemand) {
+  BoardConfig config = small_board(kWindow7);
+  config.cameras.trigger = platform::CameraTrigger::kOnDemand;
+  run(config, 8);
+  EXPECT_EQ(deliveries->camera_frames, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5, 6, 7}));
+  expect_results_of_the_captured_pictures();
 }
 
 TEST_F(ComputerTest, DeliversThemWithoutTables) {

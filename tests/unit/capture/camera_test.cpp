@@ -119,32 +119,42 @@ TEST_F(CameraTest, WaitsForItsTriggerOnDemand) {
   EXPECT_EQ(camera->stats().ignored_triggers, 0U);
 }
 
-TEST_F(CameraTest, IgnoresATriggerUntilTheFrameHasEnded) {
+TEST_F(CameraTest, IgnoresATriggerBeforeTheLastPixelOfTheFrame) {
   build(CameraTrigger::kOnDemand);
+  const std::uint64_t last_pixel_ps = camera->timing().pixel_ps(7, 4);
   trigger();
-  run_to(frame_ps(1) - 1);
+  run_to(last_pixel_ps - 1);
   ASSERT_EQ(receiver->frames.size(), 1U);
   trigger();
-  run_to(frame_ps(1));
+  run_to(last_pixel_ps);
   EXPECT_EQ(receiver->frames.size(), 1U);
   EXPECT_EQ(camera->stats().ignored_triggers, 1U);
   trigger();
-  run_to(frame_ps(1));
+  run_to(last_pixel_ps);
   ASSERT_EQ(receiver->frames.size(), 2U);
-  EXPECT_EQ(receiver->frames[1].begin_ps, frame_ps(1));
+  EXPECT_EQ(receiver->frames[1].begin_ps, last_pixel_ps);
   EXPECT_EQ(camera->stats().ignored_triggers, 1U);
 }
 
-TEST_F(CameraTest, TakesATriggerWhoseDelayEndsWithTheRunningFrame) {
+TEST_F(CameraTest, TakesATriggerWhoseDelayEndsWithTheLastPixel) {
   build(CameraTrigger::kOnDemand);
+  const std::uint64_t last_pixel_ps = camera->timing().pixel_ps(7, 4);
   trigger();
   run_to(1'000);
-  trigger(frame_ps(1) - 1'001);
+  trigger(last_pixel_ps - 1'001);
   EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-  trigger(frame_ps(1) - 1'000);
+  trigger(last_pixel_ps - 1'000);
   EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-  run_to(frame_ps(1));
+  run_to(last_pixel_ps);
   EXPECT_EQ(receiver->frames.size(), 2U);
+}
+
+TEST_F(CameraTest, TellsItsSourceWhenATakenFrameBegan) {
+  build(CameraTrigger::kFreeRunning);
+  run_to(frame_ps(2));
+  receiver->takes = 3;
+  run_to(frame_ps(3));
+  EXPECT_EQ(source.begins_ps, std::vector<std::uint64_t>{frame_ps(3)});
 }
 
 TEST_F(CameraTest, IgnoresASecondTriggerBeforeTheFrameBegins) {

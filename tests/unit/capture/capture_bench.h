@@ -21,8 +21,9 @@ namespace stereotlm::capture {
 class NoiseSource : public CameraSource {
  public:
   NoiseSource(int width, int height) : image_(width, height) {}
-  const kernels::GrayImage& frame(std::uint64_t number) override {
+  const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) override {
     asked.push_back(number);
+    begins_ps.push_back(begin_ps);
     image_ = picture(number);
     return image_;
   }
@@ -36,6 +37,7 @@ class NoiseSource : public CameraSource {
     return image;
   }
   std::vector<std::uint64_t> asked;
+  std::vector<std::uint64_t> begins_ps;
 
  private:
   kernels::GrayImage image_;
