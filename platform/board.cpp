@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "platform/buffer_words.h"
+
 namespace stereotlm::platform {
 namespace {
 
@@ -15,7 +17,8 @@ memory::SsramBankConfig bank_config(const BoardConfig& board, const BankConfig& 
 }
 
 fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board) {
-  fpga::StereoCoreConfig config{core_config(board), {board.fpga.arbiter, {}}, {board.bridge.local_clock_mhz}};
+  fpga::StereoCoreConfig config{
+      core_config(board), {board.fpga.arbiter, {}}, {board.bridge.local_clock_mhz, buffer_ranges(board)}};
   for (const BankConfig& bank : board.banks) config.memory.banks.push_back(bank_config(board, bank));
   return config;
 }

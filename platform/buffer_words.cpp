@@ -1,5 +1,7 @@
 #include "platform/buffer_words.h"
 
+#include "platform/board_rules.h"
+
 namespace stereotlm::platform {
 namespace {
 
@@ -23,6 +25,22 @@ BufferWords buffer_words(const BoardConfig& board) {
   const BufferLayout layout = layout_buffers(board);
   return {words_of(layout.left_image), words_of(layout.right_image), words_of(layout.disparity),
           word_of(layout.left_lut), word_of(layout.right_lut)};
+}
+
+std::vector<memory::AddressRange> buffer_ranges(const BoardConfig& board) {
+  const BufferWords words = buffer_words(board);
+  std::vector<std::uint32_t> first_words;
+  for (const auto* list : {&words.left_images, &words.right_images, &words.disparities})
+    first_words.insert(first_words.end(), list->begin(), list->end());
+  for (const auto& table : {words.left_lut, words.right_lut}) {
+    if (table) first_words.push_back(*table);
+  }
+  std::vector<memory::AddressRange> ranges;
+  for (const Buffer& buffer : buffers(board.allocation)) {
+    const std::uint64_t first = fpga::registers::base_address(first_words[ranges.size()]);
+    ranges.push_back({first, first + 4 * buffer_words(buffer, board.image)});
+  }
+  return ranges;
 }
 
 }  // namespace stereotlm::platform

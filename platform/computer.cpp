@@ -1,5 +1,7 @@
 #include "platform/computer.h"
 
+#include "platform/buffer_words.h"
+
 namespace stereotlm::platform {
 namespace {
 
@@ -26,7 +28,8 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
 }
 
 pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
-  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters};
+  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters,
+          buffer_ranges(board)};
 }
 
 capture::CameraConfig camera_config(const BoardConfig& board) {

@@ -1,5 +1,6 @@
 #include "models/fpga/local_bus.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -20,7 +21,11 @@ double checked(double clock_mhz) {
 }  // namespace
 
 LocalBus::LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks)
-    : sc_module(name), clock_(checked(config.clock_mhz)), banks_(banks) {
+    : sc_module(name),
+      clock_(checked(config.clock_mhz)),
+      banks_(banks),
+      buffers_(config.buffers),
+      words_granted_(config.buffers) {
   SC_HAS_PROCESS(LocalBus);
   memory::kBankCountRule.required("banks", static_cast<int>(banks));
   bus.bind(*this);
@@ -75,7 +80,9 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
   next_word_ = 0;
   ++stats_.bursts;
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
+  stats_.busy_clocks += idle_clock_ - address_clock_;
   address_clock_ = clock_.edge_at_or_after(now + Clock::to_ps(delay));
+  idle_clock_ = kUnknown;
   request_ps_ = clock_.edge_ps(address_clock_ + kFirstWordClock + 1);
   if (is_register(access.get_address())) {
     register_event_.notify(Clock::to_time(request_ps_ - now));
@@ -107,8 +114,10 @@ bool LocalBus::transfer(memory::WordAccess& through, std::uint64_t address, sc_c
 
 void LocalBus::access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps) {
   sc_core::sc_time delay = at;
-  if (transfer(memory_access_, burst_->get_address() + next_word_ * 4, delay)) {
+  const std::uint64_t address = burst_->get_address() + next_word_ * 4;
+  if (transfer(memory_access_, address, delay)) {
     ++(burst_->is_write() ? stats_.words_written : stats_.words_read);
+    if (burst_->is_write()) words_granted_.add(address, 1);
   }
   if (--words_left_ != 0) {
     request_ps_ = clock_.edge_ps(clock_.edge_at_or_after(grant_ps) + 1);
@@ -139,19 +148,32 @@ void LocalBus::access_register() {
 
 // The bus is free after the idle clock.
 void LocalBus::end(std::uint64_t last_clock_end_ps) {
-  const std::uint64_t free_clock = clock_.edge_at_or_after(last_clock_end_ps) + 1;
-  stats_.busy_clocks += free_clock - address_clock_;
+  idle_clock_ = clock_.edge_at_or_after(last_clock_end_ps);
   tlm::tlm_generic_payload& access = *burst_;
   access.set_response_status(status_);
   responding_ = true;
   tlm::tlm_phase phase = tlm::BEGIN_RESP;
-  sc_core::sc_time delay = Clock::to_time(clock_.edge_ps(free_clock)) - sc_core::sc_time_stamp();
+  sc_core::sc_time delay = Clock::to_time(clock_.edge_ps(idle_clock_ + 1)) - sc_core::sc_time_stamp();
   const tlm::tlm_sync_enum answer = bus->nb_transport_bw(access, phase, delay);
   if (answer == tlm::TLM_COMPLETED || (answer == tlm::TLM_UPDATED && phase == tlm::END_RESP)) {
     responding_ = false;
     burst_ = nullptr;
   }
   access.release();
+}
+
+LocalBus::Stats LocalBus::stats() const {
+  Stats stats = stats_;
+  stats.clocks = clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp()) + 1) - 1;
+  const std::uint64_t end = std::min(idle_clock_, stats.clocks);
+  stats.busy_clocks += end > address_clock_ ? end - address_clock_ : 0;
+  return stats;
+}
+
+memory::WordsByRange LocalBus::words_to_grant() const {
+  memory::WordsByRange words(buffers_);
+  if (words_left_ != 0 && burst_->is_write()) words.add(burst_->get_address() + next_word_ * 4, words_left_);
+  return words;
 }
 
 unsigned LocalBus::transport_dbg(tlm::tlm_generic_payload& access) {

@@ -6,16 +6,19 @@
 #include <optional>
 #include <systemc>
 #include <tlm>
+#include <vector>
 
 #include "models/clock.h"
 #include "models/memory/memory_config.h"
 #include "models/memory/word_access.h"
+#include "models/memory/words_by_range.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
 struct LocalBusConfig {
-  double clock_mhz = 40;  // of the local bus, 1..1000
+  double clock_mhz = 40;                           // of the local bus, 1..1000
+  std::vector<memory::AddressRange> buffers = {};  // on the local bus: words written are counted for each
 };
 
 // Byte addresses on the local bus: the banks as on the crossbar, then the registers of register_map.h.
@@ -51,7 +54,8 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
     std::uint64_t words_written = 0;  // to the banks
     std::uint64_t register_accesses = 0;
     std::uint64_t errors = 0;       // refused words and bursts
-    std::uint64_t busy_clocks = 0;  // from each address clock to its idle clock, which is included
+    std::uint64_t clocks = 0;       // whole clocks since time 0
+    std::uint64_t busy_clocks = 0;  // of these: all of a burst but its idle clock
   };
 
   tlm::tlm_target_socket<32> bus{"bus"};
@@ -72,9 +76,15 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   void access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps);
   // Notified when the first word of a burst begins to ask.
   const sc_core::sc_event& request_event() const { return request_event_; }
-  const Stats& stats() const { return stats_; }
+  // Up to now.
+  Stats stats() const;
+  // Words written to the banks that have been granted, and those of the running burst that have not yet.
+  const memory::WordsByRange& words_granted() const { return words_granted_; }
+  memory::WordsByRange words_to_grant() const;
 
  private:
+  static constexpr std::uint64_t kUnknown = UINT64_MAX;
+
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay) override;
@@ -97,12 +107,15 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   bool responding_ = false;                    // BEGIN_RESP sent, END_RESP to come
   std::size_t next_word_ = 0;
   std::size_t words_left_ = 0;       // of a burst to a bank
-  std::uint64_t address_clock_ = 0;  // number of the burst's
+  std::uint64_t address_clock_ = 0;  // number of the last burst's
+  std::uint64_t idle_clock_ = 0;     // that ends it, once its last word is granted
   std::uint64_t request_ps_ = 0;     // end of the waiting word's clock
   tlm::tlm_response_status status_ = tlm::TLM_OK_RESPONSE;
   sc_core::sc_event request_event_{"request"};
   sc_core::sc_event register_event_{"register"};
-  Stats stats_;
+  std::vector<memory::AddressRange> buffers_;
+  memory::WordsByRange words_granted_;
+  Stats stats_;  // clocks and busy_clocks: of all bursts but the last
 };
 
 }  // namespace stereotlm::fpga

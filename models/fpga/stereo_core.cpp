@@ -1,6 +1,7 @@
 #include "models/fpga/stereo_core.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,22 @@ using memory::PortMask;
 
 // Cycles that the process runs at most before it lets the kernel look around.
 constexpr std::uint64_t kQuantumCycles = 8192;
+
+std::string text_of(Intent intent) {
+  switch (intent) {
+    case Intent::kRequest:
+      return "asks for bank ";
+    case Intent::kPass:
+      return "passes a slot";
+    case Intent::kBlocked:
+      return "is blocked: its lane is full";
+    case Intent::kStarved:
+      return "is starved";
+    case Intent::kIdle:
+      break;
+  }
+  return "is idle";
+}
 
 constexpr bool has(PortMask mask, Port port) { return (mask & memory::mask_of(port)) != 0; }
 
@@ -145,12 +162,55 @@ void StereoCore::start_frame(const FrameStart& start) {
   state_ = State::kRunning;
   cycle_ = std::max(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay)));
   first_cycle_ = cycle_;
+  work_cycle_ = cycle_;
   crossbar_.begin_counting(first_cycle_);
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void StereoCore::run() {
-  for (;;) run_ahead();
+  for (;;) {
+    if (state_ == State::kRunning) check_progress();
+    run_ahead();
+  }
+}
+
+void StereoCore::check_progress() {
+  const std::uint64_t work = control_.left().consumed() + result_writer_.stats().writes;
+  if (work != work_) {
+    work_ = work;
+    work_cycle_ = cycle_;
+  } else if (cycle_ - work_cycle_ >= config_.patience_cycles) {
+    const std::string text = std::string(name()) + ": no slot consumed and no result written for " +
+                             std::to_string(cycle_ - work_cycle_) + " cycles; " + waits();
+    SC_REPORT_ERROR("/stereotlm/core", text.c_str());
+  }
+}
+
+std::string StereoCore::waits() const {
+  if (state_ != State::kRunning) return "the core runs no frame";
+  const CoreControl::Decision decision = control_.decide();
+  std::array<Intent, memory::kPortCount> intents{};
+  intents[memory::index_of(Port::kLeftLut)] = decision.left.lut;
+  intents[memory::index_of(Port::kRightLut)] = decision.right.lut;
+  intents[memory::index_of(Port::kLeftPixel)] = decision.left.pixel;
+  intents[memory::index_of(Port::kRightPixel)] = decision.right.pixel;
+  intents[memory::index_of(Port::kResult)] = decision.result;
+  intents[memory::index_of(Port::kHost)] = local_bus_.word_waits() ? Intent::kRequest : Intent::kIdle;
+  std::string text = "frame " + std::to_string(frame_cycles_.size()) + " of the core, cycle " +
+                     std::to_string(cycle_ - first_cycle_);
+  for (std::size_t index = 0; index < intents.size(); ++index) {
+    text += std::string("; ") + memory::kPortNames[index] + ' ' + text_of(intents[index]);
+    if (intents[index] != Intent::kRequest) continue;
+    const std::size_t bank = crossbar_.bank_of(static_cast<Port>(index));
+    const auto blame = crossbar_.arbiters()[bank].stats().blame[index];
+    const auto most = std::max_element(blame.begin(), blame.end());
+    const auto by = static_cast<std::size_t>(most - blame.begin());
+    text += std::to_string(bank);
+    if (*most == 0) continue;
+    text += ", lost " + std::to_string(*most) + " cycles to " +
+            (by == memory::ArbiterStats::kTurnaround ? "turnaround" : memory::kPortNames[by]);
+  }
+  return text;
 }
 
 // Runs the cycles that nothing from outside can come between, then waits for the next thing to do. What happens at

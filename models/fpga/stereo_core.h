@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <systemc>
 #include <tlm>
 #include <vector>
@@ -32,6 +33,7 @@ struct StereoCoreConfig {
   CoreConfig core;
   memory::CrossbarConfig memory;
   LocalBusConfig local_bus;
+  std::uint64_t patience_cycles = std::uint64_t{1} << 26U;  // with a frame that does not go on
 };
 
 // The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the register
@@ -41,6 +43,9 @@ struct StereoCoreConfig {
 // The process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
 // have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every access carries its
 // own time. It sleeps while no frame runs and no word waits at the local bus.
+//
+// A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
+// ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
 class StereoCore : public sc_core::sc_module {
  public:
   // register_map.h, without the local bus and its time; may stay unbound.
@@ -58,6 +63,8 @@ class StereoCore : public sc_core::sc_module {
   const memory::Crossbar& crossbar() const { return crossbar_; }
   // frame_cycles of every finished frame.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  // What each port does: who asks for which bank, and to whom it lost it most often so far.
+  std::string waits() const;
   // The cycle of the clock that comes next.
   std::uint64_t cycle() const { return cycle_; }
 
@@ -92,6 +99,7 @@ class StereoCore : public sc_core::sc_module {
   int latency_of(std::uint32_t base) const;
 
   void run();
+  void check_progress();
   void run_ahead();
   void finish_frame(std::uint64_t now_ps);
   bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
@@ -129,6 +137,8 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t cycle_ = 0;        // of the clock, the next to run
   std::uint64_t first_cycle_ = 0;  // of the running frame
   std::uint64_t done_cycle_ = 0;   // the first after the finishing frame
+  std::uint64_t work_ = 0;         // done by the last check of progress
+  std::uint64_t work_cycle_ = 0;   // of the check that found some
   std::uint64_t errors_before_ = 0;
   std::uint64_t host_read_latency_ = 2;  // cycles, of the bank that the host is routed to
   sc_core::sc_event start_event_{"start_event"};

@@ -74,9 +74,10 @@ void Crossbar::share_banks() {
 }
 
 // Tells the arbiters what was granted without them.
-void Crossbar::settle() {
+void Crossbar::settle() const {
   std::array<std::uint64_t, kPortCount> cycles{};
   for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
+    if (alone_cycles_[ports_alone] == 0) continue;
     for (std::size_t port = 0; port < kPortCount; ++port)
       cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
   }

@@ -50,6 +50,7 @@ class Crossbar : public sc_core::sc_module {
   void route(Port port, std::size_t bank, bool write);
   // The port has nothing to request any more.
   void unroute(Port port);
+  std::size_t bank_of(Port port) const { return targets_[index_of(port)].bank(); }  // of its last route
   // One cycle: decides these requests, and returns the ports granted.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     granted_ = static_cast<PortMask>(requests & alone_);
@@ -59,10 +60,13 @@ class Crossbar : public sc_core::sc_module {
   }
 
   // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
-  // counting has ended.
+  // counting has ended; their uncounted_accesses() always.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
-  const std::vector<BankArbiter>& arbiters() const { return arbiters_; }
+  const std::vector<BankArbiter>& arbiters() const {
+    settle();
+    return arbiters_;
+  }
 
  private:
   // The target behind one port's socket, and where its requests go.
@@ -103,16 +107,18 @@ class Crossbar : public sc_core::sc_module {
   void invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end);
   bool has_bank(std::uint64_t address) const { return bank_of_address(address) < arbiters_.size(); }
   void share_banks();
-  void settle();
+  void settle() const;
   void arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
-  std::vector<BankArbiter> arbiters_;
+  mutable std::vector<BankArbiter> arbiters_;
   std::deque<PortTarget> targets_;
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes
-  // Ports alone on a bank without turnaround need no arbitration: the arbiter hears of their grants later.
+  // Ports alone on a bank without turnaround need no arbitration: the arbiter hears of their grants later, at
+  // the latest when somebody asks it.
   PortMask alone_ = 0;
-  std::array<std::uint64_t, std::size_t{1} << kPortCount> alone_cycles_{};  // [ports granted in this way]
+  mutable std::array<std::uint64_t, std::size_t{1} << kPortCount>
+      alone_cycles_{};  // [ports granted in this way]
   std::array<SharedBank, kPortCount> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   PortMask granted_ = 0;  // in the current cycle, and not yet used

@@ -6,7 +6,7 @@
 namespace stereotlm::pci {
 
 PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config)
-    : sc_module(name), config_(config) {
+    : sc_module(name), config_(config), words_taken_(config.buffers) {
   SC_HAS_PROCESS(PciBridge);
   kDmaBurstRule.required("dma_burst_words", config.dma_burst_words);
   kPostedWordsRule.required("posted_words", config.posted_words);
@@ -57,9 +57,7 @@ void PciBridge::slave_transport(tlm::tlm_generic_payload& access, sc_core::sc_ti
     for (std::uint64_t byte = 0; byte < bytes; byte += 4) {
       PostedWord posted{local_address_of(offset + byte), 0};
       std::memcpy(&posted.word, access.get_data_ptr() + byte, 4);
-      const bool to_bank = posted.address < config_.core_registers;
-      stats_.words_to_board += std::uint64_t{to_bank};
-      stats_.words_in_bridge += std::uint64_t{to_bank};
+      if (posted.address < config_.core_registers) words_taken_.add(posted.address, 1);
       posted_.push_back(posted);
     }
     stats_.posted_words += bytes / 4;
@@ -237,19 +235,32 @@ void PciBridge::send_posted() {
          bridge::same_bank(first, posted_[words.size()].address)) {
     words.push_back(posted_[words.size()].word);
   }
-  const std::size_t sent = words.size();
+  posted_on_local_bus_ = words.size();
   if (move(true, first, words) != tlm::TLM_OK_RESPONSE) raise(bridge::kPostedError);
-  posted_.erase(posted_.begin(), posted_.begin() + static_cast<std::ptrdiff_t>(sent));
-  if (first < config_.core_registers) stats_.words_in_bridge -= sent;
+  posted_.erase(posted_.begin(), posted_.begin() + static_cast<std::ptrdiff_t>(posted_on_local_bus_));
+  posted_on_local_bus_ = 0;
 }
 
 bool PciBridge::serve(Transfer& transfer) {
   if (!transfer.under_way) return false;
+  transfer.on_local_bus = true;
   transfer.failed = move(transfer.write, transfer.address, transfer.words) != tlm::TLM_OK_RESPONSE;
-  if (transfer.write) stats_.words_in_bridge -= transfer.words.size();
+  transfer.on_local_bus = false;
   transfer.under_way = false;
   transfer.ended.notify(sc_core::SC_ZERO_TIME);
   return true;
+}
+
+memory::WordsByRange PciBridge::words_held() const {
+  memory::WordsByRange held(config_.buffers);
+  for (std::size_t i = posted_on_local_bus_; i < posted_.size(); ++i) {
+    if (posted_[i].address < config_.core_registers) held.add(posted_[i].address, 1);
+  }
+  for (const Channel& channel : channels_) {
+    const Transfer& to = channel.local;
+    if (to.under_way && to.write && !to.on_local_bus) held.add(to.address, to.words.size());
+  }
+  return held;
 }
 
 tlm::tlm_response_status PciBridge::move(bool write, std::uint64_t address,
@@ -333,10 +344,9 @@ bool PciBridge::to_board(Channel& channel, std::uint32_t pci_address, std::uint6
     const bool read = finish(channel.pci);
     const bool written = finish(channel.local);
     if (!read || !written) return false;
-    stats_.words_to_board += burst;
-    stats_.words_in_bridge += burst;
     channel.local.write = true;
     channel.local.address = local_address + moved * 4;
+    words_taken_.add(channel.local.address, burst);
     channel.local.words.swap(channel.pci.words);
     start_on_local(channel.local);
     moved += burst;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "models/kernels/integer_rule.h"
+#include "models/memory/words_by_range.h"
 #include "models/pci/bridge_registers.h"
 #include "models/pci/pci_slot.h"
 
@@ -27,6 +28,8 @@ struct PciBridgeConfig {
   int posted_words = 64;
   // Byte address of the core's registers on the local bus, behind that of every bank.
   std::uint64_t core_registers = std::uint64_t{1} << 34U;
+  // On the local bus: words on their way to the banks are counted for each.
+  std::vector<memory::AddressRange> buffers = {};
 };
 
 // The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge"); registers and
@@ -47,8 +50,6 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
     std::uint64_t posted_words = 0;       // taken from the PCI bus
     std::uint64_t slave_reads = 0;        // words
     std::uint64_t dma_words = 0;          // moved, both directions
-    std::uint64_t words_to_board = 0;     // taken for the banks: posted, and by DMA
-    std::uint64_t words_in_bridge = 0;    // of these, not yet through the local bus
     std::uint64_t most_posted_words = 0;  // waiting at one time
     std::uint64_t errors = 0;
   };
@@ -65,6 +66,10 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
   const Stats& stats() const { return stats_; }
+  // Words for the banks that have come in, posted or by DMA, and those of them that still wait here for the
+  // local bus.
+  const memory::WordsByRange& words_taken() const { return words_taken_; }
+  memory::WordsByRange words_held() const;
 
  private:
   struct PostedWord {
@@ -77,6 +82,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
     std::uint64_t address = 0;
     std::vector<std::uint32_t> words;
     bool under_way = false;
+    bool on_local_bus = false;
     bool failed = false;
     sc_core::sc_event ended;
   };
@@ -130,6 +136,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   std::uint32_t interrupt_enable_ = 0;
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
   std::deque<PostedWord> posted_;
+  std::size_t posted_on_local_bus_ = 0;      // of these, the first
   std::vector<std::uint32_t> posted_burst_;  // of these, on the local bus
   Transfer read_;                            // of the slave window
   std::array<Channel, bridge::kChannels> channels_;
@@ -142,6 +149,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   sc_core::sc_event responded_{"responded"};
   Manager manager_;
   tlm::tlm_generic_payload burst_{&manager_};
+  memory::WordsByRange words_taken_;
   Stats stats_;
 };
 

@@ -55,7 +55,7 @@ class LocalBusTest : public testing::Test {
   TestHost unused{"unused"};
   memory::SsramBank bank{"bank", {kWords, memory::BankKind::kZbtPipelined, 0, 40}};
   RegisterFile register_file{"register_file"};
-  LocalBus bus{"bus", {1e6 / static_cast<double>(kLocalPs)}, kBanks};
+  LocalBus bus{"bus", {1e6 / static_cast<double>(kLocalPs), {{0, 8}}}, kBanks};  // one buffer of two words
   Collected<HostRoute> routes;
   Collected<FrameStart> starts;
   sc_core::sc_signal<bool> done{"done"};
@@ -92,7 +92,40 @@ TEST_F(LocalBusTest, FollowsAGrantWithTheNextClock) {
             (std::vector<std::uint32_t>{5, 6, 7}));
   EXPECT_EQ(bus.stats().words_written, 3U);
   EXPECT_EQ(bus.stats().bursts, 1U);
-  EXPECT_EQ(bus.stats().busy_clocks, 7U);
+  EXPECT_EQ(bus.stats().busy_clocks, 6U);  // without the idle clock
+  EXPECT_EQ(bus.stats().clocks, 20U);
+}
+
+TEST_F(LocalBusTest, CountsClocksUpToNow) {
+  run_until(local(10));
+  host.request(TLM_WRITE_COMMAND, 0, 5);
+  EXPECT_EQ(bus.stats().busy_clocks, 0U);
+  run_until(local(12));
+  EXPECT_EQ(bus.stats().clocks, 12U);
+  EXPECT_EQ(bus.stats().busy_clocks, 2U);
+  grant(13 * kLocalPs);  // ahead of time
+  EXPECT_EQ(bus.stats().busy_clocks, 2U);
+  run_until(local(13));
+  EXPECT_EQ(bus.stats().busy_clocks, 3U);
+  run_until(local(14));
+  EXPECT_EQ(bus.stats().busy_clocks, 3U);
+}
+
+TEST_F(LocalBusTest, CountsTheWordsOfEachBuffer) {
+  using Words = std::vector<std::uint64_t>;
+  host.request(TLM_WRITE_COMMAND, 4, std::vector<std::uint32_t>{5, 6, 7});
+  EXPECT_EQ(bus.words_granted().words(), (Words{0, 0}));
+  EXPECT_EQ(bus.words_to_grant().words(), (Words{1, 2}));
+  grant(3 * kLocalPs);
+  grant(4 * kLocalPs);
+  EXPECT_EQ(bus.words_granted().words(), (Words{1, 1}));
+  EXPECT_EQ(bus.words_to_grant().words(), (Words{0, 1}));
+  grant(5 * kLocalPs);
+  EXPECT_EQ(bus.words_granted().words(), (Words{1, 2}));
+  EXPECT_EQ(bus.words_to_grant().words(), (Words{0, 0}));
+  run_until(local(20));
+  host.request(TLM_READ_COMMAND, 4, std::vector<std::uint32_t>(2));
+  EXPECT_EQ(bus.words_to_grant().words(), (Words{0, 0}));
 }
 
 TEST_F(LocalBusTest, EndsAReadWhenItsLastWordIsUsable) {

@@ -1,7 +1,9 @@
 // The host port beside the core's own: bursts of the local bus before, in and after a frame. Its clock is the core's:
 // a burst that begins at edge c asks from cycle c + kFirst on, and a word a cycle.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/expected_report.h"
 #include "tests/unit/fpga/stereo_core_bench.h"
 
 namespace stereotlm::fpga {
@@ -214,6 +216,41 @@ TEST_F(StereoCoreHost, IsGrantedDirectAccess) {
   ASSERT_TRUE(memory.dmi(crossbar_address(kResult, 0), dmi));
   EXPECT_EQ(dmi.get_start_address(), crossbar_address(kResult, 0));
   EXPECT_EQ(dmi.get_end_address(), crossbar_address(kResult, kWords) - 1);
+}
+
+// A host that writes a word in every cycle, and is served first, keeps a reader of that bank waiting.
+class StereoCoreStarved : public StereoCoreHost {
+ protected:
+  static constexpr std::uint64_t kPatience = 10'000;
+
+  void write_for(std::uint64_t cycles) {
+    StereoCoreConfig board = small_board();
+    board.memory.banks.assign(kBankCount, {65'536});
+    board.patience_cycles = kPatience;
+    build(board);
+    start();
+    at(edge(1), [this, cycles] {
+      memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, 1000), std::vector<std::uint32_t>(cycles));
+    });
+  }
+};
+
+TEST_F(StereoCoreStarved, GoesOnAfterShorterThanItsPatience) {
+  write_for(kPatience - 10);
+  run_until(edge(30'000));
+  EXPECT_EQ(done_at.size(), 1U);
+}
+
+TEST_F(StereoCoreStarved, SaysWhoWaitsForWhat) {
+  write_for(60'000);
+  const test::ExpectedReport expected("/stereotlm/core");
+  EXPECT_THROW(run_until(edge(30'000)), sc_core::sc_report);
+  EXPECT_THAT(expected.text(),
+              testing::ContainsRegex("core: no slot consumed and no result written for 1[0-9]+ cycles; "
+                                     "frame 0 of the core, cycle 2[0-9]+; left_lut is blocked: its "
+                                     "lane is full; right_lut is blocked: its lane is full; "
+                                     "left_pixel asks for bank 0, lost 2[0-9]+ cycles to host; "
+                                     "right_pixel is starved; result is idle; host asks for bank 0"));
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ TEST_F(PciBridgeDma, MovesWordsToTheBoardInBursts) {
   EXPECT_EQ(local.bursts[2].words.size(), 6U);
   EXPECT_EQ(status(), bridge::kDmaDone);
   EXPECT_EQ(dut->stats().dma_words, 70U);
-  EXPECT_EQ(dut->stats().words_to_board, 70U);
-  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+  EXPECT_EQ(dut->words_taken().total(), 70U);
+  EXPECT_EQ(dut->words_held().total(), 0U);
 }
 
 TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
@@ -46,7 +46,7 @@ TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
   EXPECT_EQ(get(kData + 45 * 4, 1), numbers(1, 0));
   EXPECT_EQ(status(), bridge::kDmaDone << 1U);
   EXPECT_EQ(dut->stats().dma_words, 45U);
-  EXPECT_EQ(dut->stats().words_to_board, 0U);
+  EXPECT_EQ(dut->words_taken().total(), 0U);
 }
 
 TEST_F(PciBridgeDma, FollowsAChain) {
@@ -60,6 +60,19 @@ TEST_F(PciBridgeDma, FollowsAChain) {
   EXPECT_EQ(status(), bridge::kDmaDone);
 }
 
+TEST_F(PciBridgeDma, HoldsWordsThatWaitForTheLocalBus) {
+  build();
+  local.held = true;
+  burst(true, kSlave + 400, 3);
+  start(0, kChain, {{kData, 0, 4}});
+  run(20);
+  EXPECT_EQ(dut->words_taken().total(), 7U);
+  EXPECT_EQ(dut->words_held().total(), 4U);
+  local.release();
+  run(5);
+  EXPECT_EQ(dut->words_held().total(), 0U);
+}
+
 TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrived) {
   build();
   local.held = true;
@@ -67,7 +80,8 @@ TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrived) {
   run(20);
   EXPECT_EQ(read_register(bridge::kDmaStatus), 1U);
   EXPECT_EQ(status(), 0U);
-  EXPECT_EQ(dut->stats().words_in_bridge, 4U);
+  EXPECT_EQ(dut->words_taken().total(), 4U);
+  EXPECT_EQ(dut->words_held().total(), 0U);  // all on the local bus
   local.release();
   run(5);
   EXPECT_EQ(read_register(bridge::kDmaStatus), 0U);

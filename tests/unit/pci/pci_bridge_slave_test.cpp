@@ -27,8 +27,8 @@ TEST_F(PciBridgeSlave, PostsWritesToThePageOfTheirAperture) {
     EXPECT_EQ(local.bursts.back().words, words_from(address, 5));
   }
   EXPECT_EQ(dut->stats().posted_words, 20U);
-  EXPECT_EQ(dut->stats().words_to_board, 20U);
-  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+  EXPECT_EQ(dut->words_taken().total(), 20U);
+  EXPECT_EQ(dut->words_held().total(), 0U);
 }
 
 TEST_F(PciBridgeSlave, LeadsToTheRegistersOfTheCore) {
@@ -38,24 +38,33 @@ TEST_F(PciBridgeSlave, LeadsToTheRegistersOfTheCore) {
   ASSERT_EQ(local.bursts.size(), 2U);
   EXPECT_EQ(local.bursts[0].address, kCore + 8);
   EXPECT_EQ(local.bursts[1].address, kCore + 4);
-  EXPECT_EQ(dut->stats().words_to_board, 0U);  // registers are no banks
+  EXPECT_EQ(dut->words_taken().total(), 0U);  // registers are no banks
 }
 
 TEST_F(PciBridgeSlave, TakesNoMoreWordsThanItHasPlaces) {
-  build({32, 10, kCore});
+  build({4, 10, kCore});
   local.held = true;
   EXPECT_EQ(burst(true, kSlave, 10).result.end, BurstEnd::kComplete);
   EXPECT_EQ(dut->stats().most_posted_words, 10U);
   const auto& retried = burst(true, kSlave + 40, 4);
   EXPECT_EQ(retried.result.end, BurstEnd::kDisconnect);
   EXPECT_EQ(retried.result.words, 0U);
-  EXPECT_EQ(dut->stats().words_in_bridge, 10U);
+  EXPECT_EQ(dut->words_taken().total(), 10U);
+  EXPECT_EQ(dut->words_held().total(), 6U);  // four are on the local bus
   local.release();
   run(5);
-  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+  EXPECT_EQ(dut->words_held().total(), 0U);
   EXPECT_EQ(burst(true, kSlave, 11).result.words, 10U);
   run(5);
   EXPECT_EQ(local.words.size(), 10U);
+}
+
+TEST_F(PciBridgeSlave, CountsWordsForEachBuffer) {
+  build({4, 64, kCore, {{0, 20}, {20, 24}}});
+  local.held = true;
+  burst(true, kSlave, 8);
+  EXPECT_EQ(dut->words_taken().words(), (std::vector<std::uint64_t>{5, 1, 2}));
+  EXPECT_EQ(dut->words_held().words(), (std::vector<std::uint64_t>{1, 1, 2}));
 }
 
 TEST_F(PciBridgeSlave, GivesPlacesBackAtTheEndOfTheLocalBurst) {
@@ -105,7 +114,7 @@ TEST_F(PciBridgeSlave, RaisesAnErrorForAWriteThatTheBoardRefuses) {
   burst(true, kSlave, 1);
   run(2);
   EXPECT_EQ(status(), bridge::kPostedError);
-  EXPECT_EQ(dut->stats().words_in_bridge, 0U);
+  EXPECT_EQ(dut->words_held().total(), 0U);
   EXPECT_GT(dut->stats().errors, 0U);
 }
 

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace stereotlm::memory {
+
+// The byte addresses of a buffer.
+struct AddressRange {
+  std::uint64_t first = 0;
+  std::uint64_t end = 0;  // the first behind it
+
+  bool contains(std::uint64_t address) const { return first <= address && address < end; }
+};
+
+// How many words went to each of some ranges, which do not overlap, and to none of them. Plain C++.
+class WordsByRange {
+ public:
+  explicit WordsByRange(std::vector<AddressRange> ranges)
+      : ranges_(std::move(ranges)), words_(ranges_.size() + 1), latest_(ranges_.size()) {}
+
+  // Counts `words` words from `address` on.
+  void add(std::uint64_t address, std::uint64_t words) {
+    for (const std::uint64_t end = address + 4 * words; address < end; address += 4) {
+      if (latest_ == ranges_.size() || !ranges_[latest_].contains(address)) latest_ = find(address);
+      ++words_[latest_];
+    }
+  }
+  // [range], then those outside of all.
+  const std::vector<std::uint64_t>& words() const { return words_; }
+  std::uint64_t total() const { return std::accumulate(words_.begin(), words_.end(), std::uint64_t{0}); }
+
+ private:
+  std::size_t find(std::uint64_t address) const {
+    std::size_t range = 0;
+    while (range < ranges_.size() && !ranges_[range].contains(address)) ++range;
+    return range;
+  }
+
+  std::vector<AddressRange> ranges_;
+  std::vector<std::uint64_t> words_;
+  std::size_t latest_;  // the range of the last word: the next mostly follows it
+};
+
+}  // namespace stereotlm::memory
