@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "models/capture/camera_timing.h"
 #include "models/fpga/frame_geometry.h"
 
 namespace stereotlm::platform {
@@ -48,6 +49,19 @@ Accesses accesses_of(const fpga::FrameGeometry& geometry, const std::optional<Re
     accesses.pixel += fetches[row] * static_cast<std::uint64_t>(valid);
   }
   return accesses;
+}
+
+// Clocks of a bus for `words` words in bursts of at most `burst_words`.
+std::uint64_t bus_clocks(std::uint64_t words, int burst_words, int clocks_a_burst) {
+  const auto burst = static_cast<std::uint64_t>(burst_words);
+  return words + (words + burst - 1) / burst * static_cast<std::uint64_t>(clocks_a_burst);
+}
+
+double camera_rate(const BoardConfig& board) {
+  if (board.cameras.trigger == CameraTrigger::kFreeRunning) return board.cameras.frame_rate_hz;
+  const capture::CameraTiming timing({board.image.width, board.image.height, board.cameras.frame_rate_hz,
+                                      capture::CameraTrigger::kOnDemand});
+  return 1e12 / static_cast<double>(timing.last_pixel_ps());
 }
 
 int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
@@ -128,6 +142,44 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
 std::uint64_t allocation_period_frames(const BoardConfig& board) {
   const BufferLayout layout = layout_buffers(board);
   return std::lcm(std::lcm(layout.left_image.size(), layout.right_image.size()), layout.disparity.size());
+}
+
+std::vector<RateBound> computer_bounds(const BoardConfig& board) {
+  static_cast<void>(layout_buffers(board));
+  const std::uint64_t picture =
+      static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
+  const int dma_words = board.bridge.dma_burst_words;
+  constexpr int kAddressAndIdle = 2;
+  const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
+  const auto descriptors = [&](std::uint64_t count) { return count * bus_clocks(4, 4, memory_burst); };
+  const std::uint64_t result = descriptors(1) + bus_clocks(picture, dma_words, memory_burst);
+  const int longest_capture = board.capture.fifo_words;
+  const std::uint64_t pair =
+      board.capture.destination == CaptureDestination::kBoard
+          ? 2 * bus_clocks(picture, std::min(longest_capture, board.bridge.posted_words),
+                           kAddressAndIdle + board.pci.bridge_wait_clocks)
+          : 2 * bus_clocks(picture, longest_capture, memory_burst) + descriptors(2) +
+                2 * bus_clocks(picture, dma_words, memory_burst);
+  // Address, decode and idle clock; a word also takes a cycle of the FPGA.
+  constexpr std::uint64_t kLocalBurst = 3;
+  const std::uint64_t local_words = 3 * picture;
+  const std::uint64_t local_bursts = 3 * (bus_clocks(picture, dma_words, 1) - picture);
+  const double local_us =
+      static_cast<double>(local_words) / std::min(board.bridge.local_clock_mhz, board.fpga.clock_mhz) +
+      static_cast<double>(local_bursts * kLocalBurst) / board.bridge.local_clock_mhz;
+  return {{"camera", camera_rate(board)},
+          {"pci", board.pci.clock_mhz * 1e6 / static_cast<double>(pair + result)},
+          {"bridge", 1e6 / local_us}};
+}
+
+void add_system_bound(const BoardConfig& board, Bound& bound) {
+  bound.system = bound.core;
+  bound.system_limited_by = bound.core_limited_by;
+  for (const RateBound& part : computer_bounds(board)) {
+    if (part.frames_per_second >= *bound.system) continue;
+    bound.system = part.frames_per_second;
+    bound.system_limited_by = part.resource;
+  }
 }
 
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames) {

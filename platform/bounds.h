@@ -30,6 +30,21 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
 // their lengths. Throws std::invalid_argument if the board has problems.
 std::uint64_t allocation_period_frames(const BoardConfig& board);
 
+// What a part of the computer around the board limits the rate of frames to; no run can be faster:
+//   camera      its frame clock; on demand the time from the first to the last pixel of a frame
+//   pci         the clocks of the words of a pair and a result and of the bursts that they need at least
+//   bridge      the same for its local bus, one word an FPGA cycle at most
+struct RateBound {
+  std::string resource;  // "camera", "pci", "bridge"
+  double frames_per_second = 0;
+};
+
+// In this order. Throws std::invalid_argument if the board has problems.
+std::vector<RateBound> computer_bounds(const BoardConfig& board);
+
+// Puts the least of bound.core and computer_bounds() into bound.system. Throws as they do.
+void add_system_bound(const BoardConfig& board, Bound& bound);
+
 // Frames per second that frames 0..frames-1 cannot exceed, and the resource that limits the slowest of them
 // (of equal ones the last in the order above). Throws std::invalid_argument if the board has problems, or
 // there are no frames.

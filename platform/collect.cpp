@@ -1,11 +1,10 @@
 #include "platform/collect.h"
 
-#include <fmt/format.h>
-
 #include <numeric>
 #include <utility>
 
 #include "models/memory/memory_config.h"
+#include "platform/audit.h"
 #include "platform/bounds.h"
 
 namespace stereotlm::platform {
@@ -14,23 +13,6 @@ namespace {
 using memory::ArbiterStats;
 using memory::kPortCount;
 using memory::Port;
-
-// Compares the two sides of an identity and keeps those that differ.
-class Audit {
- public:
-  void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
-    if (left == right) return;
-    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, left, as, right));
-  }
-  void at_most(const std::string& what, double value, const std::string& as, double limit) {
-    if (value <= limit) return;
-    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
-  }
-  std::vector<std::string> failed() && { return std::move(failed_); }
-
- private:
-  std::vector<std::string> failed_;
-};
 
 BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbiter, std::uint64_t cycles,
                                double clock_mhz) {

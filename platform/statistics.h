@@ -7,8 +7,8 @@
 
 namespace stereotlm::platform {
 
-// The figures of one run, as `stats.json` lists them (contract section 6). Counters are sums over the frames
-// and cover the counted cycles of contract section 2 only.
+// The figures of one run, as `stats.json` lists them (contract section 6). Counters of banks and ports are sums
+// over the frames and cover the counted cycles of contract section 2 only.
 struct BankStatistics {
   std::string name;
   std::uint64_t reads = 0;
@@ -40,11 +40,55 @@ struct BlameRow {
 
 struct FramesPerSecond {
   double core = 0;
+  std::optional<double> system;  // delivered / time of the last delivery
+  std::optional<double> steady;  // (delivered - 1) / (last - first); from two deliveries on
 };
 
+// Frames per second that no run of these frames can exceed, and what limits them.
 struct Bound {
-  double core = 0;  // frames per second that no run of these frames can exceed
+  double core = 0;
   std::string core_limited_by;
+  std::optional<double> system;
+  std::string system_limited_by;
+};
+
+struct PciMasterStatistics {
+  std::string name;
+  std::uint64_t transactions = 0;
+  std::uint64_t words = 0;
+  std::uint64_t wait_clocks = 0;  // from each request to its address clock
+};
+
+struct CameraStatistics {
+  std::string name;
+  std::uint64_t frames = 0;           // begun
+  std::uint64_t captured_frames = 0;  // taken by a capture
+  std::uint64_t dropped_frames = 0;   // the sum of the three reasons below
+  std::uint64_t dropped_pixels = 0;   // the FIFO of the capture board was full
+  std::uint64_t dropped_not_armed = 0;
+  std::uint64_t dropped_busy = 0;        // the capture before was running
+  std::uint64_t dropped_by_partner = 0;  // the other side could not start
+};
+
+struct Percentiles {
+  double min = 0;
+  double p50 = 0;
+  double p95 = 0;
+  double p99 = 0;
+  double max = 0;
+};
+
+// The computer around the board, from time 0 to the last delivery.
+struct ComputerStatistics {
+  std::uint64_t pci_clocks = 0;
+  std::uint64_t pci_busy_clocks = 0;  // address, wait and data clocks
+  std::vector<PciMasterStatistics> pci_masters;
+  std::uint64_t posted_words = 0;  // taken by the bridge
+  std::uint64_t dma_words = 0;     // moved by the bridge
+  std::uint64_t local_clocks = 0;
+  std::uint64_t local_busy_clocks = 0;    // without idle clocks
+  std::vector<CameraStatistics> cameras;  // left, right
+  Percentiles capture_to_host_ms;         // from the first pixel of a capture to its delivery
 };
 
 struct Statistics {
@@ -58,6 +102,7 @@ struct Statistics {
   std::vector<BankStatistics> banks;  // in the order of the board file
   std::vector<PortStatistics> ports;  // in the order of memory::Port
   std::vector<BlameRow> blame;        // sorted by port, bank, by (turnaround last), without zero rows
+  std::optional<ComputerStatistics> computer;
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a sound run
 };
 

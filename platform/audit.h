@@ -1,0 +1,29 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stereotlm::platform {
+
+// Compares the two sides of an identity (contract section 6) and keeps those that do not hold.
+class Audit {
+ public:
+  void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
+    if (left == right) return;
+    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, left, as, right));
+  }
+  void at_most(const std::string& what, double value, const std::string& as, double limit) {
+    if (value <= limit) return;
+    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
+  }
+  std::vector<std::string> failed() && { return std::move(failed_); }
+
+ private:
+  std::vector<std::string> failed_;
+};
+
+}  // namespace stereotlm::platform
