@@ -158,9 +158,16 @@ int bounds(const BoardOptions& options) {
   }
   std::string text;
   for (const Group& group : groups) text += lines_of(group, board->fpga.clock_mhz);
-  const platform::Bound bound = platform::core_bound(*board, tables, frames);
+  platform::Bound bound = platform::core_bound(*board, tables, frames);
+  platform::add_system_bound(*board, bound);
+  text += fmt::format("around the board\n  {:<16} {:>14}\n", "resource", "frames/s");
+  for (const platform::RateBound& part : platform::computer_bounds(*board)) {
+    text += fmt::format("  {:<16} {:>14.3f}\n", part.resource, part.frames_per_second);
+  }
   text +=
       fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", bound.core, bound.core_limited_by);
+  text += fmt::format("bound of the system: {:.3f} frames/s, limited by {}\n", *bound.system,
+                      bound.system_limited_by);
   print(text);
   return kDone;
 }
@@ -168,12 +175,14 @@ int bounds(const BoardOptions& options) {
 }  // namespace
 
 void add_bounds(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand(
-      "bounds", "Say what each port and bank of the FPGA core, and its matcher, limit the frame rate to");
+  CLI::App* command = program.add_subcommand("bounds",
+                                             "Say what each port and bank of the FPGA core, its matcher, and "
+                                             "the cameras and buses around the board limit "
+                                             "the frame rate to");
   command->footer(
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
-      "resource's time it has to spare.\n"
+      "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera.\n"
       "Tables, where the board has them, are taken as the identity.");
   const auto options = std::make_shared<BoardOptions>();
   options->add_to(*command);

@@ -65,6 +65,7 @@ void ProgressLine::show(const RunState& state) {
 void ProgressLine::erase() {
   if (columns_drawn_ == 0) return;
   std::fprintf(stderr, "\r%*s\r", static_cast<int>(columns_drawn_), "");
+  columns_drawn_ = 0;
   std::fflush(stderr);
 }
 

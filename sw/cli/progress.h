@@ -10,7 +10,7 @@ namespace stereotlm::cli {
 struct RunState {
   std::uint64_t frames = 0;  // to do, all in all
   std::uint64_t frames_done = 0;
-  std::uint64_t cycles_of_done = 0;      // FPGA cycles of the finished frames
+  std::uint64_t cycles_of_done = 0;      // FPGA cycles by the end of the last of them
   std::uint64_t cycles = 0;              // FPGA cycles simulated
   std::uint64_t least_frame_cycles = 1;  // stands for the length of a frame until one has finished
 };
@@ -29,11 +29,11 @@ class ProgressLine {
 
   // Draws the line anew, at most a few times a second.
   void show(const RunState& state);
+  // Takes it away, until it is shown again.
+  void erase();
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-
-  void erase();
 
   bool is_terminal_;
   Time start_;

@@ -11,16 +11,24 @@
 #include "sw/cli/run_input.h"
 #include "sw/cli/run_options.h"
 #include "sw/cli/run_results.h"
-#include "sw/cli/simulation.h"
 #include "sw/cli/streams.h"
+#include "sw/simulation/camera_simulation.h"
+#include "sw/simulation/preloaded_simulation.h"
 
 namespace stereotlm::cli {
 namespace {
 
+using simulation::Simulation;
+
 // What can go wrong here is known before the first cycle.
-std::unique_ptr<Simulation> build(const RunInput& input) {
+std::unique_ptr<Simulation> build(const RunInput& input, Binder& binder) {
   try {
-    return std::make_unique<Simulation>(input.board, input.tables, *input.pairs, input.frames);
+    if (input.camera) {
+      return std::make_unique<simulation::CameraSimulation>(input.board, input.tables, *input.pairs,
+                                                            input.frames, binder);
+    }
+    return std::make_unique<simulation::PreloadedSimulation>(input.board, input.tables, *input.pairs,
+                                                             input.frames);
   } catch (const std::exception& error) {
     refuse(fmt::format("the board cannot be built: {}", error.what()));
   }
@@ -34,31 +42,43 @@ std::uint64_t least_frame_cycles(const RunInput& input) {
   return cycles;
 }
 
-// Until the last frame or an interruption.
+// Until the last frame, or the end of an interruption.
 void simulate(Simulation& simulation, const RunInput& input) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
   ProgressLine progress;
-  std::uint64_t frame = 0;
-  while (!simulation.finished() && !interrupted()) {
-    for (const kernels::GrayImage& disparity : simulation.advance()) save_frame(input, frame++, disparity);
-    progress.show({input.frames, simulation.frames_done(), simulation.cycles_of_done(), simulation.cycles(),
-                   frame_cycles});
+  bool ends_early = false;
+  while (!simulation.finished()) {
+    if (interrupted() && !ends_early) {
+      ends_early = true;
+      simulation.end_early();
+      progress.erase();
+      if (!simulation.finished()) {
+        say("note",
+            "interrupted: what the core has begun is finished first; another Ctrl-C ends at once, "
+            "without results");
+      }
+      continue;
+    }
+    for (const simulation::Result& result : simulation.advance()) save_frame(input, result);
+    progress.show({simulation.frames(), simulation.frames_done(), simulation.cycles_of_done(),
+                   simulation.cycles(), frame_cycles});
   }
 }
 
 int run(const RunOptions& options) {
   RunInput input = load_run_input(options);
-  const std::unique_ptr<Simulation> simulation = build(input);
+  Binder binder;
+  const std::unique_ptr<Simulation> simulation = build(input, binder);
   simulate(*simulation, input);
   const std::uint64_t done = simulation->frames_done();
-  if (!simulation->finished()) {
+  if (done < input.frames) {
     say("note", fmt::format("interrupted after {} of {} frames{}", done, input.frames,
                             done == 0 ? ": there is no result" : ""));
     if (done == 0) return kInterrupted;
     leave_out_truth_of_another_pair(input, done);
   }
-  if (!deliver(input, simulation->statistics(), simulation->disparity())) return kFailed;
-  return simulation->finished() ? kDone : kInterrupted;
+  if (!deliver(input, simulation->statistics(), simulation->last())) return kFailed;
+  return done < input.frames ? kInterrupted : kDone;
 }
 
 }  // namespace

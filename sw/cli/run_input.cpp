@@ -42,6 +42,7 @@ class InputLoader {
   RunInput load() {
     const auto board = options_.board.load(problems_);
     attempt("", [&] { load_pictures(board ? &*board : nullptr); });
+    check_truth();
     catch_interrupts();
     if (options_.out && pictures_survive()) {
       attempt("", [&] { input_.folder = std::make_unique<report::ResultFolder>(*options_.out); });
@@ -84,6 +85,14 @@ class InputLoader {
     });
   }
 
+  void check_truth() {
+    if (!options_.truth || !options_.camera || !source_.pairs || source_.pairs->length() == 1) return;
+    problems_.add(fmt::format(
+        "--truth: goes with one pair if it comes from cameras, which drop frames: of {} pairs nobody knows "
+        "which the last frame will show (or --source preloaded)",
+        source_.pairs->length()));
+  }
+
   // False, and reported, if one lies in the result folder, which is replaced whole.
   bool pictures_survive() {
     std::set<std::string> reported;
@@ -102,10 +111,11 @@ class InputLoader {
 
   void describe() {
     const bool has_end = options_.pictures.sequence || options_.pictures.video;
+    input_.camera = options_.camera;
     input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
     report::RunOptions& run = input_.described;
     run.program_version = kVersion;
-    run.source = "preloaded";
+    run.source = options_.camera ? "camera" : "preloaded";
     run.fidelity = "cycle";
     run.frames = input_.frames;
     run.truth_scale = options_.truth_scale;

@@ -20,6 +20,7 @@ struct RunInput {
   platform::BoardConfig board;
   platform::Tables tables;
   std::unique_ptr<PairSource> pairs;
+  bool camera = true;                            // --source camera, else preloaded
   std::uint64_t frames = 1;                      // to deliver
   std::optional<media::Truth> truth;             // of the pair that the last one shows
   std::string config_yaml;                       // the text of that result file

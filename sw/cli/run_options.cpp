@@ -11,52 +11,27 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kExample =
-    "stereotlm run fpl2003 --source preloaded --fidelity cycle --left left.png --right right.png";
+constexpr const char* kExample = "stereotlm run fpl2003 --fidelity cycle --left left.png --right right.png";
 
-// An option with a few values, of which this version has one; the default is not that one.
-struct Choice {
-  const char* name;
-  std::vector<std::string> values;
-  const char* usual;
-  const char* built;
-};
-
-const Choice& source_choice() {
-  static const Choice choice = {"--source", {"camera", "preloaded"}, "camera", "preloaded"};
-  return choice;
-}
-const Choice& fidelity_choice() {
-  static const Choice choice = {"--fidelity", {"cycle", "fast"}, "fast", "cycle"};
-  return choice;
-}
-
-std::string unbuilt_value(const Choice& choice) { return fmt::format("{} {}", choice.name, choice.usual); }
-
-void check_choice(const Choice& choice, bool is_given, const std::string& text, Problems& problems) {
-  if (!is_given) {
-    problems.add(fmt::format("{}, the default: {}; built: {} {}", unbuilt_value(choice), kNotInThisVersion,
-                             choice.name, choice.built));
-  } else if (is_one_of(choice.values, choice.name, text, problems) && text != choice.built) {
-    problems.add(fmt::format("{} {}: {}; built: {} {}", choice.name, text, kNotInThisVersion, choice.name,
-                             choice.built));
-  }
-}
+const std::vector<std::string> kSources = {"camera", "preloaded"};  // the first is the default
+const std::vector<std::string> kFidelities = {"cycle", "fast"};  // the second is the default, and not built
+constexpr const char* kFidelityProblem = "--fidelity fast{}: {}; built: --fidelity cycle";
 
 }  // namespace
 
 void RunOptions::add_to(CLI::App& command) {
   board.add_to(command);
   pictures.add_to(command);
-  frames_.add_to(
-      command, "--frames", "N",
-      "Frames to deliver, 1 or more; frame f shows pair f modulo the number of pairs (default 1; with "
-      "--sequence and --video as many as there are pairs)");
-  source_.add_to(command, source_choice().name, fmt::format("{}", fmt::join(source_choice().values, "|")),
-                 "Where pictures come from (default camera; this version has preloaded: they appear in their "
-                 "buffers in no time)");
+  frames_.add_to(command, "--frames", "N",
+                 "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows "
+                 "pair f modulo the "
+                 "number of pairs (default 1; with --sequence and --video as many as there are pairs)");
+  source_.add_to(
+      command, "--source", fmt::format("{}", fmt::join(kSources, "|")),
+      "Where pictures come from: cameras of a whole computer, or they appear in their buffers in no "
+      "time (default camera)");
   fidelity_.add_to(
-      command, fidelity_choice().name, fmt::format("{}", fmt::join(fidelity_choice().values, "|")),
+      command, "--fidelity", fmt::format("{}", fmt::join(kFidelities, "|")),
       "How exact the timing is (default fast; this version has cycle: every bank and port, cycle by cycle)");
   truth_.add_to(command, "--truth", "F",
                 "Ground truth of the left picture that the last frame shows, 8-bit grey, 0 = unknown");
@@ -64,17 +39,19 @@ void RunOptions::add_to(CLI::App& command) {
   out_.add_to(command, "--out", "DIR",
               "Folder for the result files: created if missing, else empty or an earlier result, which is "
               "replaced (default: no files)");
-  command.add_flag(
-      "--save-frames", save_frames,
-      "Write the disparities of every frame too: frames/000000.png and so on in the folder of --out");
+  command.add_flag("--save-frames", save_frames,
+                   "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
+                   "--out, numbered by "
+                   "camera frame");
   unbuilt_.add(command, "--timing-only", 0);
   unbuilt_.add(command, "--verify", 0);
   unbuilt_.add(command, "--trace", 1);
-  command.footer(
-      paragraph("", 0,
-                fmt::format("Not in this version: {}, {}; {}, {}.", unbuilt_.names(), board.unbuilt_names(),
-                            unbuilt_value(source_choice()), unbuilt_value(fidelity_choice()))) +
-      "Ctrl-C ends the run with the results of the frames that are finished.");
+  command.footer(paragraph("", 0,
+                           fmt::format("Not in this version: {}, {}; --fidelity fast.", unbuilt_.names(),
+                                       board.unbuilt_names())) +
+                 "Ctrl-C ends the run with the results of the frames that are finished; with cameras those "
+                 "that the core has\n"
+                 "begun are finished first.");
 }
 
 void RunOptions::check_usage() {
@@ -95,9 +72,16 @@ void RunOptions::check_usage() {
   if (out_.is_given()) out = out_.text;
 }
 
-void RunOptions::check_choices(Problems& problems) const {
-  check_choice(source_choice(), source_.is_given(), source_.text, problems);
-  check_choice(fidelity_choice(), fidelity_.is_given(), fidelity_.text, problems);
+void RunOptions::check_choices(Problems& problems) {
+  if (source_.is_given() && is_one_of(kSources, "--source", source_.text, problems)) {
+    camera = source_.text == kSources.front();
+  }
+  if (!fidelity_.is_given()) {
+    problems.add(fmt::format(kFidelityProblem, ", the default", kNotInThisVersion));
+  } else if (is_one_of(kFidelities, "--fidelity", fidelity_.text, problems) &&
+             fidelity_.text != kFidelities.front()) {
+    problems.add(fmt::format(kFidelityProblem, "", kNotInThisVersion));
+  }
 }
 
 void RunOptions::check_numbers(Problems& problems) {

@@ -24,6 +24,7 @@ class RunOptions {
   BoardOptions board;
   PictureOptions pictures;
   // As check_usage() leaves them.
+  bool camera = true;  // else preloaded
   std::optional<std::uint64_t> frames;
   std::optional<std::string> truth;
   double truth_scale = 1;
@@ -31,7 +32,7 @@ class RunOptions {
   std::optional<std::string> out;
 
  private:
-  void check_choices(Problems& problems) const;
+  void check_choices(Problems& problems);
   void check_numbers(Problems& problems);
   void check_combinations(Problems& problems) const;
 

@@ -28,20 +28,20 @@ void write_files(RunInput& input, const platform::Statistics& statistics, const 
 }
 
 // A made scene's own truth is shown to the user only: stats.json has the accuracy against --truth.
-std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, std::uint64_t frames_done,
-                                                 const kernels::GrayImage& disparity,
+std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const simulation::Result& last,
                                                  const std::optional<report::Accuracy>& accuracy) {
-  if (accuracy || !input.pairs || frames_done == 0) return accuracy;
-  const std::optional<media::Truth> truth = input.pairs->truth(frames_done - 1);
+  if (accuracy || !input.pairs) return accuracy;
+  const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
-  return report::accuracy(disparity, *truth);
+  return report::accuracy(last.disparity, *truth);
 }
 
 }  // namespace
 
-void save_frame(const RunInput& input, std::uint64_t frame, const kernels::GrayImage& disparity) {
+void save_frame(const RunInput& input, const simulation::Result& result) {
   if (!input.described.save_frames) return;
-  input.folder->add(report::frame_file_name(frame), media_functions().encode_png_gray(disparity));
+  input.folder->add(report::frame_file_name(result.number),
+                    media_functions().encode_png_gray(result.disparity));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
@@ -53,13 +53,15 @@ void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done)
   input.described.truth.reset();
 }
 
-bool deliver(RunInput& input, const platform::Statistics& statistics, const kernels::GrayImage& disparity) {
+bool deliver(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last) {
   std::optional<report::Accuracy> accuracy;
-  if (input.truth) accuracy = report::accuracy(disparity, *input.truth);
-  if (input.folder) write_files(input, statistics, disparity, accuracy);
+  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
+  if (input.folder) write_files(input, statistics, last.disparity, accuracy);
   for (const std::string& identity : statistics.failed) say("error", "identity does not hold: " + identity);
-  print(report::console_table(statistics, input.board.fpga.clock_mhz,
-                              accuracy_to_show(input, statistics.frames, disparity, accuracy)));
+  const platform::BoardConfig& board = input.board;
+  print(report::console_table(statistics,
+                              {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
+                              accuracy_to_show(input, last, accuracy)));
   return statistics.failed.empty();
 }
 

@@ -88,6 +88,20 @@ void StereoDriver::run(host::HostBus& bus) {
   }
 }
 
+std::string StereoDriver::under_way() const {
+  std::string text;
+  const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+  const auto add_stage = [&add](const std::string& what, const Stage& stage) {
+    if (!stage.idle()) add(what + ' ' + std::to_string(stage.ended));
+  };
+  if (uploading_) add("the upload of the tables");
+  add_stage("capture", captures_);
+  add_stage("copy of pair", copies_);
+  add_stage("core with frame", frames_);
+  add_stage("read-back of frame", read_backs_);
+  return text.empty() ? "nothing" : text;
+}
+
 void StereoDriver::upload_tables() {
   std::vector<Piece> pieces;
   std::uint64_t host = kDataStart;
@@ -104,8 +118,10 @@ void StereoDriver::upload_tables() {
   const std::uint32_t done = bridge_map::kDmaDone << unsigned{kToBoard};
   const std::uint32_t error = bridge_map::kDmaError << unsigned{kToBoard};
   bridge(bridge_map::kInterruptEnable, done | error);
+  uploading_ = true;
   start_dma(kToBoard, pieces);
   bus_->wait_for_interrupt();
+  uploading_ = false;
   const std::uint32_t status = bridge(bridge_map::kInterruptStatus);
   if ((status & error) != 0) fail("the tables could not be uploaded");
   bridge(bridge_map::kInterruptStatus, status);

@@ -64,6 +64,13 @@ class StereoDriver : public host::Program {
 
   void run(host::HostBus& bus) override;
 
+  // While run() waits. How often the core has been started:
+  std::uint64_t frames_started() const { return frames_.begun; }
+  // It is not started any more; run() ends when the frames that it has begun are delivered.
+  void start_no_more() { config_.frames = frames_.begun; }
+  // What run() has set going and now waits for: "capture 4, core with frame 2".
+  std::string under_way() const;
+
  private:
   // How far one stage has come.
   struct Stage {
@@ -109,6 +116,7 @@ class StereoDriver : public host::Program {
   Stage copies_;  // only with capture_to_host
   Stage frames_;  // of the core
   Stage read_backs_;
+  bool uploading_ = false;
   std::array<bool, 2> side_done_{};           // of the capture under way
   std::vector<std::uint64_t> camera_frames_;  // of each capture that has ended
   bool core_to_acknowledge_ = false;

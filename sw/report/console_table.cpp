@@ -14,6 +14,15 @@ std::string shortened(const std::string& name, std::size_t columns = kNameColumn
   return name.size() <= columns ? name : name.substr(0, columns - 3) + "...";
 }
 
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string bound_line(double bound, const std::string& limited_by) {
+  return fmt::format("{:<12} {:>10.3f} frames/s   limited by {}\n", "bound", bound,
+                     shortened(limited_by, 48));
+}
+
 std::string rate_lines(const platform::Statistics& statistics) {
   std::uint64_t cycles = 0;
   for (const std::uint64_t of_frame : statistics.frame_cycles) cycles += of_frame;
@@ -21,8 +30,52 @@ std::string rate_lines(const platform::Statistics& statistics) {
   return fmt::format("{:<12} {:>10.3f} frames/s   {:.0f} cycles a frame, {} frame{}\n", "core",
                      statistics.frames_per_second.core, static_cast<double>(cycles) / frames,
                      statistics.frames, statistics.frames == 1 ? "" : "s") +
-         fmt::format("{:<12} {:>10.3f} frames/s   limited by {}\n", "bound", statistics.bound.core,
-                     shortened(statistics.bound.core_limited_by, 48));
+         bound_line(statistics.bound.core, statistics.bound.core_limited_by);
+}
+
+std::string system_lines(const platform::Statistics& statistics) {
+  const platform::FramesPerSecond& rate = statistics.frames_per_second;
+  if (!rate.system || !statistics.bound.system) return "";
+  const std::string steady = rate.steady ? fmt::format("   steady {:.3f}", *rate.steady) : "";
+  return fmt::format("{:<12} {:>10.3f} frames/s{}\n", "system", *rate.system, steady) +
+         bound_line(*statistics.bound.system, statistics.bound.system_limited_by);
+}
+
+std::string pci_lines(const platform::ComputerStatistics& computer, double clock_mhz) {
+  const double peak = kBytesPerWord * clock_mhz;
+  std::string text = fmt::format("{:<12} {:>14} {:>14} {:>7} {:>9} {:>9} {:>12}\n", "pci master",
+                                 "transactions", "words", "use %", "MB/s", "peak MB/s", "mean wait us");
+  for (const platform::PciMasterStatistics& master : computer.pci_masters) {
+    const double use = share(master.words, computer.pci_clocks);
+    text += fmt::format("{:<12} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>12.3f}\n", master.name,
+                        master.transactions, master.words, 100 * use, use * peak, peak,
+                        share(master.wait_clocks, master.transactions) / clock_mhz);
+  }
+  return text;
+}
+
+std::string computer_lines(const platform::ComputerStatistics& computer, const ClocksMhz& clocks_mhz) {
+  std::string text = pci_lines(computer, clocks_mhz.pci);
+  text += fmt::format("{:<12} busy {:.2f} % of its clocks\n", "pci bus",
+                      100 * share(computer.pci_busy_clocks, computer.pci_clocks));
+  const std::uint64_t words = computer.posted_words + computer.dma_words;
+  const double peak = kBytesPerWord * clocks_mhz.local;
+  text += fmt::format(
+      "{:<12} busy {:.2f} % of its clocks, {:.2f} of {:.2f} MB/s: {} words posted, {} by DMA\n", "local bus",
+      100 * share(computer.local_busy_clocks, computer.local_clocks),
+      share(words, computer.local_clocks) * peak, peak, computer.posted_words, computer.dma_words);
+  text += fmt::format("{:<12} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9} {:>15}\n", "camera", "frames", "captured",
+                      "dropped:", "not armed", "busy", "partner", "dropped pixels");
+  for (const platform::CameraStatistics& camera : computer.cameras) {
+    text += fmt::format("{:<12} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9} {:>15}\n", camera.name, camera.frames,
+                        camera.captured_frames, camera.dropped_frames, camera.dropped_not_armed,
+                        camera.dropped_busy, camera.dropped_by_partner, camera.dropped_pixels);
+  }
+  const platform::Percentiles& latency = computer.capture_to_host_ms;
+  return text +
+         fmt::format(
+             "{:<12} capture to host, ms: min {:.3f}, p50 {:.3f}, p95 {:.3f}, p99 {:.3f}, max {:.3f}\n",
+             "latency", latency.min, latency.p50, latency.p95, latency.p99, latency.max);
 }
 
 std::string bank_lines(const platform::Statistics& statistics, double clock_mhz) {
@@ -43,11 +96,9 @@ std::string stall_line(const platform::Statistics& statistics) {
       statistics.blame.begin(), statistics.blame.end(),
       [](const platform::BlameRow& a, const platform::BlameRow& b) { return a.cycles < b.cycles; });
   if (worst == statistics.blame.end()) return fmt::format("{:<12} none\n", "worst stall");
-  const double share = statistics.cycles == 0 ? 0
-                                              : 100 * static_cast<double>(worst->cycles) /
-                                                    static_cast<double>(statistics.cycles);
   return fmt::format("{:<12} {} on {} lost {} cycles ({:.2f} %) to {}\n", "worst stall", worst->port,
-                     shortened(worst->bank, 12), worst->cycles, share, worst->by);
+                     shortened(worst->bank, 12), worst->cycles, 100 * share(worst->cycles, statistics.cycles),
+                     worst->by);
 }
 
 std::string accuracy_line(const Accuracy& accuracy) {
@@ -61,9 +112,11 @@ std::string accuracy_line(const Accuracy& accuracy) {
 
 }  // namespace
 
-std::string console_table(const platform::Statistics& statistics, double clock_mhz,
+std::string console_table(const platform::Statistics& statistics, const ClocksMhz& clocks_mhz,
                           const std::optional<Accuracy>& accuracy) {
-  return rate_lines(statistics) + bank_lines(statistics, clock_mhz) + stall_line(statistics) +
+  return rate_lines(statistics) + system_lines(statistics) + bank_lines(statistics, clocks_mhz.fpga) +
+         stall_line(statistics) +
+         (statistics.computer ? computer_lines(*statistics.computer, clocks_mhz) : "") +
          (accuracy ? accuracy_line(*accuracy) : "");
 }
 

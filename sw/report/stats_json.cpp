@@ -33,6 +33,32 @@ Json to_json(const platform::BlameRow& row) {
   return {{"port", row.port}, {"bank", row.bank}, {"by", row.by}, {"cycles", row.cycles}};
 }
 
+Json to_json(const platform::PciMasterStatistics& master) {
+  return {{"name", master.name},
+          {"transactions", master.transactions},
+          {"words", master.words},
+          {"wait_clocks", master.wait_clocks}};
+}
+
+Json to_json(const platform::CameraStatistics& camera) {
+  return {{"name", camera.name},
+          {"frames", camera.frames},
+          {"captured_frames", camera.captured_frames},
+          {"dropped_frames", camera.dropped_frames},
+          {"dropped_pixels", camera.dropped_pixels},
+          {"dropped_not_armed", camera.dropped_not_armed},
+          {"dropped_busy", camera.dropped_busy},
+          {"dropped_by_partner", camera.dropped_by_partner}};
+}
+
+Json to_json(const platform::Percentiles& values) {
+  return {{"min", values.min},
+          {"p50", values.p50},
+          {"p95", values.p95},
+          {"p99", values.p99},
+          {"max", values.max}};
+}
+
 Json to_json(const Accuracy& accuracy) {
   Json result = Json::object();
   const auto add = [&result](const char* key, const std::optional<double>& percent) {
@@ -51,6 +77,18 @@ Json rows(const std::vector<Row>& values) {
   return result;
 }
 
+void add_computer(const platform::ComputerStatistics& computer, Json& document) {
+  document["pci"] = {{"clocks", computer.pci_clocks},
+                     {"busy_clocks", computer.pci_busy_clocks},
+                     {"masters", rows(computer.pci_masters)}};
+  document["bridge"] = {{"posted_words", computer.posted_words},
+                        {"dma_words", computer.dma_words},
+                        {"local_clocks", computer.local_clocks},
+                        {"local_busy_clocks", computer.local_busy_clocks}};
+  document["cameras"] = rows(computer.cameras);
+  document["latency_ms"] = {{"capture_to_host", to_json(computer.capture_to_host_ms)}};
+}
+
 }  // namespace
 
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
@@ -60,12 +98,19 @@ std::string stats_json(const platform::Statistics& statistics, const std::option
                    {"frames", statistics.frames},
                    {"cycles", statistics.cycles},
                    {"frame_cycles", statistics.frame_cycles}};
-  document["frames_per_second"] = {{"core", statistics.frames_per_second.core}};
-  document["bound"] = {{"core", statistics.bound.core},
-                       {"core_limited_by", statistics.bound.core_limited_by}};
+  Json& rate = document["frames_per_second"] = {{"core", statistics.frames_per_second.core}};
+  if (statistics.frames_per_second.system) rate["system"] = *statistics.frames_per_second.system;
+  if (statistics.frames_per_second.steady) rate["steady"] = *statistics.frames_per_second.steady;
+  Json& bound = document["bound"] = {{"core", statistics.bound.core},
+                                     {"core_limited_by", statistics.bound.core_limited_by}};
+  if (statistics.bound.system) {
+    bound["system"] = *statistics.bound.system;
+    bound["system_limited_by"] = statistics.bound.system_limited_by;
+  }
   document["banks"] = rows(statistics.banks);
   document["ports"] = rows(statistics.ports);
   document["blame"] = rows(statistics.blame);
+  if (statistics.computer) add_computer(*statistics.computer, document);
   if (!statistics.failed.empty()) document["failed"] = statistics.failed;
   if (accuracy) document["accuracy"] = to_json(*accuracy);
   return json_text(document);

@@ -8,7 +8,8 @@
 
 namespace stereotlm::report {
 
-// The text of stats.json (contract section 6), its keys in that order. What does not apply is absent:
+// The text of stats.json (contract section 6), its keys in that order; a camera's reasons of dropped frames behind
+// its other keys. What does not apply is absent:
 // `failed` unless an identity failed, `accuracy` unless it is given, a percentage of nothing.
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
 

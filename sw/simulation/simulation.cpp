@@ -1,30 +1,24 @@
-#include "sw/cli/simulation.h"
+#include "sw/simulation/simulation.h"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 #include <utility>
 
-namespace stereotlm::cli {
+namespace stereotlm::simulation {
 namespace {
 
 constexpr double kSliceCycles = 40'000;
 
 }  // namespace
 
-Simulation::Simulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                       host::FrameSource& pairs, std::uint64_t frames)
-    : board_(board),
-      tables_(tables),
-      pairs_(pairs),
-      slice_(kSliceCycles / board.fpga.clock_mhz, sc_core::SC_US),
-      system_("system", board, tables, frames, *this, *this, binder_),
-      counters_(platform::counters_of(system_.board)) {}
+Simulation::Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames)
+    : board_(board), pairs_(pairs), frames_(frames) {}
 
-std::vector<kernels::GrayImage> Simulation::advance() {
-  ended_.clear();
+std::vector<Result> Simulation::advance() {
+  new_.clear();
   try {
-    sc_core::sc_start(slice_);
+    sc_core::sc_start(kSliceCycles / board_.fpga.clock_mhz, sc_core::SC_US);
   } catch (const sc_core::sc_report&) {
     if (failure_) std::rethrow_exception(failure_);  // SystemC has put a report in its place
     throw;
@@ -34,29 +28,29 @@ std::vector<kernels::GrayImage> Simulation::advance() {
         fmt::format("the simulation has ended after {} frames: nothing is left that could finish the next",
                     frames_done()));
   }
-  return std::move(ended_);
+  if (!finished()) check_progress();
+  return std::move(new_);
 }
 
-platform::Statistics Simulation::statistics() const {
-  return platform::collect_statistics(board_, tables_, system_.board, counters_);
+std::uint64_t Simulation::cycles() const {
+  return static_cast<std::uint64_t>(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6 +
+                                    0.5);
 }
 
-const host::StereoPair& Simulation::pair(std::uint64_t frame) {
+const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
   try {
-    return pairs_.pair(frame);
+    return pairs_.pair(number);
   } catch (...) {
     failure_ = std::current_exception();
     throw;
   }
 }
 
-// Counters are taken at each frame's end, because those of a frame under way would be mixed into them when
-// the run is interrupted.
-void Simulation::take(std::uint64_t /*frame*/, const kernels::GrayImage& disparity) {
-  counters_ = platform::counters_of(system_.board);
-  disparity_ = disparity;
-  ended_.push_back(disparity);
-  cycles_of_done_ += system_.board.core.frame_cycles().back();
+void Simulation::add_result(Result result) {
+  ++frames_done_;
+  cycles_of_done_ = cycles();
+  last_ = result;
+  new_.push_back(std::move(result));
 }
 
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::simulation

@@ -6,48 +6,65 @@
 #include <vector>
 
 #include "models/host/ideal_host.h"
-#include "platform/collect.h"
-#include "platform/preloaded_system.h"
+#include "models/kernels/gray_image.h"
+#include "platform/board_config.h"
 #include "platform/statistics.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::simulation {
 
-// The board on the pairs of a source. One of these a process: SystemC elaborates once.
-class Simulation : private host::FrameSource, private host::FrameSink {
- public:
-  // All but `frames` outlives the simulation. Throws std::exception if the board cannot be built.
-  Simulation(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
-             std::uint64_t frames);
-
-  // Simulates about 40,000 FPGA cycles and returns the disparities of the frames that have ended in them, in
-  // order. Throws sc_core::sc_report if a model reports an error, what `pairs` throws, and std::runtime_error
-  // if nothing is left to happen before the last frame is finished.
-  std::vector<kernels::GrayImage> advance();
-
-  bool finished() const { return system_.host.finished(); }
-  std::uint64_t frames_done() const { return counters_.frames; }
-  std::uint64_t cycles_of_done() const { return cycles_of_done_; }     // of the finished frames
-  std::uint64_t cycles() const { return system_.board.core.cycle(); }  // so far
-
-  // Of the frames finished so far: their figures, which take their time, and the disparities of the last one.
-  platform::Statistics statistics() const;
-  const kernels::GrayImage& disparity() const { return disparity_; }
-
- private:
-  const host::StereoPair& pair(std::uint64_t frame) override;
-  void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
-
-  const platform::BoardConfig& board_;
-  const platform::Tables& tables_;
-  host::FrameSource& pairs_;
-  sc_core::sc_time slice_;
-  std::vector<kernels::GrayImage> ended_;  // since the last advance() began
-  kernels::GrayImage disparity_;
-  std::exception_ptr failure_;  // of the source
-  std::uint64_t cycles_of_done_ = 0;
-  Binder binder_;
-  platform::PreloadedSystem system_;
-  platform::BoardCounters counters_;  // at the end of the last finished frame
+struct Result {
+  std::uint64_t number = 0;  // of the camera frame, which shows pair `number` modulo the number of pairs
+  kernels::GrayImage disparity;
 };
 
-}  // namespace stereotlm::cli
+// A board and what is around it, on the pairs of a source, until `frames` results are there. One of these a process:
+// SystemC elaborates once.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  // Simulates about 40,000 FPGA cycles and returns the results that have come in them, in order. Throws
+  // sc_core::sc_report if a model reports an error, what the source throws, and std::runtime_error if nothing is left to
+  // happen, or nothing goes on, before the last frame is finished.
+  std::vector<Result> advance();
+
+  // To be finished as soon as the results are those of a whole run of fewer frames: of those that are done, and of
+  // those under way where they have left their traces.
+  virtual void end_early() = 0;
+
+  std::uint64_t frames() const { return frames_; }  // to do
+  std::uint64_t frames_done() const { return frames_done_; }
+  bool finished() const { return frames_done_ == frames_; }
+  // FPGA cycles since time 0, and those by the last result.
+  std::uint64_t cycles() const;
+  std::uint64_t cycles_of_done() const { return cycles_of_done_; }
+
+  // Of the frames that are done, with no other under way that end_early() would finish; one at least for a computer.
+  virtual platform::Statistics statistics() const = 0;
+  const Result& last() const { return last_; }
+
+ protected:
+  // `board` and `pairs` outlive the simulation.
+  Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames);
+
+  void set_frames(std::uint64_t frames) { frames_ = frames; }
+  // Within a SystemC process, which an exception of the source ends.
+  const host::StereoPair& load_pair(std::uint64_t number);
+  void add_result(Result result);
+  // Throws std::runtime_error if nothing has gone on for too long.
+  virtual void check_progress() {}
+
+ private:
+  const platform::BoardConfig& board_;
+  host::FrameSource& pairs_;
+  std::uint64_t frames_;
+  std::uint64_t frames_done_ = 0;
+  std::uint64_t cycles_of_done_ = 0;
+  std::vector<Result> new_;  // since the last advance() began
+  Result last_;
+  std::exception_ptr failure_;  // of the source
+};
+
+}  // namespace stereotlm::simulation

@@ -29,7 +29,7 @@ Delivery delivery_of(const std::vector<std::string>& failed) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Delivery delivery;
-  delivery.all_hold = deliver(input, statistics, kernels::GrayImage(4, 1));
+  delivery.all_hold = deliver(input, statistics, {0, kernels::GrayImage(4, 1)});
   delivery.out = ::testing::internal::GetCapturedStdout();
   delivery.err = ::testing::internal::GetCapturedStderr();
   return delivery;

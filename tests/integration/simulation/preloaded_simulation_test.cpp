@@ -1,4 +1,4 @@
-#include "sw/cli/simulation.h"
+#include "sw/simulation/preloaded_simulation.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "platform/board_yaml.h"
 #include "tests/support/expected_report.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::simulation {
 namespace {
 
 platform::BoardConfig small_board() {
@@ -56,11 +56,11 @@ std::string message_of_advancing(Simulation& simulation) {
   return "";
 }
 
-TEST(Simulation, AdvancesInSlicesUntilTheLastFrame) {
+TEST(PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
-  Simulation simulation(board, tables, pairs, 10);
+  PreloadedSimulation simulation(board, tables, pairs, 10);
   EXPECT_FALSE(simulation.finished());
   EXPECT_EQ(simulation.frames_done(), 0U);
   EXPECT_EQ(simulation.statistics().frames, 0U);
@@ -82,48 +82,64 @@ TEST(Simulation, AdvancesInSlicesUntilTheLastFrame) {
   simulation.advance();
   EXPECT_TRUE(simulation.finished());
   EXPECT_EQ(simulation.frames_done(), 10U);
-  EXPECT_EQ(simulation.disparity().width, 32);
+  EXPECT_EQ(simulation.last().disparity.width, 32);
+  EXPECT_EQ(simulation.last().number, 9U);
 }
 
-TEST(Simulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
+TEST(PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
-  Simulation simulation(board, tables, pairs, 10);
-  std::vector<kernels::GrayImage> ended = simulation.advance();
+  PreloadedSimulation simulation(board, tables, pairs, 10);
+  std::vector<Result> ended = simulation.advance();
   EXPECT_EQ(ended.size(), 6U);
-  for (kernels::GrayImage& disparity : simulation.advance()) ended.push_back(std::move(disparity));
+  for (Result& result : simulation.advance()) ended.push_back(std::move(result));
   ASSERT_EQ(ended.size(), 10U);
-  for (std::uint64_t frame = 0; frame < 10; ++frame) EXPECT_EQ(ended[frame], pairs.disparity(frame)) << frame;
-  EXPECT_EQ(simulation.disparity(), ended.back());
+  for (std::uint64_t frame = 0; frame < 10; ++frame) {
+    EXPECT_EQ(ended[frame].number, frame);
+    EXPECT_EQ(ended[frame].disparity, pairs.disparity(frame)) << frame;
+  }
+  EXPECT_EQ(simulation.last().disparity, ended.back().disparity);
 }
 
-TEST(Simulation, PassesOnWhatTheSourceThrows) {
+TEST(PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
+  const platform::BoardConfig board = small_board();
+  const platform::Tables tables = platform::identity_tables(board);
+  OnePair pairs;
+  PreloadedSimulation simulation(board, tables, pairs, 10);
+  simulation.advance();
+  simulation.end_early();
+  EXPECT_TRUE(simulation.finished());
+  EXPECT_EQ(simulation.frames(), 6U);
+  EXPECT_EQ(simulation.statistics().frames, 6U);
+}
+
+TEST(PreloadedSimulation, PassesOnWhatTheSourceThrows) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
   pairs.failing_frame = 3;
-  Simulation simulation(board, tables, pairs, 10);
+  PreloadedSimulation simulation(board, tables, pairs, 10);
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
   EXPECT_EQ(message_of_advancing(simulation), "the disk is gone");
   EXPECT_EQ(simulation.frames_done(), 3U);
 }
 
-TEST(Simulation, PassesOnWhatAModelReports) {
+TEST(PreloadedSimulation, PassesOnWhatAModelReports) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   pairs.pair_.right = kernels::GrayImage(28, 24);
-  Simulation simulation(board, tables, pairs, 1);
+  PreloadedSimulation simulation(board, tables, pairs, 1);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
   EXPECT_THROW(simulation.advance(), sc_core::sc_report);
 }
 
-TEST(Simulation, SaysThatItHasEndedBeforeTheLastFrame) {
+TEST(PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
-  Simulation simulation(board, tables, pairs, 10);
+  PreloadedSimulation simulation(board, tables, pairs, 10);
   simulation.advance();
   ASSERT_EQ(simulation.frames_done(), 6U);
   // An error that is not thrown: the host does no more.
@@ -134,13 +150,13 @@ TEST(Simulation, SaysThatItHasEndedBeforeTheLastFrame) {
             "the simulation has ended after 7 frames: nothing is left that could finish the next");
 }
 
-TEST(Simulation, CannotBeBuiltOfAWrongBoard) {
+TEST(PreloadedSimulation, CannotBeBuiltOfAWrongBoard) {
   platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   board.matcher.window = 4;
-  EXPECT_THROW(Simulation(board, tables, pairs, 1), std::invalid_argument);
+  EXPECT_THROW(PreloadedSimulation(board, tables, pairs, 1), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::simulation

@@ -19,7 +19,8 @@ platform::Statistics two_banks() {
   statistics.cycles = 2000;
   statistics.frame_cycles = {1016, 1018};
   statistics.frames_per_second.core = 39331.5;
-  statistics.bound = {40000, "left_pixel"};
+  statistics.bound.core = 40000;
+  statistics.bound.core_limited_by = "left_pixel";
   statistics.banks = {{"image", 1500, 0, 1500, 0, 500, 3, 0.75, 120},
                       {"out", 0, 20, 20, 0, 1980, 0, 0.01, 1.6}};
   statistics.blame = {{"left_lut", "image", "left_pixel", 40},
@@ -29,7 +30,7 @@ platform::Statistics two_banks() {
 }
 
 TEST(ConsoleTable, ShowsRatesBanksAndTheWorstStall) {
-  EXPECT_EQ(console_table(two_banks(), 40, std::nullopt),
+  EXPECT_EQ(console_table(two_banks(), {}, std::nullopt),
             "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
             "bound         40000.000 frames/s   limited by left_pixel\n"
             "bank                  reads         writes   use %      MB/s peak MB/s\n"
@@ -38,40 +39,93 @@ TEST(ConsoleTable, ShowsRatesBanksAndTheWorstStall) {
             "worst stall  left_pixel on out lost 250 cycles (12.50 %) to turnaround\n");
 }
 
+platform::Statistics in_a_computer() {
+  platform::Statistics statistics = two_banks();
+  statistics.frames_per_second.system = 17.5;
+  statistics.frames_per_second.steady = 17.98;
+  statistics.bound.system = 29.97;
+  statistics.bound.system_limited_by = "camera";
+  platform::ComputerStatistics& computer = statistics.computer.emplace();
+  computer.pci_clocks = 10'000;
+  computer.pci_busy_clocks = 2'500;
+  computer.pci_masters = {{"host", 10, 20, 0}, {"left_capture", 100, 3000, 3333}};
+  computer.posted_words = 3000;
+  computer.dma_words = 1000;
+  computer.local_clocks = 20'000;
+  computer.local_busy_clocks = 5'000;
+  computer.cameras = {{"left", 10, 6, 4, 80, 3, 1, 0}, {"right", 10, 6, 4, 0, 2, 1, 1}};
+  computer.capture_to_host_ms = {77.5, 80, 90.25, 99, 100};
+  return statistics;
+}
+
+TEST(ConsoleTable, ShowsTheComputerAroundTheBoard) {
+  EXPECT_EQ(
+      console_table(in_a_computer(), {40, 30, 40}, std::nullopt),
+      "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
+      "bound         40000.000 frames/s   limited by left_pixel\n"
+      "system           17.500 frames/s   steady 17.980\n"
+      "bound            29.970 frames/s   limited by camera\n"
+      "bank                  reads         writes   use %      MB/s peak MB/s\n"
+      "image                  1500              0   75.00    120.00    160.00\n"
+      "out                       0             20    1.00      1.60    160.00\n"
+      "worst stall  left_pixel on out lost 250 cycles (12.50 %) to turnaround\n"
+      "pci master     transactions          words   use %      MB/s peak MB/s mean wait us\n"
+      "host                     10             20    0.20      0.24    120.00        0.000\n"
+      "left_capture            100           3000   30.00     36.00    120.00        1.111\n"
+      "pci bus      busy 25.00 % of its clocks\n"
+      "local bus    busy 25.00 % of its clocks, 32.00 of 160.00 MB/s: 3000 words posted, 1000 by DMA\n"
+      "camera          frames  captured  dropped:   not armed      busy   partner  dropped pixels\n"
+      "left                10         6         4           3         1         0              80\n"
+      "right               10         6         4           2         1         1               0\n"
+      "latency      capture to host, ms: min 77.500, p50 80.000, p95 90.250, p99 99.000, max 100.000\n");
+}
+
+TEST(ConsoleTable, HasNoSteadyRateOfOneFrame) {
+  platform::Statistics statistics = in_a_computer();
+  statistics.frames_per_second.steady.reset();
+  EXPECT_THAT(console_table(statistics, {}, std::nullopt), HasSubstr("\nsystem           17.500 frames/s\n"));
+}
+
 TEST(ConsoleTable, ShowsTheAccuracyIfThereIsGroundTruth) {
   EXPECT_THAT(
-      console_table(two_banks(), 40, Accuracy{4.256, 2, 81.5}),
+      console_table(two_banks(), {}, Accuracy{4.256, 2, 81.5}),
       HasSubstr("\naccuracy     off by more than 1: 4.26 %, by more than 2: 2.00 %, answered: 81.50 %\n"));
-  EXPECT_THAT(console_table(two_banks(), 40, Accuracy{std::nullopt, std::nullopt, 0}),
+  EXPECT_THAT(console_table(two_banks(), {}, Accuracy{std::nullopt, std::nullopt, 0}),
               HasSubstr("\naccuracy     off by more than 1: n/a, by more than 2: n/a, answered: 0.00 %\n"));
-  EXPECT_THAT(console_table(two_banks(), 40, std::nullopt), Not(HasSubstr("accuracy")));
+  EXPECT_THAT(console_table(two_banks(), {}, std::nullopt), Not(HasSubstr("accuracy")));
 }
 
 TEST(ConsoleTable, SaysSoIfNothingStalled) {
   platform::Statistics statistics = two_banks();
   statistics.blame.clear();
-  EXPECT_THAT(console_table(statistics, 40, std::nullopt), HasSubstr("\nworst stall  none\n"));
+  EXPECT_THAT(console_table(statistics, {}, std::nullopt), HasSubstr("\nworst stall  none\n"));
 }
 
 TEST(ConsoleTable, TakesThePeakFromTheClock) {
-  EXPECT_THAT(console_table(two_banks(), 62.5, std::nullopt), HasSubstr("    120.00    250.00\n"));
+  EXPECT_THAT(console_table(two_banks(), {62.5, 33, 40}, std::nullopt), HasSubstr("    120.00    250.00\n"));
 }
 
 TEST(ConsoleTable, StaysWithinAHundredColumns) {
-  platform::Statistics statistics = two_banks();
+  platform::Statistics statistics = in_a_computer();
+  statistics.bound.system_limited_by = std::string(300, 'l');
+  statistics.computer->pci_masters[0] = {"right_capture", 9'999'999'999'999, 9'999'999'999'999, 99'999};
+  statistics.computer->pci_clocks = 99'999'999'999'999;
+  statistics.computer->posted_words = 9'999'999'999;
+  statistics.computer->local_clocks = 99'999'999'999;
+  statistics.computer->cameras[0] = {"right", 9'999'999, 9'999'999, 9'999'999, 999'999'999'999, 1, 2, 3};
   statistics.banks[0].name = std::string(300, 'b');
   statistics.banks[0].reads = 9'999'999'999'999;
   statistics.blame = {{"right_pixel", std::string(300, 'b'), "right_pixel", 999'999'999'999'999}};
   statistics.cycles = 999'999'999'999'999;
   statistics.bound.core_limited_by = std::string(300, 'l');
-  std::istringstream lines(console_table(statistics, 1000, Accuracy{100, 100, 100}));
+  std::istringstream lines(console_table(statistics, {1000, 1000, 1000}, Accuracy{100, 100, 100}));
   std::string line;
   int count = 0;
   while (std::getline(lines, line)) {
     EXPECT_LE(line.size(), 100U) << line;
     ++count;
   }
-  EXPECT_EQ(count, 7);
+  EXPECT_EQ(count, 18);
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ platform::Statistics small_run() {
   statistics.cycles = 2000;
   statistics.frame_cycles = {1016, 1016};
   statistics.frames_per_second.core = 18.6;
-  statistics.bound = {19.25, "left_pixel"};
+  statistics.bound.core = 19.25;
+  statistics.bound.core_limited_by = "left_pixel";
   statistics.banks = {{"bank0", 1500, 20, 1520, 7, 473, 3, 0.76, 121.6}};
   statistics.ports = {{"left_lut", 1, 2, 3, 4, 5, 6}, {"host", 0, 0, 0, 2000, 0, 0}};
   statistics.blame = {{"left_lut", "bank0", "left_pixel", 40}};
@@ -90,6 +91,48 @@ TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
   "accuracy": {"bad_1_percent": 4.25, "bad_2_percent": 2, "answered_percent": 81.5}
 }
 )");
+}
+
+TEST(StatsJson, HasTheKeysOfAComputer) {
+  platform::Statistics statistics = small_run();
+  statistics.frames_per_second.system = 17.5;
+  statistics.frames_per_second.steady = 17.75;
+  statistics.bound.system = 18.5;
+  statistics.bound.system_limited_by = "pci";
+  platform::ComputerStatistics& computer = statistics.computer.emplace();
+  computer.pci_clocks = 1000;
+  computer.pci_busy_clocks = 400;
+  computer.pci_masters = {{"host", 1, 2, 3}, {"bridge", 4, 5, 6}};
+  computer.posted_words = 7;
+  computer.dma_words = 8;
+  computer.local_clocks = 1200;
+  computer.local_busy_clocks = 9;
+  computer.cameras = {{"left", 10, 6, 4, 80, 3, 1, 0}};
+  computer.capture_to_host_ms = {77.5, 80, 90.25, 99, 100};
+  const std::string text = stats_json(statistics, std::nullopt);
+  EXPECT_THAT(text, HasSubstr(R"(
+  "frames_per_second": {"core": 18.6, "system": 17.5, "steady": 17.75},
+  "bound": {"core": 19.25, "core_limited_by": "left_pixel", "system": 18.5, "system_limited_by": "pci"},
+)"));
+  EXPECT_THAT(text, HasSubstr(R"(
+  "pci": {
+    "clocks": 1000,
+    "busy_clocks": 400,
+    "masters": [
+      {"name": "host", "transactions": 1, "words": 2, "wait_clocks": 3},
+      {"name": "bridge", "transactions": 4, "words": 5, "wait_clocks": 6}
+    ]
+  },
+  "bridge": {"posted_words": 7, "dma_words": 8, "local_clocks": 1200, "local_busy_clocks": 9},
+  "cameras": [
+    {"name": "left", "frames": 10, "captured_frames": 6, "dropped_frames": 4, "dropped_pixels": 80, )"
+                              R"("dropped_not_armed": 3, "dropped_busy": 1, "dropped_by_partner": 0}
+  ],
+  "latency_ms": {
+    "capture_to_host": {"min": 77.5, "p50": 80, "p95": 90.25, "p99": 99, "max": 100}
+  }
+}
+)"));
 }
 
 TEST(StatsJson, LeavesOutWhatDoesNotApply) {

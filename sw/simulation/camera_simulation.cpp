@@ -1,0 +1,85 @@
+#include "sw/simulation/camera_simulation.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "models/clock.h"
+#include "sw/driver/board_driver.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+std::vector<std::uint32_t> entries_of(const std::optional<kernels::RectificationTable>& table) {
+  return table ? table->entries : std::vector<std::uint32_t>{};
+}
+
+// Longer than anything waits that will come: for the next frame of the cameras while another one ends, and for the bus
+// behind a third party.
+double patience_seconds(const platform::BoardConfig& board) {
+  constexpr double kRest = 0.1;  // clocks of 1 MHz included
+  return 4 / board.cameras.frame_rate_hz + kRest;
+}
+
+}  // namespace
+
+CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder)
+    : Simulation(board, pairs, frames),
+      board_(board),
+      tables_(tables),
+      driver_(driver::driver_config(board, frames), entries_of(tables.left), entries_of(tables.right), *this),
+      computer_("computer", board, driver::host_memory_bytes(driver::driver_config(board, frames)), driver_,
+                left_, right_, binder),
+      patience_seconds_(patience_seconds(board)) {}
+
+const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
+  simulation_.begins_ps_[number] = begin_ps;
+  return simulation_.load_pair(number).*side_;
+}
+
+void CameraSimulation::end_early() {
+  driver_.start_no_more();
+  set_frames(driver_.frames_started());
+}
+
+platform::Statistics CameraSimulation::statistics() const {
+  return platform::collect_statistics(board_, tables_, computer_, counters_, deliveries_);
+}
+
+void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
+  const auto begin = begins_ps_.find(frame.camera_frame);
+  deliveries_.push_back({begin->second, Clock::to_ps(sc_core::sc_time_stamp())});
+  begins_ps_.erase(begins_ps_.begin(), std::next(begin));
+  if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
+  kernels::GrayImage disparity(board_.image.width, board_.image.height);
+  disparity.pixels.assign(frame.disparity, frame.disparity + disparity.pixels.size());
+  add_result({frame.camera_frame, std::move(disparity)});
+}
+
+// Grows with whatever brings a result nearer; what a third party does on the bus does not.
+std::uint64_t CameraSimulation::work_done() const {
+  const fpga::StereoCore& core = computer_.board.core;
+  std::uint64_t work = core.control().left().consumed() + core.result_writer().stats().writes;
+  const pci::PciBus::Stats bus = computer_.pci_bus.stats();
+  for (std::size_t master = 0; master < platform::Computer::kMasterCount; ++master)
+    work += bus.masters[master].words;
+  return work;
+}
+
+void CameraSimulation::check_progress() {
+  if (const std::uint64_t work = work_done(); work != last_work_) {
+    last_work_ = work;
+    last_work_at_ = sc_core::sc_time_stamp();
+    return;
+  }
+  const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
+  if (idle < patience_seconds_) return;
+  throw std::runtime_error(fmt::format(
+      "nothing has gone on for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
+      "for: {}; {}",
+      idle, frames_done(), frames(), driver_.under_way(), computer_.board.core.waits()));
+}
+
+}  // namespace stereotlm::simulation

@@ -1,0 +1,184 @@
+#include "sw/simulation/camera_simulation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "models/kernels/stereo.h"
+#include "platform/board_yaml.h"
+#include "tests/support/expected_report.h"
+#include "tests/support/monitoring_binder.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A frame of the core takes 1.6 of the cameras'.
+platform::BoardConfig small_board(std::vector<std::string> sets = {}) {
+  sets.insert(sets.begin(),
+              {"image.width=64", "image.height=48", "matcher.disparities=16", "cameras.frame_rate_hz=1000"});
+  sets.emplace_back("fpga.clock_mhz=14.5");
+  return platform::load_board("fpl2003", sets);
+}
+
+// Pair k is noise of its own.
+class Noise : public host::FrameSource {
+ public:
+  const host::StereoPair& pair(std::uint64_t number) override {
+    if (number == failing_frame) throw std::runtime_error("the disk is gone");
+    std::mt19937 random(static_cast<std::uint32_t>(number));
+    for (auto* image : {&pair_.left, &pair_.right}) {
+      for (auto& pixel : image->pixels) pixel = static_cast<std::uint8_t>(random());
+    }
+    return pair_;
+  }
+  kernels::GrayImage disparity(std::uint64_t number, const platform::BoardConfig& board) {
+    const host::StereoPair& shown = pair(number);
+    return kernels::disparity_image(
+        shown.left, shown.right, nullptr, nullptr,
+        {board.matcher.window, board.matcher.disparities, board.matcher.filter, board.matcher.lr_tolerance});
+  }
+  std::optional<std::uint64_t> failing_frame;
+  host::StereoPair pair_ = {kernels::GrayImage(64, 48), kernels::GrayImage(64, 48)};
+};
+
+class CameraSimulationTest : public testing::Test {
+ protected:
+  void build(std::uint64_t frames, const platform::BoardConfig& config = small_board()) {
+    board = config;
+    tables = platform::identity_tables(board);
+    simulation.emplace(board, tables, pairs, frames, binder);
+  }
+  std::vector<Result> run() {
+    std::vector<Result> results;
+    while (!simulation->finished()) {
+      for (Result& result : simulation->advance()) results.push_back(std::move(result));
+    }
+    return results;
+  }
+  std::string message_of_running() {
+    try {
+      run();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  test::MonitoringBinder binder;
+  platform::BoardConfig board;
+  platform::Tables tables;
+  Noise pairs;
+  std::optional<CameraSimulation> simulation;
+};
+
+TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
+  build(8);
+  const std::vector<Result> results = run();
+  ASSERT_EQ(results.size(), 8U);
+  for (std::size_t frame = 0; frame < results.size(); ++frame) {
+    EXPECT_EQ(results[frame].disparity, pairs.disparity(results[frame].number, board)) << frame;
+    if (frame > 0) {
+      EXPECT_GT(results[frame].number, results[frame - 1].number);
+    }
+  }
+  EXPECT_EQ(simulation->last().number, results.back().number);
+}
+
+TEST_F(CameraSimulationTest, AccountsForTheComputer) {
+  build(8);
+  const std::vector<Result> results = run();
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_THAT(statistics.failed, IsEmpty());
+  EXPECT_EQ(statistics.frames, 8U);
+  EXPECT_EQ(statistics.frame_cycles.size(), 8U);
+  ASSERT_TRUE(statistics.computer.has_value());
+  const platform::ComputerStatistics& computer = *statistics.computer;
+  ASSERT_EQ(computer.cameras.size(), 2U);
+  for (const platform::CameraStatistics& camera : computer.cameras) {
+    EXPECT_EQ(camera.frames, camera.captured_frames + camera.dropped_frames);
+    EXPECT_GE(camera.captured_frames, 8U);
+    EXPECT_GT(camera.frames, results.back().number);
+    EXPECT_EQ(camera.dropped_pixels, 0U);
+  }
+  // The cameras' frames are 1 ms long.
+  EXPECT_GT(computer.capture_to_host_ms.min, 1.0);
+  EXPECT_LE(computer.capture_to_host_ms.min, computer.capture_to_host_ms.p50);
+  EXPECT_LE(computer.capture_to_host_ms.p99, computer.capture_to_host_ms.max);
+  const std::uint64_t words = 64 * 48 / 4;
+  EXPECT_EQ(computer.dma_words, 8 * words + 2 * 4 * words);  // results and tables
+  ASSERT_EQ(computer.pci_masters.size(), 4U);
+  EXPECT_GE(computer.pci_masters[1].words, 8 * words);
+  EXPECT_LE(computer.pci_busy_clocks, computer.pci_clocks);
+  EXPECT_LE(computer.local_busy_clocks, computer.local_clocks);
+  EXPECT_LT(*statistics.frames_per_second.system, *statistics.bound.system);
+  EXPECT_LT(*statistics.frames_per_second.steady, 1000);
+}
+
+TEST_F(CameraSimulationTest, HasNoSteadyRateOfOneFrame) {
+  build(1);
+  run();
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_TRUE(statistics.frames_per_second.system.has_value());
+  EXPECT_FALSE(statistics.frames_per_second.steady.has_value());
+}
+
+TEST_F(CameraSimulationTest, FinishesWhatTheCoreHasBegunToEndEarly) {
+  build(100);
+  while (simulation->frames_done() < 3) simulation->advance();
+  const std::uint64_t done = simulation->frames_done();
+  simulation->end_early();
+  const std::uint64_t frames = simulation->frames();
+  EXPECT_GE(frames, done);
+  EXPECT_LE(frames, done + 2);  // one in the core, one on its way back
+  run();
+  EXPECT_EQ(simulation->frames_done(), frames);
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_EQ(statistics.frames, frames);
+  EXPECT_THAT(statistics.failed, IsEmpty());
+}
+
+TEST_F(CameraSimulationTest, HasNothingToFinishBeforeTheFirstCapture) {
+  build(100);
+  simulation->end_early();
+  EXPECT_TRUE(simulation->finished());
+  EXPECT_EQ(simulation->frames(), 0U);
+}
+
+TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
+  pairs.failing_frame = 5;
+  build(100);
+  const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
+  EXPECT_EQ(message_of_running(), "the disk is gone");
+}
+
+TEST_F(CameraSimulationTest, SaysWhoWaitsForWhatWhenNothingGoesOn) {
+  // A camera whose error is not thrown sends no lines: its capture never ends.
+  sc_core::sc_report_handler::set_actions("/stereotlm/camera", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+  const test::ExpectedReport expected("/stereotlm/camera");
+  pairs.pair_.right = kernels::GrayImage(64, 44);
+  build(100);
+  EXPECT_THAT(
+      message_of_running(),
+      AllOf(HasSubstr("nothing has gone on for 0.10"),
+            HasSubstr("s of simulated time; delivered: 0 of 100 frames; the driver waits for: capture 0; the "
+                      "core runs no frame")));
+}
+
+TEST_F(CameraSimulationTest, CannotBeBuiltOfAWrongBoard) {
+  platform::BoardConfig wrong = small_board();
+  tables = platform::identity_tables(wrong);
+  wrong.matcher.window = 4;
+  EXPECT_THROW(CameraSimulation(wrong, tables, pairs, 1, binder), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::simulation
