@@ -175,10 +175,8 @@ int bounds(const BoardOptions& options) {
 }  // namespace
 
 void add_bounds(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("bounds",
-                                             "Say what each port and bank of the FPGA core, its matcher, and "
-                                             "the cameras and buses around the board limit "
-                                             "the frame rate to");
+  CLI::App* command = program.add_subcommand(
+      "bounds", "Say what limits the frame rate: ports, banks, matcher, and cameras and buses around them");
   command->footer(
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"

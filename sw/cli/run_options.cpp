@@ -49,9 +49,8 @@ void RunOptions::add_to(CLI::App& command) {
   command.footer(paragraph("", 0,
                            fmt::format("Not in this version: {}, {}; --fidelity fast.", unbuilt_.names(),
                                        board.unbuilt_names())) +
-                 "Ctrl-C ends the run with the results of the frames that are finished; with cameras those "
-                 "that the core has\n"
-                 "begun are finished first.");
+                 "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
+                 "those that the\ncore has begun are finished first.");
 }
 
 void RunOptions::check_usage() {

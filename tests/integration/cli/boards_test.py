@@ -99,16 +99,22 @@ class Keys(ProgramTest):
 
 class Bounds(ProgramTest):
     def groups(self, *arguments):
-        """For each group of frames the line that heads it and its resources with their numbers; the last line."""
+        """For each group of frames the line that heads it and its resources with their numbers; the core's bound."""
         lines = self.succeeds(run("bounds", *arguments)).splitlines()
         groups = []
-        for line in lines[:-1]:
+        for line in lines[: lines.index("around the board")]:
             if line.startswith("frame"):
                 groups.append((line, {}))
             elif not line.split()[0] == "resource":
                 *resource, cycles, rate, headroom = line.split()
                 groups[-1][1][" ".join(resource)] = (int(cycles), float(rate), float(headroom))
-        return groups, lines[-1]
+        return groups, lines[-2]
+
+    def around_the_board(self, *arguments):
+        """What each part of the computer allows, and the system's bound."""
+        lines = self.succeeds(run("bounds", *arguments)).splitlines()
+        parts = [line.split() for line in lines[lines.index("around the board") + 2 : -2]]
+        return {name: float(rate) for name, rate in parts}, lines[-1]
 
     def test_lists_each_resource(self):
         ((head, rows),), last = self.groups("fpl2003")
@@ -154,6 +160,20 @@ class Bounds(ProgramTest):
         _, last = self.groups("fpl2003", *SMALL)
         table = self.succeeds(self.run_small("--frames", "2"))
         self.assertEqual(table.splitlines()[1].split()[1], last.split()[4])
+
+    def test_lists_the_parts_of_the_computer(self):
+        parts, last = self.around_the_board("fpl2003")
+        self.assertEqual(list(parts), ["camera", "pci", "bridge"])
+        self.assertEqual(parts["camera"], 29.97)
+        self.assertEqual(last, "bound of the system: 18.596 frames/s, limited by matcher")
+
+    def test_names_the_part_of_the_computer_that_limits(self):
+        fast = ["--set", "matcher.fetch=line_buffer"]
+        _, last = self.around_the_board("fpl2003", *fast)
+        self.assertEqual(last, "bound of the system: 29.970 frames/s, limited by camera")
+        for key, part in (("pci.clock_mhz=1", "pci"), ("bridge.local_clock_mhz=1", "bridge")):
+            parts, last = self.around_the_board("fpl2003", *fast, "--set", key)
+            self.assertEqual(last, f"bound of the system: {parts[part]:.3f} frames/s, limited by {part}")
 
     def test_refuses_wrong_boards(self):
         self.refused_in_one_line(run("bounds", "fpl2003", "--set", "image.width=3"), "image.width = 3")
