@@ -24,6 +24,8 @@ class FieldChecker {
 
   void check() {
     for (const Key& key : board_keys()) {
+      const bool is_of_load = key.path.rfind("pci.load.", 0) == 0;
+      if (is_of_load && !board_.pci.load) continue;
       std::visit([&](const auto& rule) { check_key(key, rule); }, key.rule);
     }
   }
@@ -139,6 +141,10 @@ void require_sound(const BoardConfig& board) {
   if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
 }
 
+auto fields(const PciLoadConfig& load) {
+  return std::tie(load.burst_words, load.interval_us, load.first_us, load.access_us);
+}
+
 auto fields(const BankConfig& bank) {
   return std::tie(bank.name, bank.words, bank.kind, bank.turnaround_cycles);
 }
@@ -148,7 +154,7 @@ auto fields(const BoardConfig& b) {
       b.name, b.image.width, b.image.height, b.cameras.frame_rate_hz, b.cameras.trigger,
       b.capture.destination, b.capture.host_frames, b.capture.fifo_words, b.capture.fifo_trigger_words,
       b.pci.clock_mhz, b.pci.latency_timer_clocks, b.pci.bridge_wait_clocks, b.pci.memory_wait_clocks,
-      b.bridge.local_clock_mhz, b.bridge.dma_burst_words, b.bridge.posted_words, b.fpga.device,
+      b.pci.load, b.bridge.local_clock_mhz, b.bridge.dma_burst_words, b.bridge.posted_words, b.fpga.device,
       b.fpga.clock_mhz, b.fpga.arbiter.policy, b.fpga.arbiter.priority, b.fpga.lane_fifo_slots,
       b.fpga.result_fifo_words, b.fpga.pipeline_latency_cycles, b.allocation.left_image,
       b.allocation.right_image, b.allocation.disparity, b.allocation.left_lut, b.allocation.right_lut,
@@ -156,6 +162,8 @@ auto fields(const BoardConfig& b) {
 }
 
 }  // namespace
+
+bool operator==(const PciLoadConfig& a, const PciLoadConfig& b) { return fields(a) == fields(b); }
 
 bool operator==(const BoardConfig& a, const BoardConfig& b) {
   return fields(a) == fields(b) &&

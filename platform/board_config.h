@@ -33,11 +33,20 @@ struct CaptureConfig {
   int fifo_trigger_words = 32;  // 32-bit words, 1..fifo_words
 };
 
+// A third party on the PCI bus, which reads from a device of its own. Times are rounded to picoseconds.
+struct PciLoadConfig {
+  int burst_words = 32;    // 32-bit words of a transfer, 1..1024
+  double interval_us = 0;  // from one transfer's request to the next, 0..10^9; 0: asks again at once, a hog
+  double first_us = 0;     // of the first request, 0..10^9
+  double access_us = 0;    // that its device makes the bus wait before the first word, 0..10^6
+};
+
 struct PciConfig {
-  double clock_mhz = 33.333;      // 1..1000
-  int latency_timer_clocks = 64;  // 0..255
-  int bridge_wait_clocks = 4;     // 0..255
-  int memory_wait_clocks = 8;     // 0..255
+  double clock_mhz = 33.333;                         // 1..1000
+  int latency_timer_clocks = 64;                     // 0..255
+  int bridge_wait_clocks = 4;                        // 0..255
+  int memory_wait_clocks = 8;                        // 0..255
+  std::optional<PciLoadConfig> load = std::nullopt;  // nullopt: none
 };
 
 struct BridgeConfig {
@@ -95,6 +104,7 @@ struct BoardConfig {
   MatcherConfig matcher;
 };
 
+bool operator==(const PciLoadConfig& a, const PciLoadConfig& b);
 bool operator==(const BoardConfig& a, const BoardConfig& b);
 inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a == b); }
 

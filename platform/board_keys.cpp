@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "models/kernels/stereo.h"
+#include "models/pci/pci_config.h"
 #include "platform/yaml_tree.h"
 
 namespace stereotlm::platform {
@@ -19,6 +20,11 @@ namespace {
 template <auto... kMembers>
 auto& member(BoardConfig& board) {
   return (board.*....*kMembers);
+}
+
+template <auto kMember>
+auto& load_member(BoardConfig& board) {
+  return board.pci.load.value().*kMember;
 }
 
 template <auto... kMembers>
@@ -51,6 +57,13 @@ Key word(const char* path, const char* meaning, std::vector<std::string> words) 
 Key other(const char* path, const char* meaning, const char* unit, std::string text) {
   return {path, meaning, unit, OtherKey{}, std::move(text)};
 }
+
+Key optional(Key key) {
+  key.is_optional = true;
+  return key;
+}
+
+constexpr double microseconds(std::int64_t ps) { return static_cast<double>(ps) / 1e6; }
 
 template <std::size_t kSize>
 std::vector<std::string> names(const std::array<const char*, kSize>& list) {
@@ -106,6 +119,22 @@ std::vector<Key> make_keys() {
               member<&B::pci, &PciConfig::bridge_wait_clocks>),
       integer("pci.memory_wait_clocks", "wait clocks of host memory as a PCI target", "clocks", {0, 255},
               member<&B::pci, &PciConfig::memory_wait_clocks>),
+      optional(other("pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
+                     "none or a map of burst_words, interval_us, first_us, access_us")),
+      integer("pci.load.burst_words", "words that each transfer of the load reads", "words",
+              pci::kLoadBurstRule, load_member<&PciLoadConfig::burst_words>),
+      decimal(
+          "pci.load.interval_us",
+          "from one transfer's request to the next, to the nearest picosecond; 0: asks again at once, a hog",
+          "us", 0, microseconds(pci::kLoadTimeRule.max), load_member<&PciLoadConfig::interval_us>),
+      optional(decimal("pci.load.first_us",
+                       "time of the first request, to the nearest picosecond; optional, without it 0", "us",
+                       0, microseconds(pci::kLoadTimeRule.max), load_member<&PciLoadConfig::first_us>)),
+      optional(decimal("pci.load.access_us",
+                       "time that the load's own device makes the bus wait before the first word, to the "
+                       "nearest picosecond; optional, without it 0",
+                       "us", 0, microseconds(pci::kLoadAccessRule.max),
+                       load_member<&PciLoadConfig::access_us>)),
       decimal("bridge.local_clock_mhz", "clock of the bridge's local bus", "MHz", 1, 1000,
               member<&B::bridge, &BridgeConfig::local_clock_mhz>),
       integer("bridge.dma_burst_words", "longest burst of a DMA channel", "words", {1, 1024},
@@ -130,12 +159,15 @@ std::vector<Key> make_keys() {
       other("ssram.default.words", "depth of a bank that gives none of its own", "words",
             memory::kBankWordsRule.text()),
       other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
-      other("ssram.default.turnaround_cycles", "turnaround of a sync_burst bank that gives none of its own",
-            "cycles", turnaround_rule),
-      other("ssram.banks.NAME.words", "depth of the bank NAME", "words", memory::kBankWordsRule.text()),
-      other("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds),
-      other("ssram.banks.NAME.turnaround_cycles",
-            "cycles lost when the bank NAME changes between reads and writes", "cycles", turnaround_rule),
+      optional(other("ssram.default.turnaround_cycles",
+                     "turnaround of a sync_burst bank that gives none of its own", "cycles",
+                     turnaround_rule)),
+      optional(
+          other("ssram.banks.NAME.words", "depth of the bank NAME", "words", memory::kBankWordsRule.text())),
+      optional(other("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)),
+      optional(other("ssram.banks.NAME.turnaround_cycles",
+                     "cycles lost when the bank NAME changes between reads and writes", "cycles",
+                     turnaround_rule)),
       other("allocation.left_image", "banks of the left input buffers, used in turn", "", image_rule),
       other("allocation.right_image", "banks of the right input buffers, used in turn", "", image_rule),
       other("allocation.disparity", "banks of the result buffers, used in turn", "", list_rule),
@@ -178,6 +210,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
+// What the paths below a path begin with.
+std::string prefix_of(std::string_view path) { return path.empty() ? "" : std::string(path) + '.'; }
+
 }  // namespace
 
 const std::vector<Key>& board_keys() {
@@ -193,7 +228,7 @@ const Key& board_key(std::string_view path) {
 }
 
 std::vector<std::string> child_keys(std::string_view path) {
-  const std::string prefix = path.empty() ? "" : std::string(path) + '.';
+  const std::string prefix = prefix_of(path);
   std::vector<std::string> children;
   for (const Key& key : board_keys()) {
     if (key.path.compare(0, prefix.size(), prefix) != 0) continue;
@@ -201,6 +236,16 @@ std::vector<std::string> child_keys(std::string_view path) {
     if (children.empty() || children.back() != child) children.push_back(std::move(child));
   }
   return children;
+}
+
+std::vector<std::string> required_keys(std::string_view path) {
+  std::vector<std::string> names = child_keys(path);
+  for (const Key& key : board_keys()) {
+    const std::string name = last_part(key.path);
+    if (!key.is_optional || key.path != prefix_of(path) + name) continue;
+    names.erase(std::remove(names.begin(), names.end(), name), names.end());
+  }
+  return names;
 }
 
 std::string rule_text(std::string_view path) {

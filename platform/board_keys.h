@@ -14,7 +14,8 @@ namespace stereotlm::platform {
 using kernels::IntegerRule;
 
 // What a board file may hold: every key with its rule, once. The reader, the writer, the checks of a
-// BoardConfig and the `keys` command all work from this table.
+// BoardConfig and the `keys` command all work from this table. The fields of the keys below `pci.load` are
+// those of a load: on a board without one they throw std::bad_optional_access.
 struct IntegerKey {
   IntegerRule rule;
   int& (*field)(BoardConfig&);
@@ -43,7 +44,8 @@ struct Key {
   std::string meaning;  // one line
   std::string unit;     // empty: none
   std::variant<IntegerKey, DecimalKey, WordKey, OtherKey> rule;
-  std::string rule_text;  // the range or the allowed values
+  std::string rule_text;     // the range or the allowed values
+  bool is_optional = false;  // its map may lack it
 };
 
 // In the order in which boards are written.
@@ -52,6 +54,9 @@ const Key& board_key(std::string_view path);  // throws std::out_of_range
 
 // The names of the keys directly below a path ("" is the top), in order; empty below a single value.
 std::vector<std::string> child_keys(std::string_view path);
+
+// Those of child_keys() that are not optional.
+std::vector<std::string> required_keys(std::string_view path);
 
 // The rule of a key, or for a map what it holds: "a map of width, height".
 std::string rule_text(std::string_view path);

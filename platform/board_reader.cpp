@@ -47,8 +47,7 @@ class BoardReader {
 
  private:
   void read_section(const std::string& path, const YamlNode& node, const Place& key) {
-    const std::vector<std::string> names = child_keys(path);
-    const auto entries = values_.read_entries(path, node, key, names, names);
+    const auto entries = values_.read_entries(path, node, key, child_keys(path), required_keys(path));
     if (!entries) return;
     if (path == "ssram") {
       read_ssram(*entries);
@@ -91,6 +90,7 @@ class BoardReader {
     AllocationConfig& allocation = board_.allocation;
     const YamlNode& node = entry.value;
     if (key.path == "name") read_name(key, node);
+    if (key.path == "pci.load") read_load(key, entry);
     if (key.path == "fpga.priority") read_priority(key, node);
     if (key.path == "allocation.left_image") read_banks_of(key, node, allocation.left_image);
     if (key.path == "allocation.right_image") read_banks_of(key, node, allocation.right_image);
@@ -106,6 +106,18 @@ class BoardReader {
       values_.report(key.path, node, key.rule_text);
     } else {
       board_.name = node.text;
+    }
+  }
+
+  void read_load(const Key& key, const YamlNode::Entry& entry) {
+    const YamlNode& node = entry.value;
+    if (node.is_scalar() && node.text == "none") {
+      board_.pci.load = std::nullopt;
+    } else if (!node.is_map()) {
+      values_.report(key.path, node, key.rule_text);
+    } else {
+      board_.pci.load = PciLoadConfig();
+      read_section(key.path, node, entry.key.place);
     }
   }
 
@@ -235,20 +247,19 @@ class BoardReader {
   void read_ssram(const ValueReader::Entries& entries) {
     BankEntry defaults;
     if (const auto found = entries.find("default"); found != entries.end()) {
-      const std::vector<std::string> required = {"words", "kind"};
-      defaults = read_bank_entry("ssram.default", *found->second, required);
+      defaults = read_bank_entry("ssram.default", *found->second);
     }
     if (const auto found = entries.find("banks"); found != entries.end()) {
       read_banks(found->second->value, defaults);
     }
   }
 
-  BankEntry read_bank_entry(const std::string& path, const YamlNode::Entry& entry,
-                            const std::vector<std::string>& required) {
+  BankEntry read_bank_entry(const std::string& path, const YamlNode::Entry& entry) {
     BankEntry bank;
     bank.key = entry.key.place;
-    const auto entries = values_.read_entries(path, entry.value, entry.key.place,
-                                              {"words", "kind", "turnaround_cycles"}, required);
+    const std::string schema = schema_path(path);
+    const auto entries =
+        values_.read_entries(path, entry.value, entry.key.place, child_keys(schema), required_keys(schema));
     if (!entries) return bank;
     const auto read = [&](const std::string& name, Given& field, const auto& reader) {
       const auto found = entries->find(name);
@@ -318,7 +329,7 @@ class BoardReader {
 
   void read_bank(const std::string& path, const YamlNode::Entry& node, const BankEntry& defaults,
                  bool& default_lacks_turnaround) {
-    const BankEntry own = read_bank_entry(path, node, {});
+    const BankEntry own = read_bank_entry(path, node);
     const Given& kind = own.kind.present ? own.kind : defaults.kind;
     const Given& words = own.words.present ? own.words : defaults.words;
     const Given& turnaround =

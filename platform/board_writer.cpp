@@ -46,6 +46,7 @@ class BoardWriter {
   void write_children(const std::string& path, const std::string& indent) {
     for (const std::string& name : child_keys(path)) {
       const std::string full = below(path, name);
+      if (full == "pci.load" && !board_.pci.load) continue;
       out_ += fmt::format("{}{}:", indent, name);
       if (full == "matcher.filter") {
         write_line(board_.matcher.filter ? filter_text(*board_.matcher.filter) : "\"none\"");
@@ -74,9 +75,8 @@ class BoardWriter {
   std::string value_text(const Key&, const IntegerKey& integer) {
     return std::to_string(integer.field(writable_));
   }
-  // Shortest decimal that reads back equal.
   std::string value_text(const Key&, const DecimalKey& decimal) {
-    return fmt::format("{}", decimal.field(writable_));
+    return decimal_text(decimal.field(writable_));
   }
   std::string value_text(const Key&, const WordKey& word) {
     return word.words[static_cast<std::size_t>(word.get(board_))];

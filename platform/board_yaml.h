@@ -33,8 +33,8 @@ class BoardError : public std::runtime_error {
 BoardConfig load_board(const std::string& board, const std::vector<std::string>& sets = {});
 
 // The board in full, without `extends`; load_board() reads it back to an equal BoardConfig. `ssram.default`
-// is the first bank, the other banks give what differs. Throws std::invalid_argument if the board has
-// problems().
+// is the first bank, the other banks give what differs; a `pci.load` of none is left out. Throws
+// std::invalid_argument if the board has problems().
 std::string to_yaml(const BoardConfig& board);
 
 // The boards that are compiled in, `fpl2003` first.

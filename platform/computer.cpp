@@ -1,11 +1,20 @@
 #include "platform/computer.h"
 
+#include <cmath>
+
 #include "platform/buffer_words.h"
 
 namespace stereotlm::platform {
 namespace {
 
-enum Window : std::size_t { kHostMemory, kBridgeSlave, kBridgeRegisters, kLeftRegisters, kRightRegisters };
+enum Window : std::size_t {
+  kHostMemory,
+  kBridgeSlave,
+  kBridgeRegisters,
+  kLeftRegisters,
+  kRightRegisters,
+  kLoadDevice
+};
 enum Interrupt : std::size_t { kBridgeInterrupt, kLeftInterrupt, kRightInterrupt, kInterruptCount };
 
 // Registers on add-in boards answer as fast as the bridge.
@@ -24,7 +33,20 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
                     window(map.bridge_registers, pci::bridge::kRegisterWindowBytes, bridge_wait),
                     window(map.left_capture, capture::registers::kEnd, bridge_wait),
                     window(map.right_capture, capture::registers::kEnd, bridge_wait)};
+  if (board.pci.load) {
+    config.masters.emplace_back("load");
+    config.windows.push_back(
+        window(map.load, 4 * static_cast<std::uint64_t>(board.pci.load->burst_words), 0));
+  }
   return config;
+}
+
+std::unique_ptr<pci::PciLoad> make_load(const std::optional<PciLoadConfig>& load) {
+  if (!load) return nullptr;
+  const auto ps = [](double us) { return static_cast<std::uint64_t>(std::llround(us * 1e6)); };
+  const pci::PciLoadConfig config = {static_cast<std::uint32_t>(DeviceMap().load), load->burst_words,
+                                     ps(load->first_us), ps(load->interval_us), ps(load->access_us)};
+  return std::make_unique<pci::PciLoad>("load", config);
 }
 
 pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
@@ -58,6 +80,7 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
       right_camera("right_camera", camera_config(config), right),
       left_capture("left_capture", capture_config(config)),
       right_capture("right_capture", capture_config(config)),
+      load(make_load(config.pci.load)),
       interrupts_("interrupt", kInterruptCount) {
   bind_pci(binder);
   bind_capture();
@@ -83,6 +106,10 @@ void Computer::bind_pci(Binder& binder) {
   binder.bind(pci_bus.targets[kLeftRegisters], left_capture.registers, "pci_to_left_capture");
   binder.bind(pci_bus.targets[kRightRegisters], right_capture.registers, "pci_to_right_capture");
   pci_bus.stops[kBridgeSlave].bind(bridge.stop);
+  if (load) {
+    load->pci.bind(pci_bus.slots[kLoad]);
+    binder.bind(pci_bus.targets[kLoadDevice], load->device, "pci_to_load");
+  }
 }
 
 void Computer::bind_capture() {

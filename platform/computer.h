@@ -14,6 +14,7 @@
 #include "models/host/program.h"
 #include "models/pci/pci_bridge.h"
 #include "models/pci/pci_bus.h"
+#include "models/pci/pci_load.h"
 #include "platform/board.h"
 #include "platform/board_config.h"
 #include "platform/device_map.h"
@@ -24,7 +25,7 @@ namespace stereotlm::platform {
 // bridge, host memory, and the processor that runs `program`. The devices lie where DeviceMap says.
 class Computer : public sc_core::sc_module {
  public:
-  enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kMasterCount };
+  enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kLoad };
 
   // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has problems, or
   // `host_memory_bytes` is out of range.
@@ -41,6 +42,7 @@ class Computer : public sc_core::sc_module {
   capture::Camera right_camera;
   capture::CaptureBoard left_capture;
   capture::CaptureBoard right_capture;
+  std::unique_ptr<pci::PciLoad> load;  // null on a board without one, which has no master kLoad either
 
  private:
   void bind_pci(Binder& binder);

@@ -11,6 +11,7 @@ struct DeviceMap {
   std::uint64_t bridge_registers = 0xE000'0000;  // pci/bridge_registers.h
   std::uint64_t left_capture = 0xE100'0000;      // capture/capture_registers.h
   std::uint64_t right_capture = 0xE100'1000;
+  std::uint64_t load = 0xE200'0000;  // the device of PciLoadConfig
 };
 
 }  // namespace stereotlm::platform

@@ -84,6 +84,12 @@ std::optional<double> decimal_of(const YamlNode& node) {
   return value;
 }
 
+std::string decimal_text(double value) {
+  std::array<char, 400> text{};  // the longest has some 330
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+  return {text.data(), result.ptr};
+}
+
 bool is_text(const YamlNode& node) {
   constexpr std::array<std::string_view, 2> kTruth = {"true", "false"};
   return node.is_scalar() &&

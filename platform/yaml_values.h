@@ -17,6 +17,9 @@ std::optional<std::int64_t> integer_of(const YamlNode& node);
 // of double is infinite.
 std::optional<double> decimal_of(const YamlNode& node);
 
+// The shortest text that decimal_of() reads back as that number, which is finite.
+std::string decimal_text(double value);
+
 // A scalar in quotes, or one that no reader of YAML could take for a number, a truth value or null.
 bool is_text(const YamlNode& node);
 

@@ -195,6 +195,41 @@ TEST_F(ComputerTest, BlamesTheHostForItsTrafficOnABankOfTheCore) {
   expect_results_of_the_captured_pictures();
 }
 
+TEST_F(ComputerTest, HasAFifthMasterOnTheBusOnlyWithALoad) {
+  run(small_board(kWindow7), 1);
+  EXPECT_EQ(computer->load, nullptr);
+  EXPECT_EQ(computer->pci_bus.stats().masters.size(), 4U);
+}
+
+TEST_F(ComputerTest, DeliversThemBesideAThirdPartyOnTheBus) {
+  BoardConfig config = small_board(kWindow7);
+  config.pci.load = platform::PciLoadConfig{16, 10, 100, 1};
+  run(config, 6);
+  expect_results_of_the_captured_pictures();
+  expect_all_words_accounted_for();
+  const auto stats = computer->pci_bus.stats();
+  const auto& load = stats.masters.at(platform::Computer::kLoad);
+  EXPECT_EQ(load.name, "load");
+  EXPECT_EQ(load.aborts, 0U);
+  const double intervals = (sc_core::sc_time_stamp().to_seconds() * 1e6 - 100) / 10;
+  EXPECT_NEAR(static_cast<double>(computer->load->transfers()), intervals, 1);
+  EXPECT_GE(load.words, computer->load->transfers() * 16);
+  // Beside the address and data clocks of all masters: the microsecond before each first word, 33 clocks.
+  std::uint64_t clocks = computer->load->transfers() * 33;
+  for (const auto& master : stats.masters) clocks += master.transactions + master.words;
+  EXPECT_GE(stats.busy_clocks, clocks);
+}
+
+TEST_F(ComputerTest, DeliversThemBesideAHog) {
+  BoardConfig config = small_board(kWindow7);
+  config.pci.load = platform::PciLoadConfig{32, 0, 0, 0};
+  run(config, 3);
+  expect_results_of_the_captured_pictures();
+  expect_all_words_accounted_for();
+  const auto stats = computer->pci_bus.stats();
+  EXPECT_GT(stats.masters.at(platform::Computer::kLoad).words, stats.clocks / 2);
+}
+
 // Free-running cameras write straight into the idle buffer: a capture waits for the next frame, so that frames of
 // the core fall into step with the cameras.
 TEST_F(ComputerTest, TakesThreePairsInFiveCameraFramesWithTwoBuffers) {

@@ -62,6 +62,35 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
                 "matcher.filter.shift = 32: must be 0..31", "matcher.lr_tolerance = 254: 0..253 or off"}));
 }
 
+TEST(BoardConfig, ChecksTheFieldsOfALoad) {
+  const auto with_load = [](const PciLoadConfig& load) {
+    return problems_with([&load](BoardConfig& b) { b.pci.load = load; });
+  };
+  EXPECT_EQ(with_load({}), Problems{});
+  EXPECT_EQ(with_load({1, 0, 0, 0}), Problems{});
+  EXPECT_EQ(with_load({1024, 1e9, 1e9, 1e6}), Problems{});
+  EXPECT_EQ(
+      with_load({0, -0.5, std::nan(""), 1000000.5}),
+      (Problems{"pci.load.burst_words = 0: 1..1024", "pci.load.interval_us = -0.5: 0..1000000000",
+                "pci.load.first_us = nan: 0..1000000000", "pci.load.access_us = 1000000.5: 0..1000000"}));
+  EXPECT_EQ(with_load({1025, 1, 1, 1}), Problems{"pci.load.burst_words = 1025: 1..1024"});
+}
+
+TEST(BoardConfig, DiffersInEachFieldOfALoad) {
+  const auto with_load = [](const PciLoadConfig& load) {
+    BoardConfig board;
+    board.pci.load = load;
+    return board;
+  };
+  const BoardConfig board = with_load({1, 2, 3, 4});
+  EXPECT_EQ(board, with_load({1, 2, 3, 4}));
+  EXPECT_NE(board, BoardConfig());
+  EXPECT_NE(board, with_load({5, 2, 3, 4}));
+  EXPECT_NE(board, with_load({1, 5, 3, 4}));
+  EXPECT_NE(board, with_load({1, 2, 5, 4}));
+  EXPECT_NE(board, with_load({1, 2, 3, 5}));
+}
+
 TEST(BoardConfig, RefusesEnumeratorsThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
             Problems{"cameras.trigger = 2: free_running or on_demand"});

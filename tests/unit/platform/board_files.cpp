@@ -66,6 +66,7 @@ std::string refusal_of_board(const std::string& board, const std::vector<std::st
 std::string block_board() {
   BoardConfig board;
   for (BankConfig& bank : board.banks) bank.words = 1 << 26;
+  board.pci.load = PciLoadConfig();
   return to_yaml(board);
 }
 
@@ -80,9 +81,11 @@ ChangedBoard board_with(const std::string& path, const std::string& value) {
     const std::size_t colon = line.find(':');
     open.resize(indent / 2);
     open.push_back(line.substr(indent, colon - indent));
-    if (fmt::format("{}", fmt::join(open, ".")) == path) {
+    const std::string here = fmt::format("{}", fmt::join(open, "."));
+    if (here.rfind(path + '.', 0) == 0) continue;  // of the map that was there
+    if (here == path) {
       changed.place = fmt::format("board.yaml:{}:{}", number, colon + 3);
-      line.replace(colon + 2, std::string::npos, value);
+      line.replace(colon + 1, std::string::npos, ' ' + value);
     }
     changed.text += line + '\n';
   }

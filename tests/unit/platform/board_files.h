@@ -16,10 +16,12 @@ std::string refusal_of(const std::string& text, const std::vector<std::string>& 
 // The same for a preset or a path.
 std::string refusal_of_board(const std::string& board, const std::vector<std::string>& sets);
 
-// A whole board, the paper's but with the deepest banks, with each single value in a line of its own.
+// A whole board, the paper's but with the deepest banks and a load on the PCI bus, with each single value in
+// a line of its own.
 std::string block_board();
 
-// block_board() with another value at the path of a single value, and the place of that value.
+// block_board() with another value at the path of a single value or of a whole map, and the place of that
+// value.
 struct ChangedBoard {
   std::string text;
   std::string place;  // "board.yaml:3:10"

@@ -45,6 +45,14 @@ KeyCase decimal_case(const std::string& path, const std::string& min, const std:
           kNoDecimal};
 }
 
+KeyCase microseconds_case(const std::string& path, const std::string& max) {
+  return {path,
+          {"0", "0.0", "0.000001", "10", max, max + ".000", "0." + std::string(400, '0') + '1'},
+          {"-1", "-0.000001", max + ".001", kTooLong, std::string(400, '9')},
+          "0.." + max,
+          kNoDecimal};
+}
+
 std::vector<KeyCase> key_cases() {
   const std::string list = "a bank, or a list of 1 to 3 banks";
   const std::string images = list + "; left_image and right_image equally long";
@@ -85,6 +93,15 @@ std::vector<KeyCase> key_cases() {
       integer_case("pci.latency_timer_clocks", 0, 255),
       integer_case("pci.bridge_wait_clocks", 0, 255),
       integer_case("pci.memory_wait_clocks", 0, 255),
+      {"pci.load",
+       {"none", "\"none\"", "'none'", "{burst_words: 8, interval_us: 10}",
+        "{access_us: 1, first_us: 2.5, interval_us: 0, burst_words: 1024}"},
+       {"off", "false", "null", "~", "[]", "[none]", "7", "None"},
+       "none or a map of burst_words, interval_us, first_us, access_us"},
+      integer_case("pci.load.burst_words", 1, 1024),
+      microseconds_case("pci.load.interval_us", "1000000000"),
+      microseconds_case("pci.load.first_us", "1000000000"),
+      microseconds_case("pci.load.access_us", "1000000"),
       decimal_case("bridge.local_clock_mhz", "1", "0.999", "1000.001"),
       integer_case("bridge.dma_burst_words", 1, 1024),
       integer_case("bridge.posted_words", 1, 4096),

@@ -19,6 +19,11 @@ double any_decimal(double min, double max) {
   return min + (max - min) * static_cast<double>(part) / 0x1p53;
 }
 
+double any_microseconds(double max) {
+  return any_int(0, 2) == 0 ? *rc::gen::element(0.0, 0.1, 1e-6, 2e-5, 5e-324, 2.2250738585072014e-308, max)
+                            : any_decimal(0, max);
+}
+
 std::vector<BankConfig> any_banks() {
   std::vector<std::string> names = {"off",   "null", "yes", "True", "No",  "on",
                                     "false", "y",    "n-1", "Z_",   "None"};
@@ -60,7 +65,11 @@ BoardConfig any_board() {
   board.capture.host_frames = any_int(1, 64);
   board.capture.fifo_words = any_int(1, 4096);
   board.capture.fifo_trigger_words = any_int(1, board.capture.fifo_words);
-  board.pci = {any_decimal(1, 1000), any_int(0, 255), any_int(0, 255), any_int(0, 255)};
+  board.pci = {any_decimal(1, 1000), any_int(0, 255), any_int(0, 255), any_int(0, 255), std::nullopt};
+  if (any_int(0, 1) == 1) {
+    board.pci.load =
+        PciLoadConfig{any_int(1, 1024), any_microseconds(1e9), any_microseconds(1e9), any_microseconds(1e6)};
+  }
   board.bridge = {any_decimal(1, 1000), any_int(1, 1024), any_int(1, 4096)};
   board.fpga.clock_mhz = any_decimal(1, 1000);
   board.fpga.arbiter.policy = static_cast<memory::ArbitrationPolicy>(any_int(0, 1));
@@ -117,6 +126,19 @@ TEST(BoardRoundTrip, QuotesOffAndNone) {
   EXPECT_NE(text.find("  filter: \"none\"\n"), std::string::npos);
   EXPECT_NE(text.find("  lr_tolerance: \"off\"\n"), std::string::npos);
   EXPECT_NE(text.find("  left_lut: \"none\"\n  right_lut: \"none\"\n"), std::string::npos);
+}
+
+TEST(BoardRoundTrip, WritesALoadInFullAndNoneNotAtAll) {
+  EXPECT_EQ(to_yaml(load_board("fpl2003", {"pci.load=none"})).find("load"), std::string::npos);
+  EXPECT_NE(to_yaml(load_board("fpl2003", {"pci.load={burst_words: 32, interval_us: 0.00001}"}))
+                .find("  memory_wait_clocks: 8\n"
+                      "  load:\n"
+                      "    burst_words: 32\n"
+                      "    interval_us: 0.00001\n"
+                      "    first_us: 0\n"
+                      "    access_us: 0\n"
+                      "bridge:\n"),
+            std::string::npos);
 }
 
 TEST(BoardRoundTrip, WritesTheShortestDecimals) {

@@ -22,6 +22,8 @@ std::string banks_board(const std::string& ssram, const std::string& bank = "a")
              bank);
 }
 
+std::string board_with_load(const std::string& load) { return kBase + "pci: {load: " + load + "}\n"; }
+
 std::string kernel_board(const std::string& filter) { return kBase + "matcher: {filter: " + filter + "}\n"; }
 
 // m rows of m entries of one value, the last entry balancing the sum.
@@ -203,6 +205,51 @@ TEST(BoardPriority, NamesEachPortOnce) {
   EXPECT_EQ(board.fpga.arbiter.priority[0], memory::Port::kRightLut);
   EXPECT_EQ(board.fpga.arbiter.priority[1], memory::Port::kHost);
   EXPECT_EQ(board.fpga.arbiter.priority[5], memory::Port::kLeftLut);
+}
+
+TEST(BoardLoad, IsNoneUnlessTheBoardHasOne) {
+  EXPECT_EQ(load_board("fpl2003").pci.load, std::nullopt);
+  EXPECT_EQ(load_text(board_with_load("none")), load_board("fpl2003"));
+  EXPECT_EQ(load_text(board_with_load("{burst_words: 8, interval_us: 10}"), {"pci.load=none"}),
+            load_board("fpl2003"));
+}
+
+TEST(BoardLoad, IsAMapOfItsWordsAndTimes) {
+  EXPECT_EQ(load_text(board_with_load("{first_us: 0.5, burst_words: 8, access_us: 0.25, interval_us: 10}"))
+                .pci.load,
+            (PciLoadConfig{8, 10, 0.5, 0.25}));
+  EXPECT_EQ(
+      load_text(board_with_load("{burst_words: 8, interval_us: 10}"), {"pci.load.burst_words=9"}).pci.load,
+      (PciLoadConfig{9, 10, 0, 0}));
+}
+
+TEST(BoardLoad, RequiresItsWordsAndItsInterval) {
+  EXPECT_EQ(refusal_of(board_with_load("{}")),
+            "board.yaml:2:7: pci.load.burst_words: missing: 1..1024\n"
+            "board.yaml:2:7: pci.load.interval_us: missing: 0..1000000000");
+  EXPECT_EQ(refusal_of(board_with_load("{burst_words: 8, first_us: 1}")),
+            "board.yaml:2:7: pci.load.interval_us: missing: 0..1000000000");
+}
+
+TEST(BoardLoad, HasNoOtherKeyAndEachOnce) {
+  EXPECT_EQ(
+      refusal_of(board_with_load("{burst_words: 8, interval_us: 10, burst_wrods: 9, interval_us: 11}")),
+      "board.yaml:2:47: pci.load.burst_wrods = 9: unknown key; nearest known key: pci.load.burst_words\n"
+      "board.yaml:2:63: pci.load.interval_us = 11: repeated key, first at 2:30");
+  EXPECT_EQ(refusal_of(kBase + "pci: {lode: none}\n"),
+            "board.yaml:2:7: pci.lode = none: unknown key; nearest known key: pci.load");
+  EXPECT_EQ(refusal_of(kBase + "pci: {load: none, load: none}\n"),
+            "board.yaml:2:19: pci.load = none: repeated key, first at 2:7");
+}
+
+TEST(BoardLoad, ReportsEveryValueAtItsPlace) {
+  EXPECT_EQ(
+      refusal_of(board_with_load("{burst_words: 0, interval_us: fast, first_us: -1, access_us: 1000000.1}")),
+      "board.yaml:2:27: pci.load.burst_words = 0: 1..1024\n"
+      "board.yaml:2:43: pci.load.interval_us = fast: not a decimal number (such as 29.97, not in quotes); "
+      "0..1000000000\n"
+      "board.yaml:2:59: pci.load.first_us = -1: 0..1000000000\n"
+      "board.yaml:2:74: pci.load.access_us = 1000000.1: 0..1000000");
 }
 
 TEST(BoardFilter, HasRowsFromTheTop) {

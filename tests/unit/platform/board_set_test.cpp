@@ -23,6 +23,7 @@ TEST(BoardSet, ReplacesAValueOfAPresetOrAFile) {
   EXPECT_EQ(load_board("fpl2003", sets), expected);
   EXPECT_EQ(load_text("extends: fpl2003\nimage: {width: 640}\n", sets), expected);
   for (BankConfig& bank : expected.banks) bank.words = load_text(block_board()).banks[0].words;
+  expected.pci.load = load_text(block_board()).pci.load;
   EXPECT_EQ(load_text(block_board(), sets), expected);
 }
 
@@ -51,6 +52,12 @@ TEST(BoardSet, MakesWhatIsNotThere) {
                 .banks[7]
                 .turnaround_cycles,
             3);
+  EXPECT_EQ(load_board("fpl2003", {"pci.load={burst_words: 32, interval_us: 10}"}).pci.load,
+            (PciLoadConfig{32, 10, 0, 0}));
+  EXPECT_EQ(load_board("fpl2003", {"pci.load.burst_words=8", "pci.load.interval_us=10"}).pci.load,
+            (PciLoadConfig{8, 10, 0, 0}));
+  EXPECT_EQ(refusal_of_board("fpl2003", {"pci.load.burst_words=8"}),
+            "--set pci.load.burst_words: pci.load.interval_us: missing: 0..1000000000");
   std::string text = block_board();
   const std::size_t image = text.find("image:");
   text.erase(image, text.find("cameras:") - image);
@@ -142,6 +149,9 @@ TEST(BoardSet, RefusesAPathBelowAValueThatIsNoMap) {
       refusal_of_board("fpl2003", {"matcher.filter.shift=5"}),
       "--set matcher.filter.shift: matcher.filter.shift = 5: matcher.filter is not a map here; set it as a "
       "whole");
+  EXPECT_EQ(
+      refusal_of("extends: fpl2003\npci: {load: none}\n", {"pci.load.burst_words=8"}),
+      "--set pci.load.burst_words: pci.load.burst_words = 8: pci.load is not a map here; set it as a whole");
   EXPECT_EQ(refusal_of("extends: fpl2003\nimage: 5\n", {"image.width=4"}),
             "board.yaml:2:8: image = 5: a map of width, height\n"
             "--set image.width: image.width = 4: image is not a map here; set it as a whole");
