@@ -19,7 +19,10 @@ std::vector<std::uint32_t> entries_of(const std::optional<kernels::Rectification
 // behind a third party.
 double patience_seconds(const platform::BoardConfig& board) {
   constexpr double kRest = 0.1;  // clocks of 1 MHz included
-  return 4 / board.cameras.frame_rate_hz + kRest;
+  constexpr double kTurns = 4;
+  double turn = 1 / board.cameras.frame_rate_hz;
+  if (board.pci.load) turn += board.pci.load->access_us / 1e6 + board.pci.load->burst_words / 1e6;
+  return kTurns * turn + kRest;
 }
 
 }  // namespace
@@ -63,7 +66,7 @@ std::uint64_t CameraSimulation::work_done() const {
   const fpga::StereoCore& core = computer_.board.core;
   std::uint64_t work = core.control().left().consumed() + core.result_writer().stats().writes;
   const pci::PciBus::Stats bus = computer_.pci_bus.stats();
-  for (std::size_t master = 0; master < platform::Computer::kMasterCount; ++master)
+  for (std::size_t master = 0; master < platform::Computer::kLoad; ++master)
     work += bus.masters[master].words;
   return work;
 }

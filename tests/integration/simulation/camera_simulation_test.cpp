@@ -32,6 +32,8 @@ platform::BoardConfig small_board(std::vector<std::string> sets = {}) {
 // Pair k is noise of its own.
 class Noise : public host::FrameSource {
  public:
+  explicit Noise(int width = 64, int height = 48)
+      : pair_{kernels::GrayImage(width, height), kernels::GrayImage(width, height)} {}
   const host::StereoPair& pair(std::uint64_t number) override {
     if (number == failing_frame) throw std::runtime_error("the disk is gone");
     std::mt19937 random(static_cast<std::uint32_t>(number));
@@ -40,15 +42,15 @@ class Noise : public host::FrameSource {
     }
     return pair_;
   }
-  kernels::GrayImage disparity(std::uint64_t number, const platform::BoardConfig& board) {
-    const host::StereoPair& shown = pair(number);
-    return kernels::disparity_image(
-        shown.left, shown.right, nullptr, nullptr,
-        {board.matcher.window, board.matcher.disparities, board.matcher.filter, board.matcher.lr_tolerance});
-  }
   std::optional<std::uint64_t> failing_frame;
-  host::StereoPair pair_ = {kernels::GrayImage(64, 48), kernels::GrayImage(64, 48)};
+  host::StereoPair pair_;
 };
+
+kernels::GrayImage disparity_of(const host::StereoPair& pair, const platform::BoardConfig& board) {
+  return kernels::disparity_image(
+      pair.left, pair.right, nullptr, nullptr,
+      {board.matcher.window, board.matcher.disparities, board.matcher.filter, board.matcher.lr_tolerance});
+}
 
 class CameraSimulationTest : public testing::Test {
  protected:
@@ -85,7 +87,7 @@ TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
   const std::vector<Result> results = run();
   ASSERT_EQ(results.size(), 8U);
   for (std::size_t frame = 0; frame < results.size(); ++frame) {
-    EXPECT_EQ(results[frame].disparity, pairs.disparity(results[frame].number, board)) << frame;
+    EXPECT_EQ(results[frame].disparity, disparity_of(pairs.pair(results[frame].number), board)) << frame;
     if (frame > 0) {
       EXPECT_GT(results[frame].number, results[frame - 1].number);
     }
@@ -151,6 +153,44 @@ TEST_F(CameraSimulationTest, HasNothingToFinishBeforeTheFirstCapture) {
   simulation->end_early();
   EXPECT_TRUE(simulation->finished());
   EXPECT_EQ(simulation->frames(), 0U);
+}
+
+// Lines as fast as those of the paper's board, 640 pixels in 52.15 us, 24 of them. A third party keeps the bus for
+// 50 us from the first pixel of a line on: the FIFO of 140 words is full at pixel 560, 45.6 us after the first.
+TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
+  constexpr int kRow = 10;
+  constexpr int kFirstDropped = 560;
+  constexpr std::uint64_t kFrame = 4;
+  const capture::CameraTiming timing({640, 24, 599.4, capture::CameraTrigger::kFreeRunning});
+  const auto line_ps = static_cast<double>(timing.frame_ps(kFrame) + timing.row_ps(kRow));
+  EXPECT_NEAR(static_cast<double>(timing.pixel_ps(kFirstDropped, 0)) / 1e6, 45.6, 0.05);
+  pairs = Noise(640, 24);
+  platform::BoardConfig config = platform::load_board(
+      "fpl2003", {"image.height=24", "matcher.disparities=16", "cameras.frame_rate_hz=599.4"});
+  config.pci.load = platform::PciLoadConfig{1, 1e6, line_ps / 1e6, 50};
+  build(6, config);
+  const std::vector<Result> results = run();
+  std::vector<host::StereoPair> buffers(2, Noise(640, 24).pair_);
+  std::uint64_t hit = 0;
+  for (std::size_t frame = 0; frame < results.size(); ++frame) {
+    host::StereoPair captured = pairs.pair(results[frame].number);
+    host::StereoPair& buffer = buffers[frame % 2];
+    if (results[frame].number == kFrame) {
+      ++hit;
+      ASSERT_GE(frame, 2U);  // an earlier picture is in the buffer
+      for (int column = kFirstDropped; column < 640; ++column) {
+        captured.left.at(column, kRow) = buffer.left.at(column, kRow);
+        captured.right.at(column, kRow) = buffer.right.at(column, kRow);
+      }
+    }
+    buffer = captured;
+    EXPECT_EQ(results[frame].disparity, disparity_of(captured, board)) << frame;
+  }
+  EXPECT_EQ(hit, 1U);
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_THAT(statistics.failed, IsEmpty());
+  for (const platform::CameraStatistics& camera : statistics.computer->cameras)
+    EXPECT_EQ(camera.dropped_pixels, 640U - kFirstDropped);
 }
 
 TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
