@@ -22,7 +22,7 @@ struct StereoPair {
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  // The pair that frame number `frame` works on, of the configured size.
+  // The pair that frame number `frame` works on, of the configured size; valid until the next call.
   virtual const StereoPair& pair(std::uint64_t frame) = 0;
 };
 

@@ -1,0 +1,109 @@
+// What cameras, buffers and core make of the frame rate together, with every result compared with the arithmetic of the
+// pictures that were captured.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "models/kernels/stereo.h"
+#include "platform/board_yaml.h"
+#include "sw/simulation/camera_simulation.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+struct RateCase {
+  std::string name;
+  std::string board;
+  std::vector<std::string> sets;
+  std::optional<double> pairs_a_camera_frame;  // nullopt: as fast as the core
+};
+void PrintTo(const RateCase& rate, std::ostream* out) { *out << rate.name; }
+std::string name_of(const testing::TestParamInfo<RateCase>& info) { return info.param.name; }
+
+// Pair k: noise, of which the left picture is shifted by 9 columns.
+class Noise : public host::FrameSource {
+ public:
+  explicit Noise(const platform::BoardConfig& board) : board_(board) {}
+  const host::StereoPair& pair(std::uint64_t number) override {
+    pair_.left = picture(number, 0);
+    pair_.right = picture(number, 9);
+    return pair_;
+  }
+
+ private:
+  kernels::GrayImage picture(std::uint64_t number, int shift) const {
+    kernels::GrayImage out(board_.image.width, board_.image.height);
+    for (int row = 0; row < out.height; ++row) {
+      for (int column = 0; column < out.width; ++column) {
+        const auto place = static_cast<std::uint32_t>(row * 4096 + column + shift);
+        const std::uint32_t mixed = (place + static_cast<std::uint32_t>(number) * 77'777U) * 2'654'435'761U;
+        out.at(column, row) = static_cast<std::uint8_t>(mixed >> 24U);
+      }
+    }
+    return out;
+  }
+
+  const platform::BoardConfig& board_;
+  host::StereoPair pair_;
+};
+
+class CameraRates : public testing::TestWithParam<RateCase> {};
+
+TEST_P(CameraRates, AreThoseOfTheSlowestPartOverSixtyFrames) {
+  const platform::BoardConfig board = platform::load_board(GetParam().board, GetParam().sets);
+  const platform::Tables tables = platform::identity_tables(board);
+  Noise pairs(board);
+  Noise same_pairs(board);  // to look at while a capture goes on
+  Binder binder;
+  CameraSimulation simulation(board, tables, pairs, 61, binder);
+  const kernels::StereoConfig config{board.matcher.window, board.matcher.disparities, board.matcher.filter,
+                                     board.matcher.lr_tolerance};
+  while (!simulation.finished()) {
+    for (const Result& result : simulation.advance()) {
+      const host::StereoPair& pair = same_pairs.pair(result.number);
+      EXPECT_EQ(result.disparity, kernels::disparity_image(pair.left, pair.right, nullptr, nullptr, config))
+          << result.number;
+    }
+  }
+  const platform::Statistics statistics = simulation.statistics();
+  EXPECT_THAT(statistics.failed, testing::IsEmpty());
+  const auto& pairs_a_camera_frame = GetParam().pairs_a_camera_frame;
+  const double expected = pairs_a_camera_frame ? *pairs_a_camera_frame * board.cameras.frame_rate_hz
+                                               : statistics.frames_per_second.core;
+  EXPECT_NEAR(*statistics.frames_per_second.steady / expected, 1, 0.01);
+}
+
+// A quarter of the pixels from cameras that are four times as fast: the core needs the same part of a camera frame, 1.15
+// with a window of 5, 1.60 with 7, 2.06 with 9.
+std::vector<std::string> quarter(std::vector<std::string> sets) {
+  sets.insert(sets.end(), {"image.width=320", "image.height=240", "cameras.frame_rate_hz=119.88"});
+  return sets;
+}
+const std::string kFive = "matcher.window=5";
+const std::string kNine = "matcher.window=9";
+const std::string kToHost = "capture.destination=host_memory";
+
+INSTANTIATE_TEST_SUITE_P(
+    Quarter, CameraRates,
+    testing::Values(RateCase{"TwoBuffersWindow5", "fpl2003", quarter({kFive}), 2.0 / 3},
+                    RateCase{"TwoBuffersWindow7", "fpl2003", quarter({}), 3.0 / 5},
+                    RateCase{"TwoBuffersWindow9", "fpl2003", quarter({kNine}), std::nullopt},
+                    RateCase{"OneBufferWindow7", "fpl2003",
+                             quarter({"allocation.left_image=bank0", "allocation.right_image=bank2"}),
+                             1.0 / 3},
+                    RateCase{"ThreeBuffersWindow5", "fpl2003-triple", quarter({kFive}), std::nullopt},
+                    RateCase{"ThreeBuffersWindow7", "fpl2003-triple", quarter({}), std::nullopt},
+                    RateCase{"HostMemoryWindow5", "fpl2003", quarter({kToHost, kFive}), std::nullopt},
+                    RateCase{"HostMemoryWindow7", "fpl2003", quarter({kToHost}), std::nullopt},
+                    RateCase{"HostMemoryWindow9", "fpl2003", quarter({kToHost, kNine}), std::nullopt}),
+    name_of);
+INSTANTIATE_TEST_SUITE_P(Paper, CameraRates,
+                         testing::Values(RateCase{"TwoBuffersWindow7", "fpl2003", {}, 3.0 / 5}), name_of);
+
+}  // namespace
+}  // namespace stereotlm::simulation
