@@ -1,7 +1,9 @@
 #include "sw/driver/stereo_driver.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -152,6 +154,53 @@ TEST(StereoDriver, StopsWithTheErrorOfADmaChannel) {
     EXPECT_THROW(driver.run(machine), std::runtime_error);
     EXPECT_TRUE(listener.words.empty());
     EXPECT_EQ(machine.core_starts > 0, channel == 1);  // without tables the core is not started
+  }
+}
+
+// Looks at the driver whenever it waits.
+class WatchedMachine : public FakeMachine {
+ public:
+  using FakeMachine::FakeMachine;
+  void wait_for_interrupt() override {
+    on_wait();
+    FakeMachine::wait_for_interrupt();
+  }
+  std::function<void()> on_wait;
+};
+
+TEST(StereoDriver, SaysWhatItWaitsFor) {
+  Listener listener;
+  WatchedMachine machine(1);
+  DriverConfig config = small(2, 2, 3);
+  config.capture_to_host = true;
+  StereoDriver driver(config, kLeftTable, kRightTable, listener);
+  EXPECT_EQ(driver.under_way(), "nothing");
+  std::vector<std::string> texts;
+  machine.on_wait = [&] { texts.push_back(driver.under_way()); };
+  driver.run(machine);
+  ASSERT_GE(texts.size(), 3U);
+  EXPECT_EQ(texts[0], "the upload of the tables");
+  EXPECT_EQ(texts[1], "capture 0");
+  EXPECT_THAT(texts, testing::Contains("capture 1, copy of pair 0"));
+  EXPECT_THAT(texts, testing::Contains(testing::HasSubstr("core with frame 2")));
+  EXPECT_THAT(texts, testing::Contains(testing::HasSubstr("read-back of frame 0")));
+}
+
+TEST(StereoDriver, FinishesWhatTheCoreHasBegunWhenItIsToStartNoMore) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Listener listener;
+    WatchedMachine machine(seed);
+    StereoDriver driver(small(2, 2, 1'000'000), kLeftTable, kRightTable, listener);
+    std::uint64_t started = 0;
+    machine.on_wait = [&] {
+      if (listener.frames.size() < 5 || started > 0) return;
+      started = driver.frames_started();
+      driver.start_no_more();
+    };
+    driver.run(machine);
+    EXPECT_GE(started, 5U);
+    EXPECT_EQ(machine.core_starts, started);
+    EXPECT_EQ(listener.frames.size(), started);
   }
 }
 

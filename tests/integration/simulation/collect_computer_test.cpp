@@ -1,0 +1,134 @@
+// Identities of the computer that do not hold: a sound run, of which one counter is changed.
+#include "platform/collect_computer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+
+#include "platform/board_yaml.h"
+#include "sw/simulation/camera_simulation.h"
+#include "tests/support/monitoring_binder.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+using platform::ComputerCounters;
+using platform::Delivery;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+class OnePair : public host::FrameSource {
+ public:
+  const host::StereoPair& pair(std::uint64_t /*number*/) override { return pair_; }
+
+ private:
+  host::StereoPair pair_ = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
+};
+
+class CollectComputer : public testing::Test {
+ protected:
+  CollectComputer() {
+    while (!simulation.finished()) simulation.advance();
+    // The core is idle: as many frames as deliveries.
+    counters = platform::counters_of(simulation.computer());
+  }
+  platform::Statistics statistics() const {
+    return platform::collect_statistics(board, tables, simulation.computer(), counters, deliveries);
+  }
+
+  platform::BoardConfig board = platform::load_board(
+      "fpl2003",
+      {"image.width=32", "image.height=24", "matcher.disparities=8", "cameras.frame_rate_hz=1000"});
+  platform::Tables tables = platform::identity_tables(board);
+  OnePair pairs;
+  test::MonitoringBinder binder;
+  CameraSimulation simulation{board, tables, pairs, 3, binder};
+  ComputerCounters counters;
+  std::vector<Delivery> deliveries = {
+      {1'000'000'000, 3'000'000'000}, {2'000'000'000, 5'000'000'000}, {4'000'000'000, 9'000'000'000}};
+};
+
+TEST_F(CollectComputer, FindsNothingInASoundRun) { EXPECT_THAT(statistics().failed, IsEmpty()); }
+
+TEST_F(CollectComputer, TakesRatesAndLatenciesFromTheDeliveries) {
+  const platform::Statistics found = statistics();
+  EXPECT_DOUBLE_EQ(*found.frames_per_second.system, 3 / 9e-3);
+  EXPECT_DOUBLE_EQ(*found.frames_per_second.steady, 2 / 6e-3);
+  const platform::Percentiles& latency = found.computer->capture_to_host_ms;
+  EXPECT_EQ(latency.min, 2);
+  EXPECT_EQ(latency.p50, 3);  // nearest rank: the second of three
+  EXPECT_EQ(latency.p95, 5);
+  EXPECT_EQ(latency.p99, 5);
+  EXPECT_EQ(latency.max, 5);
+}
+
+TEST_F(CollectComputer, TakesTheNearestRankOfAHundred) {
+  deliveries.clear();
+  for (std::uint64_t i = 0; i < 100; ++i) deliveries.push_back({0, (100 - i) * 1'000'000'000});
+  const platform::Percentiles latency = statistics().computer->capture_to_host_ms;
+  EXPECT_EQ(latency.min, 1);
+  EXPECT_EQ(latency.p50, 50);
+  EXPECT_EQ(latency.p95, 95);
+  EXPECT_EQ(latency.p99, 99);
+  EXPECT_EQ(latency.max, 100);
+}
+
+TEST_F(CollectComputer, FindsAWordThatTheBridgeHasLost) {
+  ++counters.words.into_bridge[1];
+  EXPECT_THAT(statistics().failed,
+              ElementsAre(StartsWith("bytes written into the bridge for allocation.left_image[1] = ")));
+}
+
+TEST_F(CollectComputer, FindsAWordWrittenOutsideOfAllBuffers) {
+  ++counters.words.granted.back();
+  EXPECT_THAT(statistics().failed,
+              ElementsAre(StartsWith("bytes written into the bridge for no buffer = 0")));
+}
+
+TEST_F(CollectComputer, CountsWordsThatWaitInTheBridgeAndOnTheLocalBus) {
+  counters.words.into_bridge[0] += 3;
+  counters.words.in_bridge[0] += 1;
+  counters.words.on_bus[0] += 2;
+  EXPECT_THAT(statistics().failed, IsEmpty());
+}
+
+TEST_F(CollectComputer, FindsAGrantThatIsNoWordOfTheLocalBus) {
+  ++counters.local_bus.words_read;
+  EXPECT_THAT(statistics().failed, ElementsAre(StartsWith("port host: grants in and between frames = ")));
+}
+
+TEST_F(CollectComputer, FindsACameraFrameWithoutFate) {
+  ++counters.cameras[1].frames;
+  EXPECT_THAT(statistics().failed, ElementsAre(StartsWith("camera right: frames = ")));
+}
+
+TEST_F(CollectComputer, DropsAFrameThatBeginsAtTheEnd) {
+  const std::uint64_t dropped = statistics().computer->cameras[0].dropped_frames;
+  ++counters.cameras[0].frames;
+  counters.cameras[0].undecided = true;
+  EXPECT_THAT(statistics().failed, IsEmpty());
+  EXPECT_EQ(statistics().computer->cameras[0].dropped_frames, dropped + 1);
+}
+
+TEST_F(CollectComputer, FindsAWordOfTheBusThatNoCaptureWrote) {
+  ++counters.pci.masters[platform::Computer::kLeftCapture].words;
+  EXPECT_THAT(statistics().failed, ElementsAre(StartsWith("camera left: words written = ")));
+}
+
+TEST_F(CollectComputer, FindsMoreDeliveriesThanFrames) {
+  deliveries.push_back(deliveries.back());
+  EXPECT_THAT(statistics().failed, ElementsAre("frames delivered = 4, but frames of the core = 3"));
+}
+
+TEST_F(CollectComputer, FindsARateAboveItsBound) {
+  deliveries.back().host_ps = deliveries.back().capture_ps + 1;
+  EXPECT_THAT(statistics().failed, IsEmpty());  // 750 frames a second
+  deliveries = {{0, 1'000'000}, {0, 2'000'000}, {0, 2'500'000}};
+  EXPECT_THAT(statistics().failed, ElementsAre(StartsWith("frames_per_second.system = 1200000")));
+}
+
+}  // namespace
+}  // namespace stereotlm::simulation

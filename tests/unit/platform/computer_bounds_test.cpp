@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "platform/bounds.h"
+
+namespace stereotlm::platform {
+namespace {
+
+// The paper's board: 76,800 words a picture.
+constexpr double kPicture = 640 * 480 / 4;
+
+double bound_of(const BoardConfig& board, const std::string& resource) {
+  for (const RateBound& bound : computer_bounds(board)) {
+    if (bound.resource == resource) return bound.frames_per_second;
+  }
+  return 0;
+}
+
+TEST(ComputerBounds, GiveFreeRunningCamerasTheirFrameClock) {
+  EXPECT_EQ(bound_of(BoardConfig(), "camera"), 29.97);
+}
+
+TEST(ComputerBounds, GiveCamerasOnDemandTheTimeToTheLastPixel) {
+  BoardConfig board;
+  board.cameras = {25, CameraTrigger::kOnDemand};
+  // 525 lines in 40 ms; the last of 640 pixels of line 480 arrives 639/640 into its active part.
+  const double line_s = 0.04 / 525;
+  EXPECT_NEAR(bound_of(board, "camera"), 1 / (479 * line_s + line_s * 52.15 / 63.56 * 639 / 640), 1e-6);
+}
+
+TEST(ComputerBounds, CountTheBusClocksOfCaptureToTheBoard) {
+  // 64 words a burst into the bridge, whose posted writes are less than a FIFO; 32 a burst back to memory, and a
+  // descriptor.
+  const double capture = 2 * (kPicture + 1200 * (1 + 4 + 1));
+  const double result = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
+  EXPECT_DOUBLE_EQ(bound_of(BoardConfig(), "pci"), 33.333e6 / (capture + result));
+}
+
+TEST(ComputerBounds, CountTheBusClocksOfCaptureToHostMemoryAndOfTheCopy) {
+  BoardConfig board;
+  board.capture.destination = CaptureDestination::kHostMemory;
+  board.bridge.dma_burst_words = 7;
+  const double capture = 2 * (kPicture + 549 * (1 + 8 + 1));       // 140 words a burst, the last has 80
+  const double copy = 2 * (14 + kPicture + 10'972 * (1 + 8 + 1));  // the last burst has 3 words
+  const double result = 14 + kPicture + 10'972 * (1 + 8 + 1);
+  EXPECT_DOUBLE_EQ(bound_of(board, "pci"), 33.333e6 / (capture + copy + result));
+}
+
+TEST(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
+  BoardConfig board;
+  board.bridge.local_clock_mhz = 50;
+  board.bridge.dma_burst_words = 16;
+  // A word takes a cycle of the slower side, the FPGA; address, decode and idle clock of each burst the bus's own.
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 1e6 / (3 * kPicture / 40 + 3 * 4800 * 3.0 / 50));
+  board.bridge.local_clock_mhz = 20;
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 1e6 / (3 * kPicture / 20 + 3 * 4800 * 3.0 / 20));
+}
+
+TEST(ComputerBounds, OfTheSystemAreTheLeast) {
+  BoardConfig board;
+  Bound bound;
+  bound.core = 18.5;
+  bound.core_limited_by = "matcher";
+  add_system_bound(board, bound);
+  EXPECT_EQ(bound.system, 18.5);
+  EXPECT_EQ(bound.system_limited_by, "matcher");
+  bound.core = 130;
+  add_system_bound(board, bound);
+  EXPECT_EQ(bound.system, 29.97);
+  EXPECT_EQ(bound.system_limited_by, "camera");
+  board.pci.clock_mhz = 1;
+  add_system_bound(board, bound);
+  EXPECT_EQ(bound.system_limited_by, "pci");
+}
+
+TEST(ComputerBounds, RefuseABoardWithProblems) {
+  BoardConfig board;
+  board.cameras.frame_rate_hz = 0;
+  EXPECT_THROW(computer_bounds(board), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::platform
