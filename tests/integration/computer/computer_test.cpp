@@ -13,6 +13,7 @@
 #include "platform/tables.h"
 #include "sw/driver/board_driver.h"
 #include "tests/support/monitoring_binder.h"
+#include "tests/support/noise_picture.h"
 #include "tests/support/random_board.h"
 
 namespace stereotlm {
@@ -31,15 +32,7 @@ class NoiseSource : public capture::CameraSource {
     return image_;
   }
   GrayImage picture(std::uint64_t number) const {
-    GrayImage out(image_.width, image_.height);
-    for (int row = 0; row < out.height; ++row) {
-      for (int column = 0; column < out.width; ++column) {
-        const auto place = static_cast<std::uint32_t>(row * 4096 + column + shift_);
-        const std::uint32_t mixed = (place + static_cast<std::uint32_t>(number) * 77'777U) * 2'654'435'761U;
-        out.at(column, row) = static_cast<std::uint8_t>(mixed >> 24U);
-      }
-    }
-    return out;
+    return test::noise_picture(image_.width, image_.height, number, shift_);
   }
 
  private:

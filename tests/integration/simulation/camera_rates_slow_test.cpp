@@ -12,6 +12,7 @@
 #include "models/kernels/stereo.h"
 #include "platform/board_yaml.h"
 #include "sw/simulation/camera_simulation.h"
+#include "tests/support/noise_picture.h"
 
 namespace stereotlm::simulation {
 namespace {
@@ -30,24 +31,12 @@ class Noise : public host::FrameSource {
  public:
   explicit Noise(const platform::BoardConfig& board) : board_(board) {}
   const host::StereoPair& pair(std::uint64_t number) override {
-    pair_.left = picture(number, 0);
-    pair_.right = picture(number, 9);
+    const auto& [width, height] = board_.image;
+    pair_ = {test::noise_picture(width, height, number), test::noise_picture(width, height, number, 9)};
     return pair_;
   }
 
  private:
-  kernels::GrayImage picture(std::uint64_t number, int shift) const {
-    kernels::GrayImage out(board_.image.width, board_.image.height);
-    for (int row = 0; row < out.height; ++row) {
-      for (int column = 0; column < out.width; ++column) {
-        const auto place = static_cast<std::uint32_t>(row * 4096 + column + shift);
-        const std::uint32_t mixed = (place + static_cast<std::uint32_t>(number) * 77'777U) * 2'654'435'761U;
-        out.at(column, row) = static_cast<std::uint8_t>(mixed >> 24U);
-      }
-    }
-    return out;
-  }
-
   const platform::BoardConfig& board_;
   host::StereoPair pair_;
 };

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <random>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "platform/board_yaml.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
+#include "tests/support/noise_picture.h"
 
 namespace stereotlm::simulation {
 namespace {
@@ -36,10 +36,8 @@ class Noise : public host::FrameSource {
       : pair_{kernels::GrayImage(width, height), kernels::GrayImage(width, height)} {}
   const host::StereoPair& pair(std::uint64_t number) override {
     if (number == failing_frame) throw std::runtime_error("the disk is gone");
-    std::mt19937 random(static_cast<std::uint32_t>(number));
-    for (auto* image : {&pair_.left, &pair_.right}) {
-      for (auto& pixel : image->pixels) pixel = static_cast<std::uint8_t>(random());
-    }
+    pair_.left = test::noise_picture(pair_.left.width, pair_.left.height, number);
+    pair_.right = test::noise_picture(pair_.right.width, pair_.right.height, number, 5);
     return pair_;
   }
   std::optional<std::uint64_t> failing_frame;
