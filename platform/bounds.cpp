@@ -144,38 +144,38 @@ std::uint64_t allocation_period_frames(const BoardConfig& board) {
   return std::lcm(std::lcm(layout.left_image.size(), layout.right_image.size()), layout.disparity.size());
 }
 
-std::vector<RateBound> computer_bounds(const BoardConfig& board) {
+std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures) {
   static_cast<void>(layout_buffers(board));
   const std::uint64_t picture =
       static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
-  const int dma_words = board.bridge.dma_burst_words;
+  const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   constexpr int kAddressAndIdle = 2;
   const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
-  const auto descriptors = [&](std::uint64_t count) { return count * bus_clocks(4, 4, memory_burst); };
-  const std::uint64_t result = descriptors(1) + bus_clocks(picture, dma_words, memory_burst);
-  const int longest_capture = board.capture.fifo_words;
-  const std::uint64_t pair =
-      board.capture.destination == CaptureDestination::kBoard
-          ? 2 * bus_clocks(picture, std::min(longest_capture, board.bridge.posted_words),
-                           kAddressAndIdle + board.pci.bridge_wait_clocks)
-          : 2 * bus_clocks(picture, longest_capture, memory_burst) + descriptors(2) +
-                2 * bus_clocks(picture, dma_words, memory_burst);
-  // Address, decode and idle clock; a word also takes a cycle of the FPGA.
-  constexpr std::uint64_t kLocalBurst = 3;
-  const std::uint64_t local_words = 3 * picture;
-  const std::uint64_t local_bursts = 3 * (bus_clocks(picture, dma_words, 1) - picture);
+  // By DMA, a descriptor included.
+  const std::uint64_t moved =
+      bus_clocks(4, 4, memory_burst) + bus_clocks(picture, board.bridge.dma_burst_words, memory_burst);
+  const std::uint64_t captured =
+      to_host ? bus_clocks(picture, board.capture.fifo_words, memory_burst)
+              : bus_clocks(picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
+                           kAddressAndIdle + board.pci.bridge_wait_clocks);
+  const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
+  // On the local bus: the result, and the pair either by DMA or as it was captured.
+  const std::uint64_t local_pictures = to_host || whole_pictures ? 3 : 1;
+  constexpr std::uint64_t kAddressDecodeAndIdle = 3;
+  const std::uint64_t bursts = bus_clocks(picture, board.bridge.dma_burst_words, 1) - picture;
   const double local_us =
-      static_cast<double>(local_words) / std::min(board.bridge.local_clock_mhz, board.fpga.clock_mhz) +
-      static_cast<double>(local_bursts * kLocalBurst) / board.bridge.local_clock_mhz;
+      static_cast<double>(local_pictures * picture) /
+          std::min(board.bridge.local_clock_mhz, board.fpga.clock_mhz) +
+      static_cast<double>(local_pictures * bursts * kAddressDecodeAndIdle) / board.bridge.local_clock_mhz;
   return {{"camera", camera_rate(board)},
-          {"pci", board.pci.clock_mhz * 1e6 / static_cast<double>(pair + result)},
+          {"pci", board.pci.clock_mhz * 1e6 / static_cast<double>(pci_clocks)},
           {"bridge", 1e6 / local_us}};
 }
 
-void add_system_bound(const BoardConfig& board, Bound& bound) {
+void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound) {
   bound.system = bound.core;
   bound.system_limited_by = bound.core_limited_by;
-  for (const RateBound& part : computer_bounds(board)) {
+  for (const RateBound& part : computer_bounds(board, whole_pictures)) {
     if (part.frames_per_second >= *bound.system) continue;
     bound.system = part.frames_per_second;
     bound.system_limited_by = part.resource;

@@ -34,16 +34,17 @@ std::uint64_t allocation_period_frames(const BoardConfig& board);
 //   camera      its frame clock; on demand the time from the first to the last pixel of a frame
 //   pci         the clocks of the words of a pair and a result and of the bursts that they need at least
 //   bridge      the same for its local bus, one word an FPGA cycle at most
+// A run that drops pixels moves fewer words: without `whole_pictures` those that captures write are left out.
 struct RateBound {
   std::string resource;  // "camera", "pci", "bridge"
   double frames_per_second = 0;
 };
 
 // In this order. Throws std::invalid_argument if the board has problems.
-std::vector<RateBound> computer_bounds(const BoardConfig& board);
+std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures);
 
 // Puts the least of bound.core and computer_bounds() into bound.system. Throws as they do.
-void add_system_bound(const BoardConfig& board, Bound& bound);
+void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound);
 
 // Frames per second that frames 0..frames-1 cannot exceed, and the resource that limits the slowest of them
 // (of equal ones the last in the order above). Throws std::invalid_argument if the board has problems, or

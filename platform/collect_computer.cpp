@@ -102,7 +102,9 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   statistics.frames_per_second.system = delivered / seconds(last.host_ps);
   if (deliveries.size() > 1)
     statistics.frames_per_second.steady = (delivered - 1) / seconds(last.host_ps - first.host_ps);
-  add_system_bound(config, statistics.bound);
+  const bool whole_pictures =
+      counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
+  add_system_bound(config, whole_pictures, statistics.bound);
 
   ComputerStatistics& around = statistics.computer.emplace();
   around.pci_clocks = counters.pci.clocks;

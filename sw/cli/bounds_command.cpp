@@ -159,9 +159,9 @@ int bounds(const BoardOptions& options) {
   std::string text;
   for (const Group& group : groups) text += lines_of(group, board->fpga.clock_mhz);
   platform::Bound bound = platform::core_bound(*board, tables, frames);
-  platform::add_system_bound(*board, bound);
+  platform::add_system_bound(*board, true, bound);
   text += fmt::format("around the board\n  {:<16} {:>14}\n", "resource", "frames/s");
-  for (const platform::RateBound& part : platform::computer_bounds(*board)) {
+  for (const platform::RateBound& part : platform::computer_bounds(*board, true)) {
     text += fmt::format("  {:<16} {:>14.3f}\n", part.resource, part.frames_per_second);
   }
   text +=
@@ -180,7 +180,8 @@ void add_bounds(CLI::App& program, Action& action) {
   command->footer(
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
-      "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera.\n"
+      "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera\n"
+      "as long as no pixel is dropped.\n"
       "Tables, where the board has them, are taken as the identity.");
   const auto options = std::make_shared<BoardOptions>();
   options->add_to(*command);

@@ -117,6 +117,18 @@ class Figures(CameraTest):
         for line in table.splitlines():
             self.assertLessEqual(len(line), 100, line)
 
+    def test_stay_below_their_bound_where_pixels_are_dropped(self):
+        # A bus that takes few of the words of a picture is no limit for the rate of pictures.
+        slow = ["pci.clock_mhz=1", "pci.bridge_wait_clocks=63", "pci.memory_wait_clocks=0"]
+        options = [word for each in slow for word in ("--set", each)]
+        options += ["--set", "capture.fifo_words=2", "--set", "capture.fifo_trigger_words=1"]
+        self.succeeds(self.camera(*options, "--frames", "6", "--out", self.out))
+        stats = self.stats()
+        self.assertGreater(stats["cameras"][0]["dropped_pixels"], 0)
+        lines = self.succeeds(run("bounds", "fpl2003", *SYSTEM[:-2], *options)).splitlines()
+        without_drops = float(next(line.split()[1] for line in lines if line.startswith("  pci ")))
+        self.assertGreater(stats["frames_per_second"]["system"], without_drops)
+
     def test_follow_the_keys_of_the_board(self):
         rates = []
         for sets in ([], ["capture.destination=host_memory"],

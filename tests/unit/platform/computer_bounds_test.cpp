@@ -10,8 +10,8 @@ namespace {
 // The paper's board: 76,800 words a picture.
 constexpr double kPicture = 640 * 480 / 4;
 
-double bound_of(const BoardConfig& board, const std::string& resource) {
-  for (const RateBound& bound : computer_bounds(board)) {
+double bound_of(const BoardConfig& board, const std::string& resource, bool whole_pictures = true) {
+  for (const RateBound& bound : computer_bounds(board, whole_pictures)) {
     if (bound.resource == resource) return bound.frames_per_second;
   }
   return 0;
@@ -57,27 +57,37 @@ TEST(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 1e6 / (3 * kPicture / 20 + 3 * 4800 * 3.0 / 20));
 }
 
+TEST(ComputerBounds, LeaveOutWhatCapturesWriteWherePixelsAreDropped) {
+  BoardConfig board;
+  const double moved = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
+  EXPECT_DOUBLE_EQ(bound_of(board, "pci", false), 33.333e6 / moved);
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), 1e6 / (kPicture / 40 + 2400 * 3.0 / 40));
+  board.capture.destination = CaptureDestination::kHostMemory;
+  EXPECT_DOUBLE_EQ(bound_of(board, "pci", false), 33.333e6 / (3 * moved));
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), bound_of(board, "bridge", true));
+}
+
 TEST(ComputerBounds, OfTheSystemAreTheLeast) {
   BoardConfig board;
   Bound bound;
   bound.core = 18.5;
   bound.core_limited_by = "matcher";
-  add_system_bound(board, bound);
+  add_system_bound(board, true, bound);
   EXPECT_EQ(bound.system, 18.5);
   EXPECT_EQ(bound.system_limited_by, "matcher");
   bound.core = 130;
-  add_system_bound(board, bound);
+  add_system_bound(board, true, bound);
   EXPECT_EQ(bound.system, 29.97);
   EXPECT_EQ(bound.system_limited_by, "camera");
   board.pci.clock_mhz = 1;
-  add_system_bound(board, bound);
+  add_system_bound(board, true, bound);
   EXPECT_EQ(bound.system_limited_by, "pci");
 }
 
 TEST(ComputerBounds, RefuseABoardWithProblems) {
   BoardConfig board;
   board.cameras.frame_rate_hz = 0;
-  EXPECT_THROW(computer_bounds(board), std::invalid_argument);
+  EXPECT_THROW(computer_bounds(board, true), std::invalid_argument);
 }
 
 }  // namespace
