@@ -182,6 +182,7 @@ void StereoCore::check_progress() {
   } else if (cycle_ - work_cycle_ >= config_.patience_cycles) {
     const std::string text = std::string(name()) + ": no slot consumed and no result written for " +
                              std::to_string(cycle_ - work_cycle_) + " cycles; " + waits();
+    work_cycle_ = cycle_;
     SC_REPORT_ERROR("/stereotlm/core", text.c_str());
   }
 }
