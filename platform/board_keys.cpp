@@ -98,8 +98,8 @@ std::vector<Key> make_keys() {
               member<&B::image, &ImageConfig::width>),
       integer("image.height", "height of the images", "pixels", fpga::kHeightRule,
               member<&B::image, &ImageConfig::height>),
-      decimal("cameras.frame_rate_hz", "frame rate of both cameras", "Hz", 0.1, 1000,
-              member<&B::cameras, &CamerasConfig::frame_rate_hz>),
+      decimal("cameras.frame_rate_hz", "frame rate of both cameras; on demand that of their line times", "Hz",
+              0.1, 1000, member<&B::cameras, &CamerasConfig::frame_rate_hz>),
       word<&B::cameras, &CamerasConfig::trigger>(
           "cameras.trigger", "whether frames follow a frame clock, or begin when triggered",
           {"free_running", "on_demand"}),

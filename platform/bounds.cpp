@@ -159,17 +159,20 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
               : bus_clocks(picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
                            kAddressAndIdle + board.pci.bridge_wait_clocks);
   const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
-  // On the local bus: the result, and the pair either by DMA or as it was captured.
-  const std::uint64_t local_pictures = to_host || whole_pictures ? 3 : 1;
-  constexpr std::uint64_t kAddressDecodeAndIdle = 3;
-  const std::uint64_t bursts = bus_clocks(picture, board.bridge.dma_burst_words, 1) - picture;
-  const double local_us =
-      static_cast<double>(local_pictures * picture) /
-          std::min(board.bridge.local_clock_mhz, board.fpga.clock_mhz) +
-      static_cast<double>(local_pictures * bursts * kAddressDecodeAndIdle) / board.bridge.local_clock_mhz;
+  // On the local bus: the result, and the pair either by DMA or as it was captured. A word is granted in a cycle of the
+  // FPGA of its own; between the grants of two of a burst lies a local clock, of two bursts the idle, address,
+  // decode and word clock.
+  const double local_pictures = to_host || whole_pictures ? 3 : 1;
+  const double words = local_pictures * static_cast<double>(picture);
+  const double bursts =
+      local_pictures * static_cast<double>(bus_clocks(picture, board.bridge.dma_burst_words, 1) - picture);
+  const double local_us = 1 / board.bridge.local_clock_mhz;
+  const double fpga_us = 1 / board.fpga.clock_mhz;
+  const double bridge_us =
+      std::max(words * fpga_us, bursts * 4 * local_us + (words - bursts) * std::max(local_us, fpga_us));
   return {{"camera", camera_rate(board)},
           {"pci", board.pci.clock_mhz * 1e6 / static_cast<double>(pci_clocks)},
-          {"bridge", 1e6 / local_us}};
+          {"bridge", 1e6 / bridge_us}};
 }
 
 void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound) {

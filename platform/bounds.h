@@ -30,10 +30,11 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
 // their lengths. Throws std::invalid_argument if the board has problems.
 std::uint64_t allocation_period_frames(const BoardConfig& board);
 
-// What a part of the computer around the board limits the rate of frames to; no run can be faster:
+// What a part of the computer around the board limits the rate of frames to, counted from time 0 to the last delivery;
+// no run can be faster:
 //   camera      its frame clock; on demand the time from the first to the last pixel of a frame
 //   pci         the clocks of the words of a pair and a result and of the bursts that they need at least
-//   bridge      the same for its local bus, one word an FPGA cycle at most
+//   bridge      the same for its local bus, whose words are granted one a cycle of the FPGA at most
 // A run that drops pixels moves fewer words: without `whole_pictures` those that captures write are left out.
 struct RateBound {
   std::string resource;  // "camera", "pci", "bridge"

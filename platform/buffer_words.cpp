@@ -27,7 +27,7 @@ BufferWords buffer_words(const BoardConfig& board) {
           word_of(layout.left_lut), word_of(layout.right_lut)};
 }
 
-std::vector<memory::AddressRange> buffer_ranges(const BoardConfig& board) {
+std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
   const BufferWords words = buffer_words(board);
   std::vector<std::uint32_t> first_words;
   for (const auto* list : {&words.left_images, &words.right_images, &words.disparities})
@@ -35,7 +35,7 @@ std::vector<memory::AddressRange> buffer_ranges(const BoardConfig& board) {
   for (const auto& table : {words.left_lut, words.right_lut}) {
     if (table) first_words.push_back(*table);
   }
-  std::vector<memory::AddressRange> ranges;
+  std::vector<AddressRange> ranges;
   for (const Buffer& buffer : buffers(board.allocation)) {
     const std::uint64_t first = fpga::registers::base_address(first_words[ranges.size()]);
     ranges.push_back({first, first + 4 * buffer_words(buffer, board.image)});

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "models/fpga/register_map.h"
-#include "models/memory/words_by_range.h"
+#include "models/words_by_range.h"
 #include "platform/board_config.h"
 
 namespace stereotlm::platform {
@@ -24,6 +24,6 @@ BufferWords buffer_words(const BoardConfig& board);
 
 // The addresses of the buffers on the local bus, in the order of buffers() in board_rules.h. Throws as layout_buffers()
 // does.
-std::vector<memory::AddressRange> buffer_ranges(const BoardConfig& board);
+std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

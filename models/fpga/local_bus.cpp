@@ -170,8 +170,8 @@ LocalBus::Stats LocalBus::stats() const {
   return stats;
 }
 
-memory::WordsByRange LocalBus::words_to_grant() const {
-  memory::WordsByRange words(buffers_);
+WordsByRange LocalBus::words_to_grant() const {
+  WordsByRange words(buffers_);
   if (words_left_ != 0 && burst_->is_write()) words.add(burst_->get_address() + next_word_ * 4, words_left_);
   return words;
 }

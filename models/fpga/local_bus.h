@@ -11,14 +11,14 @@
 #include "models/clock.h"
 #include "models/memory/memory_config.h"
 #include "models/memory/word_access.h"
-#include "models/memory/words_by_range.h"
 #include "models/stream.h"
+#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
 struct LocalBusConfig {
-  double clock_mhz = 40;                           // of the local bus, 1..1000
-  std::vector<memory::AddressRange> buffers = {};  // on the local bus: words written are counted for each
+  double clock_mhz = 40;                   // of the local bus, 1..1000
+  std::vector<AddressRange> buffers = {};  // on the local bus: words written are counted for each
 };
 
 // Byte addresses on the local bus: the banks as on the crossbar, then the registers of register_map.h.
@@ -79,8 +79,8 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   // Up to now.
   Stats stats() const;
   // Words written to the banks that have been granted, and those of the running burst that have not yet.
-  const memory::WordsByRange& words_granted() const { return words_granted_; }
-  memory::WordsByRange words_to_grant() const;
+  const WordsByRange& words_granted() const { return words_granted_; }
+  WordsByRange words_to_grant() const;
 
  private:
   static constexpr std::uint64_t kUnknown = UINT64_MAX;
@@ -113,8 +113,8 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   tlm::tlm_response_status status_ = tlm::TLM_OK_RESPONSE;
   sc_core::sc_event request_event_{"request"};
   sc_core::sc_event register_event_{"register"};
-  std::vector<memory::AddressRange> buffers_;
-  memory::WordsByRange words_granted_;
+  std::vector<AddressRange> buffers_;
+  WordsByRange words_granted_;
   Stats stats_;  // clocks and busy_clocks: of all bursts but the last
 };
 

@@ -17,7 +17,7 @@ constexpr std::uint64_t kQuantumCycles = 8192;
 std::string text_of(Intent intent) {
   switch (intent) {
     case Intent::kRequest:
-      return "asks for bank ";
+      return "asks for bank number ";
     case Intent::kPass:
       return "passes a slot";
     case Intent::kBlocked:

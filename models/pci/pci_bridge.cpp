@@ -251,8 +251,8 @@ bool PciBridge::serve(Transfer& transfer) {
   return true;
 }
 
-memory::WordsByRange PciBridge::words_held() const {
-  memory::WordsByRange held(config_.buffers);
+WordsByRange PciBridge::words_held() const {
+  WordsByRange held(config_.buffers);
   for (std::size_t i = posted_on_local_bus_; i < posted_.size(); ++i) {
     if (posted_[i].address < config_.core_registers) held.add(posted_[i].address, 1);
   }

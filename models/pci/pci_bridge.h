@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "models/kernels/integer_rule.h"
-#include "models/memory/words_by_range.h"
 #include "models/pci/bridge_registers.h"
 #include "models/pci/pci_slot.h"
+#include "models/words_by_range.h"
 
 namespace stereotlm::pci {
 
@@ -29,7 +29,7 @@ struct PciBridgeConfig {
   // Byte address of the core's registers on the local bus, behind that of every bank.
   std::uint64_t core_registers = std::uint64_t{1} << 34U;
   // On the local bus: words on their way to the banks are counted for each.
-  std::vector<memory::AddressRange> buffers = {};
+  std::vector<AddressRange> buffers = {};
 };
 
 // The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge"); registers and
@@ -68,8 +68,8 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   const Stats& stats() const { return stats_; }
   // Words for the banks that have come in, posted or by DMA, and those of them that still wait here for the
   // local bus.
-  const memory::WordsByRange& words_taken() const { return words_taken_; }
-  memory::WordsByRange words_held() const;
+  const WordsByRange& words_taken() const { return words_taken_; }
+  WordsByRange words_held() const;
 
  private:
   struct PostedWord {
@@ -149,7 +149,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   sc_core::sc_event responded_{"responded"};
   Manager manager_;
   tlm::tlm_generic_payload burst_{&manager_};
-  memory::WordsByRange words_taken_;
+  WordsByRange words_taken_;
   Stats stats_;
 };
 

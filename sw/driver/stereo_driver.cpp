@@ -182,6 +182,7 @@ void StereoDriver::start_core() {
   const bool starts = frames_.idle() && frame < config_.frames && frame < pairs &&
                       frame < read_backs_.ended + config_.disparities.size();
   if (starts) {
+    ++frames_.begun;  // before the first access, which takes time: start_no_more() may come meanwhile
     const auto input = static_cast<std::size_t>(frame % config_.left_images.size());
     core(core_map::kLeftImageBase, config_.left_images[input]);
     core(core_map::kRightImageBase, config_.right_images[input]);
@@ -189,7 +190,6 @@ void StereoDriver::start_core() {
          config_.disparities[static_cast<std::size_t>(frame % config_.disparities.size())]);
     if (frame == 0 && config_.left_lut) core(core_map::kLeftLutBase, *config_.left_lut);
     if (frame == 0 && config_.right_lut) core(core_map::kRightLutBase, *config_.right_lut);
-    ++frames_.begun;
   }
   if (!starts && !core_to_acknowledge_) return;
   core(core_map::kControl,

@@ -38,8 +38,13 @@ CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const pla
       patience_seconds_(patience_seconds(board)) {}
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
-  simulation_.begins_ps_[number] = begin_ps;
-  return simulation_.load_pair(number).*side_;
+  return simulation_.captured_pair(number, begin_ps).*side_;
+}
+
+// Both cameras take the same frames: a pair is loaded for the first, and used until the next.
+const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, std::uint64_t begin_ps) {
+  if (begins_ps_.emplace(number, begin_ps).second) pair_ = &load_pair(number);
+  return *pair_;
 }
 
 void CameraSimulation::end_early() {
@@ -48,6 +53,10 @@ void CameraSimulation::end_early() {
 }
 
 platform::Statistics CameraSimulation::statistics() const {
+  if (deliveries_.empty() || counters_.board.frames != deliveries_.size()) {
+    throw std::logic_error(
+        fmt::format("figures of {} frames asked for, while the core is busy", deliveries_.size()));
+  }
   return platform::collect_statistics(board_, tables_, computer_, counters_, deliveries_);
 }
 

@@ -39,6 +39,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
     kernels::GrayImage host::StereoPair::*side_;
   };
 
+  const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
   std::uint64_t work_done() const;
@@ -49,6 +50,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   View right_{*this, &host::StereoPair::right};
   driver::StereoDriver driver_;
   platform::Computer computer_;
+  const host::StereoPair* pair_ = nullptr;            // of the last frame that was captured
   std::map<std::uint64_t, std::uint64_t> begins_ps_;  // of captured camera frames, until they are delivered
   std::vector<platform::Delivery> deliveries_;
   platform::ComputerCounters counters_;  // at the last delivery that left nothing to the core

@@ -51,6 +51,7 @@ void Simulation::add_result(Result result) {
   cycles_of_done_ = cycles();
   last_ = result;
   new_.push_back(std::move(result));
+  if (finished()) sc_core::sc_pause();  // what would happen afterwards is nobody's business
 }
 
 }  // namespace stereotlm::simulation

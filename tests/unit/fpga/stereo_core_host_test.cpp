@@ -251,8 +251,8 @@ TEST_F(StereoCoreStarved, SaysWhoWaitsForWhat) {
               testing::ContainsRegex("core: no slot consumed and no result written for 1[0-9]+ cycles; "
                                      "frame 0 of the core, cycle 2[0-9]+; left_lut is blocked: its "
                                      "lane is full; right_lut is blocked: its lane is full; "
-                                     "left_pixel asks for bank 0, lost 2[0-9]+ cycles to host; "
-                                     "right_pixel is starved; result is idle; host asks for bank 0"));
+                                     "left_pixel asks for bank number 0, lost 2[0-9]+ cycles to host; "
+                                     "right_pixel is starved; result is idle; host asks for bank number 0"));
 }
 
 }  // namespace

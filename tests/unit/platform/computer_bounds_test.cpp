@@ -49,19 +49,22 @@ TEST(ComputerBounds, CountTheBusClocksOfCaptureToHostMemoryAndOfTheCopy) {
 
 TEST(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   BoardConfig board;
-  board.bridge.local_clock_mhz = 50;
   board.bridge.dma_burst_words = 16;
-  // A word takes a cycle of the slower side, the FPGA; address, decode and idle clock of each burst the bus's own.
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 1e6 / (3 * kPicture / 40 + 3 * 4800 * 3.0 / 50));
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 40e6 / (3 * (kPicture + 4800 * 3)));
   board.bridge.local_clock_mhz = 20;
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 1e6 / (3 * kPicture / 20 + 3 * 4800 * 3.0 / 20));
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 20e6 / (3 * (kPicture + 4800 * 3)));
+  // On a bus of four clocks a cycle the four clocks between two bursts hide in the cycle of the last grant.
+  board.bridge.local_clock_mhz = 160;
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 40e6 / (3 * kPicture));
+  board.bridge.local_clock_mhz = 80;
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
 }
 
 TEST(ComputerBounds, LeaveOutWhatCapturesWriteWherePixelsAreDropped) {
   BoardConfig board;
   const double moved = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
   EXPECT_DOUBLE_EQ(bound_of(board, "pci", false), 33.333e6 / moved);
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), 1e6 / (kPicture / 40 + 2400 * 3.0 / 40));
+  EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), 40e6 / (kPicture + 2400 * 3));
   board.capture.destination = CaptureDestination::kHostMemory;
   EXPECT_DOUBLE_EQ(bound_of(board, "pci", false), 33.333e6 / (3 * moved));
   EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), bound_of(board, "bridge", true));

@@ -157,7 +157,7 @@ TEST(StereoDriver, StopsWithTheErrorOfADmaChannel) {
   }
 }
 
-// Looks at the driver whenever it waits.
+// Looks at the driver whenever it waits, or time passes with an access.
 class WatchedMachine : public FakeMachine {
  public:
   using FakeMachine::FakeMachine;
@@ -165,7 +165,12 @@ class WatchedMachine : public FakeMachine {
     on_wait();
     FakeMachine::wait_for_interrupt();
   }
-  std::function<void()> on_wait;
+  void write(std::uint64_t address, std::uint32_t value) override {
+    on_write();
+    FakeMachine::write(address, value);
+  }
+  std::function<void()> on_wait = [] {};
+  std::function<void()> on_write = [] {};
 };
 
 TEST(StereoDriver, SaysWhatItWaitsFor) {
@@ -201,6 +206,24 @@ TEST(StereoDriver, FinishesWhatTheCoreHasBegunWhenItIsToStartNoMore) {
     EXPECT_GE(started, 5U);
     EXPECT_EQ(machine.core_starts, started);
     EXPECT_EQ(listener.frames.size(), started);
+  }
+}
+
+TEST(StereoDriver, CanBeToldToStartNoMoreDuringAnyAccess) {
+  for (int moment = 20; moment < 120; ++moment) {
+    Listener listener;
+    WatchedMachine machine(7);
+    StereoDriver driver(small(2, 2, 1'000'000), kLeftTable, kRightTable, listener);
+    std::uint64_t started = 0;
+    int writes = 0;
+    machine.on_write = [&] {
+      if (++writes != moment) return;
+      started = driver.frames_started();
+      driver.start_no_more();
+    };
+    driver.run(machine);
+    EXPECT_EQ(machine.core_starts, started) << moment;
+    EXPECT_EQ(listener.frames.size(), started) << moment;
   }
 }
 

@@ -1,8 +1,8 @@
-#include "models/memory/words_by_range.h"
+#include "models/words_by_range.h"
 
 #include <gtest/gtest.h>
 
-namespace stereotlm::memory {
+namespace stereotlm {
 namespace {
 
 using Words = std::vector<std::uint64_t>;
@@ -34,4 +34,4 @@ TEST(WordsByRange, CountsAllWithoutRanges) {
 }
 
 }  // namespace
-}  // namespace stereotlm::memory
+}  // namespace stereotlm

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace stereotlm::memory {
+namespace stereotlm {
 
 // The byte addresses of a buffer.
 struct AddressRange {
@@ -45,4 +45,4 @@ class WordsByRange {
   std::size_t latest_;  // the range of the last word: the next mostly follows it
 };
 
-}  // namespace stereotlm::memory
+}  // namespace stereotlm
