@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "models/register_access.h"
+
 namespace stereotlm::fpga {
 namespace {
 
@@ -24,10 +26,8 @@ RegisterFile::RegisterFile(const sc_core::sc_module_name& name) : sc_module(name
 
 tlm::tlm_response_status RegisterFile::check(const tlm::tlm_generic_payload& access) const {
   const std::uint64_t address = access.get_address();
-  if (access.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
-  if (access.get_data_length() != 4 || access.get_streaming_width() < 4) return tlm::TLM_BURST_ERROR_RESPONSE;
-  if (access.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  if (address % 4 != 0 || address >= registers::kEnd) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  const tlm::tlm_response_status status = check_register_access(access, registers::kEnd);
+  if (status != tlm::TLM_OK_RESPONSE) return status;
   const bool write_only = address == registers::kControl;
   const bool read_only = address > registers::kControl && address < registers::kLeftImageBase;
   if (access.is_read() ? write_only : read_only) return tlm::TLM_COMMAND_ERROR_RESPONSE;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "models/register_access.h"
+
 namespace stereotlm::pci {
 
 PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config)
@@ -138,20 +140,14 @@ bool PciBridge::write_register(std::uint64_t offset, std::uint32_t value) {
 
 void PciBridge::register_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& /*delay*/) {
   const std::uint64_t offset = access.get_address();
-  tlm::tlm_response_status status = tlm::TLM_OK_RESPONSE;
+  tlm::tlm_response_status status = check_register_access(access, bridge::kRegisterWindowBytes);
   std::uint32_t value = 0;
-  if (access.get_data_length() != 4 || access.get_streaming_width() < 4) {
-    status = tlm::TLM_BURST_ERROR_RESPONSE;
-  } else if (access.get_byte_enable_ptr() != nullptr) {
-    status = tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  } else if (offset % 4 != 0 || offset >= bridge::kRegisterWindowBytes) {
-    status = tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  } else if (access.is_read()) {
+  if (status == tlm::TLM_OK_RESPONSE && access.is_read()) {
     if (!read_register(offset, value)) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
     std::memcpy(access.get_data_ptr(), &value, 4);
-  } else {
+  } else if (status == tlm::TLM_OK_RESPONSE) {
     std::memcpy(&value, access.get_data_ptr(), 4);
-    if (!access.is_write() || !write_register(offset, value)) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
+    if (!write_register(offset, value)) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
   }
   if (status != tlm::TLM_OK_RESPONSE) ++stats_.errors;
   access.set_response_status(status);
