@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "platform/buffer_words.h"
+#include "platform/frame_buffers.h"
 
 namespace stereotlm::platform {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "platform/buffer_words.h"
+#include "platform/frame_buffers.h"
 
 namespace stereotlm::platform {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "platform/buffer_words.h"
+#include "platform/frame_buffers.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -10,16 +10,11 @@ namespace {
 using kernels::RectificationTable;
 
 host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames) {
-  const BufferWords buffers = buffer_words(board);
   host::IdealHostConfig config;
   config.width = board.image.width;
   config.height = board.image.height;
   config.frames = frames;
-  config.left_images = buffers.left_images;
-  config.right_images = buffers.right_images;
-  config.disparities = buffers.disparities;
-  config.left_lut = buffers.left_lut;
-  config.right_lut = buffers.right_lut;
+  config.buffers = frame_buffers(board);
   return config;
 }
 

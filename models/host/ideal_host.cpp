@@ -39,13 +39,14 @@ IdealHost::IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig&
                      const kernels::RectificationTable* right_table, FrameSource& source, FrameSink& sink)
     : sc_module(name),
       config_(config),
-      left_entries_(entries_of(left_table, config.left_lut.has_value(), "left")),
-      right_entries_(entries_of(right_table, config.right_lut.has_value(), "right")),
+      left_entries_(entries_of(left_table, config.buffers.left_lut.has_value(), "left")),
+      right_entries_(entries_of(right_table, config.buffers.right_lut.has_value(), "right")),
       source_(source),
       sink_(sink),
       disparity_(config.width, config.height) {
   SC_HAS_PROCESS(IdealHost);
-  if (config.left_images.empty() || config.right_images.empty() || config.disparities.empty()) {
+  if (config.buffers.left_images.empty() || config.buffers.right_images.empty() ||
+      config.buffers.disparities.empty()) {
     throw std::invalid_argument(std::string(this->name()) + ": a list of buffers is empty");
   }
   SC_THREAD(run);
@@ -67,8 +68,8 @@ void IdealHost::load_tables() {
     preload(*base, entries.data(), entries.size() * sizeof(std::uint32_t));
     write_register(base_register, *base);
   };
-  load_table(config_.left_lut, left_entries_, registers_of::kLeftLutBase);
-  load_table(config_.right_lut, right_entries_, registers_of::kRightLutBase);
+  load_table(config_.buffers.left_lut, left_entries_, registers_of::kLeftLutBase);
+  load_table(config_.buffers.right_lut, right_entries_, registers_of::kRightLutBase);
 }
 
 bool IdealHost::start_frame() {
@@ -82,20 +83,20 @@ bool IdealHost::start_frame() {
                      .c_str());
     return false;
   }
-  const std::uint32_t left = in_turn(config_.left_images, frames_done_);
-  const std::uint32_t right = in_turn(config_.right_images, frames_done_);
+  const std::uint32_t left = in_turn(config_.buffers.left_images, frames_done_);
+  const std::uint32_t right = in_turn(config_.buffers.right_images, frames_done_);
   preload(left, pair.left.pixels.data(), pair.left.pixels.size());
   preload(right, pair.right.pixels.data(), pair.right.pixels.size());
   write_register(registers_of::kLeftImageBase, left);
   write_register(registers_of::kRightImageBase, right);
-  const std::uint32_t disparity = in_turn(config_.disparities, frames_done_);
+  const std::uint32_t disparity = in_turn(config_.buffers.disparities, frames_done_);
   write_register(registers_of::kDisparityBase, disparity);
   write_register(registers_of::kControl, registers_of::kControlAcknowledge | registers_of::kControlStart);
   if ((read_status() & registers_of::kStatusBusy) != 0) return true;
   std::string bases = with_value("left_image", left) + with_value(", right_image", right) +
                       with_value(", disparity", disparity);
-  if (config_.left_lut) bases += with_value(", left_lut", *config_.left_lut);
-  if (config_.right_lut) bases += with_value(", right_lut", *config_.right_lut);
+  if (config_.buffers.left_lut) bases += with_value(", left_lut", *config_.buffers.left_lut);
+  if (config_.buffers.right_lut) bases += with_value(", right_lut", *config_.buffers.right_lut);
   SC_REPORT_ERROR(kReport, ("frame " + std::to_string(frames_done_) +
                             ": the core refuses to start with the bases " + bases)
                                .c_str());
@@ -108,7 +109,8 @@ bool IdealHost::end_frame() {
                     ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
     return false;
   }
-  read_back(in_turn(config_.disparities, frames_done_), disparity_.pixels.data(), disparity_.pixels.size());
+  read_back(in_turn(config_.buffers.disparities, frames_done_), disparity_.pixels.data(),
+            disparity_.pixels.size());
   const std::uint64_t frame = frames_done_++;
   sink_.take(frame, disparity_);
   return true;

@@ -3,10 +3,10 @@
 #include <tlm_utils/simple_initiator_socket.h>
 
 #include <cstdint>
-#include <optional>
 #include <systemc>
 #include <vector>
 
+#include "models/fpga/frame_buffers.h"
 #include "models/kernels/gray_image.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/word_access.h"
@@ -37,12 +37,7 @@ struct IdealHostConfig {
   int width = 0;   // pixels
   int height = 0;  // pixels
   std::uint64_t frames = 1;
-  // Values of the base registers (fpga/register_map.h); a list is used in turn, frame by frame.
-  std::vector<std::uint32_t> left_images;
-  std::vector<std::uint32_t> right_images;
-  std::vector<std::uint32_t> disparities;
-  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table
-  std::optional<std::uint32_t> right_lut;
+  fpga::FrameBuffers buffers;
 };
 
 // A host without a computer around it (contract section 2, `preloaded`): tables are in their banks before

@@ -46,16 +46,17 @@ std::vector<std::string> problems(const DriverConfig& config) {
        "width = " + std::to_string(config.width) + ": must be a multiple of 4, at least 4");
   rule(config.height >= 1, "height = " + std::to_string(config.height) + ": must be at least 1");
   rule(config.frames >= 1, "frames = 0: must be at least 1");
-  rule(!config.left_images.empty() && config.left_images.size() == config.right_images.size(),
+  rule(!config.buffers.left_images.empty() &&
+           config.buffers.left_images.size() == config.buffers.right_images.size(),
        "left_images and right_images: must be equally long, and not empty");
-  rule(!config.disparities.empty(), "disparities: must not be empty");
+  rule(!config.buffers.disparities.empty(), "disparities: must not be empty");
   rule(!config.capture_to_host || config.host_frames >= 1,
        "host_frames = " + std::to_string(config.host_frames) + ": must be at least 1");
   return found;
 }
 
 std::uint64_t host_memory_bytes(const DriverConfig& config) {
-  return results_start(config) + config.disparities.size() * picture_bytes(config);
+  return results_start(config) + config.buffers.disparities.size() * picture_bytes(config);
 }
 
 StereoDriver::StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
@@ -72,8 +73,8 @@ StereoDriver::StereoDriver(const DriverConfig& config, std::vector<std::uint32_t
                                   " entries: must have " + std::to_string(expected));
     }
   };
-  check("left", config.left_lut, left_table_.size());
-  check("right", config.right_lut, right_table_.size());
+  check("left", config.buffers.left_lut, left_table_.size());
+  check("right", config.buffers.right_lut, right_table_.size());
 }
 
 void StereoDriver::run(host::HostBus& bus) {
@@ -112,8 +113,8 @@ void StereoDriver::upload_tables() {
     pieces.push_back({host, *lut, table.size(), false});
     host += table.size() * 4;
   };
-  add(config_.left_lut, left_table_);
-  add(config_.right_lut, right_table_);
+  add(config_.buffers.left_lut, left_table_);
+  add(config_.buffers.right_lut, right_table_);
   if (pieces.empty()) return;
   const std::uint32_t done = bridge_map::kDmaDone << unsigned{kToBoard};
   const std::uint32_t error = bridge_map::kDmaError << unsigned{kToBoard};
@@ -180,16 +181,16 @@ void StereoDriver::start_core() {
   const std::uint64_t frame = frames_.begun;
   const std::uint64_t pairs = config_.capture_to_host ? copies_.ended : captures_.ended;
   const bool starts = frames_.idle() && frame < config_.frames && frame < pairs &&
-                      frame < read_backs_.ended + config_.disparities.size();
+                      frame < read_backs_.ended + config_.buffers.disparities.size();
   if (starts) {
     ++frames_.begun;  // before the first access, which takes time: start_no_more() may come meanwhile
-    const auto input = static_cast<std::size_t>(frame % config_.left_images.size());
-    core(core_map::kLeftImageBase, config_.left_images[input]);
-    core(core_map::kRightImageBase, config_.right_images[input]);
+    const auto input = static_cast<std::size_t>(frame % config_.buffers.left_images.size());
+    core(core_map::kLeftImageBase, config_.buffers.left_images[input]);
+    core(core_map::kRightImageBase, config_.buffers.right_images[input]);
     core(core_map::kDisparityBase,
-         config_.disparities[static_cast<std::size_t>(frame % config_.disparities.size())]);
-    if (frame == 0 && config_.left_lut) core(core_map::kLeftLutBase, *config_.left_lut);
-    if (frame == 0 && config_.right_lut) core(core_map::kRightLutBase, *config_.right_lut);
+         config_.buffers.disparities[static_cast<std::size_t>(frame % config_.buffers.disparities.size())]);
+    if (frame == 0 && config_.buffers.left_lut) core(core_map::kLeftLutBase, *config_.buffers.left_lut);
+    if (frame == 0 && config_.buffers.right_lut) core(core_map::kRightLutBase, *config_.buffers.right_lut);
   }
   if (!starts && !core_to_acknowledge_) return;
   core(core_map::kControl,
@@ -207,10 +208,10 @@ void StereoDriver::arm_capture() {
     left = config_.devices.host_memory + pair_in_host(capture);
     right = left + image_bytes();
   } else {
-    if (capture >= frames_.ended + config_.left_images.size()) return;
-    const auto input = static_cast<std::size_t>(capture % config_.left_images.size());
-    bridge(bridge_map::kPage + 0, config_.left_images[input]);
-    bridge(bridge_map::kPage + 4, config_.right_images[input]);
+    if (capture >= frames_.ended + config_.buffers.left_images.size()) return;
+    const auto input = static_cast<std::size_t>(capture % config_.buffers.left_images.size());
+    bridge(bridge_map::kPage + 0, config_.buffers.left_images[input]);
+    bridge(bridge_map::kPage + 4, config_.buffers.right_images[input]);
     left = config_.devices.bridge_slave;
     right = left + bridge_map::kApertureBytes;
   }
@@ -225,22 +226,23 @@ void StereoDriver::arm_capture() {
 void StereoDriver::copy_pair() {
   const std::uint64_t pair = copies_.begun;
   if (!config_.capture_to_host || !copies_.idle() || pair >= captures_.ended ||
-      pair >= frames_.ended + config_.left_images.size()) {
+      pair >= frames_.ended + config_.buffers.left_images.size()) {
     return;
   }
   ++copies_.begun;
-  const auto input = static_cast<std::size_t>(pair % config_.left_images.size());
+  const auto input = static_cast<std::size_t>(pair % config_.buffers.left_images.size());
   const std::uint64_t host = pair_in_host(pair);
-  start_dma(kToBoard, {{host, config_.left_images[input], image_bytes() / 4, false},
-                       {host + image_bytes(), config_.right_images[input], image_bytes() / 4, false}});
+  start_dma(kToBoard,
+            {{host, config_.buffers.left_images[input], image_bytes() / 4, false},
+             {host + image_bytes(), config_.buffers.right_images[input], image_bytes() / 4, false}});
 }
 
 void StereoDriver::read_back() {
   const std::uint64_t frame = read_backs_.begun;
   if (!read_backs_.idle() || frame >= frames_.ended) return;
   ++read_backs_.begun;
-  const auto output = static_cast<std::size_t>(frame % config_.disparities.size());
-  start_dma(kToHost, {{result_in_host(frame), config_.disparities[output], image_bytes() / 4, true}});
+  const auto output = static_cast<std::size_t>(frame % config_.buffers.disparities.size());
+  start_dma(kToHost, {{result_in_host(frame), config_.buffers.disparities[output], image_bytes() / 4, true}});
 }
 
 void StereoDriver::deliver() {
@@ -271,7 +273,7 @@ std::uint64_t StereoDriver::pair_in_host(std::uint64_t capture) const {
 }
 
 std::uint64_t StereoDriver::result_in_host(std::uint64_t frame) const {
-  return results_start(config_) + frame % config_.disparities.size() * image_bytes();
+  return results_start(config_) + frame % config_.buffers.disparities.size() * image_bytes();
 }
 
 std::uint64_t StereoDriver::image_bytes() const { return picture_bytes(config_); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/frame_buffers.h"
 #include "models/host/program.h"
 #include "platform/device_map.h"
 
@@ -17,12 +18,7 @@ struct DriverConfig {
   int width = 0;   // of the images, pixels
   int height = 0;  // pixels
   std::uint64_t frames = 1;
-  // First words of the buffers on the board: bits 31..26 bank, 25..0 word. Lists are used in turn, frame by frame.
-  std::vector<std::uint32_t> left_images;
-  std::vector<std::uint32_t> right_images;
-  std::vector<std::uint32_t> disparities;
-  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table
-  std::optional<std::uint32_t> right_lut;
+  fpga::FrameBuffers buffers;
   bool capture_to_host = false;  // capture.destination: host_memory
   int host_frames = 3;           // pairs in the ring in host memory
   bool trigger_cameras = false;  // cameras.trigger: on_demand

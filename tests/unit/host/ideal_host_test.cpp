@@ -89,9 +89,9 @@ class IdealHostTest : public testing::Test {
     host_config.width = kWidth;
     host_config.height = kHeight;
     host_config.frames = frames;
-    host_config.left_images = {registers_of::base(0, 0)};
-    host_config.right_images = {registers_of::base(1, 0)};
-    host_config.disparities = {registers_of::base(2, 0)};
+    host_config.buffers.left_images = {registers_of::base(0, 0)};
+    host_config.buffers.right_images = {registers_of::base(1, 0)};
+    host_config.buffers.disparities = {registers_of::base(2, 0)};
     return host_config;
   }
 
@@ -193,9 +193,9 @@ TEST_F(IdealHostTest, AcknowledgesTheLastFrameWithTheNextStrobe) {
 
 TEST_F(IdealHostTest, UsesEachListInTurn) {
   IdealHostConfig lists = config(5);
-  lists.left_images = {registers_of::base(0, 0), registers_of::base(0, 8), registers_of::base(0, 16)};
-  lists.right_images = {registers_of::base(1, 0), registers_of::base(1, 8)};
-  lists.disparities = {registers_of::base(2, 4)};
+  lists.buffers.left_images = {registers_of::base(0, 0), registers_of::base(0, 8), registers_of::base(0, 16)};
+  lists.buffers.right_images = {registers_of::base(1, 0), registers_of::base(1, 8)};
+  lists.buffers.disparities = {registers_of::base(2, 4)};
   build(lists);
   sc_core::sc_start();
   const auto expected = [](const std::vector<std::uint32_t>& list) {
@@ -203,16 +203,16 @@ TEST_F(IdealHostTest, UsesEachListInTurn) {
     for (std::size_t frame = 0; frame < 5; ++frame) values.push_back(list[frame % list.size()]);
     return values;
   };
-  EXPECT_EQ(written[registers_of::kLeftImageBase], expected(lists.left_images));
-  EXPECT_EQ(written[registers_of::kRightImageBase], expected(lists.right_images));
-  EXPECT_EQ(written[registers_of::kDisparityBase], expected(lists.disparities));
+  EXPECT_EQ(written[registers_of::kLeftImageBase], expected(lists.buffers.left_images));
+  EXPECT_EQ(written[registers_of::kRightImageBase], expected(lists.buffers.right_images));
+  EXPECT_EQ(written[registers_of::kDisparityBase], expected(lists.buffers.disparities));
   EXPECT_EQ(sink.images[4], GrayImage(kWidth, kHeight, 83));
 }
 
 TEST_F(IdealHostTest, LoadsEachTableBeforeTheFirstFrame) {
   IdealHostConfig tables = config(2);
-  tables.left_lut = registers_of::base(3, 2);
-  tables.right_lut = registers_of::base(4, 0);
+  tables.buffers.left_lut = registers_of::base(3, 2);
+  tables.buffers.right_lut = registers_of::base(4, 0);
   kernels::RectificationTable left = kernels::identity_table(kWidth, kHeight);
   kernels::RectificationTable right = left;
   right.entries[3] = 0;
@@ -221,8 +221,8 @@ TEST_F(IdealHostTest, LoadsEachTableBeforeTheFirstFrame) {
   EXPECT_EQ(words(3, 2, kPixels), left.entries);
   EXPECT_EQ(words(4, 0, kPixels), right.entries);
   sc_core::sc_start();
-  EXPECT_EQ(written[registers_of::kLeftLutBase], std::vector<std::uint32_t>{*tables.left_lut});
-  EXPECT_EQ(written[registers_of::kRightLutBase], std::vector<std::uint32_t>{*tables.right_lut});
+  EXPECT_EQ(written[registers_of::kLeftLutBase], std::vector<std::uint32_t>{*tables.buffers.left_lut});
+  EXPECT_EQ(written[registers_of::kRightLutBase], std::vector<std::uint32_t>{*tables.buffers.right_lut});
 }
 
 TEST_F(IdealHostTest, LeavesTheBaseOfATableAloneThatDoesNotExist) {
@@ -281,9 +281,9 @@ TEST_F(IdealHostTest, ReportsACoreThatDoesNotStart) {
 
 TEST_F(IdealHostTest, ReportsACoreThatDoesNotStartASecondTime) {
   IdealHostConfig lists = config(2);
-  lists.disparities = {registers_of::base(2, 0), registers_of::base(2, 8)};
-  lists.left_lut = registers_of::base(3, 0);
-  lists.right_lut = registers_of::base(4, 0);
+  lists.buffers.disparities = {registers_of::base(2, 0), registers_of::base(2, 8)};
+  lists.buffers.left_lut = registers_of::base(3, 0);
+  lists.buffers.right_lut = registers_of::base(4, 0);
   const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
   build(lists, &table, &table);
   ExpectedReport report("/stereotlm/ideal_host");
@@ -348,13 +348,13 @@ TEST_F(IdealHostTest, RefusesATableWithoutBufferAndABufferWithoutTable) {
   const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
   EXPECT_THROW(IdealHost("a", config(1), &table, nullptr, source, sink), std::invalid_argument);
   IdealHostConfig with_buffer = config(1);
-  with_buffer.right_lut = registers_of::base(3, 0);
+  with_buffer.buffers.right_lut = registers_of::base(3, 0);
   EXPECT_THROW(IdealHost("b", with_buffer, nullptr, nullptr, source, sink), std::invalid_argument);
 }
 
 TEST_F(IdealHostTest, RefusesAnEmptyList) {
   IdealHostConfig empty = config(1);
-  empty.disparities.clear();
+  empty.buffers.disparities.clear();
   EXPECT_THROW(IdealHost("a", empty, nullptr, nullptr, source, sink), std::invalid_argument);
 }
 

@@ -36,12 +36,12 @@ DriverConfig small(std::size_t inputs, std::size_t outputs, std::uint64_t frames
   config.height = 1;
   config.frames = frames;
   for (std::uint32_t i = 0; i < inputs; ++i) {
-    config.left_images.push_back(word_of_bank(i));
-    config.right_images.push_back(word_of_bank(10 + i));
+    config.buffers.left_images.push_back(word_of_bank(i));
+    config.buffers.right_images.push_back(word_of_bank(10 + i));
   }
-  for (std::uint32_t i = 0; i < outputs; ++i) config.disparities.push_back(word_of_bank(20 + i));
-  config.left_lut = word_of_bank(30);
-  config.right_lut = word_of_bank(31) + 5;
+  for (std::uint32_t i = 0; i < outputs; ++i) config.buffers.disparities.push_back(word_of_bank(20 + i));
+  config.buffers.left_lut = word_of_bank(30);
+  config.buffers.right_lut = word_of_bank(31) + 5;
   return config;
 }
 
@@ -105,8 +105,8 @@ TEST(StereoDriver, UploadsTheTablesBeforeAnythingElse) {
 
 TEST(StereoDriver, NeedsNoTables) {
   DriverConfig config = small(2, 2, 3);
-  config.left_lut.reset();
-  config.right_lut.reset();
+  config.buffers.left_lut.reset();
+  config.buffers.right_lut.reset();
   Listener listener;
   FakeMachine machine(1);
   StereoDriver driver(config, {}, {}, listener);
@@ -253,7 +253,7 @@ TEST(StereoDriver, RefusesAConfigurationWithProblems) {
   refused(small(0, 1, 1));
   refused(small(1, 0, 1));
   config = small(2, 1, 1);
-  config.right_images.pop_back();
+  config.buffers.right_images.pop_back();
   refused(config);
   config = small(1, 1, 1);
   config.width = 6;
