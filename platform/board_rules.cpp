@@ -62,7 +62,7 @@ class RuleChecker {
     const std::vector<std::string> involved = {"allocation.right_image", "allocation.left_image"};
     const AllocationConfig& allocation = board_.allocation;
     if (!all_sound(involved) || allocation.right_image.size() == allocation.left_image.size()) return;
-    found_.push_back({fmt::format("allocation.right_image = {}: as long as left_image, which is {}",
+    found_.push_back({fmt::format("allocation.right_image = {}: must be as long as left_image, which is {}",
                                   list_text(allocation.right_image), list_text(allocation.left_image)),
                       involved});
   }

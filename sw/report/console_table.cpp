@@ -18,9 +18,8 @@ double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-std::string bound_line(double bound, const std::string& limited_by) {
-  return fmt::format("{:<12} {:>10.3f} frames/s   limited by {}\n", "bound", bound,
-                     shortened(limited_by, 48));
+std::string bound_line(const char* name, double bound, const std::string& limited_by) {
+  return fmt::format("{:<12} {:>10.3f} frames/s   limited by {}\n", name, bound, shortened(limited_by, 48));
 }
 
 std::string rate_lines(const platform::Statistics& statistics) {
@@ -30,7 +29,7 @@ std::string rate_lines(const platform::Statistics& statistics) {
   return fmt::format("{:<12} {:>10.3f} frames/s   {:.0f} cycles a frame, {} frame{}\n", "core",
                      statistics.frames_per_second.core, static_cast<double>(cycles) / frames,
                      statistics.frames, statistics.frames == 1 ? "" : "s") +
-         bound_line(statistics.bound.core, statistics.bound.core_limited_by);
+         bound_line("core bound", statistics.bound.core, statistics.bound.core_limited_by);
 }
 
 std::string system_lines(const platform::Statistics& statistics) {
@@ -38,7 +37,7 @@ std::string system_lines(const platform::Statistics& statistics) {
   if (!rate.system || !statistics.bound.system) return "";
   const std::string steady = rate.steady ? fmt::format("   steady {:.3f}", *rate.steady) : "";
   return fmt::format("{:<12} {:>10.3f} frames/s{}\n", "system", *rate.system, steady) +
-         bound_line(*statistics.bound.system, statistics.bound.system_limited_by);
+         bound_line("system bound", *statistics.bound.system, statistics.bound.system_limited_by);
 }
 
 std::string pci_lines(const platform::ComputerStatistics& computer, double clock_mhz) {

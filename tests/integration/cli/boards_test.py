@@ -159,7 +159,7 @@ class Bounds(ProgramTest):
     def test_a_run_reaches_the_bound_that_is_printed(self):
         _, last = self.groups("fpl2003", *SMALL)
         table = self.succeeds(self.run_small("--frames", "2"))
-        self.assertEqual(table.splitlines()[1].split()[1], last.split()[4])
+        self.assertEqual(table.splitlines()[1].split()[2], last.split()[4])
 
     def test_lists_the_parts_of_the_computer(self):
         parts, last = self.around_the_board("fpl2003")

@@ -104,8 +104,9 @@ TEST(BoardConfig, RefusesEnumeratorsThatDoNotExist) {
 TEST(BoardConfig, ChecksTheRulesBetweenKeys) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.allocation.left_lut = "bank9"; }),
             Problems{"allocation.left_lut = bank9: not a bank of this board; nearest: bank0"});
-  EXPECT_EQ(problems_with([](BoardConfig& b) { b.allocation.left_image.pop_back(); }),
-            Problems{"allocation.right_image = [bank2, bank3]: as long as left_image, which is [bank0]"});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.allocation.left_image.pop_back(); }),
+      Problems{"allocation.right_image = [bank2, bank3]: must be as long as left_image, which is [bank0]"});
   EXPECT_EQ(
       problems_with([](BoardConfig& b) { b.banks[6].words = 307199; }),
       Problems{"ssram.banks.bank6.words = 307199: 1 words missing, its buffers (left_lut) need 307200"});

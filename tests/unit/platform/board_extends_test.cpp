@@ -131,9 +131,9 @@ TEST(BoardExtends, PointsAtTheFilesValueWhereItBreaksARuleWithThePresets) {
   EXPECT_EQ(refusal_of("extends: fpl2003\ncapture: {fifo_words: 32}\n"), "");
   EXPECT_EQ(refusal_of("extends: fpl2003\ncapture: {fifo_trigger_words: 141}\n"),
             "board.yaml:2:31: capture.fifo_trigger_words = 141: 1..fifo_words, which is 140");
-  EXPECT_EQ(
-      refusal_of("extends: fpl2003\nallocation: {left_image: bank0}\n"),
-      "board.yaml:2:26: allocation.right_image = [bank2, bank3]: as long as left_image, which is [bank0]");
+  EXPECT_EQ(refusal_of("extends: fpl2003\nallocation: {left_image: bank0}\n"),
+            "board.yaml:2:26: allocation.right_image = [bank2, bank3]: must be as long as left_image, which "
+            "is [bank0]");
   EXPECT_EQ(
       refusal_of("extends: fpl2003\nimage: {width: 2048, height: 257}\n"),
       "board.yaml:2:16: ssram.banks.bank6.words = 524288: 2048 words missing, its buffers (left_lut) need "

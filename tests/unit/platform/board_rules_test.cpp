@@ -180,7 +180,8 @@ TEST(BoardAllocation, TakesAListOfOneAndItsScalarForTheSame) {
 TEST(BoardAllocation, HasImageListsOfOneLength) {
   EXPECT_EQ(
       refusal_of(kBase + "allocation:\n  left_image: [bank0, bank1, bank0]\n  right_image: [bank2, bank3]\n"),
-      "board.yaml:4:16: allocation.right_image = [bank2, bank3]: as long as left_image, which is [bank0, "
+      "board.yaml:4:16: allocation.right_image = [bank2, bank3]: must be as long as left_image, which is "
+      "[bank0, "
       "bank1, bank0]");
   EXPECT_EQ(
       refusal_of(kBase +

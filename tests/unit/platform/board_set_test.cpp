@@ -93,10 +93,10 @@ TEST(BoardSet, IsNamedWhereItBreaksARuleWithOtherValues) {
   EXPECT_EQ(refusal_of_board("fpl2003", {"allocation.left_lut=bank7"}),
             "--set allocation.left_lut: ssram.banks.bank7.words = 524288: 90112 words missing, its buffers "
             "(left_lut, right_lut) need 614400");
-  EXPECT_EQ(
-      refusal_of_board("fpl2003", {"allocation.left_image=bank0"}),
-      "--set allocation.left_image: allocation.right_image = [bank2, bank3]: as long as left_image, which is "
-      "[bank0]");
+  EXPECT_EQ(refusal_of_board("fpl2003", {"allocation.left_image=bank0"}),
+            "--set allocation.left_image: allocation.right_image = [bank2, bank3]: must be as long as "
+            "left_image, which is "
+            "[bank0]");
   EXPECT_EQ(refusal_of_board("fpl2003", {"ssram.default.kind=sync_burst"}),
             "--set ssram.default.kind: ssram.default.turnaround_cycles: missing: 1..16; required where the "
             "kind is sync_burst, refused beside another");

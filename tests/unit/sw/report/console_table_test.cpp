@@ -32,7 +32,7 @@ platform::Statistics two_banks() {
 TEST(ConsoleTable, ShowsRatesBanksAndTheWorstStall) {
   EXPECT_EQ(console_table(two_banks(), {}, std::nullopt),
             "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
-            "bound         40000.000 frames/s   limited by left_pixel\n"
+            "core bound    40000.000 frames/s   limited by left_pixel\n"
             "bank                  reads         writes   use %      MB/s peak MB/s\n"
             "image                  1500              0   75.00    120.00    160.00\n"
             "out                       0             20    1.00      1.60    160.00\n"
@@ -62,9 +62,9 @@ TEST(ConsoleTable, ShowsTheComputerAroundTheBoard) {
   EXPECT_EQ(
       console_table(in_a_computer(), {40, 30, 40}, std::nullopt),
       "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
-      "bound         40000.000 frames/s   limited by left_pixel\n"
+      "core bound    40000.000 frames/s   limited by left_pixel\n"
       "system           17.500 frames/s   steady 17.980\n"
-      "bound            29.970 frames/s   limited by camera\n"
+      "system bound     29.970 frames/s   limited by camera\n"
       "bank                  reads         writes   use %      MB/s peak MB/s\n"
       "image                  1500              0   75.00    120.00    160.00\n"
       "out                       0             20    1.00      1.60    160.00\n"
