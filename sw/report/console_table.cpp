@@ -42,11 +42,14 @@ std::string system_lines(const platform::Statistics& statistics) {
 
 std::string pci_lines(const platform::ComputerStatistics& computer, double clock_mhz) {
   const double peak = kBytesPerWord * clock_mhz;
-  std::string text = fmt::format("{:<12} {:>14} {:>14} {:>7} {:>9} {:>9} {:>12}\n", "pci master",
+  std::size_t width = 12;
+  for (const platform::PciMasterStatistics& master : computer.pci_masters)
+    width = std::max(width, master.name.size());
+  std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9} {:>12}\n", "pci master", width,
                                  "transactions", "words", "use %", "MB/s", "peak MB/s", "mean wait us");
   for (const platform::PciMasterStatistics& master : computer.pci_masters) {
     const double use = share(master.words, computer.pci_clocks);
-    text += fmt::format("{:<12} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>12.3f}\n", master.name,
+    text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>12.3f}\n", master.name, width,
                         master.transactions, master.words, 100 * use, use * peak, peak,
                         share(master.wait_clocks, master.transactions) / clock_mhz);
   }

@@ -80,6 +80,14 @@ TEST(ConsoleTable, ShowsTheComputerAroundTheBoard) {
       "latency      capture to host, ms: min 77.500, p50 80.000, p95 90.250, p99 99.000, max 100.000\n");
 }
 
+TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
+  platform::Statistics statistics = in_a_computer();
+  statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});
+  const std::string text = console_table(statistics, {40, 30, 40}, std::nullopt);
+  EXPECT_THAT(text, HasSubstr("\npci master      transactions          words   use %"));
+  EXPECT_THAT(text, HasSubstr("\nright_capture            100           3000   30.00"));
+}
+
 TEST(ConsoleTable, HasNoSteadyRateOfOneFrame) {
   platform::Statistics statistics = in_a_computer();
   statistics.frames_per_second.steady.reset();
