@@ -315,9 +315,8 @@ bool PciBridge::run_chain(Channel& channel) {
     const std::uint64_t board = bridge::local_address(descriptor[1]);
     const std::size_t words = descriptor[2] & ~bridge::kToPci;
     if (words == 0 || descriptor[0] % 4 != 0) return false;
-    const bool moved = (descriptor[2] & bridge::kToPci) != 0 ? to_pci(channel, descriptor[0], board, words)
-                                                             : to_board(channel, descriptor[0], board, words);
-    if (!moved) return false;
+    const bool to_pci = (descriptor[2] & bridge::kToPci) != 0;
+    if (!move_piece(channel, {to_pci, descriptor[0], board, words})) return false;
     next = descriptor[3];
     if (next == 0) return true;
   }
@@ -328,49 +327,31 @@ bool PciBridge::finish(Transfer& transfer) {
   return !transfer.failed;
 }
 
-bool PciBridge::to_board(Channel& channel, std::uint32_t pci_address, std::uint64_t local_address,
-                         std::size_t words) {
+// A burst is read on one bus while the one before it is written on the other.
+bool PciBridge::move_piece(Channel& channel, const Piece& piece) {
+  Transfer& from = piece.to_pci ? channel.local : channel.pci;
+  Transfer& to = piece.to_pci ? channel.pci : channel.local;
+  const auto start = [&](Transfer& transfer, bool write, std::size_t moved) {
+    const bool on_pci = &transfer == &channel.pci;
+    transfer.write = write;
+    transfer.address = (on_pci ? piece.pci_address : piece.local_address) + moved * 4;
+    on_pci ? start_on_pci(transfer) : start_on_local(transfer);
+  };
   const auto most = static_cast<std::size_t>(config_.dma_burst_words);
-  for (std::size_t moved = 0; moved < words;) {
-    const std::size_t burst = std::min(most, words - moved);
-    channel.pci.write = false;
-    channel.pci.address = pci_address + moved * 4;
-    channel.pci.words.resize(burst);
-    start_on_pci(channel.pci);
-    const bool read = finish(channel.pci);
-    const bool written = finish(channel.local);
+  for (std::size_t moved = 0; moved < piece.words;) {
+    const std::size_t burst = std::min(most, piece.words - moved);
+    from.words.resize(burst);
+    start(from, false, moved);
+    const bool read = finish(from);
+    const bool written = finish(to);
     if (!read || !written) return false;
-    channel.local.write = true;
-    channel.local.address = local_address + moved * 4;
-    words_taken_.add(channel.local.address, burst);
-    channel.local.words.swap(channel.pci.words);
-    start_on_local(channel.local);
+    to.words.swap(from.words);
+    start(to, true, moved);
+    if (!piece.to_pci) words_taken_.add(to.address, burst);
     moved += burst;
     stats_.dma_words += burst;
   }
-  return finish(channel.local);
-}
-
-bool PciBridge::to_pci(Channel& channel, std::uint32_t pci_address, std::uint64_t local_address,
-                       std::size_t words) {
-  const auto most = static_cast<std::size_t>(config_.dma_burst_words);
-  for (std::size_t moved = 0; moved < words;) {
-    const std::size_t burst = std::min(most, words - moved);
-    channel.local.write = false;
-    channel.local.address = local_address + moved * 4;
-    channel.local.words.resize(burst);
-    start_on_local(channel.local);
-    const bool read = finish(channel.local);
-    const bool written = finish(channel.pci);
-    if (!read || !written) return false;
-    channel.pci.write = true;
-    channel.pci.address = pci_address + moved * 4;
-    channel.pci.words.swap(channel.local.words);
-    start_on_pci(channel.pci);
-    moved += burst;
-    stats_.dma_words += burst;
-  }
-  return finish(channel.pci);
+  return finish(to);
 }
 
 }  // namespace stereotlm::pci

@@ -93,6 +93,13 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
     Transfer pci;
     Transfer local;
   };
+  // What one descriptor asks for.
+  struct Piece {
+    bool to_pci = false;
+    std::uint64_t pci_address = 0;
+    std::uint64_t local_address = 0;
+    std::size_t words = 0;
+  };
   class Manager : public tlm::tlm_mm_interface {
     void free(tlm::tlm_generic_payload* /*payload*/) override {}
   };
@@ -122,8 +129,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   // The channels.
   void run_channel(std::size_t channel);
   bool run_chain(Channel& channel);
-  bool to_board(Channel& channel, std::uint32_t pci_address, std::uint64_t local_address, std::size_t words);
-  bool to_pci(Channel& channel, std::uint32_t pci_address, std::uint64_t local_address, std::size_t words);
+  bool move_piece(Channel& channel, const Piece& piece);
   static bool finish(Transfer& transfer);
 
   void ring();
