@@ -1,0 +1,58 @@
+#include "calib/camera_model.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace stereotlm::calib {
+namespace {
+
+// The lens: where a direction appears to come from, and the derivative of that.
+struct Bent {
+  Eigen::Vector2d direction;
+  Eigen::Matrix2d derivative;
+};
+
+Bent bent(const std::array<double, 5>& distortion, const Eigen::Vector2d& direction) {
+  const auto [k1, k2, p1, p2, k3] = distortion;
+  const double x = direction.x();
+  const double y = direction.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));  // of `radial`, by x is x times this
+  Bent result;
+  result.direction = {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+                      y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  const double cross = x * y * slope + 2 * p1 * x + 2 * p2 * y;
+  result.derivative << radial + x * x * slope + 2 * p1 * y + 6 * p2 * x, cross,  //
+      cross, radial + y * y * slope + 6 * p1 * y + 2 * p2 * x;
+  return result;
+}
+
+}  // namespace
+
+Eigen::Vector2d CameraModel::pixel(const Eigen::Vector2d& direction) const {
+  return (matrix * bent(distortion, direction).direction.homogeneous()).hnormalized();
+}
+
+// Newton's method, from the direction that there would be without a lens.
+Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
+  constexpr int kMostSteps = 50;
+  constexpr double kCloseEnough = 1e-12;
+  const Eigen::Vector2d seen = (matrix.inverse() * pixel.homogeneous()).hnormalized();
+  Eigen::Vector2d result = seen;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Bent here = bent(distortion, result);
+    // Beyond the place where the lens folds the picture over, its derivative turns it round.
+    if (!(here.derivative.determinant() > 0)) break;
+    const Eigen::Vector2d error = here.direction - seen;
+    if (error.norm() < kCloseEnough) return result;
+    result -= here.derivative.inverse() * error;
+  }
+  throw std::domain_error("pixel (" + std::to_string(pixel.x()) + ", " + std::to_string(pixel.y()) +
+                          "): must be seen by the lens: its distortion folds the picture over there");
+}
+
+}  // namespace stereotlm::calib

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "calib/camera_model.h"
+
+namespace stereotlm::calib {
+
+// Two cameras on one bar, with pictures of one size.
+struct Rig {
+  int width = 0;   // pixels
+  int height = 0;  // pixels
+  CameraModel left;
+  CameraModel right;
+  // Camera coordinates of a point: right = rotation * left + translation, mm.
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+};
+
+}  // namespace stereotlm::calib
