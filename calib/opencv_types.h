@@ -29,9 +29,9 @@ template <typename Matrix>
 Matrix to_eigen(const cv::Mat& matrix) {
   Matrix result;
   if (matrix.type() != CV_64FC1 || matrix.rows != result.rows() || matrix.cols != result.cols()) {
-    throw std::invalid_argument("matrix = " + std::to_string(matrix.rows) + "x" + std::to_string(matrix.cols) +
-                                ": must be " + std::to_string(result.rows()) + "x" +
-                                std::to_string(result.cols()) + " doubles");
+    throw std::invalid_argument("matrix = " + std::to_string(matrix.rows) + "x" +
+                                std::to_string(matrix.cols) + ": must be " + std::to_string(result.rows()) +
+                                "x" + std::to_string(result.cols()) + " doubles");
   }
   for (int row = 0; row < matrix.rows; ++row) {
     for (int column = 0; column < matrix.cols; ++column) result(row, column) = matrix.at<double>(row, column);

@@ -17,4 +17,12 @@ struct Rig {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
+// Where the two cameras see a point, given in camera coordinates of the left one: pixels.
+struct SeenPoint {
+  Eigen::Vector2d left;
+  Eigen::Vector2d right;
+};
+
+SeenPoint seen_by(const Rig& rig, const Eigen::Vector3d& point);
+
 }  // namespace stereotlm::calib

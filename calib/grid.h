@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "calib/grid_shape.h"
+#include "models/kernels/gray_image.h"
+
+namespace stereotlm::calib {
+
+// The corners of the chessboard in a picture, to a fraction of a pixel; nothing if it is not found whole.
+std::optional<Corners> find_grid(const kernels::GrayImage& picture, const GridShape& shape);
+
+// Each corner moved to the point near it where the greys form a saddle. The window that decides reaches 30 % of the
+// smallest distance between neighbours to every side, at least 2 pixels: a larger one sees the next corner, which pulls by
+// pixels where the board is far or tilted.
+Corners refined(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners);
+
+// A chessboard looks the same turned by half (a square one by a quarter) to whoever finds its corners: these corners in
+// the order that runs in most nearly the direction of `other`, which another camera of the rig sees.
+Corners ordered_like(const Corners& other, const GridShape& shape, const Corners& corners);
+
+}  // namespace stereotlm::calib

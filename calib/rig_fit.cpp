@@ -1,0 +1,185 @@
+#include "calib/rig_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "calib/grid_pose.h"
+#include "calib/opencv_types.h"
+
+namespace stereotlm::calib {
+namespace {
+
+using Used = std::vector<std::vector<bool>>;
+
+constexpr double kMostMedians = 8;
+constexpr int kMostRounds = 20;
+
+// The corners used, in OpenCV's form: a pair without any is not there.
+struct Observations {
+  std::vector<std::vector<cv::Point3f>> points;
+  std::vector<std::vector<cv::Point2f>> left;
+  std::vector<std::vector<cv::Point2f>> right;
+};
+
+cv::Point2f to_point(const Eigen::Vector2d& corner) {
+  return {static_cast<float>(corner.x()), static_cast<float>(corner.y())};
+}
+
+Observations observations(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used) {
+  const std::vector<Eigen::Vector3d> grid = corner_points(shape);
+  Observations result;
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+    std::vector<cv::Point3f> points;
+    std::vector<cv::Point2f> left;
+    std::vector<cv::Point2f> right;
+    for (std::size_t corner = 0; corner < grid.size(); ++corner) {
+      if (!used[pair][corner]) continue;
+      points.emplace_back(static_cast<float>(grid[corner].x()), static_cast<float>(grid[corner].y()), 0.0F);
+      left.push_back(to_point(pairs[pair].left[corner]));
+      right.push_back(to_point(pairs[pair].right[corner]));
+    }
+    if (points.empty()) continue;
+    result.points.push_back(points);
+    result.left.push_back(left);
+    result.right.push_back(right);
+  }
+  return result;
+}
+
+CameraModel to_camera(const cv::Mat& matrix, const cv::Mat& distortion) {
+  CameraModel camera{to_eigen<Eigen::Matrix3d>(matrix), {}};
+  std::copy_n(distortion.ptr<double>(), camera.distortion.size(), camera.distortion.begin());
+  return camera;
+}
+
+Rig solve(const Observations& seen, int width, int height) {
+  const cv::Size size(width, height);
+  cv::Mat m1, d1, m2, d2, rotation, translation, essential, fundamental;
+  try {
+    cv::calibrateCamera(seen.points, seen.left, size, m1, d1, cv::noArray(), cv::noArray());
+    cv::calibrateCamera(seen.points, seen.right, size, m2, d2, cv::noArray(), cv::noArray());
+    constexpr int kMostSteps = 200;
+    constexpr double kCloseEnough = 1e-9;
+    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, size, rotation, translation,
+                        essential, fundamental, cv::CALIB_USE_INTRINSIC_GUESS,
+                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error("the cameras cannot be calibrated from these pictures: " + error.err);
+  }
+  return {width,
+          height,
+          to_camera(m1, d1),
+          to_camera(m2, d2),
+          to_eigen<Eigen::Matrix3d>(rotation),
+          to_eigen<Eigen::Vector3d>(translation)};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+template <typename Visit>
+void for_each_corner(const Used& used, const Visit& visit) {
+  for (std::size_t pair = 0; pair < used.size(); ++pair) {
+    for (std::size_t corner = 0; corner < used[pair].size(); ++corner) visit(pair, corner);
+  }
+}
+
+Used those_that_fit(const RigFit& fit) {
+  std::vector<double> of_used;
+  for_each_corner(fit.used, [&](std::size_t pair, std::size_t corner) {
+    if (fit.used[pair][corner]) of_used.push_back(fit.misfits[pair].of_corner(corner));
+  });
+  const double most = kMostMedians * median(std::move(of_used));
+  Used result = fit.used;
+  for (std::size_t pair = 0; pair < result.size(); ++pair) {
+    std::size_t count = 0;
+    for (std::size_t corner = 0; corner < result[pair].size(); ++corner) {
+      result[pair][corner] = fit.misfits[pair].of_corner(corner) <= most;
+      if (result[pair][corner]) ++count;
+    }
+    if (2 * count < result[pair].size()) result[pair].assign(result[pair].size(), false);
+  }
+  return result;
+}
+
+std::size_t pairs_in(const Used& used) {
+  return static_cast<std::size_t>(std::count_if(used.begin(), used.end(), [](const std::vector<bool>& pair) {
+    return std::find(pair.begin(), pair.end(), true) != pair.end();
+  }));
+}
+
+void check_pairs(const Used& used) {
+  const std::size_t count = pairs_in(used);
+  if (count >= kFewestPairs) return;
+  throw std::invalid_argument("pairs of pictures whose grid fits = " + std::to_string(count) + ": must be " +
+                              std::to_string(kFewestPairs) + " or more");
+}
+
+RigFit fit_once(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
+                const Used& used) {
+  RigFit fit;
+  fit.used = used;
+  fit.rig = solve(observations(shape, pairs, used), width, height);
+  const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+    const bool is_out = std::find(used[pair].begin(), used[pair].end(), true) == used[pair].end();
+    fit.misfits.push_back(misfit(fit.rig, shape, pairs[pair], is_out ? all : used[pair]));
+  }
+  return fit;
+}
+
+void add_figures(RigFit& fit) {
+  double left = 0;
+  double right = 0;
+  std::size_t count = 0;
+  for_each_corner(fit.used, [&](std::size_t pair, std::size_t corner) {
+    const Misfit& its = fit.misfits[pair];
+    if (!fit.used[pair][corner]) {
+      fit.left_out.push_back({pair, corner, its.of_corner(corner)});
+      return;
+    }
+    left += its.left[corner] * its.left[corner];
+    right += its.right[corner] * its.right[corner];
+    ++count;
+  });
+  const auto corners = static_cast<double>(count);
+  fit.left_rms_px = std::sqrt(left / corners);
+  fit.right_rms_px = std::sqrt(right / corners);
+  fit.stereo_rms_px = std::sqrt((left + right) / (2 * corners));
+}
+
+}  // namespace
+
+Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
+  const Eigen::Isometry3d pose = grid_pose(rig, shape, pair, used);
+  const std::vector<Eigen::Vector3d> points = corner_points(shape);
+  Misfit result;
+  for (std::size_t corner = 0; corner < points.size(); ++corner) {
+    const SeenPoint seen = seen_by(rig, pose * points[corner]);
+    result.left.push_back((seen.left - pair.left[corner]).norm());
+    result.right.push_back((seen.right - pair.right[corner]).norm());
+  }
+  return result;
+}
+
+RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs) {
+  Used used(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
+  check_pairs(used);
+  RigFit fit = fit_once(shape, width, height, pairs, used);
+  for (int round = 1; round < kMostRounds; ++round) {
+    used = those_that_fit(fit);
+    check_pairs(used);
+    if (used == fit.used) break;
+    fit = fit_once(shape, width, height, pairs, used);
+  }
+  add_figures(fit);
+  return fit;
+}
+
+}  // namespace stereotlm::calib
