@@ -1,6 +1,11 @@
 #include "calib/grid.h"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -58,15 +63,136 @@ double agreement(const GridShape& shape, const Corners& a, const Corners& b) {
          along(a, 0, last_row).dot(along(b, 0, last_row));
 }
 
+// The mean of 3 x 3 pixels, of those that there are.
+double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& position) {
+  const auto column = static_cast<int>(std::lround(position.x()));
+  const auto row = static_cast<int>(std::lround(position.y()));
+  double sum = 0;
+  int count = 0;
+  for (int y = std::max(0, row - 1); y <= std::min(picture.height - 1, row + 1); ++y) {
+    for (int x = std::max(0, column - 1); x <= std::min(picture.width - 1, column + 1); ++x) {
+      sum += picture.at(x, y);
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+// How much two opposite of the squares around a corner are brighter than the other two. `right` and `down` lead to the
+// next corners.
+double contrast(const kernels::GrayImage& picture, const Eigen::Vector2d& corner,
+                const Eigen::Vector2d& right, const Eigen::Vector2d& down) {
+  constexpr double kReach = 0.35;  // of a square
+  const Eigen::Vector2d falling = kReach * (right + down);
+  const Eigen::Vector2d rising = kReach * (right - down);
+  return grey_at(picture, corner + falling) + grey_at(picture, corner - falling) -
+         grey_at(picture, corner + rising) - grey_at(picture, corner - rising);
+}
+
+// Whether corners are all that a chessboard has.
+class Squares {
+ public:
+  Squares(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners)
+      : picture_(picture), shape_(shape), corners_(corners) {
+    std::vector<cv::Point2d> on_board;
+    std::vector<cv::Point2d> seen;
+    for (int row = 0; row < shape.rows; ++row) {
+      for (int column = 0; column < shape.columns; ++column) {
+        const Eigen::Vector2d& corner = corners[index_of(shape, column, row)];
+        on_board.emplace_back(column, row);
+        seen.emplace_back(corner.x(), corner.y());
+      }
+    }
+    without_lens_ = to_eigen<Eigen::Matrix3d>(cv::findHomography(on_board, seen));
+  }
+
+  // Whether the corners alternate as those of a chessboard do. They do not where a line in between was missed.
+  bool alternate() const {
+    constexpr double kAtLeast = 0.9;  // the rest is for single corners that cannot be seen well
+    double sum = 0;
+    double most = 0;
+    for (int row = 0; row < shape_.rows; ++row) {
+      for (int column = 0; column < shape_.columns; ++column) {
+        const double here = contrast_at(column, row);
+        sum += (column + row) % 2 == 0 ? here : -here;
+        most += std::abs(here);
+      }
+    }
+    return std::abs(sum) > kAtLeast * most;
+  }
+
+  // Whether there are more lines of corners than those found. On the edge of the outermost squares, where one or two of
+  // the four squares around a point are missing, the contrast is half that of a corner.
+  bool go_on() const {
+    constexpr double kAtLeast = 0.72;
+    const auto exceeds = [](double beyond, double within) {
+      return beyond * within < 0 && std::abs(beyond) > kAtLeast * std::abs(within);
+    };
+    const int last_column = shape_.columns - 1;
+    const int last_row = shape_.rows - 1;
+    return exceeds(contrast_of_column(-1), contrast_of_column(0)) ||
+           exceeds(contrast_of_column(last_column + 1), contrast_of_column(last_column)) ||
+           exceeds(contrast_of_row(-1), contrast_of_row(0)) ||
+           exceeds(contrast_of_row(last_row + 1), contrast_of_row(last_row));
+  }
+
+ private:
+  // Of one beyond the corners found: where their plane leads, bent as its neighbour is.
+  Eigen::Vector2d corner(int column, int row) const {
+    const int inner_column = std::clamp(column, 0, shape_.columns - 1);
+    const int inner_row = std::clamp(row, 0, shape_.rows - 1);
+    const Eigen::Vector2d& inner = corners_[index_of(shape_, inner_column, inner_row)];
+    return inner + corner_without_lens(column, row) - corner_without_lens(inner_column, inner_row);
+  }
+
+  Eigen::Vector2d corner_without_lens(int column, int row) const {
+    return (without_lens_ * Eigen::Vector3d(column, row, 1)).hnormalized();
+  }
+
+  double contrast_at(int column, int row) const {
+    const int next_column = column + 1 < shape_.columns ? 1 : -1;
+    const int next_row = row + 1 < shape_.rows ? 1 : -1;
+    const Eigen::Vector2d here = corner(column, row);
+    const Eigen::Vector2d right = next_column * (corner(column + next_column, row) - here);
+    const Eigen::Vector2d down = next_row * (corner(column, row + next_row) - here);
+    return contrast(picture_, here, right, down);
+  }
+
+  double contrast_of_column(int column) const {
+    double sum = 0;
+    for (int row = 0; row < shape_.rows; ++row) sum += (row % 2 == 0 ? 1 : -1) * contrast_at(column, row);
+    return sum;
+  }
+
+  double contrast_of_row(int row) const {
+    double sum = 0;
+    for (int column = 0; column < shape_.columns; ++column) {
+      sum += (column % 2 == 0 ? 1 : -1) * contrast_at(column, row);
+    }
+    return sum;
+  }
+
+  const kernels::GrayImage& picture_;
+  const GridShape& shape_;
+  const Corners& corners_;
+  Eigen::Matrix3d without_lens_;  // from columns and rows of corners to pixels
+};
+
 }  // namespace
 
-std::optional<Corners> find_grid(const kernels::GrayImage& picture, const GridShape& shape) {
+GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) {
   std::vector<cv::Point2f> points;
   if (!cv::findChessboardCorners(view(picture), {shape.columns, shape.rows}, points,
                                  cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
-    return std::nullopt;
+    return {std::nullopt, fmt::format("no grid of {}x{} inner corners found", shape.columns, shape.rows)};
   }
-  return refined(picture, shape, to_corners(points));
+  const Corners corners = refined(picture, shape, to_corners(points));
+  const Squares squares(picture, shape, corners);
+  if (!squares.alternate() || squares.go_on()) {
+    return {std::nullopt,
+            fmt::format("the grid has more than {}x{} inner corners", shape.columns, shape.rows)};
+  }
+  return {corners, ""};
 }
 
 Corners refined(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {

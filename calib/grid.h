@@ -1,14 +1,21 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "calib/grid_shape.h"
 #include "models/kernels/gray_image.h"
 
 namespace stereotlm::calib {
 
-// The corners of the chessboard in a picture, to a fraction of a pixel; nothing if it is not found whole.
-std::optional<Corners> find_grid(const kernels::GrayImage& picture, const GridShape& shape);
+struct GridSearch {
+  std::optional<Corners> corners;
+  std::string problem;  // why there are none: "no grid of 9x6 inner corners found"
+};
+
+// The corners of the chessboard in a picture, to a fraction of a pixel. One that has more corners than `shape` is refused:
+// nobody could say which of them were found.
+GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape);
 
 // Each corner moved to the point near it where the greys form a saddle. The window that decides reaches 30 % of the
 // smallest distance between neighbours to every side, at least 2 pixels: a larger one sees the next corner, which pulls by

@@ -125,7 +125,7 @@ RigFit fit_once(const GridShape& shape, int width, int height, const std::vector
                 const Used& used) {
   RigFit fit;
   fit.used = used;
-  fit.rig = solve(observations(shape, pairs, used), width, height);
+  fit.rig = solve_rig(shape, width, height, pairs, used);
   const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
   for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
     const bool is_out = std::find(used[pair].begin(), used[pair].end(), true) == used[pair].end();
@@ -155,6 +155,11 @@ void add_figures(RigFit& fit) {
 }
 
 }  // namespace
+
+Rig solve_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
+              const Used& used) {
+  return solve(observations(shape, pairs, used), width, height);
+}
 
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
   const Eigen::Isometry3d pose = grid_pose(rig, shape, pair, used);

@@ -50,7 +50,11 @@ inline constexpr std::size_t kFewestPairs = 3;
 // fewer are left; std::runtime_error if OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs);
 
-// With the grid where it fits best.
+// One fit, to the corners used. Throws std::runtime_error if OpenCV finds no rig.
+Rig solve_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
+              const std::vector<std::vector<bool>>& used);
+
+// With the grid where the corners used fit best.
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used);
 
 }  // namespace stereotlm::calib

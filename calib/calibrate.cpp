@@ -1,0 +1,177 @@
+#include "calib/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "calib/grid.h"
+
+namespace stereotlm::calib {
+namespace {
+
+// Finds the grids. A pair without one in both pictures is skipped.
+void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
+  const auto search = [&](const kernels::GrayImage& picture, const std::string& name) {
+    GridSearch found = find_grid(picture, request.grid);
+    if (!found.corners) result.skipped.push_back(fmt::format("'{}': {}", name, found.problem));
+    return std::move(found.corners);
+  };
+  for (std::size_t i = 0; i < request.pictures.size(); ++i) {
+    const PicturePair& pair = request.pictures[i];
+    const auto left = search(pair.left, pair.left_name);
+    const auto right = search(pair.right, pair.right_name);
+    if (!left || !right) continue;
+    result.pairs.push_back({i, {*left, ordered_like(*left, request.grid, *right)}, {}});
+  }
+  if (result.pairs.size() >= kFewestPairs) return;
+  std::string reasons;
+  for (const std::string& reason : result.skipped) reasons += "\n  " + reason;
+  throw std::invalid_argument(fmt::format(
+      "pairs with a grid of {}x{} inner corners in both pictures = {} of {}: must be {} or more; an inner "
+      "corner is where four squares meet: a board of 10x7 squares has 9x6{}",
+      request.grid.columns, request.grid.rows, result.pairs.size(), request.pictures.size(), kFewestPairs,
+      reasons));
+}
+
+void check_places(const Rig& rig) {
+  const Eigen::Vector3d& t = rig.translation;
+  if (std::abs(t.y()) > std::abs(t.x())) {
+    throw std::invalid_argument(
+        fmt::format("the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
+                    "stand side by side",
+                    std::abs(t.y()), t.y() > 0 ? "above" : "below", std::abs(t.x())));
+  }
+  if (t.x() > 0) {
+    throw std::invalid_argument(fmt::format(
+        "the cameras are swapped: what should be the left one stands {:.1f} mm to the right of the "
+        "other: exchange left and right pictures",
+        t.x()));
+  }
+}
+
+RowError row_error(const Rig& rig, const Rectification& rectification,
+                   const std::vector<CalibratedPair>& pairs) {
+  RowErrors errors;
+  for (const CalibratedPair& pair : pairs) {
+    const GridPair corners = rectified(rig, rectification, pair.corners);
+    for (std::size_t i = 0; i < pair.used.size(); ++i) {
+      if (pair.used[i]) errors.add(corners.left[i], corners.right[i]);
+    }
+  }
+  return errors.result();
+}
+
+DisparityRange disparities(const Rig& rig, const Rectification& rectification,
+                           const std::vector<CalibratedPair>& pairs) {
+  std::vector<double> all;
+  for (const CalibratedPair& pair : pairs) {
+    const GridPair corners = rectified(rig, rectification, pair.corners);
+    for (std::size_t i = 0; i < pair.used.size(); ++i) {
+      if (pair.used[i]) all.push_back(corners.left[i].x() - corners.right[i].x());
+    }
+  }
+  const auto [min, max] = std::minmax_element(all.begin(), all.end());
+  return {*min, *max};
+}
+
+bool all_inside(const kernels::GrayImage& picture, const Corners& corners) {
+  return std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
+    return corner.x() >= 0 && corner.x() <= picture.width - 1 && corner.y() >= 0 &&
+           corner.y() <= picture.height - 1;
+  });
+}
+
+// Of pairs whose corners the rectified pictures hold, all of them.
+RowError found_again(const CalibrationRequest& request, const CalibrationResult& result) {
+  const Calibration& made = result.calibration;
+  RowErrors errors;
+  for (const CalibratedPair& pair : result.pairs) {
+    const PicturePair& pictures = request.pictures[pair.picture];
+    const kernels::GrayImage left = kernels::rectify(pictures.left, result.tables.left);
+    const kernels::GrayImage right = kernels::rectify(pictures.right, result.tables.right);
+    GridPair corners = rectified(made.rig, made.rectification, pair.corners);
+    for (Eigen::Vector2d& corner : corners.left) corner.x() -= made.disparity_offset;
+    if (!all_inside(left, corners.left) || !all_inside(right, corners.right)) continue;
+    corners.left = refined(left, request.grid, corners.left);
+    corners.right = refined(right, request.grid, corners.right);
+    for (std::size_t i = 0; i < pair.used.size(); ++i) {
+      if (pair.used[i]) errors.add(corners.left[i], corners.right[i]);
+    }
+  }
+  return errors.result();
+}
+
+std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
+                                const std::vector<CalibratedPair>& pairs) {
+  std::vector<GridPair> corners;
+  std::vector<std::size_t> with_corners;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    corners.push_back(pairs[i].corners);
+    if (std::find(fit.used[i].begin(), fit.used[i].end(), true) != fit.used[i].end())
+      with_corners.push_back(i);
+  }
+  if (with_corners.size() <= kFewestPairs) return std::nullopt;
+  RowErrors rows;
+  double squares = 0;
+  std::size_t count = 0;
+  for (const std::size_t i : with_corners) {
+    auto used = fit.used;
+    used[i].assign(used[i].size(), false);
+    const Rig rig = solve_rig(request.grid, fit.rig.width, fit.rig.height, corners, used);
+    const Rectification rectification = rectify(rig);
+    const GridPair its = rectified(rig, rectification, corners[i]);
+    const Misfit distances = misfit(rig, request.grid, corners[i], fit.used[i]);
+    for (std::size_t corner = 0; corner < fit.used[i].size(); ++corner) {
+      if (!fit.used[i][corner]) continue;
+      rows.add(its.left[corner], its.right[corner]);
+      squares +=
+          distances.left[corner] * distances.left[corner] + distances.right[corner] * distances.right[corner];
+      count += 2;
+    }
+  }
+  return HeldOut{std::sqrt(squares / static_cast<double>(count)), rows.result()};
+}
+
+}  // namespace
+
+CalibrationResult calibrate(const CalibrationRequest& request) {
+  CalibrationResult result;
+  find_grids(request, result);
+  std::vector<GridPair> corners;
+  for (const CalibratedPair& pair : result.pairs) corners.push_back(pair.corners);
+  const kernels::GrayImage& first = request.pictures.front().left;
+  const RigFit fit = fit_rig(request.grid, first.width, first.height, corners);
+  check_places(fit.rig);
+  result.left_out = fit.left_out;
+
+  Calibration& made = result.calibration;
+  made.grid = request.grid;
+  made.rig = fit.rig;
+  made.rectification = rectify(fit.rig);
+  made.disparities = request.disparities;
+  for (std::size_t i = 0; i < result.pairs.size(); ++i) {
+    CalibratedPair& pair = result.pairs[i];
+    pair.used = fit.used[i];
+    const PicturePair& pictures = request.pictures[pair.picture];
+    made.sources.push_back({pictures.left_name, pictures.right_name,
+                            static_cast<std::size_t>(std::count(pair.used.begin(), pair.used.end(), true))});
+  }
+  Quality& quality = made.quality;
+  quality.left_rms_px = fit.left_rms_px;
+  quality.right_rms_px = fit.right_rms_px;
+  quality.stereo_rms_px = fit.stereo_rms_px;
+  quality.row_error = row_error(made.rig, made.rectification, result.pairs);
+  quality.disparities = disparities(made.rig, made.rectification, result.pairs);
+  made.disparity_offset = request.disparity_offset
+                              ? *request.disparity_offset
+                              : disparity_offset_for(quality.disparities, request.disparities);
+  result.tables = tables(made.rig, made.rectification, made.disparity_offset);
+  quality.found_again = found_again(request, result);
+  quality.held_out = held_out(request, fit, result.pairs);
+  return result;
+}
+
+}  // namespace stereotlm::calib

@@ -1,0 +1,78 @@
+#include "calib/depth.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "models/kernels/lr_check.h"
+
+namespace stereotlm::calib {
+namespace {
+
+template <typename Visit>
+void for_each_point(const DepthGeometry& geometry, const kernels::GrayImage& disparity, const Visit& visit) {
+  for (int row = 0; row < disparity.height; ++row) {
+    for (int column = 0; column < disparity.width; ++column) {
+      const int d = disparity.at(column, row);
+      if (d == kernels::kInvalidDisparity) continue;
+      if (const auto point = geometry.point(column, row, d)) visit(column, row, *point);
+    }
+  }
+}
+
+void append(std::string& bytes, double value) {
+  const auto single = static_cast<float>(value);
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &single, sizeof bits);
+  for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(bits >> shift & 0xFFU));
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3d> DepthGeometry::point(double column, double row, double disparity) const {
+  const Eigen::Vector4d seen(column + disparity_offset, row, disparity + disparity_offset, 1);
+  const Eigen::Vector4d homogeneous = q * seen;
+  const Eigen::Vector3d result = homogeneous.hnormalized();
+  if (!result.allFinite() || result.z() <= 0) return std::nullopt;
+  return result;
+}
+
+std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
+                                             const kernels::GrayImage& disparity) {
+  std::vector<std::uint16_t> result(disparity.pixels.size(), 0);
+  for_each_point(geometry, disparity, [&](int column, int row, const Eigen::Vector3d& point) {
+    const double depth = std::floor(point.z() + 0.5);
+    if (depth > std::numeric_limits<std::uint16_t>::max()) return;
+    result[static_cast<std::size_t>(row) * static_cast<std::size_t>(disparity.width) +
+           static_cast<std::size_t>(column)] = static_cast<std::uint16_t>(depth);
+  });
+  return result;
+}
+
+std::string point_cloud_ply(const DepthGeometry& geometry, const kernels::GrayImage& disparity,
+                            const kernels::GrayImage& rectified_left) {
+  if (rectified_left.width != disparity.width || rectified_left.height != disparity.height) {
+    throw std::invalid_argument("rectified picture = " + std::to_string(rectified_left.width) + "x" +
+                                std::to_string(rectified_left.height) +
+                                ": must be as large as the disparities, " + std::to_string(disparity.width) +
+                                "x" + std::to_string(disparity.height));
+  }
+  std::string points;
+  std::size_t count = 0;
+  for_each_point(geometry, disparity, [&](int column, int row, const Eigen::Vector3d& point) {
+    for (int axis = 0; axis < 3; ++axis) append(points, point[axis]);
+    points.append(3, static_cast<char>(rectified_left.at(column, row)));
+    ++count;
+  });
+  return "ply\nformat binary_little_endian 1.0\n"
+         "comment millimetres, rectified left camera: x right, y down, z forward\n"
+         "element vertex " +
+         std::to_string(count) +
+         "\nproperty float x\nproperty float y\nproperty float z\n"
+         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n" +
+         points;
+}
+
+}  // namespace stereotlm::calib
