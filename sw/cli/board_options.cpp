@@ -17,7 +17,10 @@ void BoardOptions::add_to(CLI::App& command) {
                   "(see stereotlm keys)")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
-  unbuilt_.add(command, "--calibration", 1);
+  calibration_.add_to(
+      command, "--calibration", "F",
+      "Tables from the calibration of a rig, as written by stereotlm calibrate, in place of the "
+      "identity");
 }
 
 void BoardOptions::check_given(Problems& problems) const {
@@ -26,7 +29,6 @@ void BoardOptions::check_given(Problems& problems) const {
 
 void BoardOptions::check_usage() const {
   Problems problems;
-  check_built(problems);
   check_given(problems);
   problems.check();
 }
@@ -38,6 +40,12 @@ std::optional<platform::BoardConfig> BoardOptions::load(Problems& problems) cons
     problems.add(error);
     return std::nullopt;
   }
+}
+
+std::optional<CalibrationInput> BoardOptions::load_calibration(const platform::BoardConfig* board,
+                                                               Problems& problems) const {
+  if (!calibration_.is_given()) return std::nullopt;
+  return cli::load_calibration(calibration_.text, board, problems);
 }
 
 }  // namespace stereotlm::cli

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "platform/board_config.h"
+#include "sw/cli/calibration_input.h"
 #include "sw/cli/problems.h"
-#include "sw/cli/unbuilt.h"
+#include "sw/cli/typed_option.h"
 
 namespace stereotlm::cli {
 
@@ -17,13 +18,8 @@ class BoardOptions {
   // Adds them to a command, before it is parsed.
   void add_to(CLI::App& command);
 
-  // Options of every such command that are not in this version: "--calibration, .."
-  std::string unbuilt_names() const { return unbuilt_.names(); }
-
-  // While the command's callback runs: reports what is not in this version, and what is missing.
-  void check_built(Problems& problems) const { unbuilt_.report(problems); }
+  // While the command's callback runs: reports what is missing; or throws Refused.
   void check_given(Problems& problems) const;
-  // Both; throws Refused.
   void check_usage() const;
 
   // BOARD as it was typed.
@@ -32,11 +28,16 @@ class BoardOptions {
   // The board; nothing if it is wrong, with every reason reported.
   std::optional<platform::BoardConfig> load(Problems& problems) const;
 
+  // The calibration that was given, if any, for that board; nothing if it is wrong too, with every reason reported.
+  // `board`: null if it is wrong.
+  std::optional<CalibrationInput> load_calibration(const platform::BoardConfig* board,
+                                                   Problems& problems) const;
+
  private:
   const CLI::Option* board_option_ = nullptr;
   std::string board_;
   std::vector<std::string> sets_;
-  UnbuiltOptions unbuilt_;
+  Typed calibration_;
 };
 
 }  // namespace stereotlm::cli

@@ -146,8 +146,9 @@ std::string lines_of(const Group& group, double clock_mhz) {
 int bounds(const BoardOptions& options) {
   Problems problems;
   const auto board = options.load(problems);
+  const auto calibration = options.load_calibration(board ? &*board : nullptr, problems);
   problems.check();
-  const platform::Tables tables = platform::identity_tables(*board);
+  const platform::Tables tables = tables_of(*board, calibration);
   const std::uint64_t frames = platform::allocation_period_frames(*board);
   std::vector<Group> groups;
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
@@ -182,7 +183,7 @@ void add_bounds(CLI::App& program, Action& action) {
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
       "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera\n"
       "as long as no pixel is dropped.\n"
-      "Tables, where the board has them, are taken as the identity.");
+      "Tables, where the board has them, are the identity, or those of --calibration.");
   const auto options = std::make_shared<BoardOptions>();
   options->add_to(*command);
   command->callback([options, &action] {

@@ -19,6 +19,7 @@ std::string summary(const std::string& name, const platform::BoardConfig& board)
 int check(const BoardOptions& options) {
   Problems problems;
   const auto board = options.load(problems);
+  options.load_calibration(board ? &*board : nullptr, problems);
   problems.check();
   print(summary(options.name(), *board));
   return kDone;

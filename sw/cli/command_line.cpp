@@ -98,6 +98,7 @@ Action parse_command_line(int argc, const char* const* argv) {
   add_boards(program, action);
   add_keys(program, action);
   add_bounds(program, action);
+  add_calibrate(program, action);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   add_unbuilt_commands(program);
   check_first_argument(program, argc, argv);

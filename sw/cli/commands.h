@@ -15,5 +15,6 @@ void add_check(CLI::App& program, Action& action);
 void add_boards(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_bounds(CLI::App& program, Action& action);
+void add_calibrate(CLI::App& program, Action& action);
 
 }  // namespace stereotlm::cli

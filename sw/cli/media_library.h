@@ -21,6 +21,7 @@ struct MediaFunctions {
   std::vector<std::uint8_t> (*encode_png_gray)(const kernels::GrayImage& image);
   std::vector<std::uint8_t> (*encode_disparity_color_png)(const kernels::GrayImage& disparity,
                                                           int disparities);
+  std::vector<std::uint8_t> (*encode_png_16)(int width, int height, const std::vector<std::uint16_t>& values);
   std::vector<std::uint8_t> (*encode_pfm)(const kernels::GrayImage& disparity);
 };
 

@@ -5,6 +5,7 @@
 extern "C" {
 extern const stereotlm::cli::MediaFunctions stereotlm_media_functions;
 const stereotlm::cli::MediaFunctions stereotlm_media_functions = {
-    stereotlm::media::load_gray, stereotlm::media::load_truth, stereotlm::media::encode_png_gray,
-    stereotlm::media::encode_disparity_color_png, stereotlm::media::encode_pfm};
+    stereotlm::media::load_gray,       stereotlm::media::load_truth,
+    stereotlm::media::encode_png_gray, stereotlm::media::encode_disparity_color_png,
+    stereotlm::media::encode_png_16,   stereotlm::media::encode_pfm};
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "platform/board_yaml.h"
+#include "sw/cli/calibration_library.h"
 #include "sw/cli/interrupt.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/open_source.h"
@@ -42,6 +43,9 @@ class InputLoader {
   RunInput load() {
     const auto board = options_.board.load(problems_);
     attempt("", [&] { load_pictures(board ? &*board : nullptr); });
+    auto calibration = options_.board.load_calibration(board ? &*board : nullptr, problems_);
+    if (calibration)
+      source_.files.insert(source_.files.end(), calibration->files.begin(), calibration->files.end());
     check_truth();
     catch_interrupts();
     if (options_.out && pictures_survive()) {
@@ -50,12 +54,18 @@ class InputLoader {
     problems_.check();
     input_.board = *board;
     attempt("", [&] {
-      input_.tables = platform::identity_tables(input_.board);
+      input_.tables = tables_of(input_.board, calibration);
+      if (calibration) {
+        input_.calibration = calibration->calibration;
+        input_.described.calibration = calibration->described;
+      }
       input_.config_yaml = platform::to_yaml(input_.board);
       describe();
     });
     problems_.check();
     for (const std::string& note : source_.notes) say("note", note);
+    if (input_.calibration) attempt("", [&] { say_how_rows_agree(); });
+    problems_.check();
     input_.pairs = std::move(source_.pairs);
     return std::move(input_);
   }
@@ -93,7 +103,7 @@ class InputLoader {
         source_.pairs->length()));
   }
 
-  // False, and reported, if one lies in the result folder, which is replaced whole.
+  // False, and reported, if an input lies in the result folder, which is replaced whole.
   bool pictures_survive() {
     std::set<std::string> reported;
     for (const NamedFile& file : source_.files) {
@@ -103,10 +113,33 @@ class InputLoader {
       reported.insert(file.option);
       problems_.add(
           fmt::format("{}: inside the result folder '{}', which is replaced whole: "
-                      "a picture must lie outside the folder of --out",
+                      "an input must lie outside the folder of --out",
                       file.text(), *options_.out));
     }
     return reported.empty();
+  }
+
+  // Nothing in a file says that it is of another rig; the pictures do.
+  void say_how_rows_agree() {
+    constexpr double kDoubtful = 1.5;  // pixels
+    constexpr std::size_t kFewest = 10;
+    const host::StereoPair& pair = source_.pairs->pair(0);
+    const calib::RowError rows = calibration_functions().matched_rows(
+        kernels::rectify(pair.left, *input_.tables.left), kernels::rectify(pair.right, *input_.tables.right),
+        input_.board.matcher.disparities);
+    if (rows.corners < kFewest) {
+      say("note",
+          fmt::format("--calibration: the first pair has only {} points that both rectified pictures show "
+                      "beyond doubt: too few to see whether it is of this rig",
+                      rows.corners));
+      return;
+    }
+    const bool is_doubtful = rows.mean_px > kDoubtful;
+    say(is_doubtful ? "warning" : "note",
+        fmt::format(
+            "--calibration: the rows of {} points that both rectified pictures of the first pair show "
+            "differ by {:.2f} pixels on average{}",
+            rows.corners, rows.mean_px, is_doubtful ? ": is it of this rig?" : ""));
   }
 
   void describe() {

@@ -18,6 +18,7 @@ namespace stereotlm::cli {
 // All that a run works on, loaded and checked.
 struct RunInput {
   platform::BoardConfig board;
+  std::optional<calib::Calibration> calibration;
   platform::Tables tables;
   std::unique_ptr<PairSource> pairs;
   bool camera = true;                            // --source camera, else preloaded

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/depth.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
 #include "sw/report/accuracy.h"
@@ -11,14 +12,23 @@
 namespace stereotlm::cli {
 namespace {
 
-void write_files(RunInput& input, const platform::Statistics& statistics, const kernels::GrayImage& disparity,
+void write_files(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last,
                  const std::optional<report::Accuracy>& accuracy) {
+  const kernels::GrayImage& disparity = last.disparity;
   const MediaFunctions& media = media_functions();
   report::ResultFolder& folder = *input.folder;
   folder.add("disparity.png", media.encode_png_gray(disparity));
   folder.add("disparity.pfm", media.encode_pfm(disparity));
   folder.add("disparity_color.png",
              media.encode_disparity_color_png(disparity, input.board.matcher.disparities));
+  if (input.calibration) {
+    const calib::DepthGeometry geometry = {input.calibration->rectification.q,
+                                           input.calibration->disparity_offset};
+    const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
+    folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height,
+                                                calib::depth_millimetres(geometry, disparity)));
+    folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
+  }
   folder.add("stats.json", report::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
   // An interrupted run is the same as a whole one of the frames that it finished.
@@ -56,7 +66,7 @@ void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done)
 bool deliver(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last) {
   std::optional<report::Accuracy> accuracy;
   if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
-  if (input.folder) write_files(input, statistics, last.disparity, accuracy);
+  if (input.folder) write_files(input, statistics, last, accuracy);
   for (const std::string& identity : statistics.failed) say("error", "identity does not hold: " + identity);
   const platform::BoardConfig& board = input.board;
   print(report::console_table(statistics,

@@ -60,6 +60,15 @@ cv::Mat in_colors(const kernels::GrayImage& disparity, int disparities) {
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image) { return encode_png(view(image)); }
 
+std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values) {
+  if (width <= 0 || height <= 0 ||
+      values.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw std::invalid_argument(fmt::format("image = {}x{} with {} values: must be whole and not empty",
+                                            width, height, values.size()));
+  }
+  return encode_png({height, width, CV_16UC1, const_cast<std::uint16_t*>(values.data())});
+}
+
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities) {
   return encode_png(in_colors(disparity, disparities));
 }

@@ -14,6 +14,9 @@ namespace stereotlm::media {
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
 
+// 16-bit grey, row by row. Throws std::invalid_argument if there are not width * height values.
+std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values);
+
 // 0 .. disparities-1 from dark blue to dark red (Turbo), invalid black. A value that is neither is refused
 // with std::invalid_argument. disparities: kernels::kDisparitiesRule.
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities);

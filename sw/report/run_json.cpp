@@ -48,6 +48,14 @@ Json to_json(const char* option, const InputFolder& folder) {
   return {{"path", found_again(option, folder.path)}, {"files", files}};
 }
 
+Json to_json(const InputCalibration& calibration) {
+  const char* option = "--calibration";
+  Json result = to_json(option, calibration.file);
+  result["left_lut"] = to_json(option, calibration.left_lut);
+  result["right_lut"] = to_json(option, calibration.right_lut);
+  return result;
+}
+
 }  // namespace
 
 std::string run_json(const RunOptions& options) {
@@ -65,6 +73,7 @@ std::string run_json(const RunOptions& options) {
     document["video_layout"] = options.video_layout;
   }
   if (options.synthetic) document["synthetic"] = *options.synthetic;
+  if (options.calibration) document["calibration"] = to_json(*options.calibration);
   if (options.truth) {
     document["truth"] = to_json("--truth", *options.truth);
     document["truth_scale"] = options.truth_scale;

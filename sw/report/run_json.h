@@ -12,6 +12,12 @@ struct InputFile {
   std::string sha256;  // of its content, 64 hexadecimal digits (sha256.h)
 };
 
+struct InputCalibration {
+  InputFile file;
+  InputFile left_lut;
+  InputFile right_lut;
+};
+
 struct InputFolder {
   std::string path;              // absolute, UTF-8
   std::vector<InputFile> files;  // their paths are names in the folder
@@ -30,6 +36,7 @@ struct RunOptions {
   std::vector<InputFile> video;
   std::string video_layout;  // written if there is a video
   std::optional<std::uint64_t> synthetic;
+  std::optional<InputCalibration> calibration;
   std::optional<InputFile> truth;
   double truth_scale = 1;  // written if there is a truth
   bool save_frames = false;

@@ -1,0 +1,226 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "calib/lut_file.h"
+#include "calib/synthetic_rig.h"
+#include "sw/cli/calibrate_options.h"
+#include "sw/cli/calibration_library.h"
+#include "sw/cli/calibration_output.h"
+#include "sw/cli/calibration_summary.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/grid_pictures.h"
+#include "sw/cli/media_library.h"
+#include "sw/cli/streams.h"
+#include "sw/report/sha256.h"
+#include "sw/report/whole_file.h"
+
+namespace stereotlm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSyntheticWidth = 640;  // of fpl2003
+constexpr int kSyntheticHeight = 480;
+constexpr int kSyntheticPairs = 13;
+
+[[noreturn]] void refuse_step(const std::string& option, const std::exception& error) {
+  refuse(option + (option.empty() ? "" : " ") + error.what());
+}
+
+int print_grid(const CalibrateOptions& options) {
+  try {
+    const bool is_pdf = fs::path(options.out).extension() == ".pdf";
+    const CalibrationFunctions& functions = calibration_functions();
+    const std::string sheet =
+        is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
+    if (!fs::exists(fs::symlink_status(options.out))) {
+      report::write_whole_file(options.out, sheet);
+    } else if (read_file(options.out) != sheet) {
+      throw std::runtime_error(
+          fmt::format("'{}': exists and is another file: must be moved away", options.out));
+    }
+  } catch (const std::system_error& error) {
+    refuse(fmt::format("--out '{}': cannot be written: {}", options.out, error.code().message()));
+  } catch (const std::exception& error) {
+    refuse_step("--out", error);
+  }
+  print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n", options.out,
+                    options.grid.columns + 1, options.grid.rows + 1, options.grid.square_mm,
+                    options.grid.columns, options.grid.rows));
+  return kDone;
+}
+
+// What a rig that is made up shows.
+std::vector<calib::PicturePair> synthetic_pictures(const calib::SyntheticRig& rig,
+                                                   const calib::GridShape& grid, const fs::path& folder) {
+  std::vector<calib::PicturePair> pairs;
+  for (int number = 0; number < kSyntheticPairs; ++number) {
+    auto pictures = rig.grid_view(grid, number);
+    const auto name = [&](const char* side) {
+      return (folder / fmt::format("{}_{:02}.png", side, number)).string();
+    };
+    pairs.push_back({name("left"), name("right"), std::move(pictures.left), std::move(pictures.right)});
+  }
+  return pairs;
+}
+
+class Calibrator {
+ public:
+  explicit Calibrator(const CalibrateOptions& options)
+      : options_(options), request_{options.grid, {}, 0, {}} {
+    request_.disparities = options.disparities;
+    request_.disparity_offset = options.disparity_offset;
+  }
+
+  int run() {
+    Problems problems;
+    try {
+      output_ = std::make_unique<CalibrationOutput>(options_.out);
+    } catch (const std::exception& error) {
+      problems.add(fmt::format("--out {}", error.what()));
+    }
+    load_pictures(problems);
+    problems.check();
+    try {
+      result_ = calibration_functions().calibrate(request_);
+    } catch (const std::exception& error) {
+      refuse_step("", error);
+    }
+    for (const std::string& picture : result_.skipped) say("note", picture + ": the pair is skipped");
+    try {
+      write();
+      output_->commit();
+    } catch (const std::runtime_error& error) {
+      refuse_step("--out", error);
+    }
+    print(calibration_summary(result_, request_.pictures.size()) + written_text());
+    return kDone;
+  }
+
+ private:
+  void load_pictures(Problems& problems) {
+    if (!options_.synthetic) {
+      request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
+      return;
+    }
+    if (!problems.empty()) return;
+    try {
+      rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic, kSyntheticWidth, kSyntheticHeight);
+      request_.pictures = synthetic_pictures(*rig_, options_.grid, output_->files().pictures);
+    } catch (const std::exception& error) {
+      problems.add(fmt::format("--synthetic: {}", error.what()));
+    }
+  }
+
+  void write() {
+    const RigFiles& files = output_->files();
+    const std::string left = calib::lut_bytes(result_.tables.left);
+    const std::string right = calib::lut_bytes(result_.tables.right);
+    result_.calibration.left_lut_sha256 = report::sha256_hex(left.data(), left.size());
+    result_.calibration.right_lut_sha256 = report::sha256_hex(right.data(), right.size());
+    output_->add(files.left_lut, left);
+    output_->add(files.right_lut, right);
+    output_->add(files.calibration, calibration_functions().calibration_yaml(result_.calibration));
+    draw(files.drawings);
+    if (rig_) write_synthetic(files.pictures);
+  }
+
+  void draw(const fs::path& folder) {
+    const CalibrationFunctions& functions = calibration_functions();
+    for (const calib::CalibratedPair& pair : result_.pairs) {
+      const calib::PicturePair& pictures = request_.pictures[pair.picture];
+      const auto named = [](const std::string& path, const kernels::GrayImage& image) {
+        return calib::CaptionedImage{fs::path(path).filename(), image};
+      };
+      std::vector<bool> left_out = pair.used;
+      left_out.flip();
+      output_->add(folder / fmt::format("corners_{:02}.png", pair.picture),
+                   functions.encode_corners_png(
+                       request_.grid, named(pictures.left_name, pictures.left), {pair.corners.left, left_out},
+                       named(pictures.right_name, pictures.right), {pair.corners.right, left_out}));
+      output_->add(folder / fmt::format("rectified_{:02}.png", pair.picture),
+                   functions.encode_rectified_pair_png(
+                       named(pictures.left_name, kernels::rectify(pictures.left, result_.tables.left)),
+                       named(pictures.right_name, kernels::rectify(pictures.right, result_.tables.right))));
+    }
+    output_->add(folder / "displacement.png",
+                 functions.encode_displacement_png(result_.tables.left, result_.tables.right));
+    output_->add(folder / "source_lines.png",
+                 functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
+  }
+
+  // The pictures that were calibrated from, and a scene with the disparities that the board should find in it.
+  void write_synthetic(const fs::path& folder) {
+    const MediaFunctions& media = media_functions();
+    for (const calib::PicturePair& pictures : request_.pictures) {
+      output_->add(pictures.left_name, media.encode_png_gray(pictures.left));
+      output_->add(pictures.right_name, media.encode_png_gray(pictures.right));
+    }
+    const auto scene = rig_->scene();
+    output_->add(folder / "scene_left.png", media.encode_png_gray(scene.left));
+    output_->add(folder / "scene_right.png", media.encode_png_gray(scene.right));
+    const calib::Calibration& made = result_.calibration;
+    const std::vector<float> truth = rig_->disparity(made.rig, made.rectification, made.disparity_offset);
+    kernels::GrayImage grey(made.rig.width, made.rig.height);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double level = std::floor(truth[i] * truth_scale() + 0.5);
+      if (level > 0 && level <= 255) grey.pixels[i] = static_cast<std::uint8_t>(level);
+    }
+    output_->add(folder / "scene_truth.png", media.encode_png_gray(grey));
+  }
+
+  // Grey levels a disparity.
+  int truth_scale() const { return 255 / options_.disparities; }
+
+  std::string written_text() const {
+    const RigFiles& files = output_->files();
+    std::string text =
+        fmt::format("{:<16} {}, {}, {}, {}/\n", "written", files.calibration.string(),
+                    files.left_lut.string(), files.right_lut.string(), files.drawings.string());
+    if (!rig_) return text;
+    const auto& known = rig_->rig();
+    text += fmt::format("{:<16} left focal length {:.1f} px, baseline {:.2f} mm\n", "known to be",
+                        known.left.matrix(0, 0), known.translation.norm());
+    const std::string folder = files.pictures.string();
+    text += fmt::format(
+        "{:<16} stereotlm run fpl2003 --source preloaded --fidelity cycle --set matcher.disparities={} \\\n"
+        "{:<16}   --left {}/scene_left.png --right {}/scene_right.png --calibration {} \\\n"
+        "{:<16}   --truth {}/scene_truth.png --truth-scale {}\n",
+        "to go on", options_.disparities, "", folder, folder, files.calibration.string(), "", folder,
+        truth_scale());
+    return text;
+  }
+
+  const CalibrateOptions& options_;
+  calib::CalibrationRequest request_;
+  std::unique_ptr<CalibrationOutput> output_;
+  std::unique_ptr<calib::SyntheticRig> rig_;
+  calib::CalibrationResult result_;
+};
+
+int calibrate(const CalibrateOptions& options) {
+  return options.print_grid ? print_grid(options) : Calibrator(options).run();
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, Action& action) {
+  CLI::App* command =
+      program.add_subcommand("calibrate", "Make a board's tables from pictures of a grid, or draw the grid");
+  const auto options = std::make_shared<CalibrateOptions>();
+  options->add_to(*command);
+  command->callback([options, &action] {
+    options->check_usage();
+    action = [options] { return calibrate(*options); };
+  });
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,100 @@
+#include "sw/cli/calibration_input.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "calib/lut_file.h"
+#include "sw/cli/calibration_library.h"
+#include "sw/cli/rig_files.h"
+#include "sw/report/sha256.h"
+
+namespace stereotlm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOption = "--calibration";
+
+report::InputFile described(const fs::path& path, const std::string& content) {
+  return {fs::absolute(path).string(), report::sha256_hex(content.data(), content.size())};
+}
+
+void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
+  if (rig.width != board.image.width || rig.height != board.image.height) {
+    throw std::runtime_error(fmt::format("image size = {}x{}: must be that of the board's images, {}x{}",
+                                         rig.width, rig.height, board.image.width, board.image.height));
+  }
+  const platform::Allocation& allocation = board.allocation;
+  if (allocation.left_lut && allocation.right_lut) return;
+  throw std::runtime_error(fmt::format("goes with a board that has both tables; allocation.{} = none",
+                                       allocation.left_lut ? "right_lut" : "left_lut"));
+}
+
+kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
+                                       report::InputFile& file) {
+  const std::string content = read_file(path);
+  file = described(path, content);
+  if (file.sha256 != sha256) {
+    throw std::runtime_error(
+        fmt::format("'{}': SHA-256 {}: must be the table that the calibration was written with, {}",
+                    path.string(), file.sha256, sha256));
+  }
+  try {
+    return calib::parse_lut(content, rig.width, rig.height);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("'{}': {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
+                                                 Problems& problems) {
+  bool is_right = true;
+  const auto attempt = [&](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception& error) {
+      problems.add(fmt::format("{} {}", kOption, error.what()));
+      is_right = false;
+    }
+  };
+  const auto named = [&path](const std::string& problem) {
+    return std::runtime_error(fmt::format("'{}': {}", path, problem));
+  };
+  CalibrationInput input;
+  attempt([&] {
+    const RigFiles files = rig_files(path);
+    for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
+      input.files.push_back({kOption, file.string()});
+    }
+    const std::string content = read_file(files.calibration);
+    input.described.file = described(files.calibration, content);
+    try {
+      input.calibration = calibration_functions().parse_calibration(content);
+      if (board != nullptr) check_board(input.calibration.rig, *board);
+    } catch (const std::runtime_error& error) {
+      throw named(error.what());
+    }
+    const calib::Calibration& calibration = input.calibration;
+    attempt([&] {
+      input.tables.left =
+          load_table(files.left_lut, calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
+    });
+    attempt([&] {
+      input.tables.right = load_table(files.right_lut, calibration.rig, calibration.right_lut_sha256,
+                                      input.described.right_lut);
+    });
+  });
+  if (!is_right) return std::nullopt;
+  return input;
+}
+
+platform::Tables tables_of(const platform::BoardConfig& board,
+                           const std::optional<CalibrationInput>& calibration) {
+  return calibration ? calibration->tables : platform::identity_tables(board);
+}
+
+}  // namespace stereotlm::cli

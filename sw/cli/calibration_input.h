@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/calibration.h"
+#include "platform/board_config.h"
+#include "platform/tables.h"
+#include "sw/cli/open_source.h"
+#include "sw/cli/problems.h"
+#include "sw/report/run_json.h"
+
+namespace stereotlm::cli {
+
+// The file of --calibration and the tables beside it.
+struct CalibrationInput {
+  calib::Calibration calibration;
+  platform::Tables tables;
+  report::InputCalibration described;
+  std::vector<NamedFile> files;
+};
+
+// Loads and checks it for the board. Nothing if it cannot be used, with every reason reported: a file that is damaged, of
+// another size than the board's pictures, tables that are not those that it was written with, a side without table.
+// `board`: null if it is not known, which is reported elsewhere.
+std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
+                                                 Problems& problems);
+
+// The tables of the board: those of the calibration, or without one the identity.
+platform::Tables tables_of(const platform::BoardConfig& board,
+                           const std::optional<CalibrationInput>& calibration);
+
+}  // namespace stereotlm::cli

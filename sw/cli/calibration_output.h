@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sw/cli/rig_files.h"
+
+namespace stereotlm::cli {
+
+// What calibrate writes: an earlier calibration of that name, or none, until commit(), and the new one whole after it. New
+// files are written aside, into the folder F.partial beside F.yaml.
+class CalibrationOutput {
+ public:
+  // Creates the folder where missing, and proves that it can be written to. Throws std::runtime_error, having changed
+  // nothing else, if F.yaml is there and no calibration, or what lies beside it under the names that calibrate uses was
+  // not written by it, or the folder cannot be written to.
+  explicit CalibrationOutput(const std::string& calibration);
+
+  // Without commit(): removes what was written aside.
+  ~CalibrationOutput();
+  CalibrationOutput(const CalibrationOutput&) = delete;
+  CalibrationOutput& operator=(const CalibrationOutput&) = delete;
+
+  const RigFiles& files() const { return files_; }
+
+  // `file`: one of files(), or one in a folder of theirs. Throws std::runtime_error if it cannot be stored.
+  void add(const std::filesystem::path& file, std::string_view bytes);
+  void add(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes);
+
+  // Replaces the earlier calibration. Throws std::runtime_error if that fails; a calibration whose tables are not all in
+  // place is refused by whoever loads it.
+  void commit();
+
+ private:
+  void check_earlier() const;
+  std::filesystem::path aside(const std::filesystem::path& file) const;
+
+  RigFiles files_;
+  std::filesystem::path aside_;
+};
+
+}  // namespace stereotlm::cli

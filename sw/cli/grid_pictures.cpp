@@ -1,0 +1,148 @@
+#include "sw/cli/grid_pictures.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "models/fpga/core_config.h"
+#include "sw/cli/media_library.h"
+#include "sw/cli/streams.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// In the order of their names; each once.
+Names files_of(const std::string& option, const Names& patterns, Problems& problems) {
+  Names files;
+  for (const std::string& pattern : patterns) {
+    glob_t found = {};
+    const int status = glob(pattern.c_str(), 0, nullptr, &found);
+    if (status != 0) {
+      problems.add(
+          fmt::format("{} '{}': no such file: must be a file's name, or a pattern of some", option, pattern));
+    }
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
+    globfree(&found);
+  }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
+std::string name_of(const std::string& path) { return std::filesystem::path(path).stem(); }
+
+// How many characters at their beginning all names share.
+std::size_t common_beginning(const Names& names) {
+  std::size_t length = names.front().size();
+  for (const std::string& name : names) {
+    const auto end = names.front().begin() + static_cast<std::ptrdiff_t>(std::min(length, name.size()));
+    const auto differs = std::mismatch(names.front().begin(), end, name.begin()).first;
+    length = static_cast<std::size_t>(differs - names.front().begin());
+  }
+  return length;
+}
+
+// What is left of the names without what all of them have in common.
+Names own_parts(const Names& files) {
+  Names names;
+  for (const std::string& file : files) names.push_back(name_of(file));
+  const std::size_t beginning = common_beginning(names);
+  for (std::string& name : names) name = name.substr(beginning);
+  Names reversed;
+  for (const std::string& name : names) reversed.emplace_back(name.rbegin(), name.rend());
+  const std::size_t end = common_beginning(reversed);
+  for (std::string& name : names) name.resize(name.size() - end);
+  return names;
+}
+
+// A picture that is missing on each side would shift all pairs between them.
+void compare_names(const Names& left, const Names& right) {
+  const Names left_parts = own_parts(left);
+  const Names right_parts = own_parts(right);
+  const auto differ = std::mismatch(left_parts.begin(), left_parts.end(), right_parts.begin());
+  if (differ.first == left_parts.end()) return;
+  const auto at = static_cast<std::size_t>(differ.first - left_parts.begin());
+  say("note",
+      fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they belong together?",
+                  left[at], right[at]));
+}
+
+class Loader {
+ public:
+  explicit Loader(Problems& problems) : problems_(problems) {}
+
+  kernels::GrayImage load(const std::string& option, const std::string& path) {
+    try {
+      media::LoadedGray loaded = media_functions().load_gray(path);
+      if (loaded.converted_from_colour) ++converted_;
+      ++count_;
+      check_size(option, path, loaded.image);
+      return std::move(loaded.image);
+    } catch (const std::exception& error) {
+      problems_.add(fmt::format("{} {}", option, error.what()));
+      return {};
+    }
+  }
+
+  void say_converted() const {
+    if (converted_ > 0) {
+      say("note", fmt::format("{} of {} pictures: colour, converted to grey", converted_, count_));
+    }
+  }
+
+ private:
+  void check_size(const std::string& option, const std::string& path, const kernels::GrayImage& image) {
+    if (first_.empty()) {
+      first_ = path;
+      width_ = image.width;
+      height_ = image.height;
+      if (!fpga::kWidthRule.allows(width_) || !fpga::kHeightRule.allows(height_)) {
+        problems_.add(fmt::format("{} '{}': {}x{} pixels: a board's images are {} wide and {} high", option,
+                                  path, width_, height_, fpga::kWidthRule.text(), fpga::kHeightRule.text()));
+      }
+    } else if (image.width != width_ || image.height != height_) {
+      problems_.add(fmt::format("{} '{}': {}x{} pixels: must be as large as '{}', {}x{}", option, path,
+                                image.width, image.height, first_, width_, height_));
+    }
+  }
+
+  Problems& problems_;
+  std::string first_;
+  int width_ = 0;
+  int height_ = 0;
+  int converted_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace
+
+std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
+                                                   Problems& problems) {
+  const Names left_files = files_of("--left", left, problems);
+  const Names right_files = files_of("--right", right, problems);
+  if (left_files.empty() || right_files.empty()) return {};
+  if (left_files.size() != right_files.size()) {
+    problems.add(fmt::format(
+        "--left, --right: {} left pictures ('{}' .. '{}') and {} right ones ('{}' .. '{}'): must be as many",
+        left_files.size(), left_files.front(), left_files.back(), right_files.size(), right_files.front(),
+        right_files.back()));
+    return {};
+  }
+  Loader loader(problems);
+  std::vector<calib::PicturePair> pairs;
+  for (std::size_t i = 0; i < left_files.size(); ++i) {
+    pairs.push_back({left_files[i], right_files[i], loader.load("--left", left_files[i]),
+                     loader.load("--right", right_files[i])});
+  }
+  loader.say_converted();
+  compare_names(left_files, right_files);
+  return pairs;
+}
+
+}  // namespace stereotlm::cli
