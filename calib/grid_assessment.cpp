@@ -50,10 +50,10 @@ class Assessor {
     if (found == kernels::kInvalidDisparity) {
       ++result_.unanswered;
     } else {
-      corner.is_right = std::abs(found - geometric) <= kMostDifference;
-      ++(corner.is_right ? result_.right : result_.wrong);
       corner.point = geometry_.point(output.x(), output.y(), found);
       corner.best = geometry_.point(output.x(), output.y(), std::floor(geometric + 0.5));
+      corner.is_right = corner.point && corner.best && std::abs(found - geometric) <= kMostDifference;
+      ++(corner.is_right ? result_.right : result_.wrong);
     }
     corners_.push_back(corner);
   }

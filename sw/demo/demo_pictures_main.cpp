@@ -1,13 +1,20 @@
 // stereotlm-demo-pictures: what ./demo needs around `stereotlm run`.
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "calib/calibration_yaml.h"
+#include "calib/depth.h"
+#include "calib/lut_file.h"
 #include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
 #include "sw/media/encode.h"
@@ -25,6 +32,10 @@ constexpr const char* kUsage =
     "         from aloeL.jpg, aloeR.jpg, aloeGT.png make left.png, right.png, truth.png (640x480, truth "
     "scale 2);\n"
     "         print the number of disparities that the truth needs\n"
+    "       stereotlm-demo-pictures sequence SRC_DIR OUT_DIR\n"
+    "         from left01.jpg, right01.jpg, .. make left_01.png, right_01.png, .. for run --sequence\n"
+    "       stereotlm-demo-pictures depth-montage OUT.png LEFT RIG.yaml RESULT\n"
+    "         show a picture, its rectified one, and the disparities and depths of RESULT side by side\n"
     "       stereotlm-demo-pictures montage OUT.png LEFT DISPARITY DISPARITIES [TRUTH]\n"
     "         show the picture, the disparities (0..DISPARITIES-1, 255 = invalid) and the truth side by "
     "side\n";
@@ -47,6 +58,33 @@ void prepare(const fs::path& source, const fs::path& out) {
   write_file(out / "right.png", media::encode_png_gray(pair.right));
   write_file(out / "truth.png", media::encode_png_gray(pair.truth));
   std::printf("%d\n", disparities_needed(pair.truth));
+}
+
+// Names of a folder that begin and end like this, sorted; what stands in between.
+std::vector<std::string> numbers_in(const fs::path& folder, const std::string& beginning,
+                                    const std::string& end) {
+  std::vector<std::string> result;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (name.size() <= beginning.size() + end.size() || name.rfind(beginning, 0) != 0) continue;
+    const std::string number = name.substr(beginning.size(), name.size() - beginning.size() - end.size());
+    const bool is_number = number.find_first_not_of("0123456789") == std::string::npos;
+    if (is_number && name == beginning + number + end) result.push_back(number);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+void make_sequence(const fs::path& source, const fs::path& out) {
+  const std::vector<std::string> numbers = numbers_in(source, "left", ".jpg");
+  if (numbers.empty()) throw std::runtime_error(source.string() + ": no left01.jpg, left02.jpg, ..");
+  fs::create_directories(out);
+  for (const std::string& number : numbers) {
+    for (const std::string side : {"left", "right"}) {
+      const auto picture = media::load_gray((source / (side + number + ".jpg")).string()).image;
+      write_file(out / (side + "_" + number + ".png"), media::encode_png_gray(picture));
+    }
+  }
 }
 
 int parse_disparities(std::string_view text) {
@@ -73,11 +111,58 @@ void montage(const std::vector<std::string>& arguments) {
   write_file(arguments[0], media::encode_side_by_side_png(panels));
 }
 
+std::string content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file.is_open() || file.bad()) throw std::runtime_error(path.string() + ": cannot be read");
+  return text;
+}
+
+// Near is red, like large disparities. The nearest and the farthest hundredth are shown like the next to them.
+media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
+  constexpr int kLevels = 254;
+  std::vector<std::uint16_t> known;
+  std::copy_if(millimetres.begin(), millimetres.end(), std::back_inserter(known),
+               [](int depth) { return depth > 0; });
+  media::Panel panel = {"depth: no answers", kernels::GrayImage(width, height, 255), kLevels};
+  if (known.empty()) return panel;
+  std::sort(known.begin(), known.end());
+  const int near = known[known.size() / 100];
+  const int far = std::max<int>(near + 1, known[known.size() - 1 - known.size() / 100]);
+  for (std::size_t i = 0; i < millimetres.size(); ++i) {
+    if (millimetres[i] == 0) continue;
+    const int depth = std::clamp<int>(millimetres[i], near, far);
+    panel.image.pixels[i] = static_cast<std::uint8_t>((kLevels - 1) * (far - depth) / (far - near));
+  }
+  panel.caption = "depth, " + std::to_string(near) + " mm (red) to " + std::to_string(far) + " mm (blue)";
+  return panel;
+}
+
+void depth_montage(const std::vector<std::string>& arguments) {
+  const auto picture = media::load_gray(arguments[1]).image;
+  const fs::path rig = arguments[2];
+  const calib::Calibration calibration = calib::parse_calibration(content(rig));
+  const fs::path lut = rig.parent_path() / (rig.stem().string() + "_left.lut");
+  const auto table = calib::parse_lut(content(lut), picture.width, picture.height);
+  const auto disparity = media::load_gray((fs::path(arguments[3]) / "disparity.png").string()).image;
+  const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
+  const auto depths = calib::depth_millimetres(geometry, disparity);
+  write_file(arguments[0], media::encode_side_by_side_png(
+                               {{"left picture", picture, 0},
+                                {"rectified by the left table", kernels::rectify(picture, table), 0},
+                                {"disparity (black: no answer)", disparity, calibration.disparities},
+                                depth_panel(depths, disparity.width, disparity.height)}));
+}
+
 int run(const std::vector<std::string>& arguments) {
   const std::string command = arguments.empty() ? "" : arguments[0];
   const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
   if (command == "prepare" && rest.size() == 2) {
     prepare(rest[0], rest[1]);
+  } else if (command == "sequence" && rest.size() == 2) {
+    make_sequence(rest[0], rest[1]);
+  } else if (command == "depth-montage" && rest.size() == 4) {
+    depth_montage(rest);
   } else if (command == "montage" && (rest.size() == 4 || rest.size() == 5)) {
     montage(rest);
   } else {

@@ -1,0 +1,46 @@
+#include "calib/grid_in_view.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace stereotlm::calib {
+namespace {
+
+TEST(DisparityOffset, CentresTheGridsDisparities) {
+  const DisparityRange range = {100.14, 203.4};
+  EXPECT_EQ(range.needed(), 105);
+  EXPECT_EQ(disparity_offset_for(range, 105), 100);
+  EXPECT_EQ(disparity_offset_for(range, 106), 100);
+  EXPECT_EQ(disparity_offset_for(range, 107), 99);
+  EXPECT_EQ(disparity_offset_for(range, 112), 97);
+}
+
+TEST(DisparityOffset, IsNotBelowZeroUnlessItMustBe) {
+  EXPECT_EQ(disparity_offset_for({3.5, 20}, 80), 0);
+  EXPECT_EQ(disparity_offset_for({-3.5, 20}, 80), -4);
+}
+
+TEST(DisparityOffset, NamesTheNumberNeededIfTheyDoNotFit) {
+  try {
+    disparity_offset_for({100.14, 203.4}, 104);
+    FAIL() << "104 candidates hold 105 disparities";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "disparities = 104: must be 105 or more for the grid's own, 100..204");
+  }
+}
+
+TEST(RowErrors, AreOfAbsoluteValues) {
+  RowErrors errors;
+  EXPECT_EQ(errors.result().corners, 0U);
+  errors.add({3, 10}, {9, 10.5});
+  errors.add({3, 10}, {9, 8.5});
+  EXPECT_DOUBLE_EQ(errors.result().mean_px, 1);
+  EXPECT_DOUBLE_EQ(errors.result().max_px, 1.5);
+  EXPECT_EQ(errors.result().corners, 2U);
+}
+
+}  // namespace
+}  // namespace stereotlm::calib

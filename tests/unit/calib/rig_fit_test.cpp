@@ -1,0 +1,106 @@
+#include "calib/rig_fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <stdexcept>
+
+#include "calib/synthetic_rig.h"
+
+namespace stereotlm::calib {
+namespace {
+
+const GridShape kShape = {9, 6, 25};
+constexpr int kPairs = 12;
+
+class RigFitTest : public testing::Test {
+ protected:
+  RigFitTest() {
+    for (int number = 0; number < kPairs; ++number) {
+      const auto corners = known_.grid_corners(kShape, number);
+      pairs_.push_back({corners.left, corners.right});
+    }
+  }
+
+  RigFit fit() const { return fit_rig(kShape, 640, 480, pairs_); }
+
+  void add_noise(double deviation_px) {
+    std::mt19937 generator(7);
+    std::normal_distribution<double> noise(0, deviation_px);
+    for (GridPair& pair : pairs_) {
+      for (Corners* corners : {&pair.left, &pair.right}) {
+        for (Eigen::Vector2d& corner : *corners)
+          corner += Eigen::Vector2d(noise(generator), noise(generator));
+      }
+    }
+  }
+
+  void expect_known(const Rig& rig, double pixels, double direction, double millimetres) const {
+    const Rig& known = known_.rig();
+    EXPECT_LT((rig.left.matrix - known.left.matrix).cwiseAbs().maxCoeff(), pixels);
+    EXPECT_LT((rig.right.matrix - known.right.matrix).cwiseAbs().maxCoeff(), pixels);
+    EXPECT_LT((rig.rotation - known.rotation).cwiseAbs().maxCoeff(), direction);
+    EXPECT_LT((rig.translation - known.translation).cwiseAbs().maxCoeff(), millimetres);
+    // What the lens does at the border of the picture.
+    for (const Eigen::Vector2d& corner : {Eigen::Vector2d(20, 20), Eigen::Vector2d(620, 460)}) {
+      EXPECT_LT((rig.left.direction(corner) - known.left.direction(corner)).norm(), direction);
+    }
+  }
+
+  SyntheticRig known_{5, 640, 480};
+  std::vector<GridPair> pairs_;
+};
+
+TEST_F(RigFitTest, RecoversARigFromExactCorners) {
+  const RigFit found = fit();
+  expect_known(found.rig, 0.01, 1e-5, 0.005);
+  EXPECT_LT(found.stereo_rms_px, 1e-3);
+  EXPECT_TRUE(found.left_out.empty());
+}
+
+TEST_F(RigFitTest, RecoversARigFromCornersWithNoise) {
+  add_noise(0.1);
+  const RigFit found = fit();
+  expect_known(found.rig, 2, 2e-3, 0.5);
+  EXPECT_NEAR(found.stereo_rms_px, 0.1 * std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(found.left_rms_px, 0.1 * std::sqrt(2.0), 0.02);
+  EXPECT_NEAR(found.right_rms_px, 0.1 * std::sqrt(2.0), 0.02);
+  EXPECT_TRUE(found.left_out.empty());
+}
+
+TEST_F(RigFitTest, LeavesOutCornersThatDoNotFit) {
+  add_noise(0.1);
+  const RigFit without = fit();
+  pairs_[2].left[7] += Eigen::Vector2d(3, -2);
+  pairs_[9].right[50] += Eigen::Vector2d(-40, 0);
+  const RigFit found = fit();
+  ASSERT_EQ(found.left_out.size(), 2U);
+  EXPECT_EQ(found.left_out[0].pair, 2U);
+  EXPECT_EQ(found.left_out[0].corner, 7U);
+  EXPECT_NEAR(found.left_out[0].misfit_px, std::hypot(3, 2), 0.5);
+  EXPECT_EQ(found.left_out[1].pair, 9U);
+  EXPECT_EQ(found.left_out[1].corner, 50U);
+  EXPECT_NEAR(found.left_out[1].misfit_px, 40, 0.5);
+  EXPECT_FALSE(found.used[2][7]);
+  EXPECT_TRUE(found.used[2][8]);
+  EXPECT_NEAR(found.stereo_rms_px, without.stereo_rms_px, 0.005);
+}
+
+TEST_F(RigFitTest, LeavesOutAPairWhoseGridMovedBetweenThePictures) {
+  add_noise(0.1);
+  const auto other = known_.grid_corners(kShape, kPairs);
+  pairs_[4].right = other.right;
+  const RigFit found = fit();
+  EXPECT_EQ(found.left_out.size(), static_cast<std::size_t>(kShape.corners()));
+  EXPECT_THAT(found.used[4], testing::Each(false));
+  expect_known(found.rig, 2, 2e-3, 0.5);
+}
+
+TEST_F(RigFitTest, RefusesFewerThanThreePairs) {
+  pairs_.resize(2);
+  EXPECT_THROW(fit(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::calib

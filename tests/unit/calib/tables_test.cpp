@@ -1,0 +1,97 @@
+#include "calib/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <stdexcept>
+
+#include "calib/opencv_types.h"
+#include "calib/synthetic_rig.h"
+
+namespace stereotlm::calib {
+namespace {
+
+// The map of one side as OpenCV computes it, in single precision.
+struct Map {
+  cv::Mat columns;
+  cv::Mat rows;
+};
+
+Map map_of(const Rig& rig, const CameraModel& camera, const Eigen::Matrix3d& rotation,
+           const Projection& projection) {
+  Map map;
+  cv::initUndistortRectifyMap(to_mat(camera.matrix), to_mat(camera.distortion), to_mat(rotation),
+                              to_mat(projection), {rig.width, rig.height}, CV_32FC1, map.columns, map.rows);
+  return map;
+}
+
+// Whole positions may differ where the source is half way between two pixels, to single precision.
+void expect_like(const kernels::RectificationTable& table, const Map& map) {
+  constexpr double kSingle = 1e-4;
+  std::size_t invalid = 0;
+  for (int row = 0; row < table.height; ++row) {
+    for (int column = 0; column < table.width; ++column) {
+      const std::uint32_t entry =
+          table.entries[static_cast<std::size_t>(row) * static_cast<std::size_t>(table.width) +
+                        static_cast<std::size_t>(column)];
+      const double x = map.columns.at<float>(row, column);
+      const double y = map.rows.at<float>(row, column);
+      if (kernels::entry_is_valid(entry)) {
+        ASSERT_NEAR(kernels::entry_column(entry), x, 0.5 + kSingle) << column << ' ' << row;
+        ASSERT_NEAR(kernels::entry_row(entry), y, 0.5 + kSingle) << column << ' ' << row;
+      } else {
+        ++invalid;
+        ASSERT_TRUE(x < -0.5 + kSingle || x > table.width - 0.5 - kSingle || y < -0.5 + kSingle ||
+                    y > table.height - 0.5 - kSingle)
+            << column << ' ' << row;
+      }
+    }
+  }
+  EXPECT_LT(invalid, table.entries.size());
+}
+
+TEST(Tables, HoldThePixelNearestToOpenCVsMaps) {
+  const Rig rig = SyntheticRig(3, 320, 240).rig();
+  const Rectification rectification = rectify(rig);
+  const TablePair found = tables(rig, rectification, 0);
+  expect_like(found.left, map_of(rig, rig.left, rectification.r1, rectification.p1));
+  expect_like(found.right, map_of(rig, rig.right, rectification.r2, rectification.p2));
+}
+
+TEST(Tables, HaveNoEntryOutsideThePicture) {
+  const Rig rig = SyntheticRig(3, 320, 240).rig();
+  Rectification rectification = rectify(rig);
+  rectification.p1(0, 2) += 400;  // looks far to the side
+  const TablePair found = tables(rig, rectification, 0);
+  EXPECT_TRUE(kernels::problems(found.left).empty());
+  expect_like(found.left, map_of(rig, rig.left, rectification.r1, rectification.p1));
+  EXPECT_FALSE(kernels::entry_is_valid(found.left.entries.front()));
+}
+
+TEST(Tables, LeaveTheOffsetOutOfColumnsOfTheLeftPicture) {
+  const Rig rig = SyntheticRig(3, 320, 240).rig();
+  const Rectification rectification = rectify(rig);
+  const TablePair plain = tables(rig, rectification, 0);
+  for (const int offset : {23, -23}) {
+    const TablePair shifted = tables(rig, rectification, offset);
+    EXPECT_EQ(shifted.right.entries, plain.right.entries);
+    for (int row = 0; row < 240; ++row) {
+      for (int column = 23; column < 320 - 23; ++column) {
+        const std::size_t start = static_cast<std::size_t>(row) * 320;
+        ASSERT_EQ(shifted.left.entries[start + static_cast<std::size_t>(column)],
+                  plain.left.entries[start + static_cast<std::size_t>(column + offset)]);
+      }
+    }
+  }
+}
+
+TEST(Tables, RefusePicturesThatPositionsCannotName) {
+  Rig rig = SyntheticRig(3, 320, 240).rig();
+  const Rectification rectification = rectify(rig);
+  rig.height = 2049;
+  EXPECT_THROW(tables(rig, rectification, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::calib
