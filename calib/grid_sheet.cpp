@@ -1,0 +1,252 @@
+#include "calib/grid_sheet.h"
+
+#include <cairo-pdf.h>
+#include <cairo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace stereotlm::calib {
+namespace {
+
+constexpr double kPointsPerMm = 72 / 25.4;
+constexpr double kLargestPageMm = 14400 / kPointsPerMm;
+constexpr double kLeastMarginMm = 10;
+constexpr double kPrintHeightMm = 10;  // below the margin under the board: the small print and as much white
+constexpr double kFontSizeMm = 2.8;
+constexpr int kRulerMm = 100;
+constexpr double kLineMm = 0.2;
+
+// A4 and A3, both ways round.
+constexpr std::array<std::pair<double, double>, 4> kPages = {
+    {{297, 210}, {210, 297}, {420, 297}, {297, 420}}};
+constexpr double kNarrowestPageMm = 210;
+
+struct DestroySurface {
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+struct DestroyContext {
+  void operator()(cairo_t* context) const { cairo_destroy(context); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
+using Context = std::unique_ptr<cairo_t, DestroyContext>;
+
+double board_width(const GridShape& shape) { return (shape.columns + 1) * shape.square_mm; }
+double board_height(const GridShape& shape) { return (shape.rows + 1) * shape.square_mm; }
+
+// The board in the middle of what the small print leaves.
+GridSheet with_board(const GridShape& shape, double width_mm, double height_mm) {
+  return {width_mm, height_mm, (width_mm - board_width(shape)) / 2,
+          (height_mm - kPrintHeightMm - board_height(shape)) / 2};
+}
+
+struct Box {
+  double left, top, right, bottom;  // mm
+};
+
+struct Line {
+  double x1, y1, x2, y2;  // mm
+};
+
+struct Text {
+  std::string words;
+  double x, bottom;  // mm
+  bool ends_at_x;    // or begins there
+};
+
+// What is on the page; all of it is black.
+struct Drawing {
+  GridSheet sheet;
+  std::vector<Box> squares;
+  std::vector<Line> lines;
+  std::vector<Text> texts;
+};
+
+std::vector<Box> squares_of(const GridShape& shape, const GridSheet& sheet) {
+  std::vector<Box> squares;
+  for (int row = 0; row <= shape.rows; ++row) {
+    for (int column = row % 2; column <= shape.columns; column += 2) {
+      squares.push_back({sheet.board_left_mm + column * shape.square_mm,
+                         sheet.board_top_mm + row * shape.square_mm,
+                         sheet.board_left_mm + (column + 1) * shape.square_mm,
+                         sheet.board_top_mm + (row + 1) * shape.square_mm});
+    }
+  }
+  return squares;
+}
+
+// A tick every 10 mm, up from `bottom`.
+std::vector<Line> ruler_at(double left, double bottom) {
+  std::vector<Line> lines = {{left, bottom, left + kRulerMm, bottom}};
+  for (int mm = 0; mm <= kRulerMm; mm += 10) {
+    const double height = mm % 50 == 0 ? kFontSizeMm : kFontSizeMm / 2;
+    lines.push_back({left + mm, bottom + kLineMm / 2, left + mm, bottom - height});
+  }
+  return lines;
+}
+
+std::string small_print(const GridShape& shape) {
+  return fmt::format("{}x{} inner corners, squares of {:.6g} mm: print at 100 %", shape.columns, shape.rows,
+                     shape.square_mm);
+}
+
+Drawing drawing_of(const GridShape& shape) {
+  constexpr double kPrintWidthMm = 198;  // the ruler begins it, the text ends it
+  const GridSheet sheet = grid_sheet(shape);
+  const double left = (sheet.width_mm - kPrintWidthMm) / 2;
+  const double bottom = sheet.height_mm - kPrintHeightMm / 2;
+  const std::vector<Text> texts = {{fmt::format("{} mm", kRulerMm), left + kRulerMm + 1, bottom, false},
+                                   {small_print(shape), left + kPrintWidthMm, bottom, true}};
+  return {sheet, squares_of(shape, sheet), ruler_at(left, bottom), texts};
+}
+
+void draw(cairo_t* context, const Drawing& drawing) {
+  cairo_set_source_rgb(context, 1, 1, 1);
+  cairo_paint(context);
+  cairo_set_source_rgb(context, 0, 0, 0);
+  for (const Box& square : drawing.squares) {
+    cairo_move_to(context, square.left, square.top);
+    cairo_line_to(context, square.right, square.top);
+    cairo_line_to(context, square.right, square.bottom);
+    cairo_line_to(context, square.left, square.bottom);
+    cairo_close_path(context);
+  }
+  cairo_fill(context);
+  for (const Line& line : drawing.lines) {
+    cairo_move_to(context, line.x1, line.y1);
+    cairo_line_to(context, line.x2, line.y2);
+  }
+  cairo_set_line_width(context, kLineMm);
+  cairo_stroke(context);
+  // Cairo's own letters: the same on every machine, and no time to look for fonts.
+  cairo_select_font_face(context, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(context, kFontSizeMm);
+  for (const Text& text : drawing.texts) {
+    cairo_text_extents_t extents;
+    cairo_text_extents(context, text.words.c_str(), &extents);
+    cairo_move_to(context, text.ends_at_x ? text.x - extents.x_advance : text.x, text.bottom);
+    cairo_show_text(context, text.words.c_str());
+  }
+}
+
+// Draws and finishes. `units_per_mm`: of the surface.
+void draw(cairo_surface_t* surface, const Drawing& drawing, double units_per_mm) {
+  const Context context(cairo_create(surface));
+  cairo_scale(context.get(), units_per_mm, units_per_mm);
+  draw(context.get(), drawing);
+  cairo_surface_finish(surface);
+  for (const cairo_status_t status : {cairo_status(context.get()), cairo_surface_status(surface)}) {
+    if (status != CAIRO_STATUS_SUCCESS) {
+      throw std::runtime_error(
+          fmt::format("the sheet could not be drawn: {}", cairo_status_to_string(status)));
+    }
+  }
+}
+
+cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(bytes), count);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+// For the SVG: what is left of a sum without its error of the last digits.
+double rounded(double mm) {
+  constexpr double kParts = 1e6;
+  return std::round(mm * kParts) / kParts;
+}
+
+}  // namespace
+
+GridSheet grid_sheet(const GridShape& shape) {
+  if (const auto found = problems(shape); !found.empty()) {
+    throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
+  }
+  const double wide_margin_mm = std::max(kLeastMarginMm, shape.square_mm / 2);
+  for (const double margin_mm : {wide_margin_mm, kLeastMarginMm}) {
+    const double width_mm = board_width(shape) + 2 * margin_mm;
+    const double height_mm = board_height(shape) + 2 * margin_mm + kPrintHeightMm;
+    for (const auto& [page_width_mm, page_height_mm] : kPages) {
+      if (width_mm <= page_width_mm && height_mm <= page_height_mm) {
+        return with_board(shape, page_width_mm, page_height_mm);
+      }
+    }
+  }
+  const double width_mm = std::max(kNarrowestPageMm, board_width(shape) + 2 * wide_margin_mm);
+  const double height_mm = board_height(shape) + 2 * wide_margin_mm + kPrintHeightMm;
+  if (std::max(width_mm, height_mm) > kLargestPageMm) {
+    throw std::invalid_argument(
+        fmt::format("square_mm = {}: the page must be at most {:.0f} mm wide and high, not {} x {}",
+                    shape.square_mm, kLargestPageMm, width_mm, height_mm));
+  }
+  return with_board(shape, width_mm, height_mm);
+}
+
+std::string grid_sheet_pdf(const GridShape& shape) {
+  const Drawing drawing = drawing_of(shape);
+  std::string bytes;
+  const Surface surface(cairo_pdf_surface_create_for_stream(
+      append, &bytes, drawing.sheet.width_mm * kPointsPerMm, drawing.sheet.height_mm * kPointsPerMm));
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, small_print(shape).c_str());
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
+  draw(surface.get(), drawing, kPointsPerMm);
+  return bytes;
+}
+
+// Not by Cairo, which rounds places to 1/256 of a unit and numbers all that a process draws.
+std::string grid_sheet_svg(const GridShape& shape) {
+  const Drawing drawing = drawing_of(shape);
+  const double width = rounded(drawing.sheet.width_mm);
+  const double height = rounded(drawing.sheet.height_mm);
+  std::string svg = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}mm\" height=\"{1}mm\" viewBox=\"0 0 {0} {1}\">\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
+      width, height);
+  for (const Box& square : drawing.squares) {
+    const double left = rounded(square.left);
+    const double top = rounded(square.top);
+    svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", left, top,
+                       rounded(square.right - left), rounded(square.bottom - top));
+  }
+  for (const Line& line : drawing.lines) {
+    svg +=
+        fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"black\" stroke-width=\"{}\"/>\n",
+                    rounded(line.x1), rounded(line.y1), rounded(line.x2), rounded(line.y2), kLineMm);
+  }
+  for (const Text& text : drawing.texts) {
+    svg += fmt::format(
+        "<text x=\"{}\" y=\"{}\" font-family=\"sans-serif\" font-size=\"{}\" text-anchor=\"{}\">{}</text>\n",
+        rounded(text.x), rounded(text.bottom), kFontSizeMm, text.ends_at_x ? "end" : "start", text.words);
+  }
+  return svg + "</svg>\n";
+}
+
+kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm) {
+  constexpr double kMostPixels = 32767;  // of Cairo's image surfaces
+  const Drawing drawing = drawing_of(shape);
+  const GridSheet& sheet = drawing.sheet;
+  const double width = std::ceil(sheet.width_mm * pixels_per_mm);
+  const double height = std::ceil(sheet.height_mm * pixels_per_mm);
+  if (!(pixels_per_mm > 0 && std::max(width, height) <= kMostPixels)) {
+    throw std::invalid_argument(
+        fmt::format("pixels_per_mm = {}: must give a picture of {} x {} mm 1..{} pixels each way",
+                    pixels_per_mm, sheet.width_mm, sheet.height_mm, kMostPixels));
+  }
+  kernels::GrayImage image(static_cast<int>(width), static_cast<int>(height));
+  std::vector<std::uint32_t> pixels(image.pixels.size());  // red, green and blue, all alike
+  const Surface surface(cairo_image_surface_create_for_data(
+      reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_RGB24, image.width, image.height,
+      image.width * static_cast<int>(sizeof pixels[0])));
+  draw(surface.get(), drawing, pixels_per_mm);
+  std::transform(pixels.begin(), pixels.end(), image.pixels.begin(),
+                 [](std::uint32_t pixel) { return static_cast<std::uint8_t>(pixel & 0xFFU); });
+  return image;
+}
+
+}  // namespace stereotlm::calib

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "calib/grid_shape.h"
+#include "models/kernels/gray_image.h"
+
+namespace stereotlm::calib {
+
+// A page with a chessboard, and below it a ruler of 100 mm and a line of small print. The square in the
+// corner at the top left is black.
+struct GridSheet {
+  double width_mm = 0;
+  double height_mm = 0;
+  // The corner at the top left of the squares, from that of the page.
+  double board_left_mm = 0;
+  double board_top_mm = 0;
+};
+
+// The first page that leaves the board white on all sides for half a square, and for 10 mm at least: A4
+// landscape, A4 portrait, A3 landscape, A3 portrait. If there is none, the first that leaves it 10 mm; then
+// one made to measure, half a square again, but no narrower than A4. Throws std::invalid_argument with all
+// problems(shape), or if the page would be larger than a PDF's can be, 5080 mm (14400 pt).
+GridSheet grid_sheet(const GridShape& shape);
+
+// Files as bytes, to be printed at 100 %: every edge is within 1/1000 mm of its place. The same shape gives
+// the same bytes. Both throw as grid_sheet().
+std::string grid_sheet_pdf(const GridShape& shape);
+std::string grid_sheet_svg(const GridShape& shape);
+
+// The page as pixels; x mm from its left edge are at column x * pixels_per_mm - 0.5. Throws as grid_sheet(),
+// and if the picture would have no pixel or more than 32767 in a row or column.
+kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm);
+
+}  // namespace stereotlm::calib

@@ -1,0 +1,260 @@
+#include "calib/drawings.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stereotlm::calib {
+namespace {
+
+using kernels::GrayImage;
+using kernels::RectificationTable;
+
+constexpr int kMargin = 8;
+constexpr int kTop = 32;  // of the pictures: margin and caption
+const GridShape kShape{4, 3, 25};
+const cv::Vec3b kWhite(255, 255, 255);
+const cv::Vec3b kGray(128, 128, 128);
+const cv::Vec3b kOrange(0, 150, 255);
+const cv::Vec3b kYellow(0, 220, 220);
+const cv::Vec3b kCyan(220, 200, 0);
+const cv::Vec3b kRed(0, 0, 255);
+
+cv::Mat3b decoded(const std::vector<std::uint8_t>& png) { return cv::imdecode(png, cv::IMREAD_UNCHANGED); }
+
+// Pixels of a colour, give or take what is lost at smooth edges.
+int count(const cv::Mat& picture, const cv::Vec3b& color) {
+  const cv::Scalar tolerance = cv::Scalar::all(32);
+  cv::Mat close;
+  cv::inRange(picture, cv::Scalar(color) - tolerance, cv::Scalar(color) + tolerance, close);
+  return cv::countNonZero(close);
+}
+
+bool is(const cv::Mat3b& picture, cv::Point pixel, const cv::Vec3b& color) {
+  return count(picture(cv::Rect(pixel, cv::Size(1, 1))), color) == 1;
+}
+
+// Corners 30 pixels apart; the first at (40, 50).
+MarkedCorners marked_corners() {
+  MarkedCorners marked;
+  for (int i = 0; i < kShape.corners(); ++i) {
+    marked.corners.emplace_back(40 + 30 * (i % kShape.columns), 50 + 30 * (i / kShape.columns));
+  }
+  return marked;
+}
+
+// Of two empty pictures of 200 x 160 in grey 90.
+cv::Mat3b drawn_corners(const MarkedCorners& left, const MarkedCorners& right) {
+  const GrayImage image(200, 160, 90);
+  return decoded(encode_corners_png(kShape, {"left", image}, left, {"right", image}, right));
+}
+
+// Every source `distance` columns to the right.
+RectificationTable shifted(int width, int height, int distance) {
+  RectificationTable table{width, height, {}};
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const bool inside = column + distance < width;
+      table.entries.push_back(inside ? kernels::make_entry(column + distance, row) : 0);
+    }
+  }
+  return table;
+}
+
+cv::Vec3b turbo(int level) {
+  const cv::Mat levels(1, 1, CV_8U, cv::Scalar(level));
+  cv::Mat color;
+  cv::applyColorMap(levels, color, cv::COLORMAP_TURBO);
+  return color.at<cv::Vec3b>(0, 0);
+}
+
+TEST(CornersDrawing, ShowsBothPicturesUnderTheirCaptions) {
+  const GrayImage left(200, 160, 90);
+  const GrayImage right(200, 160, 180);
+  const cv::Mat3b drawing = decoded(encode_corners_png(kShape, {"a.png", left}, {}, {"", right}, {}));
+  EXPECT_EQ(drawing.size(), cv::Size(3 * kMargin + 2 * 200, kTop + 160 + kMargin));
+  EXPECT_EQ(count(drawing({kMargin, kTop, 200, 160}), {90, 90, 90}), 200 * 160);
+  EXPECT_TRUE(is(drawing, {kMargin, kTop}, cv::Vec3b(90, 90, 90)));
+  EXPECT_TRUE(is(drawing, {kMargin + 199 + kMargin + 200, kTop + 159}, cv::Vec3b(180, 180, 180)));
+  EXPECT_LT(count(drawing({kMargin, 0, 200, kTop}), kWhite), 200 * kTop);
+  EXPECT_EQ(count(drawing({kMargin + 200 + kMargin, 0, 200, kTop}), kWhite), 200 * kTop);
+}
+
+TEST(CornersDrawing, JoinsTheCornersOfARowInItsColor) {
+  const cv::Mat3b drawing = drawn_corners(marked_corners(), {});
+  EXPECT_TRUE(is(drawing, {kMargin + 40 + 15, kTop + 50}, kOrange));
+  EXPECT_TRUE(is(drawing, {kMargin + 40 + 15, kTop + 50 + 30}, kYellow));
+  EXPECT_GT(count(drawing({kMargin + 95, kTop + 45, 11, 11}), kOrange),
+            11 + 4);  // a circle as well as the line
+  const cv::Rect right(kMargin + 200 + kMargin, kTop, 200, 160);
+  EXPECT_EQ(count(drawing(right), {90, 90, 90}), 200 * 160);
+}
+
+TEST(CornersDrawing, MarksTheFirstCornerWithASquare) {
+  const cv::Mat3b drawing = drawn_corners({}, marked_corners());
+  const int left = kMargin + 200 + kMargin;
+  EXPECT_TRUE(is(drawing, {left + 40, kTop + 50 - 8}, kOrange));
+  EXPECT_TRUE(is(drawing, {left + 40 - 8, kTop + 50 + 5}, kOrange));
+  EXPECT_TRUE(is(drawing, {left + 70, kTop + 50 - 8}, cv::Vec3b(90, 90, 90)));
+}
+
+TEST(CornersDrawing, CrossesOutWhatIsLeftOut) {
+  MarkedCorners left = marked_corners();
+  left.left_out.assign(left.corners.size(), false);
+  EXPECT_EQ(count(drawn_corners(left, left), kRed), 0);
+  left.left_out[6] = true;
+  const cv::Mat3b drawing = drawn_corners(left, marked_corners());
+  EXPECT_TRUE(is(drawing, {kMargin + 100, kTop + 80}, kRed));
+  EXPECT_TRUE(is(drawing, {kMargin + 100 + 3, kTop + 80 - 3}, kRed));
+  EXPECT_EQ(count(drawing, kRed), count(drawing({kMargin + 92, kTop + 72, 17, 17}), kRed));
+}
+
+TEST(CornersDrawing, EnlargesSmallPicturesWithTheirCorners) {
+  const GridShape shape{3, 3, 25};
+  MarkedCorners marked;
+  for (int i = 0; i < 9; ++i) marked.corners.emplace_back(10 + 12 * (i % 3), 8 + 12 * (i / 3));
+  const CaptionedImage image{"a name far too long for a picture that is as small as this one",
+                             GrayImage(64, 48)};
+  const cv::Mat3b drawing = decoded(encode_corners_png(shape, image, marked, image, marked));
+  EXPECT_EQ(drawing.size(), cv::Size(3 * kMargin + 2 * 320, kTop + 240 + kMargin));
+  EXPECT_TRUE(is(drawing, {kMargin + 16 * 5 + 2, kTop + 8 * 5 + 2}, kOrange));
+  EXPECT_EQ(count(drawing({kMargin + 320, 0, kMargin, kTop}), kWhite), kMargin * kTop);
+}
+
+TEST(CornersDrawing, RefusesWhatDoesNotBelongTogether) {
+  const CaptionedImage image{"", GrayImage(200, 160)};
+  const auto draw = [&image](const CaptionedImage& right, const MarkedCorners& marked) {
+    encode_corners_png(kShape, image, {}, right, marked);
+  };
+  EXPECT_NO_THROW(draw(image, marked_corners()));
+  MarkedCorners too_few = marked_corners();
+  too_few.corners.pop_back();
+  EXPECT_THROW(draw(image, too_few), std::invalid_argument);
+  MarkedCorners other_marks = marked_corners();
+  other_marks.left_out = {true};
+  EXPECT_THROW(draw(image, other_marks), std::invalid_argument);
+  MarkedCorners outside = marked_corners();
+  outside.corners[3].x() = 199.6;
+  EXPECT_THROW(draw(image, outside), std::invalid_argument);
+  EXPECT_THROW(draw({"", GrayImage(200, 156)}, {}), std::invalid_argument);
+  EXPECT_THROW(encode_corners_png(kShape, {}, {}, {}, {}), std::invalid_argument);
+}
+
+TEST(RectifiedPairDrawing, HasLinesThroughBothPictures) {
+  const CaptionedImage image{"a", GrayImage(400, 100, 90)};
+  const cv::Mat3b drawing = decoded(encode_rectified_pair_png(image, image));
+  const int left = kMargin;
+  const int width = 400 + kMargin + 400;
+  EXPECT_EQ(count(drawing({left, kTop + 16, width, 1}), kOrange), width);
+  EXPECT_EQ(count(drawing({left, kTop + 48, width, 1}), kCyan), width);
+  EXPECT_EQ(count(drawing({left, kTop + 80, width, 1}), kOrange), width);
+  EXPECT_EQ(count(drawing({left, kTop, 400, 100}), {90, 90, 90}), 400 * (100 - 3));
+}
+
+TEST(RectifiedPairDrawing, HasLinesInTheMiddleOfRowsOfSmallPictures) {
+  const CaptionedImage image{"a", GrayImage(64, 48, 90)};
+  const cv::Mat3b drawing = decoded(encode_rectified_pair_png(image, image));
+  EXPECT_TRUE(is(drawing, {kMargin, kTop + 3 * 5 + 2}, kOrange));  // every 6th row
+  EXPECT_TRUE(is(drawing, {kMargin, kTop + 9 * 5 + 2}, kCyan));
+}
+
+TEST(RectifiedPairDrawing, RefusesPicturesOfDifferentSizesOrNone) {
+  EXPECT_THROW(encode_rectified_pair_png({"", GrayImage(160, 80)}, {"", GrayImage(320, 160)}),
+               std::invalid_argument);
+  EXPECT_THROW(encode_rectified_pair_png({}, {}), std::invalid_argument);
+  GrayImage torn(40, 40);
+  torn.pixels.pop_back();
+  EXPECT_THROW(encode_rectified_pair_png({"", torn}, {"", torn}), std::invalid_argument);
+}
+
+TEST(DisplacementDrawing, ColorsTheDistanceOnOneScale) {
+  const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
+  EXPECT_EQ(drawing.cols, 3 * kMargin + 2 * 200);
+  const int right = kMargin + 200 + kMargin;
+  EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(128)));  // half of the largest
+  EXPECT_TRUE(is(drawing, {right, kTop}, turbo(255)));
+}
+
+TEST(DisplacementDrawing, IsGreyWhereNoEntryIsValid) {
+  const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
+  const int right = kMargin + 200 + kMargin;
+  EXPECT_TRUE(is(drawing, {kMargin + 189, kTop}, turbo(128)));
+  EXPECT_TRUE(is(drawing, {kMargin + 190, kTop}, kGray));
+  EXPECT_TRUE(is(drawing, {right + 179, kTop + 79}, turbo(255)));
+  EXPECT_TRUE(is(drawing, {right + 180, kTop + 79}, kGray));
+}
+
+TEST(DisplacementDrawing, HasArrowsToTheSource) {
+  const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
+  for (const int y : {20, 60}) {
+    EXPECT_EQ(count(drawing({kMargin + 21, kTop + y, 9, 1}), kWhite), 9);
+    EXPECT_FALSE(is(drawing, {kMargin + 33, kTop + y}, kWhite));
+    EXPECT_FALSE(is(drawing, {kMargin + 22, kTop + y - 2}, kWhite));
+    EXPECT_TRUE(is(drawing, {kMargin + 26, kTop + y - 2}, kWhite));  // the head is wider than the shaft
+  }
+}
+
+TEST(DisplacementDrawing, ShowsTablesThatMoveNothing) {
+  const RectificationTable identity = kernels::identity_table(200, 80);
+  const cv::Mat3b drawing = decoded(encode_displacement_png(identity, identity));
+  EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(0)));
+  EXPECT_TRUE(is(drawing, {kMargin + 20, kTop + 20}, kWhite));
+}
+
+TEST(DisplacementDrawing, ShowsTablesOfAnySizeAndWithoutValidEntries) {
+  const RectificationTable narrow = kernels::identity_table(4, 600);
+  EXPECT_EQ(decoded(encode_displacement_png(narrow, narrow)).cols, 3 * kMargin + 2 * 4);
+  const RectificationTable empty{4, 1, std::vector<std::uint32_t>(4)};
+  const cv::Mat3b drawing = decoded(encode_displacement_png(empty, empty));
+  EXPECT_EQ(count(drawing({kMargin, kTop, 320, 80}), kGray), 320 * 80);
+}
+
+TEST(DisplacementDrawing, RefusesTablesOfDifferentSizesOrWithProblems) {
+  EXPECT_THROW(encode_displacement_png(shifted(8, 8, 0), shifted(8, 4, 0)), std::invalid_argument);
+  EXPECT_THROW(encode_displacement_png({}, {}), std::invalid_argument);
+}
+
+TEST(SourceLinesDrawing, HasACurveForEachTable) {
+  RectificationTable bent = kernels::identity_table(8, 64);
+  for (int row = 0; row + 12 < 64; ++row) {
+    bent.entries[8 * static_cast<std::size_t>(row)] = kernels::make_entry(0, row + 12);
+  }
+  const RectificationTable straight = kernels::identity_table(8, 64);
+  const cv::Mat3b drawing = decoded(encode_source_lines_png(straight, bent));
+  EXPECT_EQ(drawing.size(), cv::Size(800, 500));
+  // The axis goes to 45: 31 lines touch 43. Of 32 steps of the other axis n is at step n.
+  const auto place = [](double lines, double y) {
+    return cv::Point(cvRound(52 + lines / 32 * 724), cvRound(68 + 372 * (1 - y / 45)));
+  };
+  const cv::Vec3b blue(200, 110, 20);
+  const cv::Vec3b orange(20, 110, 230);
+  for (const int lines : {1, 15, 31}) {
+    EXPECT_TRUE(is(drawing, place(lines, lines), blue));
+    EXPECT_TRUE(is(drawing, place(lines, lines + 12), orange));
+  }
+}
+
+TEST(SourceLinesDrawing, ShowsTablesOfAnyHeight) {
+  const RectificationTable low = kernels::identity_table(4, 1);
+  EXPECT_NO_THROW(encode_source_lines_png(low, low));
+  const RectificationTable empty{4, 40, std::vector<std::uint32_t>(160)};
+  EXPECT_NO_THROW(encode_source_lines_png(empty, empty));
+}
+
+TEST(SourceLinesDrawing, RefusesTablesOfDifferentSizesOrWithProblems) {
+  EXPECT_THROW(encode_source_lines_png(shifted(8, 8, 0), shifted(8, 4, 0)), std::invalid_argument);
+  EXPECT_THROW(encode_source_lines_png({}, {}), std::invalid_argument);
+}
+
+TEST(Drawings, AreTheSameBytesEachTime) {
+  const RectificationTable table = shifted(64, 48, 3);
+  EXPECT_EQ(encode_displacement_png(table, table), encode_displacement_png(table, table));
+  EXPECT_EQ(encode_source_lines_png(table, table), encode_source_lines_png(table, table));
+}
+
+}  // namespace
+}  // namespace stereotlm::calib

@@ -1,0 +1,258 @@
+#include "calib/grid_sheet.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <regex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/opencv_types.h"
+
+namespace stereotlm::calib {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What `call` throws.
+template <typename Call>
+std::string refusal(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusal(const GridShape& shape) {
+  return refusal([&shape] { grid_sheet(shape); });
+}
+
+void expect_page(const GridShape& shape, double width_mm, double height_mm) {
+  const GridSheet sheet = grid_sheet(shape);
+  EXPECT_DOUBLE_EQ(sheet.width_mm, width_mm);
+  EXPECT_DOUBLE_EQ(sheet.height_mm, height_mm);
+}
+
+// Of every element of the SVG with just these attributes in front, their numbers.
+std::vector<std::vector<double>> elements_of(const std::string& svg, const std::string& name,
+                                             const std::vector<std::string>& attributes) {
+  std::string pattern = "<" + name;
+  for (const std::string& attribute : attributes) pattern += " " + attribute + "=\"([^\"]*)\"";
+  const std::regex element(pattern);
+  std::vector<std::vector<double>> found;
+  for (std::sregex_iterator match(svg.begin(), svg.end(), element); match != std::sregex_iterator();
+       ++match) {
+    found.emplace_back();
+    for (std::size_t i = 1; i <= attributes.size(); ++i) found.back().push_back(std::stod((*match)[i]));
+  }
+  return found;
+}
+
+std::array<double, 4> media_box(const std::string& pdf) {
+  std::smatch found;
+  const std::regex box(R"(/MediaBox \[ (\S+) (\S+) (\S+) (\S+) \])");
+  if (!std::regex_search(pdf, found, box)) return {};
+  return {std::stod(found[1]), std::stod(found[2]), std::stod(found[3]), std::stod(found[4])};
+}
+
+TEST(GridShape, HasNoProblemsWithinItsRanges) {
+  EXPECT_THAT(problems(GridShape{3, 100, 1}), IsEmpty());
+  EXPECT_THAT(problems(GridShape{100, 3, 1000}), IsEmpty());
+}
+
+TEST(GridShape, NamesEveryFieldOutsideItsRange) {
+  EXPECT_THAT(problems(GridShape{2, 101, 0.5}),
+              ElementsAre("columns = 2: must be 3..100 inner corners",
+                          "rows = 101: must be 3..100 inner corners", "square_mm = 0.5: must be 1..1000"));
+  EXPECT_THAT(problems(GridShape{101, 2, 1000.5}),
+              ElementsAre("columns = 101: must be 3..100 inner corners",
+                          "rows = 2: must be 3..100 inner corners", "square_mm = 1000.5: must be 1..1000"));
+  EXPECT_THAT(problems(GridShape{9, 6, kNan}), ElementsAre("square_mm = nan: must be 1..1000"));
+  EXPECT_THAT(problems(GridShape{9, 6, kInfinity}), ElementsAre("square_mm = inf: must be 1..1000"));
+}
+
+TEST(GridSheet, IsTheFirstPageThatLeavesHalfASquareWhite) {
+  expect_page({9, 6, 25}, 297, 210);     // 7 + 1 squares and 10 mm of small print: 210 mm
+  expect_page({9, 6, 25.01}, 420, 297);  // 210.08 mm
+  expect_page({6, 9, 25}, 210, 297);
+  expect_page({6, 9, 26.09}, 210, 297);  // 10 + 1 squares and 10 mm: 296.99 mm
+  expect_page({6, 9, 26.1}, 297, 420);
+  expect_page({9, 6, 35.875}, 420, 297);
+}
+
+TEST(GridSheet, LeavesTenMillimetresWhiteAtLeast) {
+  expect_page({21, 17, 10}, 297, 210);  // 18 squares, 20 mm and 10 mm: 210 mm
+  expect_page({21, 17, 10.01}, 420, 297);
+}
+
+TEST(GridSheet, LeavesLessThanHalfASquareIfNoPageHasMore) {
+  expect_page({9, 6, 35.9}, 420, 297);
+  expect_page({9, 6, 38.14}, 420, 297);  // 266.98 mm, 20 mm and 10 mm
+  expect_page({9, 6, 38.15}, 11 * 38.15, 8 * 38.15 + 10);
+}
+
+TEST(GridSheet, IsMadeToMeasureBeyondA3) {
+  expect_page({9, 6, 50}, 550, 410);
+  expect_page({3, 100, 5}, 210, 101 * 5 + 30);
+}
+
+TEST(GridSheet, HasTheBoardInTheMiddleOfWhatTheSmallPrintLeaves) {
+  const GridSheet sheet = grid_sheet({9, 6, 20});
+  EXPECT_DOUBLE_EQ(sheet.board_left_mm, (297 - 200) / 2.0);
+  EXPECT_DOUBLE_EQ(sheet.board_top_mm, (210 - 10 - 140) / 2.0);
+}
+
+TEST(GridSheet, IsNoLargerThanAPdfCanBe) {
+  EXPECT_EQ(refusal({9, 6, 461.8}), "");  // 11 squares: 5079.8 mm
+  EXPECT_EQ(refusal({9, 6, 462}),
+            "square_mm = 462: the page must be at most 5080 mm wide and high, not 5082 x 3706");
+  EXPECT_THAT(refusal({6, 9, 462}), HasSubstr("not 3696 x 5092"));
+}
+
+TEST(GridSheet, IsRefusedWithAllProblemsOfItsShape) {
+  const GridShape wrong{2, 101, kNan};
+  const std::string all =
+      "columns = 2: must be 3..100 inner corners\nrows = 101: must be 3..100 inner corners\n"
+      "square_mm = nan: must be 1..1000";
+  EXPECT_EQ(refusal(wrong), all);
+  EXPECT_EQ(refusal([&wrong] { grid_sheet_pdf(wrong); }), all);
+  EXPECT_EQ(refusal([&wrong] { grid_sheet_svg(wrong); }), all);
+  EXPECT_EQ(refusal([&wrong] { grid_sheet_image(wrong, 1); }), all);
+}
+
+TEST(GridSheetSvg, HasTheSizeOfThePage) {
+  EXPECT_THAT(grid_sheet_svg({9, 6, 25}),
+              HasSubstr("width=\"297mm\" height=\"210mm\" viewBox=\"0 0 297 210\""));
+  EXPECT_THAT(grid_sheet_svg({9, 6, 50.5}), HasSubstr("width=\"555.5mm\" height=\"414mm\""));
+}
+
+TEST(GridSheetSvg, HasEverySecondSquareAtItsPlace) {
+  for (const double square_mm : {25.0, 24.7}) {
+    const GridShape shape{9, 6, square_mm};
+    const GridSheet sheet = grid_sheet(shape);
+    std::set<std::pair<int, int>> found;
+    for (const auto& square : elements_of(grid_sheet_svg(shape), "rect", {"x", "y", "width", "height"})) {
+      const auto column = std::lround((square[0] - sheet.board_left_mm) / square_mm);
+      const auto row = std::lround((square[1] - sheet.board_top_mm) / square_mm);
+      found.insert({static_cast<int>(column), static_cast<int>(row)});
+      EXPECT_NEAR(square[0], sheet.board_left_mm + static_cast<double>(column) * square_mm, 1e-6);
+      EXPECT_NEAR(square[1], sheet.board_top_mm + static_cast<double>(row) * square_mm, 1e-6);
+      EXPECT_NEAR(square[2], square_mm, 1e-6);
+      EXPECT_NEAR(square[3], square_mm, 1e-6);
+    }
+    std::set<std::pair<int, int>> expected;
+    for (int row = 0; row < 7; ++row) {
+      for (int column = 0; column < 10; ++column) {
+        if ((column + row) % 2 == 0) expected.insert({column, row});
+      }
+    }
+    EXPECT_EQ(expected.size(), 35U);
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(GridSheetSvg, HasARulerOf100MmBetweenTheBoardAndTheEdge) {
+  const auto lines = elements_of(grid_sheet_svg({9, 6, 25}), "line", {"x1", "y1", "x2", "y2"});
+  ASSERT_EQ(lines.size(), 1U + 11U);
+  EXPECT_THAT(lines[0], ElementsAre(49.5, 205, 149.5, 205));
+  for (std::size_t tick = 1; tick < lines.size(); ++tick) {
+    EXPECT_DOUBLE_EQ(lines[tick][0], 49.5 + 10 * static_cast<double>(tick - 1));
+    EXPECT_DOUBLE_EQ(lines[tick][2], lines[tick][0]);
+    EXPECT_GT(lines[tick][3], 210 - 10);  // half a square is white below the board
+  }
+}
+
+TEST(GridSheetSvg, SaysWhatItShows) {
+  const std::string svg = grid_sheet_svg({9, 6, 25});
+  EXPECT_THAT(svg, HasSubstr(">100 mm</text>"));
+  EXPECT_THAT(svg, HasSubstr(">9x6 inner corners, squares of 25 mm: print at 100 %</text>"));
+}
+
+TEST(GridSheetPdf, HasTheSizeOfThePage) {
+  const std::string pdf = grid_sheet_pdf({9, 6, 50});
+  EXPECT_THAT(pdf, StartsWith("%PDF-"));
+  const std::array<double, 4> box = media_box(pdf);
+  EXPECT_EQ(box[0], 0);
+  EXPECT_EQ(box[1], 0);
+  EXPECT_NEAR(box[2], 550 / 25.4 * 72, 0.01);
+  EXPECT_NEAR(box[3], 410 / 25.4 * 72, 0.01);
+}
+
+TEST(GridSheetPdf, SaysWhatItShows) {
+  EXPECT_THAT(grid_sheet_pdf({9, 6, 25}), HasSubstr("9x6 inner corners, squares of 25 mm"));
+}
+
+TEST(GridSheetPdf, HasNoDate) { EXPECT_THAT(grid_sheet_pdf({9, 6, 25}), Not(HasSubstr("Date"))); }
+
+TEST(GridSheet, IsTheSameBytesEachTime) {
+  const GridShape shape{9, 6, 24.7};
+  EXPECT_EQ(grid_sheet_pdf(shape), grid_sheet_pdf(shape));
+  EXPECT_EQ(grid_sheet_svg(shape), grid_sheet_svg(shape));
+  EXPECT_EQ(grid_sheet_image(shape, 1), grid_sheet_image(shape, 1));
+}
+
+TEST(GridSheetImage, ShowsEveryCornerAtItsPlace) {
+  constexpr double kPixelsPerMm = 1.7;
+  const GridShape shape{7, 4, 25};
+  const GridSheet sheet = grid_sheet(shape);
+  const kernels::GrayImage image = grid_sheet_image(shape, kPixelsPerMm);
+  EXPECT_EQ(image.width, static_cast<int>(std::ceil(297 * kPixelsPerMm)));
+  EXPECT_EQ(image.height, static_cast<int>(std::ceil(210 * kPixelsPerMm)));
+
+  std::vector<cv::Point2f> found;
+  ASSERT_TRUE(cv::findChessboardCorners(view(image), {shape.columns, shape.rows}, found));
+  cv::cornerSubPix(view(image), found, {5, 5}, {-1, -1},
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.001});
+  std::set<std::pair<int, int>> places;  // OpenCV may begin at either end
+  for (const cv::Point2f& corner : found) {
+    const double column = ((corner.x + 0.5) / kPixelsPerMm - sheet.board_left_mm) / shape.square_mm;
+    const double row = ((corner.y + 0.5) / kPixelsPerMm - sheet.board_top_mm) / shape.square_mm;
+    EXPECT_NEAR(column, std::round(column), 0.002);
+    EXPECT_NEAR(row, std::round(row), 0.002);
+    places.insert({static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row))});
+  }
+  EXPECT_EQ(places.size(), 28U);
+  EXPECT_EQ(*places.begin(), std::make_pair(1, 1));
+  EXPECT_EQ(*places.rbegin(), std::make_pair(7, 4));
+}
+
+TEST(GridSheetImage, IsBlackAtTheTopLeftAndWhiteAroundTheBoard) {
+  const GridShape shape{9, 6, 20};
+  const kernels::GrayImage image = grid_sheet_image(shape, 1);
+  const GridSheet sheet = grid_sheet(shape);
+  const int left = static_cast<int>(sheet.board_left_mm);
+  const int top = static_cast<int>(sheet.board_top_mm);
+  EXPECT_EQ(image.at(left + 10, top + 10), 0);
+  EXPECT_EQ(image.at(left + 30, top + 10), 255);
+  EXPECT_EQ(image.at(left + 10, top + 30), 255);
+  EXPECT_EQ(image.at(0, 0), 255);
+  EXPECT_EQ(image.at(left - 2, top + 10), 255);
+  EXPECT_EQ(image.at(left + 10, top - 2), 255);
+}
+
+TEST(GridSheetImage, IsRefusedWithoutPixelsOrWithTooMany) {
+  for (const double pixels_per_mm : {0.0, -1.0, kNan, kInfinity, 110.4}) {
+    const auto call = [pixels_per_mm] { grid_sheet_image({9, 6, 25}, pixels_per_mm); };
+    EXPECT_THAT(refusal(call), StartsWith("pixels_per_mm = ")) << pixels_per_mm;
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::calib
