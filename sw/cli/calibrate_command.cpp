@@ -171,7 +171,7 @@ class Calibrator {
     const std::vector<float> truth = rig_->disparity(made.rig, made.rectification, made.disparity_offset);
     kernels::GrayImage grey(made.rig.width, made.rig.height);
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      const double level = std::floor(truth[i] * truth_scale() + 0.5);
+      const double level = std::floor(double{truth[i]} * truth_scale() + 0.5);
       if (level > 0 && level <= 255) grey.pixels[i] = static_cast<std::uint8_t>(level);
     }
     output_->add(folder / "scene_truth.png", media.encode_png_gray(grey));

@@ -26,7 +26,7 @@ void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
     throw std::runtime_error(fmt::format("image size = {}x{}: must be that of the board's images, {}x{}",
                                          rig.width, rig.height, board.image.width, board.image.height));
   }
-  const platform::Allocation& allocation = board.allocation;
+  const platform::AllocationConfig& allocation = board.allocation;
   if (allocation.left_lut && allocation.right_lut) return;
   throw std::runtime_error(fmt::format("goes with a board that has both tables; allocation.{} = none",
                                        allocation.left_lut ? "right_lut" : "left_lut"));

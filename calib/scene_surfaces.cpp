@@ -1,0 +1,136 @@
+#include "calib/scene_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "calib/split_mix.h"
+
+namespace stereotlm::calib {
+namespace {
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
+// std::floor is a call.
+std::int64_t below(double value) {
+  const auto towards_zero = static_cast<std::int64_t>(value);
+  return towards_zero - (value < static_cast<double>(towards_zero) ? 1 : 0);
+}
+
+// 0..1, at a point of a lattice.
+double lattice(std::uint64_t seed, std::int64_t column, std::int64_t row) {
+  const std::uint64_t position = static_cast<std::uint64_t>(row) << 32U ^ static_cast<std::uint64_t>(column);
+  return unit(mixed(seed + position * kSplitMixStep));
+}
+
+double smooth(double part) { return part * part * (3 - 2 * part); }
+
+// 0..1, between the points of a lattice.
+double value_noise(std::uint64_t seed, double x, double y) {
+  const std::int64_t column = below(x);
+  const std::int64_t row = below(y);
+  const double right = smooth(x - static_cast<double>(column));
+  const double down = smooth(y - static_cast<double>(row));
+  const double above = lattice(seed, column, row) * (1 - right) + lattice(seed, column + 1, row) * right;
+  const double under =
+      lattice(seed, column, row + 1) * (1 - right) + lattice(seed, column + 1, row + 1) * right;
+  return above * (1 - down) + under * down;
+}
+
+}  // namespace
+
+Texture noise(std::uint64_t seed, double level) {
+  return [seed, level](const Eigen::Vector2d& position) {
+    constexpr int kSizes = 4;
+    constexpr double kContrast = 100;  // a standard deviation of about 40
+    double sum = 0;
+    double scale = 1;
+    for (int size = 0; size < kSizes; ++size, scale /= 2) {
+      const std::uint64_t own_seed = seed + static_cast<std::uint64_t>(size);
+      sum += value_noise(own_seed, position.x() * scale, position.y() * scale) - 0.5;
+    }
+    return std::clamp(level + kContrast * sum, 0.0, 255.0);
+  };
+}
+
+Texture chessboard(const GridShape& shape) {
+  return [columns = shape.columns, rows = shape.rows](const Eigen::Vector2d& position) {
+    constexpr double kBlack = 30;
+    constexpr double kWhite = 220;
+    const std::int64_t column = below(position.x());
+    const std::int64_t row = below(position.y());
+    const bool on_squares = column >= -1 && column < columns && row >= -1 && row < rows;
+    return on_squares && (column + row) % 2 == 0 ? kBlack : kWhite;
+  };
+}
+
+Plane::Plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& across, const Eigen::Vector3d& down,
+             const Eigen::AlignedBox2d& extent, Texture texture)
+    : origin_(origin),
+      normal_(across.cross(down).normalized()),
+      to_across_(across / across.squaredNorm()),
+      to_down_(down / down.squaredNorm()),
+      extent_(extent),
+      texture_(std::move(texture)) {}
+
+double Plane::meets(const Ray& ray) const {
+  const double t = normal_.dot(origin_ - ray.origin) / normal_.dot(ray.direction);
+  // Also not if the ray is parallel to the plane, or in it.
+  if (!(t > 0) || !std::isfinite(t)) return kNowhere;
+  return extent_.contains(position(ray.at(t))) ? t : kNowhere;
+}
+
+Eigen::Vector2d Plane::position(const Eigen::Vector3d& point) const {
+  const Eigen::Vector3d from_origin = point - origin_;
+  return {to_across_.dot(from_origin), to_down_.dot(from_origin)};
+}
+
+Sphere::Sphere(const Eigen::Vector3d& centre, double radius, double unit_mm, Texture texture)
+    : centre_(centre), radius_(radius), unit_mm_(unit_mm), texture_(std::move(texture)) {}
+
+double Sphere::meets(const Ray& ray) const {
+  const Eigen::Vector3d to_centre = centre_ - ray.origin;
+  const double square = ray.direction.squaredNorm();
+  const double middle = ray.direction.dot(to_centre) / square;
+  const double half_squared = middle * middle - (to_centre.squaredNorm() - radius_ * radius_) / square;
+  if (!(half_squared >= 0)) return kNowhere;
+  const double t = middle - std::sqrt(half_squared);
+  return t > 0 ? t : kNowhere;
+}
+
+double Sphere::level(const Eigen::Vector3d& point) const {
+  return texture_((point - centre_).head<2>() / unit_mm_);
+}
+
+SceneSurfaces::SceneSurfaces(std::vector<std::variant<Plane, Sphere>> surfaces, double background)
+    : surfaces_(std::move(surfaces)), background_(background) {}
+
+SceneSurfaces::Nearest SceneSurfaces::nearest(const Ray& ray) const {
+  Nearest result = {nullptr, kNowhere};
+  for (const Surface& surface : surfaces_) {
+    const double t = std::visit([&ray](const auto& shape) { return shape.meets(ray); }, surface);
+    if (t < result.t) result = {&surface, t};
+  }
+  return result;
+}
+
+std::optional<Eigen::Vector3d> SceneSurfaces::first(const Ray& ray) const {
+  const Nearest found = nearest(ray);
+  if (found.surface == nullptr) return std::nullopt;
+  return ray.at(found.t);
+}
+
+bool SceneSurfaces::visible(const Eigen::Vector3d& eye, const Eigen::Vector3d& point) const {
+  constexpr double kRounding = 1e-6;
+  return nearest({eye, point - eye}).t >= 1 - kRounding;
+}
+
+double SceneSurfaces::level(const Ray& ray) const {
+  const Nearest found = nearest(ray);
+  if (found.surface == nullptr) return background_;
+  return std::visit([point = ray.at(found.t)](const auto& shape) { return shape.level(point); },
+                    *found.surface);
+}
+
+}  // namespace stereotlm::calib
