@@ -248,7 +248,7 @@ std::string calibration_yaml(const Calibration& calibration) {
 
 Calibration parse_calibration(const std::string& text) {
   if (text.compare(0, std::string(kBegin).size(), kBegin) != 0) {
-    refuse("first line", "another", fmt::format("a calibration begins with {}", kBegin));
+    refuse("first line", "another", fmt::format("must be {}", kBegin));
   }
   cv::FileStorage file;
   try {

@@ -187,12 +187,16 @@ GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) 
     return {std::nullopt, fmt::format("no grid of {}x{} inner corners found", shape.columns, shape.rows)};
   }
   const Corners corners = refined(picture, shape, to_corners(points));
-  const Squares squares(picture, shape, corners);
-  if (!squares.alternate() || squares.go_on()) {
+  if (!are_all_of_board(picture, shape, corners)) {
     return {std::nullopt,
             fmt::format("the grid has more than {}x{} inner corners", shape.columns, shape.rows)};
   }
   return {corners, ""};
+}
+
+bool are_all_of_board(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {
+  const Squares squares(picture, shape, corners);
+  return squares.alternate() && !squares.go_on();
 }
 
 Corners refined(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {

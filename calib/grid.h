@@ -17,6 +17,10 @@ struct GridSearch {
 // nobody could say which of them were found.
 GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape);
 
+// Whether corners are all inner corners of the chessboard in the picture: OpenCV also finds part of a board, with lines at
+// its border or in between left out. Judged by the greys around the corners, and around those that would be next.
+bool are_all_of_board(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners);
+
 // Each corner moved to the point near it where the greys form a saddle. The window that decides reaches 30 % of the
 // smallest distance between neighbours to every side, at least 2 pixels: a larger one sees the next corner, which pulls by
 // pixels where the board is far or tilted.

@@ -15,6 +15,7 @@ namespace {
 using Used = std::vector<std::vector<bool>>;
 
 constexpr double kMostMedians = 8;
+constexpr double kAlwaysFits = 0.1;  // pixels: no camera sees corners better
 constexpr int kMostRounds = 20;
 
 // The corners used, in OpenCV's form: a pair without any is not there.
@@ -95,7 +96,7 @@ Used those_that_fit(const RigFit& fit) {
   for_each_corner(fit.used, [&](std::size_t pair, std::size_t corner) {
     if (fit.used[pair][corner]) of_used.push_back(fit.misfits[pair].of_corner(corner));
   });
-  const double most = kMostMedians * median(std::move(of_used));
+  const double most = std::max(kAlwaysFits, kMostMedians * median(std::move(of_used)));
   Used result = fit.used;
   for (std::size_t pair = 0; pair < result.size(); ++pair) {
     std::size_t count = 0;

@@ -45,9 +45,9 @@ struct RigFit {
 inline constexpr std::size_t kFewestPairs = 3;
 
 // Calibrates both cameras and their relative pose (OpenCV's stereoCalibrate). A corner whose misfit is more than eight
-// times the median is left out on both sides, and the fit repeated without those until none changes; a pair that keeps
-// less than half of its corners is left out whole. Throws std::invalid_argument if there are fewer than kFewestPairs, or
-// fewer are left; std::runtime_error if OpenCV finds no rig.
+// times the median, and than 0.1 pixels, is left out on both sides, and the fit repeated without those until none changes;
+// a pair that keeps less than half of its corners is left out whole. Throws std::invalid_argument if there are fewer than
+// kFewestPairs, or fewer are left; std::runtime_error if OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs);
 
 // One fit, to the corners used. Throws std::runtime_error if OpenCV finds no rig.

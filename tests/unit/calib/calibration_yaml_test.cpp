@@ -95,8 +95,8 @@ TEST(CalibrationYaml, WithoutHeldOutPairsIsRead) {
 }
 
 TEST(CalibrationYaml, ThatIsNoneIsRefused) {
-  EXPECT_THAT(refusal(""), HasSubstr("must begin"));
-  EXPECT_THAT(refusal("P5\n2 2\n255\n0000"), HasSubstr("must begin"));
+  EXPECT_THAT(refusal(""), HasSubstr("first line: another: must be %YAML:1.0"));
+  EXPECT_THAT(refusal("P5\n2 2\n255\n0000"), HasSubstr("first line: another: must be %YAML:1.0"));
   EXPECT_THAT(refusal("%YAML:1.0\n---\nM1: [1, 2\n"), HasSubstr("must be OpenCV FileStorage YAML"));
   EXPECT_THAT(refusal("%YAML:1.0\n---\nother: 1\n"), HasSubstr("image_width: missing"));
 }

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "calib/grid_sheet.h"
 #include "calib/synthetic_rig.h"
 
 namespace stereotlm::calib {
@@ -37,18 +37,37 @@ TEST(Grid, IsNotFoundWhereThereIsNone) {
   EXPECT_EQ(found.problem, "no grid of 9x6 inner corners found");
 }
 
-// OpenCV takes some part of a larger board for the whole.
-TEST(Grid, OfMoreCornersIsRefused) {
-  const kernels::GrayImage board = grid_sheet_image({9, 6, 25}, 2);
-  EXPECT_TRUE(find_grid(board, {9, 6, 25}).corners);
-  std::size_t refused = 0;
-  for (const GridShape& part :
-       {GridShape{8, 6, 25}, GridShape{9, 5, 25}, GridShape{8, 5, 25}, GridShape{7, 6, 25}}) {
-    const GridSearch found = find_grid(board, part);
-    EXPECT_FALSE(found.corners) << part.columns << 'x' << part.rows;
-    if (found.problem.find("more than") != std::string::npos) ++refused;
+// The corners of some columns and rows of the board.
+Corners part_of(const GridShape& shape, const Corners& corners, const std::vector<int>& columns,
+                const std::vector<int>& rows) {
+  Corners part;
+  for (const int row : rows) {
+    for (const int column : columns)
+      part.push_back(corners[static_cast<std::size_t>(row * shape.columns + column)]);
   }
-  EXPECT_GT(refused, 0U);
+  return part;
+}
+
+TEST(Grid, OfWhichAPartWasFoundIsRefused) {
+  const SyntheticRig rig(1, 640, 480);
+  const GridShape shape = {9, 6, 25};
+  const std::vector<int> all_columns = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  const std::vector<int> all_rows = {0, 1, 2, 3, 4, 5};
+  for (int number = 0; number < 4; ++number) {
+    const kernels::GrayImage picture = rig.grid_view(shape, number).left;
+    const Corners corners = rig.grid_corners(shape, number).left;
+    const auto is_whole = [&](const std::vector<int>& columns, const std::vector<int>& rows) {
+      const GridShape part = {static_cast<int>(columns.size()), static_cast<int>(rows.size()), 25};
+      return are_all_of_board(picture, part, part_of(shape, corners, columns, rows));
+    };
+    EXPECT_TRUE(is_whole(all_columns, all_rows)) << number;
+    EXPECT_FALSE(is_whole({1, 2, 3, 4, 5, 6, 7, 8}, all_rows)) << number;
+    EXPECT_FALSE(is_whole({0, 1, 2, 3, 4, 5, 6, 7}, all_rows)) << number;
+    EXPECT_FALSE(is_whole({0, 1, 2, 3, 5, 6, 7, 8}, all_rows)) << number;
+    EXPECT_FALSE(is_whole(all_columns, {1, 2, 3, 4, 5})) << number;
+    EXPECT_FALSE(is_whole(all_columns, {0, 1, 2, 3, 4})) << number;
+    EXPECT_FALSE(is_whole({1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4})) << number;
+  }
 }
 
 TEST(OrderedLike, TurnsCornersByHalf) {
