@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -17,24 +18,27 @@ using kernels::GrayImage;
 // Levels before they are rounded, row by row.
 using Levels = std::vector<float>;
 
-// The lens is not quite sharp: every level is mixed with those of its neighbours.
-GrayImage through_lens(const Levels& levels, int width, int height) {
+// Every level mixed with its neighbours: of `count` levels that are `step` apart. The first and the last
+// repeat.
+void mix(const float* in, float* out, std::size_t count, std::size_t step) {
   constexpr float kNeighbour = 0.15F;
-  // Along the rows or down the columns, `length` levels that are `step` apart; the first and the last repeat.
-  const auto mixed_along = [](const float* in, float* out, int length, int step) {
-    for (int i = 0; i < length; ++i) {
-      const float before = in[std::max(i - 1, 0) * step];
-      const float after = in[std::min(i + 1, length - 1) * step];
-      out[i * step] = (1 - 2 * kNeighbour) * in[i * step] + kNeighbour * (before + after);
-    }
-  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const float before = in[(i > 0 ? i - 1 : 0) * step];
+    const float after = in[std::min(i + 1, count - 1) * step];
+    out[i * step] = (1 - 2 * kNeighbour) * in[i * step] + kNeighbour * (before + after);
+  }
+}
+
+GrayImage through_lens(const Levels& levels, int width, int height) {
+  const auto columns = static_cast<std::size_t>(width);
+  const auto rows = static_cast<std::size_t>(height);
   Levels in_rows(levels.size());
   Levels result(levels.size());
-  for (int y = 0; y < height; ++y) mixed_along(&levels[y * width], &in_rows[y * width], width, 1);
-  for (int x = 0; x < width; ++x) mixed_along(&in_rows[x], &result[x], height, width);
+  for (std::size_t y = 0; y < rows; ++y) mix(&levels[y * columns], &in_rows[y * columns], columns, 1);
+  for (std::size_t x = 0; x < columns; ++x) mix(&in_rows[x], &result[x], rows, columns);
   GrayImage image(width, height);
   std::transform(result.begin(), result.end(), image.pixels.begin(),
-                 [](float level) { return static_cast<std::uint8_t>(level + 0.5F); });
+                 [](float level) { return static_cast<std::uint8_t>(std::lround(level)); });
   return image;
 }
 

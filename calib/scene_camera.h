@@ -9,18 +9,19 @@
 
 namespace stereotlm::calib {
 
-// A camera at a place of the scene, with a lens that is not quite sharp. It keeps a ray for every pixel: they cost more to
-// find than most pictures.
+// A camera at a place of the scene, with a lens that is not quite sharp. It keeps a ray for every pixel: they
+// cost more to find than most pictures.
 class SceneCamera {
  public:
-  // `to_scene`: from directions in camera coordinates to those in the scene's. Throws as CameraModel::direction.
+  // `to_scene`: from directions in camera coordinates to those in the scene's. Throws as
+  // CameraModel::direction.
   SceneCamera(const CameraModel& model, const Eigen::Vector3d& place, const Eigen::Matrix3d& to_scene,
               int width, int height);
 
   const Eigen::Vector3d& place() const { return place_; }
 
-  // Every pixel is a mean; where an edge crosses it, of 64 samples. The rays are exact through the corners of the pixels and
-  // interpolated between them, at 320 x 240 less than 0.001 pixels off.
+  // Every pixel is a mean; where an edge crosses it, of 64 samples. The rays are exact through the corners of
+  // the pixels and interpolated between them, at 320 x 240 less than 0.001 pixels off.
   kernels::GrayImage picture(const SceneSurfaces& surfaces) const;
 
  private:

@@ -78,7 +78,8 @@ double Plane::meets(const Ray& ray) const {
   const double t = normal_.dot(origin_ - ray.origin) / normal_.dot(ray.direction);
   // Also not if the ray is parallel to the plane, or in it.
   if (!(t > 0) || !std::isfinite(t)) return kNowhere;
-  return extent_.contains(position(ray.at(t))) ? t : kNowhere;
+  if (!extent_.contains(position(ray.at(t)))) return kNowhere;
+  return t;
 }
 
 Eigen::Vector2d Plane::position(const Eigen::Vector3d& point) const {
@@ -96,7 +97,8 @@ double Sphere::meets(const Ray& ray) const {
   const double half_squared = middle * middle - (to_centre.squaredNorm() - radius_ * radius_) / square;
   if (!(half_squared >= 0)) return kNowhere;
   const double t = middle - std::sqrt(half_squared);
-  return t > 0 ? t : kNowhere;
+  if (!(t > 0)) return kNowhere;
+  return t;
 }
 
 double Sphere::level(const Eigen::Vector3d& point) const {

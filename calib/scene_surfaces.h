@@ -24,15 +24,16 @@ struct Ray {
 // A grey level, 0..255, for every position on a surface; what a unit of length is, the surface says.
 using Texture = std::function<double(const Eigen::Vector2d& position)>;
 
-// Smooth noise of four sizes, one unit and two, four and eight, around a level: nowhere flat, and no detail finer than a unit.
+// Smooth noise of four sizes, one unit and two, four and eight, around a level: nowhere flat, and no detail
+// finer than a unit.
 Texture noise(std::uint64_t seed, double level);
 
-// A unit is a square, the first inner corner is the origin, and the square above and to the left of it is black. White
-// around the squares.
+// A unit is a square, the first inner corner is the origin, and the square above and to the left of it is
+// black. White around the squares.
 Texture chessboard(const GridShape& shape);
 
-// `across` and `down` are a unit of the texture: at right angles, from the origin of the texture. The plane ends where
-// `extent`, in units of the texture, does. Both sides look the same.
+// `across` and `down` are a unit of the texture: at right angles, from the origin of the texture. The plane
+// ends where `extent`, in units of the texture, does. Both sides look the same.
 class Plane {
  public:
   Plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& across, const Eigen::Vector3d& down,
@@ -54,8 +55,8 @@ class Plane {
   Texture texture_;
 };
 
-// Painted as by a projector far away on the z axis, `unit_mm` to a unit of the texture: it looks as fine at the rim as in the
-// middle.
+// Painted as by a projector far away on the z axis, `unit_mm` to a unit of the texture: it looks as fine at
+// the rim as in the middle.
 class Sphere {
  public:
   Sphere(const Eigen::Vector3d& centre, double radius, double unit_mm, Texture texture);

@@ -172,8 +172,8 @@ SyntheticRig::CornerPair SyntheticRig::grid_corners(const GridShape& shape, int 
   return seen(points).value();
 }
 
-// Sizes and tilts follow from the number, so that a few poses are well spread; the place is drawn until the squares are
-// inside both pictures, from a little farther away each time.
+// Sizes and tilts follow from the number, so that a few poses are well spread; the place is drawn until the
+// squares are inside both pictures, from a little farther away each time.
 Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) const {
   check(shape, number);
   constexpr int kMostDraws = 500;

@@ -38,7 +38,8 @@ void CalibrateOptions::add_to(CLI::App& command) {
                       "Candidates of the board that the tables are for, 1..254 (default 80)");
   offset_.add_to(
       command, "--disparity-offset", "auto|N",
-      "What the left table leaves out of every disparity (default auto: such that those of the grid fit)");
+      "What the left table leaves out of every disparity (default auto: such that those of the grid fit; "
+      "with --synthetic 0, which suits its scene)");
   print_grid_.add_to(command, "--print-grid", "CxR",
                      "Draw such a grid to print, true to scale, with --square-mm and --out alone");
   out_.add_to(command, "--out", "F.yaml",
@@ -129,6 +130,7 @@ void CalibrateOptions::check_numbers(Problems& problems) {
     }
     disparities = number.value_or(disparities);
   }
+  if (!offset_.is_given() && synthetic) disparity_offset = 0;
   if (offset_.is_given() && offset_.text != "auto") {
     constexpr int kMost = 2048;  // columns
     disparity_offset = number_of<int>(offset_.text);

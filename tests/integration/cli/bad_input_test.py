@@ -148,7 +148,7 @@ class OutputFolders(ProgramTest):
         pair = {name: path for name in names if name != "truth"}
         truth = ["--truth", path] if "truth" in names else []
         lines = self.refused(run(*self.run_arguments("--out", out, *truth, **pair), cwd=self.folder))
-        rule = f"inside the result folder '{out}', which is replaced whole: a picture must lie outside the folder of --out"
+        rule = f"inside the result folder '{out}', which is replaced whole: an input must lie outside the folder of --out"
         self.assertEqual(lines, [f"stereotlm: error: --{name} '{path}': {rule}" for name in names])
         self.assertEqual({file: file.read_bytes() for file in self.out.rglob("*") if file.is_file()}, before)
 

@@ -46,30 +46,38 @@ def png_chunks(data):
         at += 12 + length
 
 
-def read_png(path):
-    """(width, height, channels, rows of bytes) of an 8-bit PNG, not interlaced."""
+def read_png(path, bits=8):
+    """(width, height, channels, rows of bytes) of a PNG, not interlaced."""
     chunks = list(png_chunks(pathlib.Path(path).read_bytes()))
     width, height, depth, kind, _, _, interlaced = struct.unpack(">IIBBBBB", chunks[0][1])
-    assert depth == 8 and interlaced == 0 and kind in (0, 2)
+    assert depth == bits and interlaced == 0 and kind in (0, 2)
     channels = 3 if kind == 2 else 1
     raw = zlib.decompress(b"".join(data for name, data in chunks if name == b"IDAT"))
-    stride = width * channels
+    bytes_per_pixel = channels * bits // 8
+    stride = width * bytes_per_pixel
     rows = []
     above = bytes(stride)
     for y in range(height):
         start = y * (stride + 1)
         row = bytearray(raw[start + 1 : start + 1 + stride])
-        unfilter(raw[start], row, above, channels)
+        unfilter(raw[start], row, above, bytes_per_pixel)
         above = bytes(row)
         rows.append(above)
     return width, height, channels, rows
 
 
-def unfilter(method, row, above, channels):
+def read_png_16(path):
+    """The rows of a 16-bit grey PNG."""
+    width, _, channels, rows = read_png(path, 16)
+    assert channels == 1
+    return [struct.unpack(f">{width}H", row) for row in rows]
+
+
+def unfilter(method, row, above, bytes_per_pixel):
     for i, value in enumerate(row):
-        left = row[i - channels] if i >= channels else 0
+        left = row[i - bytes_per_pixel] if i >= bytes_per_pixel else 0
         up = above[i]
-        corner = above[i - channels] if i >= channels else 0
+        corner = above[i - bytes_per_pixel] if i >= bytes_per_pixel else 0
         estimate = left + up - corner
         nearest = min((left, up, corner), key=lambda candidate: abs(estimate - candidate))
         row[i] = (value + (0, left, up, (left + up) // 2, nearest)[method]) & 0xFF

@@ -3,12 +3,11 @@
 import program
 from program import BUILT, ProgramTest, pgm, run
 
-COMMANDS = ["run", "check", "boards", "keys", "bounds"]
-UNBUILT_COMMANDS = ["calibrate", "explain", "sweep", "merge", "allocate", "paper", "plot", "diff", "report"]
+COMMANDS = ["run", "check", "boards", "keys", "bounds", "calibrate"]
+UNBUILT_COMMANDS = ["explain", "sweep", "merge", "allocate", "paper", "plot", "diff", "report"]
 UNBUILT_RUN_OPTIONS = [
     ["--timing-only"],
     ["--verify"],
-    ["--calibration", "rig.yaml"],
     ["--trace", "vcd"],
 ]
 
@@ -44,7 +43,7 @@ class Help(ProgramTest):
 
 class UnknownThings(ProgramTest):
     def test_a_command_is_needed(self):
-        self.refused_in_one_line(run(), "a command is missing", "run, check, boards, keys or bounds")
+        self.refused_in_one_line(run(), "a command is missing", "run, check, boards, keys, bounds or calibrate")
 
     def test_an_unknown_command_names_the_nearest(self):
         self.refused_in_one_line(run("bound", "fpl2003"), "'bound': unknown command; nearest: bounds")
@@ -102,12 +101,6 @@ class NotInThisVersion(ProgramTest):
     def test_all_at_once(self):
         lines = self.refused(run("run", "fpl2003", "--verify", "--timing-only", "--trace", "vcd"))
         self.assertEqual(len(lines), 3)
-
-    def test_calibration_with_every_command_that_takes_a_board(self):
-        for command in ("check", "bounds"):
-            self.refused_in_one_line(
-                run(command, "fpl2003", "--calibration", "rig.yaml"), "--calibration: not in this version"
-            )
 
     def test_defaults_that_are_not_built_are_not_replaced(self):
         pair = ["--left", self.left, "--right", self.right]
