@@ -256,7 +256,10 @@ Calibration parse_calibration(const std::string& text) {
     if (!file.isOpened()) refuse("text", "not readable", "must be OpenCV FileStorage YAML");
     return calibration_of(Reader(file.root()));
   } catch (const cv::Exception& error) {
-    refuse("text", error.err, "must be OpenCV FileStorage YAML");
+    // OpenCV 4.6 says in `func` what its parser objects to: "name(line): why".
+    const std::size_t place = error.func.find('(');
+    const std::string what = place == std::string::npos ? error.err : "line " + error.func.substr(place);
+    throw std::runtime_error(what + ": must be OpenCV FileStorage YAML");
   }
 }
 

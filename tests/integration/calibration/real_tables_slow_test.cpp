@@ -59,12 +59,12 @@ PlainCycleInput fpl2003(const calib::TablePair& tables) {
   return input;
 }
 
-// Reads of a frame by columns: every row of the table for each of the `window` strips in which it is, each of its valid
-// entries once.
+// Reads of a frame by columns: in each strip, of every row around it, each valid entry once.
 std::uint64_t reads_of_valid_entries(const kernels::RectificationTable& table) {
   std::uint64_t reads = 0;
   for (int strip = 0; strip < kHeight; ++strip) {
-    for (int row = strip; row < std::min(kHeight, strip + kWindow); ++row) {
+    for (int row = std::max(0, strip - kWindow / 2); row <= std::min(kHeight - 1, strip + kWindow / 2);
+         ++row) {
       const auto first = table.entries.begin() + static_cast<std::ptrdiff_t>(row) * kWidth;
       reads += static_cast<std::uint64_t>(kWidth - std::count(first, first + kWidth, 0U));
     }

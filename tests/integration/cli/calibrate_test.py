@@ -198,8 +198,8 @@ class RefusedCalibrations(CalibrateTest):
         text = rig.read_text()
         for damaged, problem in (
             (text[: text.index("P2:")], "P2: missing: a calibration has this key"),
-            (text[: text.index("P2:") + 60], "must be OpenCV FileStorage YAML"),
-            (text.replace("image_height: 480", "image_height: 4 80"), "image_height"),
+            (text[: text.index("P2:") + 60], "P2: no matrix"),
+            (text.replace("image_height: 480", "image_height: tall"), "image_height: no integer"),
             ("", "must be %YAML:1.0"),
             (text.replace("Q: !!opencv-matrix", "Q: [1, 2"), "must be OpenCV FileStorage YAML"),
         ):
