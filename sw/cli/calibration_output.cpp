@@ -1,10 +1,10 @@
 #include "sw/cli/calibration_output.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <iterator>
-#include <regex>
 #include <stdexcept>
 #include <system_error>
 
@@ -18,10 +18,11 @@ namespace fs = std::filesystem;
 
 // In the folders of drawings and pictures.
 bool is_ours(const fs::path& name) {
-  static const std::regex names(
-      "(corners|rectified|left|right)_[0-9]+\\.png|displacement\\.png|source_lines\\.png|"
-      "scene_(left|right|truth)\\.png");
-  return std::regex_match(name.string(), names);
+  constexpr const char* kPatterns[] = {"corners_[0-9]*.png", "rectified_[0-9]*.png", "left_[0-9]*.png",
+                                       "right_[0-9]*.png",   "displacement.png",     "source_lines.png",
+                                       "scene_left.png",     "scene_right.png",      "scene_truth.png"};
+  return std::any_of(std::begin(kPatterns), std::end(kPatterns),
+                     [&name](const char* pattern) { return fnmatch(pattern, name.c_str(), 0) == 0; });
 }
 
 void check_folder(const fs::path& folder) {
@@ -43,8 +44,10 @@ CalibrationOutput::CalibrationOutput(const std::string& calibration) : files_(ri
   if (folder.empty()) folder = ".";
   aside_ = folder / (files_.calibration.stem().string() + ".partial");
   try {
+    if (!fs::is_directory(folder)) {
+      throw std::runtime_error(fmt::format("'{}': no such folder", folder.string()));
+    }
     check_earlier();
-    fs::create_directories(folder);
     fs::remove_all(aside_);
     fs::create_directory(aside_);
     report::write_whole_file(aside_ / "probe", "can this folder be written to?");

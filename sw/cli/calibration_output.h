@@ -14,9 +14,9 @@ namespace stereotlm::cli {
 // files are written aside, into the folder F.partial beside F.yaml.
 class CalibrationOutput {
  public:
-  // Creates the folder where missing, and proves that it can be written to. Throws std::runtime_error, having changed
-  // nothing else, if F.yaml is there and no calibration, or what lies beside it under the names that calibrate uses was
-  // not written by it, or the folder cannot be written to.
+  // Proves that the folder can be written to. Throws std::runtime_error, having changed nothing, if it cannot, or is not
+  // there, if F.yaml is there and no calibration, or what lies beside it under the names that calibrate uses was not
+  // written by it.
   explicit CalibrationOutput(const std::string& calibration);
 
   // Without commit(): removes what was written aside.

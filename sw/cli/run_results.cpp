@@ -37,10 +37,10 @@ void write_files(RunInput& input, const platform::Statistics& statistics, const 
   folder.commit();
 }
 
-// A made scene's own truth is shown to the user only: stats.json has the accuracy against --truth.
+// A made scene's own truth, which is without calibration, is shown to the user only: stats.json has the accuracy against --truth.
 std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const simulation::Result& last,
                                                  const std::optional<report::Accuracy>& accuracy) {
-  if (accuracy || !input.pairs) return accuracy;
+  if (accuracy || !input.pairs || input.calibration) return accuracy;
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
   return report::accuracy(last.disparity, *truth);

@@ -295,7 +295,9 @@ class RefusedPictures(CalibrateTest):
         self.refused(self.calibrate(*self.sources()), f"'{table}': exists, without its calibration")
 
     def test_into_a_folder_that_cannot_be(self):
-        self.refused(run("calibrate", *self.sources(), *GRID, "--out", self.left / "new.yaml"), "cannot be written")
+        for folder in (self.folder / "none", self.left):
+            self.refused(run("calibrate", *self.sources(), *GRID, "--out", folder / "new.yaml"),
+                         f"--out '{folder}': no such folder")
 
 
 class Usage(ProgramTest):
