@@ -1,7 +1,8 @@
 #include "calib/grid_assessment.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -99,11 +100,13 @@ class Assessor {
 
   // Root of the mean square, of the plane for which it is least.
   static double distance_from_plane(const std::vector<Eigen::Vector3d>& points) {
-    Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(points.size()));
-    for (std::size_t i = 0; i < points.size(); ++i) matrix.col(static_cast<Eigen::Index>(i)) = points[i];
-    matrix.colwise() -= Eigen::Vector3d(matrix.rowwise().mean());
-    const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(matrix);
-    return svd.singularValues()(2) / std::sqrt(static_cast<double>(points.size()));
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& point : points) middle += point;
+    middle /= static_cast<double>(points.size());
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3d& point : points) scatter += (point - middle) * (point - middle).transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, solver.eigenvalues()(0)) / static_cast<double>(points.size()));
   }
 
   const GridShape& shape_;

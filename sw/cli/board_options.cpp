@@ -1,5 +1,7 @@
 #include "sw/cli/board_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "platform/board_yaml.h"
 
 namespace stereotlm::cli {
@@ -17,17 +19,18 @@ void BoardOptions::add_to(CLI::App& command) {
                   "(see stereotlm keys)")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
-  calibration_.add_to(
+  calibration_option_.add_to(
       command, "--calibration", "F",
       "Tables from the calibration of a rig, as written by stereotlm calibrate, in place of the "
       "identity");
 }
 
-void BoardOptions::check_given(Problems& problems) const {
+void BoardOptions::check_given(Problems& problems) {
+  if (calibration_option_.is_given()) calibration_ = calibration_option_.text;
   if (board_option_->count() == 0) problems.add("BOARD: missing: a preset or the path of a board file");
 }
 
-void BoardOptions::check_usage() const {
+void BoardOptions::check_usage() {
   Problems problems;
   check_given(problems);
   problems.check();
@@ -44,8 +47,8 @@ std::optional<platform::BoardConfig> BoardOptions::load(Problems& problems) cons
 
 std::optional<CalibrationInput> BoardOptions::load_calibration(const platform::BoardConfig* board,
                                                                Problems& problems) const {
-  if (!calibration_.is_given()) return std::nullopt;
-  return cli::load_calibration(calibration_.text, board, problems);
+  if (!calibration_) return std::nullopt;
+  return cli::load_calibration(*calibration_, board, problems);
 }
 
 }  // namespace stereotlm::cli

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +8,11 @@
 #include "sw/cli/calibration_input.h"
 #include "sw/cli/problems.h"
 #include "sw/cli/typed_option.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace stereotlm::cli {
 
@@ -19,8 +23,8 @@ class BoardOptions {
   void add_to(CLI::App& command);
 
   // While the command's callback runs: reports what is missing; or throws Refused.
-  void check_given(Problems& problems) const;
-  void check_usage() const;
+  void check_given(Problems& problems);
+  void check_usage();
 
   // BOARD as it was typed.
   const std::string& name() const { return board_; }
@@ -28,7 +32,7 @@ class BoardOptions {
   // The board; nothing if it is wrong, with every reason reported.
   std::optional<platform::BoardConfig> load(Problems& problems) const;
 
-  // The calibration that was given, if any, for that board; nothing if it is wrong too, with every reason reported.
+  // The calibration that was given, if any, as checked, for that board; nothing if it is wrong too, with every reason reported.
   // `board`: null if it is wrong.
   std::optional<CalibrationInput> load_calibration(const platform::BoardConfig* board,
                                                    Problems& problems) const;
@@ -37,7 +41,8 @@ class BoardOptions {
   const CLI::Option* board_option_ = nullptr;
   std::string board_;
   std::vector<std::string> sets_;
-  Typed calibration_;
+  Typed calibration_option_;
+  std::optional<std::string> calibration_;  // as check_given() leaves it
 };
 
 }  // namespace stereotlm::cli

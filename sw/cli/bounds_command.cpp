@@ -10,6 +10,7 @@
 #include "platform/board_rules.h"
 #include "platform/bounds.h"
 #include "platform/tables.h"
+#include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
@@ -176,20 +177,19 @@ int bounds(const BoardOptions& options) {
 }  // namespace
 
 void add_bounds(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand(
-      "bounds", "Say what limits the frame rate: ports, banks, matcher, and cameras and buses around them");
-  command->footer(
+  const auto options = std::make_shared<BoardOptions>();
+  const auto parsed = [options, &action] {
+    options->check_usage();
+    action = [options] { return bounds(*options); };
+  };
+  options->add_to(add_command(
+      program, "bounds",
+      "Say what limits the frame rate: ports, banks, matcher, and cameras and buses around them", parsed,
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
       "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera\n"
       "as long as no pixel is dropped.\n"
-      "Tables, where the board has them, are the identity, or those of --calibration.");
-  const auto options = std::make_shared<BoardOptions>();
-  options->add_to(*command);
-  command->callback([options, &action] {
-    options->check_usage();
-    action = [options] { return bounds(*options); };
-  });
+      "Tables, where the board has them, are the identity, or those of --calibration."));
 }
 
 }  // namespace stereotlm::cli

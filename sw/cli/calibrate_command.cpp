@@ -10,6 +10,7 @@
 
 #include "calib/lut_file.h"
 #include "calib/synthetic_rig.h"
+#include "sw/cli/add_command.h"
 #include "sw/cli/calibrate_options.h"
 #include "sw/cli/calibration_library.h"
 #include "sw/cli/calibration_output.h"
@@ -213,14 +214,13 @@ int calibrate(const CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& program, Action& action) {
-  CLI::App* command =
-      program.add_subcommand("calibrate", "Make a board's tables from pictures of a grid, or draw the grid");
   const auto options = std::make_shared<CalibrateOptions>();
-  options->add_to(*command);
-  command->callback([options, &action] {
+  const auto parsed = [options, &action] {
     options->check_usage();
     action = [options] { return calibrate(*options); };
-  });
+  };
+  options->add_to(add_command(program, "calibrate",
+                              "Make a board's tables from pictures of a grid, or draw the grid", parsed));
 }
 
 }  // namespace stereotlm::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "models/kernels/limits.h"
@@ -23,9 +24,9 @@ void CalibrateOptions::add_to(CLI::App& command) {
   left_.add_to(
       command, "--left", "'GLOB'",
       "The left camera's pictures of the grid: a pattern of file names, in the order of their names");
-  left_.option->expected(1, -1);
+  left_.takes(1, -1);
   right_.add_to(command, "--right", "'GLOB'", "The right camera's pictures, as many, in the same order");
-  right_.option->expected(1, -1);
+  right_.takes(1, -1);
   synthetic_.add_to(
       command, "--synthetic", "SEED",
       "Instead of pictures of a rig: a made one whose parameters are known, another one for each "

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +8,10 @@
 #include "calib/grid_shape.h"
 #include "sw/cli/problems.h"
 #include "sw/cli/typed_option.h"
+
+namespace CLI {
+class App;
+}
 
 namespace stereotlm::cli {
 

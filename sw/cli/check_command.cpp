@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
@@ -28,13 +29,12 @@ int check(const BoardOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("check", "Validate a board and nothing else");
   const auto options = std::make_shared<BoardOptions>();
-  options->add_to(*command);
-  command->callback([options, &action] {
+  const auto parsed = [options, &action] {
     options->check_usage();
     action = [options] { return check(*options); };
-  });
+  };
+  options->add_to(add_command(program, "check", "Validate a board and nothing else", parsed));
 }
 
 }  // namespace stereotlm::cli

@@ -6,11 +6,13 @@
 
 #include "platform/board_keys.h"
 #include "platform/board_yaml.h"
+#include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/problems.h"
 #include "sw/cli/streams.h"
 #include "sw/cli/text.h"
+#include "sw/cli/typed_option.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -65,19 +67,17 @@ int list_keys() {
 }  // namespace
 
 void add_boards(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("boards", "List the preset boards, or show one");
-  const auto name = std::make_shared<std::string>();
-  const CLI::Option* show =
-      command->add_option("--show", *name, "Print the file of this preset")->option_text("NAME");
-  command->callback([show, name, &action] {
-    action = [is_one = show->count() > 0, name] { return is_one ? show_board(*name) : list_boards(); };
-  });
+  const auto show = std::make_shared<Typed>();
+  const auto parsed = [show, &action] {
+    action = [is_one = show->is_given(), show] { return is_one ? show_board(show->text) : list_boards(); };
+  };
+  show->add_to(add_command(program, "boards", "List the preset boards, or show one", parsed), "--show",
+               "NAME", "Print the file of this preset");
 }
 
 void add_keys(CLI::App& program, Action& action) {
-  CLI::App* command =
-      program.add_subcommand("keys", "List every key of a board file with its meaning, unit and range");
-  command->callback([&action] { action = list_keys; });
+  add_command(program, "keys", "List every key of a board file with its meaning, unit and range",
+              [&action] { action = list_keys; });
 }
 
 }  // namespace stereotlm::cli

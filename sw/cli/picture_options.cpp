@@ -27,7 +27,7 @@ void PictureOptions::add_to(CLI::App& command) {
   sequence_.add_to(command, "--sequence", "DIR",
                    "A folder of pairs left_*.png and right_*.png, shown in the order of their names");
   video_.add_to(command, "--video", "F [F2]", "A video of pairs, or two videos, the left one first");
-  video_.option->expected(1, 2);
+  video_.takes(1, 2);
   video_layout_.add_to(
       command, "--video-layout", "LAYOUT",
       "Where --video has the pictures of a pair: two (files), side_by_side or top_bottom (in one "

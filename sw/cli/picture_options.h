@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +7,10 @@
 
 #include "sw/cli/problems.h"
 #include "sw/cli/typed_option.h"
+
+namespace CLI {
+class App;
+}
 
 namespace stereotlm::cli {
 

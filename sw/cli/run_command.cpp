@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "platform/bounds.h"
+#include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/interrupt.h"
@@ -84,13 +85,12 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("run", "Simulate a board on pairs of pictures");
   const auto options = std::make_shared<RunOptions>();
-  options->add_to(*command);
-  command->callback([options, &action] {
+  const auto parsed = [options, &action] {
     options->check_usage();
     action = [options] { return run(*options); };
-  });
+  };
+  options->add_to(add_command(program, "run", "Simulate a board on pairs of pictures", parsed));
 }
 
 }  // namespace stereotlm::cli

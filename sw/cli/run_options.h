@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +8,10 @@
 #include "sw/cli/picture_options.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/unbuilt.h"
+
+namespace CLI {
+class App;
+}
 
 namespace stereotlm::cli {
 

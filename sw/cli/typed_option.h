@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -14,19 +13,29 @@
 #include "platform/board_keys.h"
 #include "sw/cli/problems.h"
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace stereotlm::cli {
 
 // An option as it was typed.
 template <typename Text>
 struct TypedOption {
-  CLI::Option* option = nullptr;
   Text text;
 
+  // Adds it to the command, before that is parsed.
   void add_to(CLI::App& command, const std::string& name, const std::string& value,
-              const std::string& meaning) {
-    option = command.add_option(name, text, meaning)->option_text(value);
-  }
-  bool is_given() const { return option->count() > 0; }
+              const std::string& meaning);
+  // Of a list: how many values; -1: any number.
+  void takes(int least, int most);
+
+  // As long as the command is there.
+  bool is_given() const;
+
+ private:
+  CLI::Option* option_ = nullptr;
 };
 using Typed = TypedOption<std::string>;
 using TypedList = TypedOption<std::vector<std::string>>;

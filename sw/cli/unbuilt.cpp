@@ -1,5 +1,6 @@
 #include "sw/cli/unbuilt.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 

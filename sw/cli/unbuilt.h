@@ -1,11 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sw/cli/problems.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace stereotlm::cli {
 
