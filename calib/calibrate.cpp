@@ -38,6 +38,12 @@ void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
 
 void check_places(const Rig& rig) {
   const Eigen::Vector3d& t = rig.translation;
+  constexpr double kLeastBaseline = 1;  // mm
+  if (t.norm() < kLeastBaseline) {
+    throw std::invalid_argument(fmt::format(
+        "the cameras are {:.2f} mm apart: they must stand in two places: are the pictures of two cameras?",
+        t.norm()));
+  }
   if (std::abs(t.y()) > std::abs(t.x())) {
     throw std::invalid_argument(
         fmt::format("the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
@@ -50,6 +56,25 @@ void check_places(const Rig& rig) {
         "other: exchange left and right pictures",
         t.x()));
   }
+}
+
+// Over the whole picture: where the model folds it over, nothing can be said of what the lens sees.
+bool is_determined(const CameraModel& lens, const Rig& rig) {
+  try {
+    for (const int row : {0, rig.height - 1}) {
+      for (const int column : {0, rig.width - 1}) lens.direction({column, row});
+    }
+  } catch (const std::domain_error&) {
+    return false;
+  }
+  return true;
+}
+
+RigFit fit_with_lens(const CalibrationRequest& request, const std::vector<GridPair>& corners, Lens lens) {
+  const kernels::GrayImage& first = request.pictures.front().left;
+  RigFit fit = fit_rig(request.grid, first.width, first.height, corners, lens);
+  check_places(fit.rig);
+  return fit;
 }
 
 RowError row_error(const Rig& rig, const Rectification& rectification,
@@ -104,35 +129,49 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
   return errors.result();
 }
 
-std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
-                                const std::vector<CalibratedPair>& pairs) {
-  std::vector<GridPair> corners;
-  std::vector<std::size_t> with_corners;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    corners.push_back(pairs[i].corners);
-    if (std::find(fit.used[i].begin(), fit.used[i].end(), true) != fit.used[i].end())
-      with_corners.push_back(i);
-  }
-  if (with_corners.size() <= kFewestPairs) return std::nullopt;
+// Each pair by a calibration without it. Many pairs are taken in groups.
+HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std::vector<GridPair>& corners,
+                 const std::vector<std::size_t>& pairs, Lens lens) {
+  constexpr std::size_t kMostGroups = 20;
+  const std::size_t groups = std::min(kMostGroups, pairs.size());
   RowErrors rows;
   double squares = 0;
   std::size_t count = 0;
-  for (const std::size_t i : with_corners) {
+  for (std::size_t group = 0; group < groups; ++group) {
     auto used = fit.used;
-    used[i].assign(used[i].size(), false);
-    const Rig rig = solve_rig(request.grid, fit.rig.width, fit.rig.height, corners, used);
+    for (std::size_t i = group; i < pairs.size(); i += groups)
+      used[pairs[i]].assign(used[pairs[i]].size(), false);
+    const Rig rig = solve_rig(request.grid, corners, used, fit.rig, lens);
     const Rectification rectification = rectify(rig);
-    const GridPair its = rectified(rig, rectification, corners[i]);
-    const Misfit distances = misfit(rig, request.grid, corners[i], fit.used[i]);
-    for (std::size_t corner = 0; corner < fit.used[i].size(); ++corner) {
-      if (!fit.used[i][corner]) continue;
-      rows.add(its.left[corner], its.right[corner]);
-      squares +=
-          distances.left[corner] * distances.left[corner] + distances.right[corner] * distances.right[corner];
-      count += 2;
+    for (std::size_t i = group; i < pairs.size(); i += groups) {
+      const std::size_t pair = pairs[i];
+      const GridPair its = rectified(rig, rectification, corners[pair]);
+      const Misfit distances = misfit(rig, request.grid, corners[pair], fit.used[pair]);
+      for (std::size_t corner = 0; corner < fit.used[pair].size(); ++corner) {
+        if (!fit.used[pair][corner]) continue;
+        rows.add(its.left[corner], its.right[corner]);
+        squares += std::pow(distances.left[corner], 2) + std::pow(distances.right[corner], 2);
+        count += 2;
+      }
     }
   }
   return HeldOut{std::sqrt(squares / static_cast<double>(count)), rows.result()};
+}
+
+// Nothing if too few pairs would be left, or they do not make a calibration.
+std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
+                                const std::vector<GridPair>& corners, Lens lens) {
+  std::vector<std::size_t> pairs;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (std::find(fit.used[i].begin(), fit.used[i].end(), true) != fit.used[i].end()) pairs.push_back(i);
+  }
+  if (pairs.size() <= kFewestPairs) return std::nullopt;
+  try {
+    return hold_out(request, fit, corners, pairs, lens);
+  } catch (const std::runtime_error&) {
+  } catch (const std::domain_error&) {
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -142,9 +181,18 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
   find_grids(request, result);
   std::vector<GridPair> corners;
   for (const CalibratedPair& pair : result.pairs) corners.push_back(pair.corners);
-  const kernels::GrayImage& first = request.pictures.front().left;
-  const RigFit fit = fit_rig(request.grid, first.width, first.height, corners);
-  check_places(fit.rig);
+  RigFit fit = fit_with_lens(request, corners, Lens::kFull);
+  const auto lenses_are_determined = [&fit] {
+    return is_determined(fit.rig.left, fit.rig) && is_determined(fit.rig.right, fit.rig);
+  };
+  if (!lenses_are_determined()) {
+    result.lens = Lens::kWithoutK3;
+    fit = fit_with_lens(request, corners, result.lens);
+  }
+  if (!lenses_are_determined()) {
+    throw std::invalid_argument(
+        "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");
+  }
   result.left_out = fit.left_out;
 
   Calibration& made = result.calibration;
@@ -170,7 +218,7 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
                               : disparity_offset_for(quality.disparities, request.disparities);
   result.tables = tables(made.rig, made.rectification, made.disparity_offset);
   quality.found_again = found_again(request, result);
-  quality.held_out = held_out(request, fit, result.pairs);
+  quality.held_out = held_out(request, fit, corners, result.lens);
   return result;
 }
 

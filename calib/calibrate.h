@@ -37,6 +37,7 @@ struct CalibrationResult {
   TablePair tables;
   std::vector<CalibratedPair> pairs;
   std::vector<LeftOutCorner> left_out;  // their pair: of `pairs`
+  Lens lens = Lens::kFull;              // without k3 if the grid was not seen where that shows
   std::vector<std::string> skipped;     // pictures without grid: "'left04.jpg': no grid of .."
 };
 

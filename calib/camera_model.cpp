@@ -33,6 +33,17 @@ Bent bent(const std::array<double, 5>& distortion, const Eigen::Vector2d& direct
 
 }  // namespace
 
+double CameraModel::widest() const {
+  constexpr double kStep = 1e-3;
+  constexpr double kMost = 10;
+  const auto [k1, k2, p1, p2, k3] = distortion;
+  for (double r = kStep; r < kMost; r += kStep) {
+    const double r2 = r * r;
+    if (1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) <= 0) return r - kStep;
+  }
+  return kMost;
+}
+
 Eigen::Vector2d CameraModel::pixel(const Eigen::Vector2d& direction) const {
   return (matrix * bent(distortion, direction).direction.homogeneous()).hnormalized();
 }

@@ -181,8 +181,10 @@ class Squares {
 }  // namespace
 
 GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) {
+  constexpr int kSmallest = 16;  // pixels each way: what OpenCV's search takes
   std::vector<cv::Point2f> points;
-  if (!cv::findChessboardCorners(view(picture), {shape.columns, shape.rows}, points,
+  if (std::min(picture.width, picture.height) < kSmallest ||
+      !cv::findChessboardCorners(view(picture), {shape.columns, shape.rows}, points,
                                  cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
     return {std::nullopt, fmt::format("no grid of {}x{} inner corners found", shape.columns, shape.rows)};
   }

@@ -23,7 +23,7 @@ double between(double before, double largest, double after) {
 
 }  // namespace
 
-RowError matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities) {
+MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities) {
   if (left.width != right.width || left.height != right.height) {
     throw std::invalid_argument("right picture = " + std::to_string(right.width) + "x" +
                                 std::to_string(right.height) + ": must be as large as the left one, " +
@@ -34,6 +34,7 @@ RowError matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& 
   std::vector<cv::Point2f> points;
   cv::goodFeaturesToTrack(view(left), points, kMostPoints, kQuality, kDistance);
   const cv::Rect picture(0, 0, left.width, left.height);
+  MatchedRows result;
   RowErrors errors;
   for (const cv::Point2f& point : points) {
     const int column = cvRound(point.x);
@@ -44,6 +45,7 @@ RowError matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& 
     const cv::Rect inside = searched & picture;
     if ((window & picture) != window || inside.height != searched.height || inside.width < window.width)
       continue;
+    ++result.points;
     cv::Mat likeness;
     cv::matchTemplate(view(right)(inside), view(left)(window), likeness, cv::TM_CCOEFF_NORMED);
     double largest = 0;
@@ -55,7 +57,8 @@ RowError matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& 
     const double found = inside.y + at.y + rest;
     errors.add({0, window.y}, {0, found});
   }
-  return errors.result();
+  result.error = errors.result();
+  return result;
 }
 
 }  // namespace stereotlm::calib

@@ -5,10 +5,15 @@
 
 namespace stereotlm::calib {
 
+struct MatchedRows {
+  std::size_t points = 0;  // conspicuous ones of the left picture that could be looked for
+  RowError error;          // of those that were found
+};
+
 // How well the rows of two rectified pictures agree, from what they show: the most conspicuous points of the left one are
 // looked for in the right one, 0 .. disparities-1 columns to the left and up to 8 rows above or below, and those found
-// beyond doubt count. A hint whether the tables belong to the cameras: a good rig has a few tenths of a pixel. Costs some
-// 20 ms at 640x480. Throws std::invalid_argument if the pictures differ in size.
-RowError matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
+// beyond doubt count. A hint whether the tables belong to the cameras: those of the rig itself come out below one pixel.
+// Costs some 20 ms at 640x480. Throws std::invalid_argument if the pictures differ in size.
+MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
 
 }  // namespace stereotlm::calib

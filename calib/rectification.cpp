@@ -19,10 +19,18 @@ Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d
   return (to_rectified(rotation, projection) * camera.direction(pixel).homogeneous()).hnormalized();
 }
 
-Eigen::Vector2d source_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
-                             const Projection& projection, const Eigen::Vector2d& rectified) {
-  const Eigen::Matrix3d from_rectified = to_rectified(rotation, projection).inverse();
-  return camera.pixel((from_rectified * rectified.homogeneous()).hnormalized());
+SourcePixels::SourcePixels(const CameraModel& camera, const Eigen::Matrix3d& rotation,
+                           const Projection& projection)
+    : camera_(camera),
+      from_rectified_(to_rectified(rotation, projection).inverse()),
+      widest_(camera.widest()) {}
+
+std::optional<Eigen::Vector2d> SourcePixels::at(const Eigen::Vector2d& rectified) const {
+  const Eigen::Vector3d ray = from_rectified_ * rectified.homogeneous();
+  if (!(ray.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d direction = ray.hnormalized();
+  if (direction.norm() > widest_) return std::nullopt;
+  return camera_.pixel(direction);
 }
 
 }  // namespace stereotlm::calib

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "calib/rig.h"
 
@@ -30,8 +31,17 @@ Rectification rectify(const Rig& rig);
 Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
                                 const Projection& projection, const Eigen::Vector2d& pixel);
 
-// Of a table: the pixel of the camera's picture that is seen at a position of the rectified one.
-Eigen::Vector2d source_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
-                             const Projection& projection, const Eigen::Vector2d& rectified);
+// The other way: the pixel of the camera's picture that is seen at a position of the rectified one. Nothing if that is
+// behind the camera or beyond what its lens sees (CameraModel::widest()).
+class SourcePixels {
+ public:
+  SourcePixels(const CameraModel& camera, const Eigen::Matrix3d& rotation, const Projection& projection);
+  std::optional<Eigen::Vector2d> at(const Eigen::Vector2d& rectified) const;
+
+ private:
+  CameraModel camera_;
+  Eigen::Matrix3d from_rectified_;
+  double widest_;
+};
 
 }  // namespace stereotlm::calib

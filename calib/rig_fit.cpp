@@ -1,6 +1,8 @@
 #include "calib/rig_fit.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
@@ -56,32 +58,101 @@ CameraModel to_camera(const cv::Mat& matrix, const cv::Mat& distortion) {
   return camera;
 }
 
-Rig solve(const Observations& seen, int width, int height) {
-  const cv::Size size(width, height);
-  cv::Mat m1, d1, m2, d2, rotation, translation, essential, fundamental;
+// One camera by itself, and where it sees the grid of each pair.
+struct SingleFit {
+  cv::Mat matrix;
+  cv::Mat distortion;
+  std::vector<cv::Mat> rotations;
+  std::vector<cv::Mat> translations;
+};
+
+template <typename Step>
+auto or_refused(const Step& step) {
   try {
-    cv::calibrateCamera(seen.points, seen.left, size, m1, d1, cv::noArray(), cv::noArray());
-    cv::calibrateCamera(seen.points, seen.right, size, m2, d2, cv::noArray(), cv::noArray());
-    constexpr int kMostSteps = 200;
-    constexpr double kCloseEnough = 1e-9;
-    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, size, rotation, translation,
-                        essential, fundamental, cv::CALIB_USE_INTRINSIC_GUESS,
-                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+    return step();
   } catch (const cv::Exception& error) {
     throw std::runtime_error("the cameras cannot be calibrated from these pictures: " + error.err);
   }
-  return {width,
-          height,
-          to_camera(m1, d1),
-          to_camera(m2, d2),
-          to_eigen<Eigen::Matrix3d>(rotation),
-          to_eigen<Eigen::Vector3d>(translation)};
+}
+
+int flags_of(Lens lens) { return lens == Lens::kWithoutK3 ? cv::CALIB_FIX_K3 : 0; }
+
+SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv::Point2f>>& corners,
+                     cv::Size size, Lens lens) {
+  return or_refused([&] {
+    SingleFit fit;
+    cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
+                        fit.translations, flags_of(lens));
+    return fit;
+  });
+}
+
+// From the two cameras' parameters.
+Rig solve(const Observations& seen, const CameraModel& left, const CameraModel& right, cv::Size size,
+          Lens lens) {
+  return or_refused([&] {
+    cv::Mat m1 = to_mat(left.matrix);
+    cv::Mat d1 = to_mat(left.distortion);
+    cv::Mat m2 = to_mat(right.matrix);
+    cv::Mat d2 = to_mat(right.distortion);
+    cv::Mat rotation, translation, essential, fundamental;
+    constexpr int kMostSteps = 200;
+    constexpr double kCloseEnough = 1e-9;
+    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, size, rotation, translation,
+                        essential, fundamental, cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
+                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+    return Rig{size.width,
+               size.height,
+               to_camera(m1, d1),
+               to_camera(m2, d2),
+               to_eigen<Eigen::Matrix3d>(rotation),
+               to_eigen<Eigen::Vector3d>(translation)};
+  });
+}
+
+Eigen::Isometry3d to_pose(const cv::Mat& rotation, const cv::Mat& translation) {
+  cv::Mat matrix;
+  cv::Rodrigues(rotation, matrix);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = to_eigen<Eigen::Matrix3d>(matrix);
+  pose.translation() = to_eigen<Eigen::Vector3d>(translation);
+  return pose;
 }
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// Pairs after which the right camera is where the others say: a grid that moved between the two pictures of a pair would
+// spoil the fit to all, and then nothing fits.
+Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
+  constexpr double kMostShare = 0.02;  // of the distance of the grid
+  std::array<std::vector<double>, 3> places;
+  std::vector<double> distances;
+  for (std::size_t pair = 0; pair < left.rotations.size(); ++pair) {
+    const Eigen::Isometry3d from_grid = to_pose(left.rotations[pair], left.translations[pair]);
+    const Eigen::Isometry3d to_right =
+        to_pose(right.rotations[pair], right.translations[pair]) * from_grid.inverse();
+    for (int axis = 0; axis < 3; ++axis) {
+      places[static_cast<std::size_t>(axis)].push_back(to_right.translation()[axis]);
+    }
+    distances.push_back(from_grid.translation().norm());
+  }
+  const Eigen::Vector3d middle(median(places[0]), median(places[1]), median(places[2]));
+  std::vector<double> errors;
+  for (std::size_t pair = 0; pair < distances.size(); ++pair) {
+    const Eigen::Vector3d place(places[0][pair], places[1][pair], places[2][pair]);
+    errors.push_back((place - middle).norm());
+  }
+  const double usual = kMostMedians * median(errors);
+  Used used;
+  for (std::size_t pair = 0; pair < distances.size(); ++pair) {
+    const bool agrees = errors[pair] <= std::max(usual, kMostShare * distances[pair]);
+    used.emplace_back(corners, agrees);
+  }
+  return used;
 }
 
 template <typename Visit>
@@ -122,11 +193,11 @@ void check_pairs(const Used& used) {
                               std::to_string(kFewestPairs) + " or more");
 }
 
-RigFit fit_once(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
-                const Used& used) {
+RigFit fit_once(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
+                const Rig& guess, Lens lens) {
   RigFit fit;
   fit.used = used;
-  fit.rig = solve_rig(shape, width, height, pairs, used);
+  fit.rig = solve_rig(shape, pairs, used, guess, lens);
   const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
   for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
     const bool is_out = std::find(used[pair].begin(), used[pair].end(), true) == used[pair].end();
@@ -157,9 +228,9 @@ void add_figures(RigFit& fit) {
 
 }  // namespace
 
-Rig solve_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
-              const Used& used) {
-  return solve(observations(shape, pairs, used), width, height);
+Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
+              Lens lens) {
+  return solve(observations(shape, pairs, used), guess.left, guess.right, {guess.width, guess.height}, lens);
 }
 
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
@@ -174,15 +245,26 @@ Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, cons
   return result;
 }
 
-RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs) {
-  Used used(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
+RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs, Lens lens) {
+  const auto corners = static_cast<std::size_t>(shape.corners());
+  Used used(pairs.size(), std::vector<bool>(corners, true));
   check_pairs(used);
-  RigFit fit = fit_once(shape, width, height, pairs, used);
+  const Observations seen = observations(shape, pairs, used);
+  const SingleFit left = fit_camera(seen, seen.left, {width, height}, lens);
+  const SingleFit right = fit_camera(seen, seen.right, {width, height}, lens);
+  Rig guess;
+  guess.width = width;
+  guess.height = height;
+  guess.left = to_camera(left.matrix, left.distortion);
+  guess.right = to_camera(right.matrix, right.distortion);
+  used = pairs_that_agree(left, right, corners);
+  check_pairs(used);
+  RigFit fit = fit_once(shape, pairs, used, guess, lens);
   for (int round = 1; round < kMostRounds; ++round) {
     used = those_that_fit(fit);
     check_pairs(used);
     if (used == fit.used) break;
-    fit = fit_once(shape, width, height, pairs, used);
+    fit = fit_once(shape, pairs, used, fit.rig, lens);
   }
   add_figures(fit);
   return fit;

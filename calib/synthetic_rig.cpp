@@ -248,12 +248,13 @@ std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectific
                                 std::to_string(calibrated.height) + ": must be " +
                                 std::to_string(rig_.width) + " x " + std::to_string(rig_.height));
   }
+  const SourcePixels sources(calibrated.left, rectification.r1, rectification.p1);
   std::vector<float> result;
   result.reserve(static_cast<std::size_t>(rig_.width) * static_cast<std::size_t>(rig_.height));
   for (int v = 0; v < rig_.height; ++v) {
     for (int u = 0; u < rig_.width; ++u) {
-      const Vector2d rectified(static_cast<double>(u) + disparity_offset, v);
-      const auto right = match(source_pixel(calibrated.left, rectification.r1, rectification.p1, rectified));
+      const auto left = sources.at({static_cast<double>(u) + disparity_offset, v});
+      const auto right = left ? match(*left) : std::nullopt;
       const double found =
           right ? u - rectified_pixel(calibrated.right, rectification.r2, rectification.p2, *right).x()
                 : std::numeric_limits<double>::quiet_NaN();

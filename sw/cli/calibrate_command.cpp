@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr int kSyntheticWidth = 640;  // of fpl2003
 constexpr int kSyntheticHeight = 480;
-constexpr int kSyntheticPairs = 13;
+constexpr int kSyntheticPairs = 9;
 
 [[noreturn]] void refuse_step(const std::string& option, const std::exception& error) {
   refuse(option + (option.empty() ? "" : " ") + error.what());
@@ -43,13 +43,15 @@ int print_grid(const CalibrateOptions& options) {
     const std::string sheet =
         is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
     if (!fs::exists(fs::symlink_status(options.out))) {
-      report::write_whole_file(options.out, sheet);
-    } else if (read_file(options.out) != sheet) {
+      report::replace_file(options.out, sheet);
+    } else if (report::read_whole_file(options.out) != sheet) {
       throw std::runtime_error(
           fmt::format("'{}': exists and is another file: must be moved away", options.out));
     }
   } catch (const std::system_error& error) {
     refuse(fmt::format("--out '{}': cannot be written: {}", options.out, error.code().message()));
+  } catch (const std::invalid_argument& error) {
+    refuse_step("--print-grid:", error);
   } catch (const std::exception& error) {
     refuse_step("--out", error);
   }
@@ -84,7 +86,7 @@ class Calibrator {
   int run() {
     Problems problems;
     try {
-      output_ = std::make_unique<CalibrationOutput>(options_.out);
+      output_ = std::make_unique<CalibrationOutput>(options_.out, options_.synthetic.has_value());
     } catch (const std::exception& error) {
       problems.add(fmt::format("--out {}", error.what()));
     }
@@ -110,6 +112,7 @@ class Calibrator {
   void load_pictures(Problems& problems) {
     if (!options_.synthetic) {
       request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
+      if (output_) check_pictures_survive(problems);
       return;
     }
     if (!problems.empty()) return;
@@ -118,6 +121,18 @@ class Calibrator {
       request_.pictures = synthetic_pictures(*rig_, options_.grid, output_->files().pictures);
     } catch (const std::exception& error) {
       problems.add(fmt::format("--synthetic: {}", error.what()));
+    }
+  }
+
+  // The folder of drawings is replaced whole.
+  void check_pictures_survive(Problems& problems) const {
+    const fs::path drawings = fs::weakly_canonical(output_->files().drawings);
+    for (const calib::PicturePair& pair : request_.pictures) {
+      for (const std::string& name : {pair.left_name, pair.right_name}) {
+        if (fs::weakly_canonical(name).parent_path() != drawings) continue;
+        problems.add(fmt::format("'{}': in '{}', which is replaced whole: a picture must lie elsewhere", name,
+                                 output_->files().drawings.string()));
+      }
     }
   }
 

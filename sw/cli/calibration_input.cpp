@@ -6,9 +6,11 @@
 #include <stdexcept>
 
 #include "calib/lut_file.h"
+#include "calib/tables.h"
 #include "sw/cli/calibration_library.h"
 #include "sw/cli/rig_files.h"
 #include "sw/report/sha256.h"
+#include "sw/report/whole_file.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -34,7 +36,7 @@ void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
 
 kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
                                        report::InputFile& file) {
-  const std::string content = read_file(path);
+  const std::string content = report::read_whole_file(path);
   file = described(path, content);
   if (file.sha256 != sha256) {
     throw std::runtime_error(
@@ -70,7 +72,7 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({kOption, file.string()});
     }
-    const std::string content = read_file(files.calibration);
+    const std::string content = report::read_whole_file(files.calibration);
     input.described.file = described(files.calibration, content);
     try {
       input.calibration = calibration_functions().parse_calibration(content);
@@ -87,6 +89,14 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
       input.tables.right = load_table(files.right_lut, calibration.rig, calibration.right_lut_sha256,
                                       input.described.right_lut);
     });
+  });
+  if (!is_right) return std::nullopt;
+  attempt([&] {
+    const calib::Calibration& calibration = input.calibration;
+    if (!calib::are_tables_of({*input.tables.left, *input.tables.right}, calibration.rig,
+                              calibration.rectification, calibration.disparity_offset)) {
+      throw named("matrices and disparity_offset: must be those that its tables were made with");
+    }
   });
   if (!is_right) return std::nullopt;
   return input;

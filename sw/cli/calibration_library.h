@@ -17,8 +17,8 @@ struct CalibrationFunctions {
   calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);
   std::string (*calibration_yaml)(const calib::Calibration& calibration);
   calib::Calibration (*parse_calibration)(const std::string& text);
-  calib::RowError (*matched_rows)(const kernels::GrayImage& left, const kernels::GrayImage& right,
-                                  int disparities);
+  calib::MatchedRows (*matched_rows)(const kernels::GrayImage& left, const kernels::GrayImage& right,
+                                     int disparities);
   // drawings.h
   std::vector<std::uint8_t> (*encode_corners_png)(const calib::GridShape& shape,
                                                   const calib::CaptionedImage& left,

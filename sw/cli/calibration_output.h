@@ -17,7 +17,8 @@ class CalibrationOutput {
   // Proves that the folder can be written to. Throws std::runtime_error, having changed nothing, if it cannot, or is not
   // there, if F.yaml is there and no calibration, or what lies beside it under the names that calibrate uses was not
   // written by it.
-  explicit CalibrationOutput(const std::string& calibration);
+  // `makes_pictures`: F_pictures/ is written too; else nothing touches it.
+  CalibrationOutput(const std::string& calibration, bool makes_pictures);
 
   // Without commit(): removes what was written aside.
   ~CalibrationOutput();
@@ -35,10 +36,12 @@ class CalibrationOutput {
   void commit();
 
  private:
+  void check_aside() const;
   void check_earlier() const;
   std::filesystem::path aside(const std::filesystem::path& file) const;
 
   RigFiles files_;
+  bool makes_pictures_;
   std::filesystem::path aside_;
 };
 

@@ -1,19 +1,25 @@
+#include <opencv2/core/utility.hpp>
+
 #include "calib/calibration_yaml.h"
 #include "sw/cli/calibration_library.h"
-#include "sw/media/captured_stderr.h"
 
 namespace {
 
 using namespace stereotlm;
 
-// OpenCV says on standard error what it then throws.
-calib::Calibration parse_quietly(const std::string& text) {
-  const media::CapturedStderr captured;
+// OpenCV would say on standard error what it then throws.
+int say_nothing(int /*status*/, const char* /*function*/, const char* /*message*/, const char* /*file*/,
+                int /*line*/, void* /*data*/) {
+  return 0;
+}
+
+calib::Calibration parse(const std::string& text) {
+  cv::redirectError(say_nothing);
   return calib::parse_calibration(text);
 }
 
-calib::CalibrationResult calibrate_quietly(const calib::CalibrationRequest& request) {
-  const media::CapturedStderr captured;
+calib::CalibrationResult calibrate(const calib::CalibrationRequest& request) {
+  cv::redirectError(say_nothing);
   return calib::calibrate(request);
 }
 
@@ -23,9 +29,9 @@ calib::CalibrationResult calibrate_quietly(const calib::CalibrationRequest& requ
 extern "C" {
 extern const stereotlm::cli::CalibrationFunctions stereotlm_calibration_functions;
 const stereotlm::cli::CalibrationFunctions stereotlm_calibration_functions = {
-    calibrate_quietly,
+    calibrate,
     calib::calibration_yaml,
-    parse_quietly,
+    parse,
     calib::matched_rows,
     calib::encode_corners_png,
     calib::encode_rectified_pair_png,

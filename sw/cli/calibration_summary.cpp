@@ -98,6 +98,9 @@ std::string calibration_summary(const calib::CalibrationResult& result, std::siz
   text += left_out_text(result);
   text += row("left camera", camera_text(made.rig.left));
   text += row("right camera", camera_text(made.rig.right));
+  if (result.lens == calib::Lens::kWithoutK3) {
+    text += row("lenses", "k3 is taken as 0: the grid was not seen far enough out to determine it");
+  }
   text += row("baseline", fmt::format("{:.2f} mm; turned by {:.2f} degrees against each other",
                                       made.rig.translation.norm(), kDegrees * turn.angle()));
   text += row("reprojection", fmt::format("RMS {:.3f} px (left {:.3f}, right {:.3f})", quality.stereo_rms_px,

@@ -5,33 +5,40 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "models/fpga/core_config.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
+#include "sw/report/sha256.h"
 
 namespace stereotlm::cli {
 namespace {
 
 using Names = std::vector<std::string>;
 
-// In the order of their names; each once.
+// In the order of their names. A file that has the name of a pattern is meant.
 Names files_of(const std::string& option, const Names& patterns, Problems& problems) {
   Names files;
   for (const std::string& pattern : patterns) {
+    if (std::filesystem::exists(pattern)) {
+      files.push_back(pattern);
+      continue;
+    }
     glob_t found = {};
     const int status = glob(pattern.c_str(), 0, nullptr, &found);
-    if (status != 0) {
+    if (status == GLOB_NOMATCH) {
       problems.add(
           fmt::format("{} '{}': no such file: must be a file's name, or a pattern of some", option, pattern));
+    } else if (status != 0) {
+      problems.add(fmt::format("{} '{}': a folder of this pattern cannot be read", option, pattern));
     }
     for (std::size_t i = 0; i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
     globfree(&found);
   }
   std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
@@ -83,6 +90,7 @@ class Loader {
       if (loaded.converted_from_colour) ++converted_;
       ++count_;
       check_size(option, path, loaded.image);
+      check_new(option, path, loaded.image);
       return std::move(loaded.image);
     } catch (const std::exception& error) {
       problems_.add(fmt::format("{} {}", option, error.what()));
@@ -112,7 +120,17 @@ class Loader {
     }
   }
 
+  // A picture that is there twice would count twice, and says nothing new.
+  void check_new(const std::string& option, const std::string& path, const kernels::GrayImage& image) {
+    const auto [known, is_new] =
+        paths_.emplace(report::sha256_hex(image.pixels.data(), image.pixels.size()), path);
+    if (is_new) return;
+    problems_.add(
+        fmt::format("{} '{}': the same picture as '{}': must be another one", option, path, known->second));
+  }
+
   Problems& problems_;
+  std::map<std::string, std::string> paths_;  // by the sum of their pixels
   std::string first_;
   int width_ = 0;
   int height_ = 0;

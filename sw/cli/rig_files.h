@@ -17,7 +17,4 @@ struct RigFiles {
 // Throws std::runtime_error if the name does not end in .yaml.
 RigFiles rig_files(const std::string& calibration);
 
-// The whole content. Throws std::runtime_error that names the path if it is no regular file that can be read.
-std::string read_file(const std::filesystem::path& path);
-
 }  // namespace stereotlm::cli

@@ -64,7 +64,10 @@ class InputLoader {
     });
     problems_.check();
     for (const std::string& note : source_.notes) say("note", note);
-    if (input_.calibration) attempt("", [&] { say_how_rows_agree(); });
+    if (input_.calibration) {
+      say_what_is_not_seen();
+      attempt("", [&] { say_how_rows_agree(); });
+    }
     problems_.check();
     input_.pairs = std::move(source_.pairs);
     return std::move(input_);
@@ -122,24 +125,37 @@ class InputLoader {
   // Nothing in a file says that it is of another rig; the pictures do.
   void say_how_rows_agree() {
     constexpr double kDoubtful = 1.5;  // pixels
-    constexpr std::size_t kFewest = 10;
+    constexpr std::size_t kFew = 10;
+    constexpr std::size_t kMany = 50;
     const host::StereoPair& pair = source_.pairs->pair(0);
-    const calib::RowError rows = calibration_functions().matched_rows(
+    const calib::MatchedRows rows = calibration_functions().matched_rows(
         kernels::rectify(pair.left, *input_.tables.left), kernels::rectify(pair.right, *input_.tables.right),
         input_.board.matcher.disparities);
-    if (rows.corners < kFewest) {
-      say("note",
-          fmt::format("--calibration: the first pair has only {} points that both rectified pictures show "
-                      "beyond doubt: too few to see whether it is of this rig",
-                      rows.corners));
+    const std::string what = fmt::format(
+        "--calibration: of {} conspicuous points of the first left picture {} are found "
+        "in the right one",
+        rows.points, rows.error.corners);
+    if (rows.error.corners < kFew) {
+      const bool is_doubtful = rows.points >= kMany;
+      say(is_doubtful ? "warning" : "note",
+          what + (is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
+                              : ": too few to see whether it is of this rig"));
       return;
     }
-    const bool is_doubtful = rows.mean_px > kDoubtful;
+    const bool is_doubtful = rows.error.mean_px > kDoubtful;
     say(is_doubtful ? "warning" : "note",
+        fmt::format("{}; their rows differ by {:.2f} pixels on average{}", what, rows.error.mean_px,
+                    is_doubtful ? ": is it of this rig?" : ""));
+  }
+
+  void say_what_is_not_seen() const {
+    const int made_for = input_.calibration->disparities;
+    const int has = input_.board.matcher.disparities;
+    if (has >= made_for) return;
+    say("note",
         fmt::format(
-            "--calibration: the rows of {} points that both rectified pictures of the first pair show "
-            "differ by {:.2f} pixels on average{}",
-            rows.corners, rows.mean_px, is_doubtful ? ": is it of this rig?" : ""));
+            "--calibration: was made for {} disparities: of this board's {} the nearest things need more",
+            made_for, has));
   }
 
   void describe() {

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -40,12 +39,8 @@ constexpr const char* kUsage =
     "         show the picture, the disparities (0..DISPARITIES-1, 255 = invalid) and the truth side by "
     "side\n";
 
-// Written aside, then renamed: no partial file is left under the final name.
 void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
-  const fs::path aside = path.string() + ".part";
-  fs::remove(aside);
-  report::write_whole_file(aside, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  fs::rename(aside, path);
+  report::replace_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 void prepare(const fs::path& source, const fs::path& out) {
@@ -111,13 +106,6 @@ void montage(const std::vector<std::string>& arguments) {
   write_file(arguments[0], media::encode_side_by_side_png(panels));
 }
 
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.is_open() || file.bad()) throw std::runtime_error(path.string() + ": cannot be read");
-  return text;
-}
-
 // Near is red, like large disparities. The nearest and the farthest hundredth are shown like the next to them.
 media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
@@ -141,9 +129,9 @@ media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int widt
 void depth_montage(const std::vector<std::string>& arguments) {
   const auto picture = media::load_gray(arguments[1]).image;
   const fs::path rig = arguments[2];
-  const calib::Calibration calibration = calib::parse_calibration(content(rig));
+  const calib::Calibration calibration = calib::parse_calibration(report::read_whole_file(rig));
   const fs::path lut = rig.parent_path() / (rig.stem().string() + "_left.lut");
-  const auto table = calib::parse_lut(content(lut), picture.width, picture.height);
+  const auto table = calib::parse_lut(report::read_whole_file(lut), picture.width, picture.height);
   const auto disparity = media::load_gray((fs::path(arguments[3]) / "disparity.png").string()).image;
   const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
   const auto depths = calib::depth_millimetres(geometry, disparity);

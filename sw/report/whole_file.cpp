@@ -4,6 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <system_error>
 
 namespace stereotlm::report {
@@ -58,6 +62,29 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
   file.write(bytes);
   file.sync();
   file.close();
+}
+
+std::string read_whole_file(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&path](const std::string& cause) {
+    throw std::runtime_error("'" + path.string() + "': " + cause);
+  };
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) refuse("no such file");
+  if (error) refuse(error.message());
+  if (!fs::is_regular_file(status)) refuse("must be a regular file");
+  std::ifstream file(path, std::ios::binary);
+  std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file.is_open() || file.bad()) refuse(std::strerror(errno));
+  return content;
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view bytes) {
+  const std::filesystem::path aside = path.string() + ".part";
+  std::filesystem::remove(aside);
+  write_whole_file(aside, bytes);
+  std::filesystem::rename(aside, path);
 }
 
 void sync_folder(const std::filesystem::path& folder) {

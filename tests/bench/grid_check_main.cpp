@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -14,6 +12,7 @@
 #include "calib/grid_assessment.h"
 #include "sw/media/load.h"
 #include "sw/report/result_folder.h"
+#include "sw/report/whole_file.h"
 
 namespace stereotlm::bench {
 namespace {
@@ -58,9 +57,7 @@ void add(calib::Deviations& all, const calib::Deviations& more) {
 }
 
 void run(const std::string& rig, const std::filesystem::path& result) {
-  std::ifstream file(rig);
-  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const calib::Calibration calibration = calib::parse_calibration(text);
+  const calib::Calibration calibration = calib::parse_calibration(report::read_whole_file(rig));
   calib::GridAssessment all;
   Json pairs = Json::array();
   for (std::size_t i = 0; i < calibration.sources.size(); ++i) {

@@ -55,7 +55,7 @@ class CalibrateTest(ProgramTest):
 class Made(CalibrateTest):
     def test_says_what_it_found_and_wrote(self):
         found = fields(self.succeeds(self.made))
-        self.assertIn("13 of 13 with the grid", found["pairs"])
+        self.assertIn("9 of 9 with the grid", found["pairs"])
         self.assertRegex(found["reprojection"], r"^RMS 0\.[01]\d\d px")
         self.assertRegex(found["row error"], r"^mean 0\.0\d\d px")
         baseline = float(found["baseline"].split()[0])
@@ -75,7 +75,7 @@ class Made(CalibrateTest):
 
     def test_draws(self):
         names = sorted(path.name for path in (self.home / "rig_drawings").iterdir())
-        numbers = [f"{number:02}" for number in range(13)]
+        numbers = [f"{number:02}" for number in range(9)]
         self.assertEqual(names, sorted([f"corners_{number}.png" for number in numbers]
                                        + [f"rectified_{number}.png" for number in numbers]
                                        + ["displacement.png", "source_lines.png"]))
@@ -111,7 +111,7 @@ class Run(CalibrateTest):
         truth = self.pictures / "scene_truth.png"
         process = run(*self.scene(None, "--truth", truth, "--truth-scale", scale, "--out", self.out))
         self.succeeds(process)
-        self.assertRegex(process.stderr, r"note: .* the rows of \d+ points .* differ by 0\.\d\d pixels on average\n")
+        self.assertRegex(process.stderr, r"note: .* \d+ are found in the right one; their rows differ by 0\.\d\d pixels on average\n")
         accuracy = self.stats()["accuracy"]
         self.assertLess(accuracy["bad_1_percent"], 3)
         self.assertGreater(accuracy["answered_percent"], 60)
@@ -173,7 +173,22 @@ class Run(CalibrateTest):
         flat = self.file("flat.pgm", pgm(640, 480, bytes(640 * 480)))
         process = run("run", "fpl2003", *BUILT, "--calibration", self.rig, "--left", flat, "--right", flat)
         self.succeeds(process)
+        self.assertIn("note: --calibration: of 0 conspicuous points", process.stderr)
         self.assertIn("too few to see whether it is of this rig", process.stderr)
+
+    def test_warns_where_left_and_right_are_exchanged(self):
+        command = self.scene()
+        left, right = command.index("--left") + 1, command.index("--right") + 1
+        command[left], command[right] = command[right], command[left]
+        process = run(*command)
+        self.succeeds(process)
+        self.assertRegex(process.stderr, r"warning: --calibration: .* is it of this rig")
+
+    def test_says_that_the_board_has_fewer_disparities(self):
+        process = run("run", "fpl2003", *BUILT, "--synthetic", "1", "--set", "matcher.disparities=16",
+                      "--set", "matcher.window=3", "--calibration", self.rig)
+        self.assertNotIn("accuracy", self.succeeds(process))  # the scene is not one of this rig
+        self.assertIn("was made for 80 disparities: of this board's 16 the nearest things need more", process.stderr)
 
 
 class RefusedCalibrations(CalibrateTest):
@@ -199,6 +214,7 @@ class RefusedCalibrations(CalibrateTest):
         for damaged, problem in (
             (text[: text.index("P2:")], "P2: missing: a calibration has this key"),
             (text[: text.index("P2:") + 60], "P2: no matrix"),
+            (text.replace("disparity_offset: 0", "disparity_offset: 1"), "must be those that its tables were made with"),
             (text.replace("image_height: 480", "image_height: tall"), "image_height: no integer"),
             ("", "must be %YAML:1.0"),
             (text.replace("Q: !!opencv-matrix", "Q: [1, 2"), "must be OpenCV FileStorage YAML"),
@@ -249,7 +265,7 @@ class RefusedPictures(CalibrateTest):
 
     def test_of_different_numbers(self):
         self.refused_pictures(self.calibrate(*self.sources(right="right_0[0-4].png")),
-                              "13 left pictures", "5 right ones", "must be as many")
+                              "9 left pictures", "5 right ones", "must be as many")
 
     def test_of_different_sizes(self):
         self.file("left_99.png", self.left.read_bytes())
@@ -265,6 +281,29 @@ class RefusedPictures(CalibrateTest):
     def test_too_few(self):
         self.refused_pictures(self.calibrate(*self.sources("left_0[01].png", "right_0[01].png")),
                               "in both pictures = 2 of 2: must be 3 or more")
+
+    def test_that_are_there_twice(self):
+        again = self.file("left_99.png", (self.pictures / "left_02.png").read_bytes())
+        left = [self.pictures / f"left_0{number}.png" for number in range(4)] + [again]
+        self.refused_pictures(self.calibrate("--left", *left, "--right", self.pictures / "right_0[0-4].png"),
+                              "left_02.png': the same picture as" if str(again) < str(self.pictures) else
+                              "left_99.png': the same picture as")
+
+    def test_that_are_tiny(self):
+        names = [[self.file(f"{side}_{number}.pgm", pgm(4, 1, bytes([number, side_number, 0, 9])))
+                  for number in range(3)] for side_number, side in enumerate(("left", "right"))]
+        self.refused_pictures(self.calibrate("--left", *names[0], "--right", *names[1]), "= 0 of 3: must be 3 or more",
+                              f"'{names[0][0]}': no grid of 7x5 inner corners found")
+
+    def test_whose_names_look_like_patterns(self):
+        folder = self.folder / "br[1]"
+        folder.mkdir()
+        for number in range(4):
+            for side in ("left", "right"):
+                name = f"{side}_0{number}.png"
+                (folder / name).write_bytes((self.pictures / name).read_bytes())
+        left, right = ([folder / f"{side}_0{number}.png" for number in range(4)] for side in ("left", "right"))
+        self.succeeds(self.calibrate("--left", *left, "--right", *right))
 
     def test_of_swapped_cameras(self):
         self.refused_pictures(self.calibrate(*self.sources("right_0[0-3].png", "left_0[0-3].png")),
@@ -287,12 +326,59 @@ class RefusedPictures(CalibrateTest):
         self.assertEqual(new.read_bytes(), b"precious: 1\n")
 
     def test_beside_files_that_are_not_its_own(self):
+        table = self.file("new_left.lut", b"precious")
+        self.refused(self.calibrate(*self.sources()), f"'{table}': exists, without its calibration")
+        table.unlink()
+        self.copy_of_rig().rename(self.folder / "new.yaml")
         (self.folder / "new_drawings").mkdir()
         notes = self.file("new_drawings/notes.txt", b"precious")
         self.refused(self.calibrate(*self.sources()), f"'{notes}'", "must be moved away")
         notes.unlink()
-        table = self.file("new_left.lut", b"precious")
-        self.refused(self.calibrate(*self.sources()), f"'{table}': exists, without its calibration")
+        table.mkdir()
+        self.refused(self.calibrate(*self.sources()), f"'{table}': must be a file that calibrate has made")
+
+    def test_beside_the_new_calibration_stay(self):
+        mine = self.folder / "new_pictures"
+        mine.mkdir()
+        for number in range(4):
+            for side in ("left", "right"):
+                name = f"{side}_0{number}.png"
+                (mine / name).write_bytes((self.pictures / name).read_bytes())
+        for _ in range(2):
+            self.succeeds(self.calibrate("--left", mine / "left_*.png", "--right", mine / "right_*.png"))
+            self.assertEqual(len(list(mine.iterdir())), 8)
+        self.refused(run("calibrate", "--synthetic", 1, *GRID, "--out", self.folder / "other.yaml", "--left", "x"))
+        mine.rename(self.folder / "other_pictures")
+        self.refused(run("calibrate", "--synthetic", 1, *GRID, "--out", self.folder / "other.yaml"),
+                     "other_pictures': exists, without its calibration")
+        self.assertEqual(len(list((self.folder / "other_pictures").iterdir())), 8)
+
+    def test_in_the_folder_of_drawings(self):
+        few = self.sources("left_0[0-3].png", "right_0[0-3].png")
+        self.succeeds(self.calibrate(*few))
+        drawings = self.folder / "new_drawings"
+        self.refused(self.calibrate("--left", drawings / "corners_0[0-2].png", "--right", drawings / "rectified_0[0-2].png"),
+                     "new_drawings', which is replaced whole: a picture must lie elsewhere")
+
+    def test_with_something_of_the_users_under_the_name_of_the_folder_aside(self):
+        aside = self.file("new.partial", b"precious")
+        self.refused(self.calibrate(*self.sources()), f"'{aside}': the name of a folder that calibrate uses")
+        self.assertEqual(aside.read_bytes(), b"precious")
+        aside.unlink()
+        aside.mkdir()
+        thesis = self.file("new.partial/thesis.txt", b"precious")
+        (self.folder / "new.yaml").symlink_to("new.yaml")
+        self.refused(self.calibrate(*self.sources()), f"'{thesis}'")
+        self.assertEqual(thesis.read_bytes(), b"precious")
+
+    def test_after_a_run_that_was_killed(self):
+        few = self.sources("left_0[0-3].png", "right_0[0-3].png")
+        self.succeeds(self.calibrate(*few))
+        aside = self.folder / "new.partial"
+        aside.mkdir()
+        (self.folder / "new.yaml").rename(aside / "new.yaml")
+        self.succeeds(self.calibrate(*few))
+        self.assertFalse(aside.exists())
 
     def test_into_a_folder_that_cannot_be(self):
         for folder in (self.folder / "none", self.left):

@@ -50,10 +50,10 @@ class CalibrateTest : public testing::Test {
 };
 
 TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
-  const CalibrationResult found = calibrate(request(12));
+  const CalibrationResult found = calibrate(request(8));
   const Calibration& made = found.calibration;
   const Rig& known = rig().rig();
-  EXPECT_EQ(found.pairs.size(), 12U);
+  EXPECT_EQ(found.pairs.size(), 8U);
   EXPECT_TRUE(found.skipped.empty());
   EXPECT_LT(made.quality.stereo_rms_px, 0.15);
   EXPECT_LT(made.quality.row_error.mean_px, 0.1);
@@ -83,7 +83,7 @@ TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
     if (std::abs(static_cast<float>(board.pixels[i]) - truth[i]) <= 1) ++right;
   }
   EXPECT_GT(answered, truth.size() / 2);
-  EXPECT_GT(static_cast<double>(right), 0.97 * static_cast<double>(answered));
+  EXPECT_GT(static_cast<double>(right), 0.95 * static_cast<double>(answered));
 }
 
 TEST_F(CalibrateTest, TakesTheOffsetThatItIsGiven) {
@@ -125,6 +125,12 @@ TEST_F(CalibrateTest, SaysThatCamerasAreSwapped) {
   CalibrationRequest swapped = request(4);
   for (PicturePair& pair : swapped.pictures) std::swap(pair.left, pair.right);
   EXPECT_THAT(refusal(swapped), HasSubstr("the cameras are swapped"));
+}
+
+TEST_F(CalibrateTest, SaysThatBothCamerasAreOne) {
+  CalibrationRequest one = request(4);
+  for (PicturePair& pair : one.pictures) pair.right = pair.left;
+  EXPECT_THAT(refusal(one), HasSubstr("they must stand in two places"));
 }
 
 kernels::GrayImage turned(const kernels::GrayImage& image) {

@@ -46,6 +46,8 @@ TEST(CameraModel, FindsTheDirectionOfEveryPixel) {
 TEST(CameraModel, HasNoDirectionWhereTheLensFoldsThePicture) {
   CameraModel folded = camera();
   folded.distortion = {-0.5, 0, 0, 0, 0};  // the farthest it sees: direction 0.8165, bent to 0.5443
+  EXPECT_NEAR(folded.widest(), 0.8165, 1e-3);
+  EXPECT_EQ(CameraModel().widest(), 10);
   EXPECT_NO_THROW(folded.direction({341 + 533 * 0.54, 234}));
   EXPECT_THROW(folded.direction({341 + 533 * 0.55, 234}), std::domain_error);
 }

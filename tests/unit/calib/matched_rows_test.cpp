@@ -17,7 +17,8 @@ class MatchedRowsTest : public testing::Test {
   RowError matched(const Rig& assumed) const {
     const TablePair both = tables(assumed, rectify(assumed), 0);
     return matched_rows(kernels::rectify(scene_.left, both.left), kernels::rectify(scene_.right, both.right),
-                        kDisparities);
+                        kDisparities)
+        .error;
   }
 
   SyntheticRig rig_{4, 320, 240};
@@ -40,7 +41,9 @@ TEST_F(MatchedRowsTest, DifferWhereTheTablesAreOfAnotherRig) {
 
 TEST_F(MatchedRowsTest, AreNoneInPicturesWithoutTexture) {
   const kernels::GrayImage flat(320, 240, 90);
-  EXPECT_EQ(matched_rows(flat, flat, kDisparities).corners, 0U);
+  const MatchedRows found = matched_rows(flat, flat, kDisparities);
+  EXPECT_EQ(found.points, 0U);
+  EXPECT_EQ(found.error.corners, 0U);
 }
 
 TEST_F(MatchedRowsTest, RefusePicturesOfDifferentSizes) {

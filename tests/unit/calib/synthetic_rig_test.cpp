@@ -373,7 +373,7 @@ TEST(SyntheticRig, HasTheDisparityOfTheDepth) {
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 160; ++u) {
       const float d = disparity[static_cast<std::size_t>(v * 160 + u)];
-      const Vector2d left = source_pixel(rig.left, ideal.r1, ideal.p1, {u, v});
+      const Vector2d left = *SourcePixels(rig.left, ideal.r1, ideal.p1).at({u, v});
       const auto right = synthetic.match(left);
       ASSERT_EQ(std::isnan(d), !right);
       if (!right) continue;
@@ -403,7 +403,7 @@ TEST(SyntheticRig, HasTheDisparityOfARecoveredCalibration) {
   for (int v = 0; v < 60; ++v) {
     for (int u = 0; u < 80; ++u) {
       const auto i = static_cast<std::size_t>(v * 80 + u);
-      const auto right = synthetic.match(source_pixel(rig.left, ideal.r1, ideal.p1, {u + 3, v}));
+      const auto right = synthetic.match(*SourcePixels(rig.left, ideal.r1, ideal.p1).at({u + 3, v}));
       ASSERT_EQ(std::isnan(disparity[i]), !right);
       if (!right) continue;
       ++found;

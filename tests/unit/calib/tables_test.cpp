@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
 
@@ -84,6 +85,37 @@ TEST(Tables, LeaveTheOffsetOutOfColumnsOfTheLeftPicture) {
       }
     }
   }
+}
+
+// Far to the side, the polynomial of the lens leads back into the picture.
+TEST(Tables, HaveNoEntryBeyondTheLens) {
+  Rig rig = SyntheticRig(3, 320, 240).rig();
+  rig.left.distortion = {-0.29, 0.14, 0, 0, -0.05};
+  const Rectification rectification = rectify(rig);
+  for (const int offset : {-600, -300, 300, 600, 1000}) {
+    const TablePair found = tables(rig, rectification, offset);
+    std::size_t valid = 0;
+    for (int i = 0; i < 320 * 240; ++i) {
+      const std::uint32_t entry = found.left.entries[static_cast<std::size_t>(i)];
+      if (!kernels::entry_is_valid(entry)) continue;
+      ++valid;
+      const Eigen::Vector2d back = rectified_pixel(rig.left, rectification.r1, rectification.p1,
+                                                   {kernels::entry_column(entry), kernels::entry_row(entry)});
+      ASSERT_LT((back - Eigen::Vector2d(i % 320 + offset, i / 320)).norm(), 3) << offset << ' ' << i;
+    }
+    EXPECT_EQ(valid == 0, std::abs(offset) >= 600) << offset << ' ' << valid;
+  }
+}
+
+TEST(Tables, AreKnownToFollowFromTheirRig) {
+  const Rig rig = SyntheticRig(3, 320, 240).rig();
+  const Rectification rectification = rectify(rig);
+  const TablePair both = tables(rig, rectification, 12);
+  EXPECT_TRUE(are_tables_of(both, rig, rectification, 12));
+  EXPECT_FALSE(are_tables_of(both, rig, rectification, 11));
+  Rig other = rig;
+  other.right.distortion[0] += 0.01;
+  EXPECT_FALSE(are_tables_of(both, other, rectification, 12));
 }
 
 TEST(Tables, RefusePicturesThatPositionsCannotName) {
