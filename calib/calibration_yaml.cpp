@@ -104,7 +104,7 @@ class Reader {
     cv::Mat found;
     try {
       at(key) >> found;
-      const auto result = to_eigen<Matrix>(found);
+      auto result = to_eigen<Matrix>(found);
       if (!result.allFinite()) refuse(path_ + key, "not finite", "must hold finite numbers");
       return result;
     } catch (const std::invalid_argument& error) {
@@ -116,7 +116,7 @@ class Reader {
 
   Eigen::Matrix3d rotation(const std::string& key) const {
     constexpr double kCloseEnough = 1e-9;
-    const auto result = matrix<Eigen::Matrix3d>(key);
+    auto result = matrix<Eigen::Matrix3d>(key);
     const bool is_rotation =
         (result * result.transpose() - Eigen::Matrix3d::Identity()).norm() < kCloseEnough &&
         result.determinant() > 0;

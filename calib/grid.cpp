@@ -17,7 +17,8 @@ namespace stereotlm::calib {
 namespace {
 
 std::size_t index_of(const GridShape& shape, int column, int row) {
-  return static_cast<std::size_t>(row * shape.columns + column);
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.columns) +
+         static_cast<std::size_t>(column);
 }
 
 double smallest_spacing(const GridShape& shape, const Corners& corners) {

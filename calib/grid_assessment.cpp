@@ -69,7 +69,8 @@ class Assessor {
   }
 
   const MeasuredCorner& at(int column, int row) const {
-    return corners_[static_cast<std::size_t>(row * shape_.columns + column)];
+    return corners_[static_cast<std::size_t>(row) * static_cast<std::size_t>(shape_.columns) +
+                    static_cast<std::size_t>(column)];
   }
 
   void compare(const MeasuredCorner& a, const MeasuredCorner& b) {

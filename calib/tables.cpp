@@ -46,7 +46,8 @@ bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification&
   std::size_t different = 0;
   for (std::size_t i = 0; i < tables.left.entries.size(); i += kStep) {
     const auto column = static_cast<double>(i % width);
-    const auto row = static_cast<double>(i / width);
+    const std::size_t row_number = i / width;
+    const auto row = static_cast<double>(row_number);
     if (tables.left.entries[i] != table_entry(rig, left, {column + disparity_offset, row})) ++different;
     if (tables.right.entries[i] != table_entry(rig, right, {column, row})) ++different;
   }

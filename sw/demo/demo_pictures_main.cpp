@@ -1,4 +1,6 @@
 // stereotlm-demo-pictures: what ./demo needs around `stereotlm run`.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -55,29 +57,30 @@ void prepare(const fs::path& source, const fs::path& out) {
   std::printf("%d\n", disparities_needed(pair.truth));
 }
 
-// Names of a folder that begin and end like this, sorted; what stands in between.
-std::vector<std::string> numbers_in(const fs::path& folder, const std::string& beginning,
-                                    const std::string& end) {
+// NN of every leftNN.jpg in a folder, sorted.
+std::vector<std::string> numbers_of_pairs(const fs::path& folder) {
+  const std::string beginning = "left";
   std::vector<std::string> result;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename();
-    if (name.size() <= beginning.size() + end.size() || name.rfind(beginning, 0) != 0) continue;
-    const std::string number = name.substr(beginning.size(), name.size() - beginning.size() - end.size());
+    const std::string stem = entry.path().stem();
+    if (entry.path().extension() != ".jpg" || stem.rfind(beginning, 0) != 0) continue;
+    const std::string number = stem.substr(beginning.size());
     const bool is_number = number.find_first_not_of("0123456789") == std::string::npos;
-    if (is_number && name == beginning + number + end) result.push_back(number);
+    if (is_number && !number.empty()) result.push_back(number);
   }
   std::sort(result.begin(), result.end());
   return result;
 }
 
 void make_sequence(const fs::path& source, const fs::path& out) {
-  const std::vector<std::string> numbers = numbers_in(source, "left", ".jpg");
+  const std::vector<std::string> numbers = numbers_of_pairs(source);
   if (numbers.empty()) throw std::runtime_error(source.string() + ": no left01.jpg, left02.jpg, ..");
   fs::create_directories(out);
   for (const std::string& number : numbers) {
-    for (const std::string side : {"left", "right"}) {
-      const auto picture = media::load_gray((source / (side + number + ".jpg")).string()).image;
-      write_file(out / (side + "_" + number + ".png"), media::encode_png_gray(picture));
+    for (const char* side : {"left", "right"}) {
+      const fs::path photograph = source / fmt::format("{}{}.jpg", side, number);
+      const auto picture = media::load_gray(photograph.string()).image;
+      write_file(out / fmt::format("{}_{}.png", side, number), media::encode_png_gray(picture));
     }
   }
 }
