@@ -8,6 +8,8 @@ set(STEREOTLM_SYSTEMC_ENVIRONMENT LSAN_OPTIONS=use_stacks=0)
 
 set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test programs, behind all others")
 
+option(STEREOTLM_SLOW_TESTS "Build the tests with the label slow" ON)
+
 # stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label...] [TIMEOUT seconds] [SYSTEMC])
 # One test program; ctest runs each of its cases in a process of its own, because SystemC elaborates once per
 # process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails it.
@@ -15,6 +17,9 @@ function(stereotlm_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "SYSTEMC" "TIMEOUT" "SOURCES;LIBRARIES;LABELS")
   if(NOT arg_LABELS)
     set(arg_LABELS unit)
+  endif()
+  if(arg_LABELS STREQUAL "slow" AND NOT STEREOTLM_SLOW_TESTS)
+    return()
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)

@@ -1,24 +1,16 @@
 #include "sw/cli/board_options.h"
 
-#include <CLI/CLI.hpp>
-
 #include "platform/board_yaml.h"
 
 namespace stereotlm::cli {
 
 void BoardOptions::add_to(CLI::App& command) {
-  board_option_ =
-      command
-          .add_option(
-              "BOARD", board_,
-              "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml")
-          ->option_text(" ");
-  command
-      .add_option("--set", sets_,
-                  "Give a key of the board another value, a YAML flow value; again for further keys "
-                  "(see stereotlm keys)")
-      ->option_text("KEY=VALUE")
-      ->allow_extra_args(false);
+  board_.add_to(command, "BOARD", " ",
+                "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml");
+  sets_.add_to(command, "--set", "KEY=VALUE",
+               "Give a key of the board another value, a YAML flow value; again for further keys "
+               "(see stereotlm keys)");
+  sets_.takes_one_at_a_time();
   calibration_option_.add_to(
       command, "--calibration", "F",
       "Tables from the calibration of a rig, as written by stereotlm calibrate, in place of the "
@@ -27,7 +19,7 @@ void BoardOptions::add_to(CLI::App& command) {
 
 void BoardOptions::check_given(Problems& problems) {
   if (calibration_option_.is_given()) calibration_ = calibration_option_.text;
-  if (board_option_->count() == 0) problems.add("BOARD: missing: a preset or the path of a board file");
+  if (!board_.is_given()) problems.add("BOARD: missing: a preset or the path of a board file");
 }
 
 void BoardOptions::check_usage() {
@@ -38,7 +30,7 @@ void BoardOptions::check_usage() {
 
 std::optional<platform::BoardConfig> BoardOptions::load(Problems& problems) const {
   try {
-    return platform::load_board(board_, sets_);
+    return platform::load_board(board_.text, sets_.text);
   } catch (const platform::BoardError& error) {
     problems.add(error);
     return std::nullopt;

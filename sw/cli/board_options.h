@@ -11,8 +11,7 @@
 
 namespace CLI {
 class App;
-class Option;
-}  // namespace CLI
+}
 
 namespace stereotlm::cli {
 
@@ -27,7 +26,7 @@ class BoardOptions {
   void check_usage();
 
   // BOARD as it was typed.
-  const std::string& name() const { return board_; }
+  const std::string& name() const { return board_.text; }
 
   // The board; nothing if it is wrong, with every reason reported.
   std::optional<platform::BoardConfig> load(Problems& problems) const;
@@ -38,9 +37,8 @@ class BoardOptions {
                                                    Problems& problems) const;
 
  private:
-  const CLI::Option* board_option_ = nullptr;
-  std::string board_;
-  std::vector<std::string> sets_;
+  Typed board_;
+  TypedList sets_;
   Typed calibration_option_;
   std::optional<std::string> calibration_;  // as check_given() leaves it
 };

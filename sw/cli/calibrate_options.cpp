@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "models/kernels/limits.h"
@@ -47,7 +46,8 @@ void CalibrateOptions::add_to(CLI::App& command) {
               "The calibration; the tables F_left.lut and F_right.lut and the drawings F_drawings/ go beside "
               "it. With "
               "--print-grid the sheet, F.pdf or F.svg");
-  command.footer(
+  set_footer(
+      command,
       "Pictures in which the grid is not found whole are named and skipped, with their partners; corners "
       "that\n"
       "do not fit are left out and listed. The grid should be seen in a dozen places, near and far, tilted, "

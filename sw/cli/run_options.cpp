@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <vector>
 
@@ -40,17 +39,17 @@ void RunOptions::add_to(CLI::App& command) {
   out_.add_to(command, "--out", "DIR",
               "Folder for the result files: created if missing, else empty or an earlier result, which is "
               "replaced (default: no files)");
-  command.add_flag("--save-frames", save_frames,
-                   "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
-                   "--out, numbered by "
-                   "camera frame");
+  add_flag(command, "--save-frames", save_frames,
+           "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
+           "--out, numbered by "
+           "camera frame");
   unbuilt_.add(command, "--timing-only", 0);
   unbuilt_.add(command, "--verify", 0);
   unbuilt_.add(command, "--trace", 1);
-  command.footer(
-      paragraph("", 0, fmt::format("Not in this version: {}; --fidelity fast.", unbuilt_.names())) +
-      "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
-      "those that the\ncore has begun are finished first.");
+  set_footer(command,
+             paragraph("", 0, fmt::format("Not in this version: {}; --fidelity fast.", unbuilt_.names())) +
+                 "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
+                 "those that the\ncore has begun are finished first.");
 }
 
 void RunOptions::check_usage() {

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "sw/cli/add_command.h"
+
 namespace stereotlm::cli {
 
 template <typename Text>
@@ -16,11 +18,30 @@ void TypedOption<Text>::takes(int least, int most) {
 }
 
 template <typename Text>
+void TypedOption<Text>::takes_one_at_a_time() {
+  option_->allow_extra_args(false);
+}
+
+template <typename Text>
 bool TypedOption<Text>::is_given() const {
   return option_->count() > 0;
 }
 
 template struct TypedOption<std::string>;
 template struct TypedOption<std::vector<std::string>>;
+
+void add_flag(CLI::App& command, const std::string& name, bool& is_given, const std::string& meaning) {
+  command.add_flag(name, is_given, meaning);
+}
+
+void set_footer(CLI::App& command, const std::string& text) { command.footer(text); }
+
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description,
+                      const std::function<void()>& parsed, const std::string& footer) {
+  CLI::App* command = program.add_subcommand(name, description);
+  command->callback(parsed);
+  command->footer(footer);
+  return *command;
+}
 
 }  // namespace stereotlm::cli

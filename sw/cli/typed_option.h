@@ -20,16 +20,20 @@ class Option;
 
 namespace stereotlm::cli {
 
+// The parts of CLI11 that options need: its header takes long to compile, and is included by few files.
+
 // An option as it was typed.
 template <typename Text>
 struct TypedOption {
   Text text;
 
-  // Adds it to the command, before that is parsed.
+  // Adds it to the command, before that is parsed. A name without dashes is that of an argument.
   void add_to(CLI::App& command, const std::string& name, const std::string& value,
               const std::string& meaning);
   // Of a list: how many values; -1: any number.
   void takes(int least, int most);
+  // Of a list: one value each time that it is given, any number of times.
+  void takes_one_at_a_time();
 
   // As long as the command is there.
   bool is_given() const;
@@ -39,6 +43,9 @@ struct TypedOption {
 };
 using Typed = TypedOption<std::string>;
 using TypedList = TypedOption<std::vector<std::string>>;
+
+void add_flag(CLI::App& command, const std::string& name, bool& is_given, const std::string& meaning);
+void set_footer(CLI::App& command, const std::string& text);
 
 // The whole text as a number.
 template <typename Number>
