@@ -191,8 +191,8 @@ GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) 
   }
   const Corners corners = refined(picture, shape, to_corners(points));
   if (!are_all_of_board(picture, shape, corners)) {
-    return {std::nullopt,
-            fmt::format("the grid has more than {}x{} inner corners", shape.columns, shape.rows)};
+    return {std::nullopt, fmt::format("the grid has more than {}x{} inner corners, or is not seen well",
+                                      shape.columns, shape.rows)};
   }
   return {corners, ""};
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "models/kernels/limits.h"
+#include "sw/cli/add_command.h"
 #include "sw/cli/rig_files.h"
 #include "sw/cli/text.h"
 

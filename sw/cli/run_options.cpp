@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform/board_keys.h"
+#include "sw/cli/add_command.h"
 #include "sw/cli/text.h"
 
 namespace stereotlm::cli {

@@ -20,8 +20,6 @@ class Option;
 
 namespace stereotlm::cli {
 
-// The parts of CLI11 that options need: its header takes long to compile, and is included by few files.
-
 // An option as it was typed.
 template <typename Text>
 struct TypedOption {
@@ -43,9 +41,6 @@ struct TypedOption {
 };
 using Typed = TypedOption<std::string>;
 using TypedList = TypedOption<std::vector<std::string>>;
-
-void add_flag(CLI::App& command, const std::string& name, bool& is_given, const std::string& meaning);
-void set_footer(CLI::App& command, const std::string& text);
 
 // The whole text as a number.
 template <typename Number>

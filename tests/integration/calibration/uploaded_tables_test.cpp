@@ -7,6 +7,7 @@
 #include "calib/rectification.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
+#include "models/kernels/stereo.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/board_yaml.h"
 #include "platform/computer.h"
@@ -95,9 +96,12 @@ TEST(UploadedTables, AreWhatTheirBanksHold) {
   ASSERT_TRUE(computer.cpu.finished());
   EXPECT_EQ(program.left, tables.left.entries);
   EXPECT_EQ(program.right, tables.right.entries);
-  EXPECT_EQ(std::count(deliveries.disparity.begin(), deliveries.disparity.end(), 255) <
-                static_cast<std::ptrdiff_t>(deliveries.disparity.size()),
-            true);
+  const platform::MatcherConfig& matcher = board.matcher;
+  EXPECT_EQ(
+      deliveries.disparity,
+      kernels::disparity_image(scene.left, scene.right, &tables.left, &tables.right,
+                               {matcher.window, matcher.disparities, matcher.filter, matcher.lr_tolerance})
+          .pixels);
 }
 
 }  // namespace

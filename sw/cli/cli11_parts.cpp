@@ -1,9 +1,9 @@
-#include "sw/cli/typed_option.h"
-
 #include <CLI/CLI.hpp>
 
 #include "sw/cli/add_command.h"
+#include "sw/cli/typed_option.h"
 
+// Both headers are done with CLI11, whose own takes long to compile, in this one file.
 namespace stereotlm::cli {
 
 template <typename Text>
