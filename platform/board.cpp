@@ -16,17 +16,20 @@ memory::SsramBankConfig bank_config(const BoardConfig& board, const BankConfig& 
   return {static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles, board.fpga.clock_mhz};
 }
 
-fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board) {
-  fpga::StereoCoreConfig config{
-      core_config(board), {board.fpga.arbiter, {}}, {board.bridge.local_clock_mhz, buffer_ranges(board)}};
+fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board, fpga::Fidelity fidelity) {
+  fpga::StereoCoreConfig config{core_config(board),
+                                {board.fpga.arbiter, {}},
+                                {board.bridge.local_clock_mhz, buffer_ranges(board)},
+                                fidelity};
   for (const BankConfig& bank : board.banks) config.memory.banks.push_back(bank_config(board, bank));
   return config;
 }
 
 }  // namespace
 
-Board::Board(const sc_core::sc_module_name& name, const BoardConfig& config, Binder& binder)
-    : sc_module(name), core("core", stereo_core_config(checked(config)), binder) {
+Board::Board(const sc_core::sc_module_name& name, const BoardConfig& config, Binder& binder,
+             fpga::Fidelity fidelity)
+    : sc_module(name), core("core", stereo_core_config(checked(config), fidelity), binder) {
   banks.init(config.banks.size(), [&config](const char* /*numbered*/, std::size_t bank) {
     return new memory::SsramBank(("ssram_" + config.banks[bank].name).c_str(),
                                  bank_config(config, config.banks[bank]));

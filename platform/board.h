@@ -14,7 +14,8 @@ namespace stereotlm::platform {
 class Board : public sc_core::sc_module {
  public:
   // Throws std::invalid_argument if the board has problems.
-  Board(const sc_core::sc_module_name& name, const BoardConfig& config, Binder& binder);
+  Board(const sc_core::sc_module_name& name, const BoardConfig& config, Binder& binder,
+        fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   fpga::StereoCore core;
   sc_core::sc_vector<memory::SsramBank> banks;  // in the order of the configuration

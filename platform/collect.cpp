@@ -108,7 +108,8 @@ BoardCounters counters_of(const Board& board) {
     const memory::BankArbiter& arbiter = core.crossbar().arbiters()[bank];
     const memory::SsramBank::Stats& stats = board.banks[bank].stats();
     counters.banks.push_back(
-        {arbiter.stats(), arbiter.uncounted_accesses(), stats.reads + stats.writes + stats.errors});
+        {arbiter.stats(), arbiter.uncounted_accesses(),
+         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank)});
   }
   counters.left = {core.sequencer().stats(fpga::Side::kLeft).slots, core.control().left().consumed()};
   counters.right = {core.sequencer().stats(fpga::Side::kRight).slots, core.control().right().consumed()};
@@ -121,7 +122,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                               const BoardCounters& counters) {
   Statistics statistics;
   statistics.board = config.name;
-  statistics.fidelity = "cycle";
+  statistics.fidelity = board.core.fidelity() == fpga::Fidelity::kCycle ? "cycle" : "fast";
   statistics.frames = counters.frames;
   const auto first = board.core.frame_cycles().begin();
   statistics.frame_cycles.assign(first, first + static_cast<std::ptrdiff_t>(counters.frames));

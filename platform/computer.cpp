@@ -68,9 +68,9 @@ capture::CaptureBoardConfig capture_config(const BoardConfig& board) {
 
 Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                    std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
-                   capture::CameraSource& right, Binder& binder)
+                   capture::CameraSource& right, Binder& binder, fpga::Fidelity fidelity)
     : sc_module(name),
-      board("board", config, binder),
+      board("board", config, binder, fidelity),
       pci_bus("pci_bus", pci_config(config, host_memory_bytes)),
       bridge("bridge", bridge_config(config)),
       host_memory("host_memory", host_memory_bytes),

@@ -36,9 +36,9 @@ const RectificationTable* checked(const std::optional<RectificationTable>& table
 
 PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const BoardConfig& config,
                                  const Tables& tables, std::uint64_t frames, host::FrameSource& source,
-                                 host::FrameSink& sink, Binder& binder)
+                                 host::FrameSink& sink, Binder& binder, fpga::Fidelity fidelity)
     : sc_module(name),
-      board("board", config, binder),
+      board("board", config, binder, fidelity),
       host("host", host_config(config, frames), checked(tables.left, config, "left"),
            checked(tables.right, config, "right"), source, sink) {
   binder.bind(host.registers, board.core.registers, "host_to_registers");

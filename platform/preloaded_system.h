@@ -17,7 +17,8 @@ class PreloadedSystem : public sc_core::sc_module {
   // `source` and `sink` outlive the system. Throws std::invalid_argument if the board has problems or the
   // tables do not fit to it.
   PreloadedSystem(const sc_core::sc_module_name& name, const BoardConfig& config, const Tables& tables,
-                  std::uint64_t frames, host::FrameSource& source, host::FrameSink& sink, Binder& binder);
+                  std::uint64_t frames, host::FrameSource& source, host::FrameSink& sink, Binder& binder,
+                  fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   Board board;
   host::IdealHost host;

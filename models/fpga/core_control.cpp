@@ -26,6 +26,24 @@ void CoreControl::start_frame(const FrameLatencies& latencies) {
   result_.start_frame();
 }
 
+void CoreControl::count(const Decision& decision, memory::PortMask granted, std::uint64_t cycles) {
+  using memory::Port;
+  const auto is_granted = [granted](Port port) { return (granted & memory::mask_of(port)) != 0; };
+  left_.count(decision.left, is_granted(Port::kLeftLut), is_granted(Port::kLeftPixel), cycles);
+  right_.count(decision.right, is_granted(Port::kRightLut), is_granted(Port::kRightPixel), cycles);
+  result_.count(decision.result, is_granted(Port::kResult), cycles);
+}
+
+void CoreControl::skip_columns(std::uint64_t columns) {
+  // What is written in the meantime is what has left.
+  if (match_.word_leaves()) result_.skip_words(columns / 4);
+  if (!match_.draining()) {
+    left_.skip_columns(columns);
+    right_.skip_columns(columns);
+  }
+  match_.skip_columns(columns);
+}
+
 const PortCycles& CoreControl::port_cycles(memory::Port port) const {
   using memory::Port;
   switch (port) {

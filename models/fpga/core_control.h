@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 
 #include "models/fpga/core_config.h"
@@ -27,15 +27,37 @@ class MatchControl {
   bool decide(bool slots_ready, bool result_queue_has_room) const {
     return result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready);
   }
-  // One consume-cycle. True if it completes a word of results.
+  // One consume-cycle. True if it completes four columns, from column result_delay_columns % 4 on.
   bool consume() {
     --(draining() ? drain_left_ : slots_left_);
     if (++k_ < geometry_.slots_per_column) return false;
     k_ = 0;
     ++columns_;
-    // The column just consumed is number columns_ - 1, so this many results have left.
-    return columns_ > geometry_.result_delay_columns && (columns_ - geometry_.result_delay_columns) % 4 == 0;
+    return (columns_ - geometry_.result_delay_columns) % 4 == 0;
   }
+  // After consume() was true: whether the four columns complete a word of results. The column just consumed is number
+  // columns_ - 1, so columns_ - result_delay_columns results have left.
+  bool word_leaves() const { return columns_ > geometry_.result_delay_columns; }
+
+  // Between two columns: all that the next cycles depend on, beside lanes and result queue.
+  std::uint64_t state() const {
+    return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U;
+  }
+  std::uint64_t columns() const { return columns_; }
+  // Between two columns: so many more can be consumed, as far as this side knows, before the state changes.
+  std::uint64_t columns_alike() const {
+    const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
+    const std::uint64_t left = (draining() ? drain_left_ : slots_left_) / slots_per_column;
+    if (columns_ >= geometry_.result_delay_columns) return left;
+    return std::min(left, geometry_.result_delay_columns - columns_);
+  }
+  void skip_columns(std::uint64_t columns) {
+    (draining() ? drain_left_ : slots_left_) -=
+        columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
+    columns_ += columns;
+  }
+  // Consume-cycles to come.
+  std::uint64_t cycles_left() const { return slots_left_ + drain_left_; }
 
  private:
   FrameGeometry geometry_;
@@ -62,10 +84,21 @@ class ResultControl {
     return written_ == 0 || frame_done() ? Intent::kIdle : Intent::kStarved;
   }
   void commit(Intent intent, bool granted, bool word_enters) {
-    cycles_.count(intent, granted);
+    count(intent, granted, 1);
     queued_ += int{word_enters} - int{granted};
     written_ += std::uint64_t{granted};
+    most_queued_ = std::max(most_queued_, queued_);
   }
+  void count(Intent intent, bool granted, std::uint64_t cycles) { cycles_.count(intent, granted, cycles); }
+
+  std::uint64_t state() const {
+    return static_cast<std::uint64_t>(queued_) | std::uint64_t{written_ != 0} << 8U;
+  }
+  void skip_words(std::uint64_t words) { written_ += words; }
+
+  std::uint64_t words_left() const { return words_per_frame_ - written_; }
+  // At one time, over all frames.
+  int most_queued() const { return most_queued_; }
   const PortCycles& cycles() const { return cycles_; }
 
  private:
@@ -73,6 +106,7 @@ class ResultControl {
   int fifo_words_;
   int queued_ = 0;
   std::uint64_t written_ = 0;
+  int most_queued_ = 0;
   PortCycles cycles_;
 };
 
@@ -118,13 +152,37 @@ class CoreControl {
 
   void start_frame(const FrameLatencies& latencies);
   Decision decide() const;
-  // `*_entry_valid`: of the table entry that the side's LUT port has read in this cycle.
-  void commit(const Decision& decision, memory::PortMask granted, bool left_entry_valid,
+  // `*_entry_valid`: of the table entry that the side's LUT port has read in this cycle. True if the matcher has
+  // completed four columns with it, counted from result_delay_columns % 4 on.
+  bool commit(const Decision& decision, memory::PortMask granted, bool left_entry_valid,
               bool right_entry_valid);
   // The host port is not the core's own: what it did in this cycle is counted here beside the others.
-  void count_host(bool requested, bool granted) {
-    host_cycles_.count(requested ? Intent::kRequest : Intent::kIdle, granted);
+  void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
+    host_cycles_.count(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
   }
+  // In a cycle that was counted as one without request, or will be, the host had one for a bank of its own.
+  void host_was_busy(bool granted) {
+    host_cycles_.count(Intent::kIdle, false, ~std::uint64_t{0});
+    count_host(true, granted);
+  }
+  // So many cycles like this one, beside those committed.
+  void count(const Decision& decision, memory::PortMask granted, std::uint64_t cycles);
+
+  // After four columns: all that the next cycles depend on, but for the arbiters, and the slots not yet taken.
+  struct State {
+    LaneControl::State left;
+    LaneControl::State right;
+    std::uint64_t rest = 0;
+
+    friend bool operator==(const State& a, const State& b) {
+      return a.left == b.left && a.right == b.right && a.rest == b.rest;
+    }
+  };
+  State state() const { return {left_.state(), right_.state(), match_.state() | result_.state() << 8U}; }
+  // As if the last columns had come so many times again: the state is the same.
+  void skip_columns(std::uint64_t columns);
+  const MatchControl& match() const { return match_; }
+  const ResultControl& result() const { return result_; }
   // The last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
 
@@ -148,7 +206,7 @@ inline CoreControl::Decision CoreControl::decide() const {
           match_.decide(left_.ready() && right_.ready(), result_.has_room()), match_.draining()};
 }
 
-inline void CoreControl::commit(const Decision& decision, memory::PortMask granted, bool left_entry_valid,
+inline bool CoreControl::commit(const Decision& decision, memory::PortMask granted, bool left_entry_valid,
                                 bool right_entry_valid) {
   using memory::Port;
   const auto is_granted = [granted](Port port) { return (granted & memory::mask_of(port)) != 0; };
@@ -157,8 +215,9 @@ inline void CoreControl::commit(const Decision& decision, memory::PortMask grant
                consumes_slot);
   right_.commit(decision.right, is_granted(Port::kRightLut), is_granted(Port::kRightPixel), right_entry_valid,
                 consumes_slot);
-  const bool word_enters = decision.consume && match_.consume();
-  result_.commit(decision.result, is_granted(Port::kResult), word_enters);
+  const bool four_columns = decision.consume && match_.consume();
+  result_.commit(decision.result, is_granted(Port::kResult), four_columns && match_.word_leaves());
+  return four_columns;
 }
 
 }  // namespace stereotlm::fpga

@@ -43,7 +43,6 @@ struct FrameGeometry {
   std::uint64_t result_delay_columns;  // C: pixel i leaves with column i + C
   std::uint64_t result_words;
 
- private:
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
 };
 
@@ -55,12 +54,18 @@ class SlotCursor {
       : width_(geometry.width),
         height_(geometry.height),
         slots_per_column_(geometry.slots_per_column),
+        first_row_(geometry.first_row),
         strip_row_(geometry.first_row),
         left_(geometry.slots) {}
 
   bool done() const { return left_ == 0; }
   int column() const { return column_; }
   int row() const { return strip_row_ + k_; }  // may lie outside the image
+  // Counted over the whole frame, strip after strip.
+  std::uint64_t frame_column() const {
+    return static_cast<std::uint64_t>(strip_row_ - first_row_) * static_cast<std::uint64_t>(width_) +
+           static_cast<std::uint64_t>(column_);
+  }
   // A slot outside the image makes no access, but takes its turn.
   bool empty() const { return static_cast<unsigned>(row()) >= static_cast<unsigned>(height_); }
 
@@ -72,11 +77,18 @@ class SlotCursor {
     column_ = 0;
     ++strip_row_;
   }
+  void skip_columns(std::uint64_t columns) {
+    left_ -= columns * static_cast<std::uint64_t>(slots_per_column_);
+    const std::uint64_t column = static_cast<std::uint64_t>(column_) + columns;
+    strip_row_ += static_cast<int>(column / static_cast<std::uint64_t>(width_));
+    column_ = static_cast<int>(column % static_cast<std::uint64_t>(width_));
+  }
 
  private:
   int width_ = 0;
   int height_ = 0;
   int slots_per_column_ = 1;
+  int first_row_ = 0;
   int strip_row_ = 0;  // of the first slot of each column of the strip
   int column_ = 0;
   int k_ = 0;  // within the column

@@ -15,8 +15,8 @@ enum class Intent : std::uint8_t { kRequest, kPass, kIdle, kBlocked, kStarved };
 // Cycles by state: a request ends granted or stalled.
 class PortCycles {
  public:
-  void count(Intent intent, bool granted) {
-    ++cycles_[granted ? kGranted : static_cast<std::size_t>(intent)];
+  void count(Intent intent, bool granted, std::uint64_t cycles = 1) {
+    cycles_[granted ? kGranted : static_cast<std::size_t>(intent)] += cycles;
   }
 
   std::uint64_t granted() const { return cycles_[kGranted]; }
@@ -75,8 +75,7 @@ class LaneControl {
   // `lut_granted`, `pixel_granted`: the request was granted. `entry_valid`: of the table entry that the LUT
   // port has just read; without effect otherwise. `consumes`: the matcher consumes a slot in this cycle.
   void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid, bool consumes) {
-    lut_cycles_.count(decision.lut, lut_granted);
-    pixel_cycles_.count(decision.pixel, pixel_granted);
+    count(decision, lut_granted, pixel_granted, 1);
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
     const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
     // What enters in cycle c is seen from cycle c + latency on.
@@ -94,6 +93,43 @@ class LaneControl {
     arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
+  // So many cycles like this one, beside those committed.
+  void count(Decision decision, bool lut_granted, bool pixel_granted, std::uint64_t cycles) {
+    lut_cycles_.count(decision.lut, lut_granted, cycles);
+    pixel_cycles_.count(decision.pixel, pixel_granted, cycles);
+  }
+
+  // All that the lane does next depends on, but for the slots that it has not taken yet.
+  struct State {
+    std::uint64_t counts = 0;
+    std::uint64_t marks = 0;  // of the slots taken and not handled, oldest lowest
+
+    friend bool operator==(const State& a, const State& b) {
+      return a.counts == b.counts && a.marks == b.marks;
+    }
+  };
+  State state() const {
+    const std::uint64_t place = handled_ % kMostSlots;
+    const std::uint64_t waiting = taken_ - handled_;
+    const std::uint64_t rotated = place == 0 ? marks_ : marks_ >> place | marks_ << (kMostSlots - place);
+    const std::uint64_t kept = waiting == kMostSlots ? ~std::uint64_t{0} : (std::uint64_t{1} << waiting) - 1;
+    return {(taken_ - consumed_) | (handled_ - consumed_) << 8U | (arrived_entries_ - consumed_) << 16U |
+                (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |
+                std::uint64_t{arrived_entries_ != 0} << 33U,
+            rotated & kept};
+  }
+  // As if the last columns that the matcher has consumed had come so many times again: the state is the same.
+  void skip_columns(std::uint64_t columns) {
+    const std::uint64_t slots = columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
+    const std::uint64_t places = slots % kMostSlots;
+    if (places != 0) marks_ = marks_ << places | marks_ >> (kMostSlots - places);
+    for (std::uint64_t* count : {&taken_, &handled_, &consumed_, &arrived_entries_, &arrived_pixels_})
+      *count += slots;
+    next_slot_.skip_columns(columns);
+  }
+
+  // Slots of this frame that it has taken.
+  std::uint64_t taken() const { return taken_; }
   // The slot that the lane takes next.
   const SlotCursor& next_slot() const { return next_slot_; }
   const PortCycles& lut_cycles() const { return lut_cycles_; }

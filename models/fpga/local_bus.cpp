@@ -89,7 +89,9 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
     return;
   }
   words_left_ = access.get_data_length() / 4;
-  route_out->push({memory::bank_of_address(access.get_address()), access.is_write()});
+  const std::uint64_t first = access.get_address();
+  route_out->push(
+      {memory::bank_of_address(first), access.is_write(), first, first + access.get_data_length()});
   request_event_.notify(Clock::to_time(request_ps_ - now));
 }
 

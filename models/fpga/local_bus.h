@@ -28,6 +28,8 @@ inline constexpr std::uint64_t kLocalRegisters = std::uint64_t{1} << 34U;
 struct HostRoute {
   std::optional<std::size_t> bank;
   bool write = false;
+  std::uint64_t first = 0;  // byte address on the crossbar
+  std::uint64_t end = 0;    // the first behind the burst
 };
 
 // The FPGA's end of the bridge's local bus, and the `host` port of the banks (contract section 3; the state machine of

@@ -31,6 +31,11 @@ class LogFilter : public sc_core::sc_module {
   LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame() { filter_.start_frame(first_row_); }
+  // A frame that did not pass through.
+  void count(const Stats& frame) {
+    stats_.pixels += frame.pixels;
+    stats_.columns += frame.columns;
+  }
   const Stats& stats() const { return stats_; }
 
  private:

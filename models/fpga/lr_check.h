@@ -33,6 +33,11 @@ class LrCheck : public sc_core::sc_module {
   LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
+  // A frame that did not pass through.
+  void count(const Stats& frame) {
+    stats_.answered += frame.answered;
+    stats_.invalid += frame.invalid;
+  }
   const Stats& stats() const { return stats_; }
 
  private:

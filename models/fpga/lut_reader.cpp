@@ -1,6 +1,7 @@
 #include "models/fpga/lut_reader.h"
 
 #include "models/kernels/rectification_table.h"
+#include "models/memory/direct_memory.h"
 
 namespace stereotlm::fpga {
 
@@ -22,6 +23,17 @@ void LutReader::take(const Slot& slot) {
   }
   entry_valid_ = kernels::entry_is_valid(entry.entry);
   entries_out->push(entry);
+}
+
+const std::uint32_t* LutReader::table(int height) {
+  return reinterpret_cast<const std::uint32_t*>(memory::direct_memory(
+      port, tlm::TLM_READ_COMMAND, table_address_, width_ * static_cast<std::uint64_t>(height) * 4));
+}
+
+void LutReader::count(const Stats& frame) {
+  stats_.reads += frame.reads;
+  stats_.invalid_entries += frame.invalid_entries;
+  stats_.empty_slots += frame.empty_slots;
 }
 
 }  // namespace stereotlm::fpga

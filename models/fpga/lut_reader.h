@@ -37,6 +37,10 @@ class LutReader : public sc_core::sc_module {
 
   // Byte address of the table on the port.
   void start_frame(std::uint64_t table_address) { table_address_ = table_address; }
+  // The table of width * height entries, where memory lets it be read directly; else null. For use at once.
+  const std::uint32_t* table(int height);
+  // A frame that was fetched so.
+  void count(const Stats& frame);
   // Of the last slot taken.
   bool entry_valid() const { return entry_valid_; }
   const Stats& stats() const { return stats_; }

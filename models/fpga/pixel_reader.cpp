@@ -2,6 +2,7 @@
 
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
+#include "models/memory/direct_memory.h"
 
 namespace stereotlm::fpga {
 
@@ -51,6 +52,16 @@ void PixelReader::read(std::uint64_t column, std::uint64_t row, const sc_core::s
 void PixelReader::pass() {
   ++stats_.passed_slots;
   pixels_[pixels_stored_++ % kRing] = MaskedPixel{};
+}
+
+const std::uint8_t* PixelReader::image(int height) {
+  return memory::direct_memory(port, tlm::TLM_READ_COMMAND, image_address_,
+                               width_ * static_cast<std::uint64_t>(height));
+}
+
+void PixelReader::count(const Stats& frame) {
+  stats_.reads += frame.reads;
+  stats_.passed_slots += frame.passed_slots;
 }
 
 }  // namespace stereotlm::fpga

@@ -52,6 +52,10 @@ class PixelReader : public sc_core::sc_module {
   }
   // A cycle of the drain: a pixel that no result depends on.
   void release_blank() { pixels_out->push(MaskedPixel{}); }
+  // The image of width * height pixels, where memory lets it be read directly; else null. For use at once.
+  const std::uint8_t* image(int height);
+  // A frame that was fetched so.
+  void count(const Stats& frame);
   const Stats& stats() const { return stats_; }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/memory/direct_memory.h"
+
 namespace stereotlm::fpga {
 
 ResultWriter::ResultWriter(const sc_core::sc_module_name& name, int fifo_words)
@@ -32,6 +34,15 @@ void ResultWriter::write(const sc_core::sc_time& at) {
   if (!access_.write(next_address_, words_[written_++ % kRing], delay)) ++stats_.errors;
   ++stats_.writes;
   next_address_ += 4;
+}
+
+std::uint8_t* ResultWriter::buffer(std::uint64_t words) {
+  return memory::direct_memory(port, tlm::TLM_WRITE_COMMAND, next_address_, words * 4);
+}
+
+void ResultWriter::count(const Stats& frame) {
+  stats_.writes += frame.writes;
+  stats_.most_queued_words = std::max(stats_.most_queued_words, frame.most_queued_words);
 }
 
 }  // namespace stereotlm::fpga

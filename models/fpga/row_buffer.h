@@ -29,6 +29,8 @@ class RowBuffer : public sc_core::sc_module {
   RowBuffer(const sc_core::sc_module_name& name, int width, int window);
 
   void start_frame() { column_ = 0; }
+  // A frame that did not pass through.
+  void count(const Stats& frame) { stats_.columns += frame.columns; }
   const Stats& stats() const { return stats_; }
 
  private:

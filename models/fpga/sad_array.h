@@ -36,6 +36,12 @@ class SadArray : public sc_core::sc_module {
   SadArray(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
+  // A frame that did not pass through.
+  void count(const Stats& frame) {
+    stats_.columns += frame.columns;
+    stats_.absolute_differences += frame.absolute_differences;
+    stats_.candidates += frame.candidates;
+  }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -30,6 +30,11 @@ class SelectMinChain : public sc_core::sc_module {
   SelectMinChain(const sc_core::sc_module_name& name, int disparities);
 
   void start_frame() { chain_.start_frame(); }
+  // A frame that did not pass through.
+  void count(const Stats& frame) {
+    stats_.columns += frame.columns;
+    stats_.matches += frame.matches;
+  }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -27,6 +27,11 @@ class SelectMinTree : public sc_core::sc_module {
 
   explicit SelectMinTree(const sc_core::sc_module_name& name) : sc_module(name) {}
 
+  // A frame that did not pass through.
+  void count(const Stats& frame) {
+    stats_.columns += frame.columns;
+    stats_.matches += frame.matches;
+  }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -31,6 +31,12 @@ class Sequencer : public sc_core::sc_module {
     stats.empty_slots += std::uint64_t{place.empty()};
     (side == Side::kLeft ? left_out : right_out)->push({place.column(), place.row(), place.empty(), at});
   }
+  // A frame whose slots were not sent one by one.
+  void count(Side side, const Stats& frame) {
+    Stats& stats = stats_[static_cast<std::size_t>(side)];
+    stats.slots += frame.slots;
+    stats.empty_slots += frame.empty_slots;
+  }
   const Stats& stats(Side side) const { return stats_[static_cast<std::size_t>(side)]; }
 
  private:

@@ -40,8 +40,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
       config_(config),
       clock_(config.core.clock_mhz),
       period_ps_(clock_.edge_ps(1)),
-      period_(Clock::to_time(period_ps_)),
-      control_(config.core) {
+      period_(Clock::to_time(period_ps_)) {
   SC_HAS_PROCESS(StereoCore);
   if (const double banks_mhz = config.memory.banks.front().clock_mhz; banks_mhz != config.core.clock_mhz) {
     throw std::invalid_argument(std::string(this->name()) +
@@ -50,6 +49,13 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
   }
   bind_memory(binder);
   bind_streams();
+  if (config.fidelity == Fidelity::kFast) {
+    const CoreConfig& core = config.core;
+    pipeline_ = std::make_unique<kernels::StereoPipeline>(
+        core.width, core.height,
+        kernels::StereoConfig{core.window, core.disparities, core.filter, core.lr_tolerance});
+    disparities_.resize(static_cast<std::size_t>(core.width) * static_cast<std::size_t>(core.height));
+  }
   SC_THREAD(run);
 }
 
@@ -155,8 +161,10 @@ void StereoCore::start_frame(const FrameStart& start) {
   select_min_chain_.start_frame();
   lr_check_.start_frame();
   result_packer_.start_frame();
-  control_.start_frame(latencies);
+  timing_.start_frame(latencies, left_pattern_, right_pattern_);
   errors_before_ = access_errors();
+  frame_ = start;
+  whole_ = config_.fidelity != Fidelity::kCycle && read_frame(start);
 
   // Cycle 0 is the first that begins at or after the strobe.
   state_ = State::kRunning;
@@ -164,18 +172,27 @@ void StereoCore::start_frame(const FrameStart& start) {
   first_cycle_ = cycle_;
   work_cycle_ = cycle_;
   crossbar_.begin_counting(first_cycle_);
+  if (!is_lazy()) join_host();
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void StereoCore::run() {
   for (;;) {
     if (state_ == State::kRunning) check_progress();
-    run_ahead();
+    if (is_lazy()) {
+      run_lazily();
+    } else {
+      run_ahead();
+    }
   }
 }
 
+bool StereoCore::is_lazy() const {
+  return config_.fidelity != Fidelity::kCycle && (state_ != State::kRunning || whole_);
+}
+
 void StereoCore::check_progress() {
-  const std::uint64_t work = control_.left().consumed() + result_writer_.stats().writes;
+  const std::uint64_t work = control().left().consumed() + control().result().cycles().granted();
   if (work != work_) {
     work_ = work;
     work_cycle_ = cycle_;
@@ -189,7 +206,7 @@ void StereoCore::check_progress() {
 
 std::string StereoCore::waits() const {
   if (state_ != State::kRunning) return "the core runs no frame";
-  const CoreControl::Decision decision = control_.decide();
+  const CoreControl::Decision decision = control().decide();
   std::array<Intent, memory::kPortCount> intents{};
   intents[memory::index_of(Port::kLeftLut)] = decision.left.lut;
   intents[memory::index_of(Port::kRightLut)] = decision.right.lut;
@@ -260,61 +277,87 @@ void StereoCore::finish_frame(std::uint64_t now_ps) {
 }
 
 void StereoCore::route_host(const HostRoute& route) {
+  host_route_ = route;
   if (!route.bank) {
+    if (!host_is_routed_) return;
+    host_is_routed_ = false;
     crossbar_.unroute(Port::kHost);
+    timing_.forget_period();
     return;
   }
-  crossbar_.route(Port::kHost, *route.bank, route.write);
   host_read_latency_ =
       static_cast<std::uint64_t>(memory::read_latency_cycles(config_.memory.banks[*route.bank].kind));
+  crossbar_.aim(Port::kHost, *route.bank, route.write);
+  if (is_lazy()) {
+    if (state_ == State::kRunning) check_burst(route);
+  } else {
+    join_host();
+  }
+}
+
+// From here on the host takes part in the arbitration of the bank that its burst goes to.
+void StereoCore::join_host() {
+  if (!host_route_.bank || host_is_routed_) return;
+  host_is_routed_ = true;
+  crossbar_.route(Port::kHost, *host_route_.bank, host_route_.write);
+  timing_.forget_period();
 }
 
 // One cycle. True if a burst of the local bus has been answered in it.
 bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const bool host_requests = local_bus_.requests(edge_ps);
-  const PortMask host_request = host_requests ? memory::mask_of(Port::kHost) : PortMask{0};
   if (state_ != State::kRunning) {
-    return has(crossbar_.arbitrate(cycle_, host_request), Port::kHost) && access_host(edge_ps, at);
+    const PortMask host_request = host_requests ? memory::mask_of(Port::kHost) : PortMask{0};
+    return has(crossbar_.arbitrate(cycle_, host_request), Port::kHost) && access_host(cycle_, at);
   }
-  const CoreControl::Decision decision = control_.decide();
-  const PortMask granted =
-      crossbar_.arbitrate(cycle_, static_cast<PortMask>(decision.requests() | host_request));
-  const auto moving = static_cast<PortMask>(granted | decision.passes());
+  const PortMask granted = timing_.step(
+      cycle_, host_requests, [this, &at](const CoreControl::Decision& decision, PortMask grants) {
+        crossbar_.grant(grants);
+        move(decision, grants, at);
+        return EntriesRead{left_lut_ && left_lut_->entry_valid(), right_lut_ && right_lut_->entry_valid()};
+      });
+  if (control().frame_done()) finish_cycles(cycle_ + 1);
+  return has(granted, Port::kHost) && access_host(cycle_, at);
+}
 
-  const auto issue_left = [this, &at] { sequencer_.issue(Side::kLeft, control_.left().next_slot(), at); };
-  const auto issue_right = [this, &at] { sequencer_.issue(Side::kRight, control_.right().next_slot(), at); };
+// The data of one cycle.
+void StereoCore::move(const CoreControl::Decision& decision, PortMask granted, const sc_core::sc_time& at) {
+  const auto moving = static_cast<PortMask>(granted | decision.passes());
+  const auto issue_left = [this, &at] { sequencer_.issue(Side::kLeft, control().left().next_slot(), at); };
+  const auto issue_right = [this, &at] { sequencer_.issue(Side::kRight, control().right().next_slot(), at); };
   if (has(moving, Port::kLeftLut)) issue_left();
   if (has(moving, Port::kRightLut)) issue_right();
   if (has(moving, Port::kLeftPixel)) left_lut_ ? left_pixel_.handle(at) : issue_left();
   if (has(moving, Port::kRightPixel)) right_lut_ ? right_pixel_.handle(at) : issue_right();
   if (has(granted, Port::kResult)) result_writer_.write(at);
-  if (decision.consume) {
-    if (decision.drain) {
-      left_pixel_.release_blank();
-      right_pixel_.release_blank();
-    } else {
-      left_pixel_.release();
-      right_pixel_.release();
-    }
+  if (!decision.consume) return;
+  if (decision.drain) {
+    left_pixel_.release_blank();
+    right_pixel_.release_blank();
+  } else {
+    left_pixel_.release();
+    right_pixel_.release();
   }
-  control_.commit(decision, granted, left_lut_ && left_lut_->entry_valid(),
-                  right_lut_ && right_lut_->entry_valid());
-  control_.count_host(host_requests, has(granted, Port::kHost));
-  if (control_.frame_done()) {
-    state_ = State::kFinishing;
-    done_cycle_ = cycle_ + 1 + static_cast<std::uint64_t>(config_.core.pipeline_latency_cycles);
-    crossbar_.end_counting(cycle_ + 1);
-  }
-  return has(granted, Port::kHost) && access_host(edge_ps, at);
 }
 
-bool StereoCore::access_host(std::uint64_t edge_ps, const sc_core::sc_time& at) {
-  local_bus_.access(at, edge_ps, clock_.edge_ps(cycle_ + host_read_latency_));
+// The last write was granted in the cycle before this one.
+void StereoCore::finish_cycles(std::uint64_t end_cycle) {
+  state_ = State::kFinishing;
+  done_cycle_ = end_cycle + static_cast<std::uint64_t>(config_.core.pipeline_latency_cycles);
+  count_served(end_cycle, true);
+  crossbar_.end_counting(end_cycle);
+  count_served(UINT64_MAX, false);
+}
+
+// The host's word is granted. True if its burst is answered with it.
+bool StereoCore::access_host(std::uint64_t cycle, const sc_core::sc_time& at) {
+  local_bus_.access(at, clock_.edge_ps(cycle), clock_.edge_ps(cycle + host_read_latency_));
   return !local_bus_.word_waits();
 }
 
 void StereoCore::end_frame() {
   state_ = State::kIdle;
+  if (whole_) write_frame();
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
   register_file_.finish_frame(frame_cycles_.back(), access_errors() != errors_before_);
 }

@@ -11,6 +11,7 @@
 #include "models/clock.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/core_timing.h"
 #include "models/fpga/local_bus.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
@@ -24,15 +25,25 @@
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
 #include "models/fpga/sequencer.h"
+#include "models/fpga/slot_pattern.h"
+#include "models/kernels/stereo_pipeline.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
+// How the core works on a frame; the results and times are the same.
+enum class Fidelity : std::uint8_t {
+  kCycle,   // cycle by cycle, every access a transaction
+  kFast,    // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
+  kTiming,  // as kFast, but no pictures are read and no disparities written
+};
+
 struct StereoCoreConfig {
   CoreConfig core;
   memory::CrossbarConfig memory;
   LocalBusConfig local_bus;
+  Fidelity fidelity = Fidelity::kCycle;
   std::uint64_t patience_cycles = std::uint64_t{1} << 26U;  // with a frame that does not go on
 };
 
@@ -40,9 +51,15 @@ struct StereoCoreConfig {
 // file, and the one clocked process that steps them. Stages exchange data through streams, reach memory
 // through the crossbar's sockets, and move when CoreControl says so.
 //
-// The process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
+// At Fidelity::kCycle the process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
 // have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every access carries its
 // own time. It sleeps while no frame runs and no word waits at the local bus.
+//
+// At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for a bank
+// that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the start strobe,
+// and the disparities appear at the frame's end; a burst of the local bus that would notice (it writes what the frame
+// reads, or touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose memory
+// cannot be had directly, whose buffers overlap or whose tables point outside the image is done cycle by cycle.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
 // ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
@@ -59,14 +76,15 @@ class StereoCore : public sc_core::sc_module {
   // problems, or the banks another clock than the core.
   StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
 
-  const CoreControl& control() const { return control_; }
+  const CoreControl& control() const { return timing_.control(); }
+  Fidelity fidelity() const { return config_.fidelity; }
   const memory::Crossbar& crossbar() const { return crossbar_; }
   // frame_cycles of every finished frame.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
   // What each port does: who asks for which bank, and to whom it lost it most often so far.
   std::string waits() const;
-  // The cycle of the clock that comes next.
-  std::uint64_t cycle() const { return cycle_; }
+  // Brings control() up to the present, for whoever watches a frame.
+  void catch_up();
 
   // The stages, for their statistics. A LUT reader or row buffer that the configuration does not need is
   // null.
@@ -98,12 +116,28 @@ class StereoCore : public sc_core::sc_module {
   bool has_bank(std::uint32_t base) const;
   int latency_of(std::uint32_t base) const;
 
+  bool read_frame(const FrameStart& start);
+  const std::uint32_t* read_table(LutReader& reader, memory::Port port, std::uint32_t base,
+                                  SlotPattern& pattern, bool& is_sound);
+  bool buffers_are_apart(const FrameStart& start) const;
+  void write_frame();
+  void count_frame(std::uint64_t answered);
+  void check_burst(const HostRoute& route) const;
+
   void run();
+  bool is_lazy() const;
   void check_progress();
   void run_ahead();
+  void run_lazily();
+  void serve_beside_frame();
+  void serve_alone(std::uint64_t now_ps);
+  void count_served(std::uint64_t end_cycle, bool in_frame);
+  void finish_cycles(std::uint64_t end_cycle);
   void finish_frame(std::uint64_t now_ps);
   bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
-  bool access_host(std::uint64_t edge_ps, const sc_core::sc_time& at);
+  void move(const CoreControl::Decision& decision, memory::PortMask granted, const sc_core::sc_time& at);
+  void join_host();
+  bool access_host(std::uint64_t cycle, const sc_core::sc_time& at);
   void end_frame();
   std::uint64_t access_errors() const;
 
@@ -111,8 +145,8 @@ class StereoCore : public sc_core::sc_module {
   Clock clock_;
   std::uint64_t period_ps_;
   sc_core::sc_time period_;
-  CoreControl control_;
   memory::Crossbar crossbar_{"crossbar", config_.memory};
+  CoreTiming timing_{config_.core, crossbar_.arbitration()};
   RegisterFile register_file_{"register_file"};
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   Sequencer sequencer_{"sequencer"};
@@ -140,7 +174,26 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t work_ = 0;         // done by the last check of progress
   std::uint64_t work_cycle_ = 0;   // of the check that found some
   std::uint64_t errors_before_ = 0;
-  std::uint64_t host_read_latency_ = 2;  // cycles, of the bank that the host is routed to
+  HostRoute host_route_;                 // of the burst on the local bus
+  bool host_is_routed_ = false;          // takes part in the arbitration
+  std::uint64_t host_read_latency_ = 2;  // cycles, of its bank
+
+  // The other fidelities.
+  bool whole_ = false;  // the frame's data is worked on at once
+  SlotPattern left_pattern_{FrameGeometry(config_.core)};
+  SlotPattern right_pattern_{FrameGeometry(config_.core)};
+  bool left_table_is_sound_ = true;
+  bool right_table_is_sound_ = true;
+  FrameStart frame_;  // that runs
+  std::unique_ptr<kernels::StereoPipeline> pipeline_;
+  std::vector<std::uint8_t> disparities_;  // of the frame that runs
+  // Words of the local bus in a bank that the running frame does not use, until it is known which of them count.
+  struct Served {
+    std::uint64_t cycle;
+    memory::BankArbiter::Outcome outcome;
+  };
+  std::vector<Served> served_;
+  std::size_t served_bank_ = 0;
   sc_core::sc_event start_event_{"start_event"};
   std::vector<std::uint64_t> frame_cycles_;
 };

@@ -31,13 +31,27 @@ void BankArbiter::grant_alone(PortMask port, bool write, std::uint64_t cycles) {
   if (cycles == 0) return;
   const std::size_t situation = place_ * kMasks + port;
   if (counting_) {
-    outcomes_[situation][std::size_t{write}] += cycles;
+    outcomes_[outcome_of(situation, write ? kWrite : kRead)] += cycles;
     // Wherever they lay: what remains up to the next call was idle.
     next_uncounted_cycle_ += cycles;
   } else {
     uncounted_accesses_ += cycles;
   }
   place_ = winners_[situation].next_place;
+}
+
+void BankArbiter::repeat(std::uint64_t period_cycles, const std::vector<Outcome>& outcomes,
+                         std::uint64_t times) {
+  const std::uint64_t cycles = period_cycles * times;
+  for (std::uint64_t& ready : ready_cycle_) ready += cycles;
+  if (!counting_) {
+    for (const Outcome outcome : outcomes)
+      uncounted_accesses_ += times * std::uint64_t{outcome % kKinds != kTurning};
+    return;
+  }
+  for (const Outcome outcome : outcomes) outcomes_[outcome] += times;
+  next_uncounted_cycle_ += cycles;
+  idle_cycles_ += (period_cycles - outcomes.size()) * times;
 }
 
 void BankArbiter::begin_counting(std::uint64_t first_cycle) {
@@ -55,9 +69,10 @@ ArbiterStats BankArbiter::stats() const {
   stats.idle_cycles = idle_cycles_;
   for (std::size_t place = 0; place < kPortCount; ++place) {
     for (std::size_t requests = 1; requests < kMasks; ++requests) {
-      const auto& outcomes = outcomes_[place * kMasks + requests];
+      const std::size_t situation = place * kMasks + requests;
+      const std::uint64_t* const outcomes = outcomes_.data() + outcome_of(situation, kRead);
       const std::uint64_t granted = outcomes[kRead] + outcomes[kWrite];
-      const PortMask winner = winners_[place * kMasks + requests].port;
+      const PortMask winner = winners_[situation].port;
       stats.reads += outcomes[kRead];
       stats.writes += outcomes[kWrite];
       stats.turnaround_cycles += outcomes[kTurning];

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "models/memory/memory_config.h"
 
@@ -30,32 +31,57 @@ struct ArbiterStats {
 // not move. Plain C++, no SystemC: the single description of arbitration, whatever steps it.
 class BankArbiter {
  public:
+  // What happened in a cycle: who asked, in which round-robin place, and what came of it.
+  using Outcome = std::uint16_t;
+
   // `turnaround_cycles`: 0 for a bank that needs none.
   BankArbiter(const ArbiterConfig& config, int turnaround_cycles);
 
-  // One cycle with at least one request: `requests`, and of these the writes. Cycles must increase. Returns
-  // the port that is granted as a mask of one bit, 0 if the bank is turning round.
-  PortMask arbitrate(std::uint64_t cycle, PortMask requests, PortMask writes) {
+  // One cycle with at least one request: `requests`, and of these the writes. Cycles must increase. What it
+  // returns is to be counted, in the order of the cycles.
+  Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
     const std::size_t situation = place_ * kMasks + requests;
     const Winner winner = winners_[situation];
     const bool write = (writes & winner.port) != 0;
-    const bool turning = cycle < ready_cycle_[std::size_t{write}];
+    if (cycle < ready_cycle_[std::size_t{write}]) return outcome_of(situation, kTurning);
+    place_ = winner.next_place;
+    ready_cycle_[std::size_t{!write}] = cycle + other_direction_cycles_;
+    return outcome_of(situation, write ? kWrite : kRead);
+  }
+  // The port that was granted as a mask of one bit, 0 if the bank was turning round.
+  PortMask granted_in(Outcome outcome) const {
+    return outcome % kKinds == kTurning ? PortMask{0} : winners_[outcome / kKinds].port;
+  }
+  void count(std::uint64_t cycle, Outcome outcome) {
     if (counting_) {
       idle_cycles_ += cycle - next_uncounted_cycle_;
       next_uncounted_cycle_ = cycle + 1;
-      ++outcomes_[situation][turning ? kTurning : std::size_t{write}];
+      ++outcomes_[outcome];
     } else {
-      uncounted_accesses_ += std::uint64_t{!turning};
+      uncounted_accesses_ += std::uint64_t{outcome % kKinds != kTurning};
     }
-    if (turning) return 0;
-    place_ = winner.next_place;
-    ready_cycle_[std::size_t{!write}] = cycle + other_direction_cycles_;
-    return winner.port;
+  }
+  // Both at once. Returns the port that is granted.
+  PortMask arbitrate(std::uint64_t cycle, PortMask requests, PortMask writes) {
+    const Outcome outcome = decide(cycle, requests, writes);
+    count(cycle, outcome);
+    return granted_in(outcome);
   }
 
   // The same for `cycles` cycles since the last call, in each of which this port alone asked: for a bank that
   // needs no turnaround.
   void grant_alone(PortMask port, bool write, std::uint64_t cycles);
+
+  // All that the decisions from `cycle` on depend on.
+  std::uint32_t state(std::uint64_t cycle) const {
+    const auto wait = [cycle](std::uint64_t ready) {
+      return static_cast<std::uint32_t>(ready > cycle ? ready - cycle : 0);
+    };
+    return static_cast<std::uint32_t>(place_) | wait(ready_cycle_[0]) << 8U | wait(ready_cycle_[1]) << 16U;
+  }
+  // The last `period_cycles` cycles, of which `outcomes` had requests, happen `times` times again; the state at
+  // the end of each is that at its beginning.
+  void repeat(std::uint64_t period_cycles, const std::vector<Outcome>& outcomes, std::uint64_t times);
 
   // Only the cycles from `first_cycle` on, up to but not including `end_cycle`, are counted in stats(); of
   // the others only the accesses, in uncounted_accesses().
@@ -67,12 +93,15 @@ class BankArbiter {
   std::uint64_t uncounted_accesses() const { return uncounted_accesses_; }
 
  private:
-  enum Outcome : std::size_t { kRead, kWrite, kTurning, kOutcomeCount = 4 };
+  enum Kind : std::size_t { kRead, kWrite, kTurning, kKinds = 4 };
   static constexpr std::size_t kMasks = std::size_t{1} << kPortCount;
   struct Winner {
     PortMask port = 0;
     std::uint8_t next_place = 0;
   };
+  static constexpr Outcome outcome_of(std::size_t situation, Kind kind) {
+    return static_cast<Outcome>(situation * kKinds + kind);
+  }
 
   // A situation is a round-robin place and a mask of requests.
   std::array<Winner, kPortCount * kMasks> winners_{};
@@ -83,7 +112,7 @@ class BankArbiter {
   std::uint64_t next_uncounted_cycle_ = 0;  // all counted cycles before it are in the statistics
   std::uint64_t idle_cycles_ = 0;
   // How often each thing happened: with the winners it says all that stats() reports.
-  std::array<std::array<std::uint64_t, kOutcomeCount>, kPortCount * kMasks> outcomes_{};  // [situation]
+  std::array<std::uint64_t, kPortCount * kMasks * kKinds> outcomes_{};
   std::uint64_t uncounted_accesses_ = 0;
 };
 

@@ -9,7 +9,7 @@
 #include <tlm>
 #include <vector>
 
-#include "models/memory/bank_arbiter.h"
+#include "models/memory/arbitration.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::memory {
@@ -45,28 +45,32 @@ class Crossbar : public sc_core::sc_module {
   // Throws std::invalid_argument if the configuration has problems.
   Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
 
-  // Requests of this port go to this bank, in this direction, from the next arbitrate() on. The bank must
-  // exist.
+  // As Arbitration does, for the next arbitrate() on. The bank must exist.
   void route(Port port, std::size_t bank, bool write);
-  // The port has nothing to request any more.
-  void unroute(Port port);
-  std::size_t bank_of(Port port) const { return targets_[index_of(port)].bank(); }  // of its last route
+  // The accesses of the port go there, but it takes no part in the arbitration: grant() says when it may.
+  void aim(Port port, std::size_t bank, bool write);
+  void unroute(Port port) { arbitration_.unroute(port); }
+  std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // of its last route
   // One cycle: decides these requests, and returns the ports granted.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
-    granted_ = static_cast<PortMask>(requests & alone_);
-    ++alone_cycles_[granted_];
-    if (requests != granted_) arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_));
-    return granted_;
+    return grant(arbitration_.arbitrate(cycle, requests));
   }
+  // The same in two steps: these ports have been granted by arbitration() in the current cycle.
+  PortMask grant(PortMask granted) { return granted_ = granted; }
+  Arbitration& arbitration() { return arbitration_; }
 
-  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
-  // counting has ended; their uncounted_accesses() always.
-  void begin_counting(std::uint64_t first_cycle);
-  void end_counting(std::uint64_t end_cycle);
-  const std::vector<BankArbiter>& arbiters() const {
-    settle();
-    return arbiters_;
-  }
+  // Tells from the last call on whether words of this port's bank may have changed, first .. end - 1 by their byte
+  // addresses on the crossbar. The first call, and one for other words, says yes.
+  bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
+  // Words have been written directly.
+  void changes(std::uint64_t first, std::uint64_t bytes);
+  // Accesses that a stage has made directly, to the bank that its port is routed to.
+  void count_direct(Port port, std::uint64_t accesses) { direct_accesses_[bank_of(port)] += accesses; }
+  std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
+
+  void begin_counting(std::uint64_t first_cycle) { arbitration_.begin_counting(first_cycle); }
+  void end_counting(std::uint64_t end_cycle) { arbitration_.end_counting(end_cycle); }
+  const std::vector<BankArbiter>& arbiters() const { return arbitration_.arbiters(); }
 
  private:
   // The target behind one port's socket, and where its requests go.
@@ -74,8 +78,6 @@ class Crossbar : public sc_core::sc_module {
    public:
     PortTarget(Crossbar& crossbar, Port port) : crossbar_(crossbar), port_mask_(mask_of(port)) {}
     void route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target);
-    std::size_t bank() const { return bank_; }
-    bool writes() const { return write_; }
     void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
     tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase&,
                                        sc_core::sc_time&) override {
@@ -84,43 +86,34 @@ class Crossbar : public sc_core::sc_module {
     }
     unsigned transport_dbg(tlm::tlm_generic_payload& access) override { return crossbar_.debug(access); }
     bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override {
-      return crossbar_.grant_dmi(access, dmi);
+      return crossbar_.grant_dmi(port_mask_, access, dmi);
     }
 
    private:
     Crossbar& crossbar_;
     PortMask port_mask_;
     bool write_ = false;
-    std::size_t bank_ = 0;
     std::uint64_t bank_base_ = 0;                            // its first address
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // found once, for speed
   };
-  // A bank whose ports meet, or which needs turnaround.
-  struct SharedBank {
-    BankArbiter* arbiter = nullptr;
-    PortMask ports = 0;
+  // Words that somebody wants to know about.
+  struct Watch {
+    std::uint64_t first = 0;
+    std::uint64_t end = 0;
+    bool changed = true;
   };
 
   void refuse(tlm::tlm_generic_payload& access) const;
   unsigned debug(tlm::tlm_generic_payload& access);
-  bool grant_dmi(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi);
+  bool grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi);
   void invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end);
-  bool has_bank(std::uint64_t address) const { return bank_of_address(address) < arbiters_.size(); }
-  void share_banks();
-  void settle() const;
-  void arbitrate_shared(std::uint64_t cycle, PortMask requests);
+  bool has_bank(std::uint64_t address) const { return bank_of_address(address) < banks.size(); }
 
-  mutable std::vector<BankArbiter> arbiters_;
+  Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  PortMask routed_ = 0;
-  PortMask writes_ = 0;  // ports whose route writes
-  // Ports alone on a bank without turnaround need no arbitration: the arbiter hears of their grants later, at
-  // the latest when somebody asks it.
-  PortMask alone_ = 0;
-  mutable std::array<std::uint64_t, std::size_t{1} << kPortCount>
-      alone_cycles_{};  // [ports granted in this way]
-  std::array<SharedBank, kPortCount> shared_banks_{};
-  std::size_t shared_bank_count_ = 0;
+  std::array<Watch, kPortCount> watches_{};
+  std::uint64_t open_banks_ = 0;  // bit per bank: the host may write there directly
+  std::vector<std::uint64_t> direct_accesses_;
   PortMask granted_ = 0;  // in the current cycle, and not yet used
 };
 

@@ -28,13 +28,14 @@ double patience_seconds(const platform::BoardConfig& board) {
 }  // namespace
 
 CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder)
-    : Simulation(board, pairs, frames),
+                                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                                   fpga::Fidelity fidelity)
+    : Simulation(board, pairs, frames, fidelity),
       board_(board),
       tables_(tables),
       driver_(driver::driver_config(board, frames), entries_of(tables.left), entries_of(tables.right), *this),
       computer_("computer", board, driver::host_memory_bytes(driver::driver_config(board, frames)), driver_,
-                left_, right_, binder),
+                left_, right_, binder, fidelity),
       patience_seconds_(patience_seconds(board)) {}
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
@@ -71,9 +72,10 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
 }
 
 // Grows with whatever brings a result nearer; what a third party does on the bus does not.
-std::uint64_t CameraSimulation::work_done() const {
-  const fpga::StereoCore& core = computer_.board.core;
-  std::uint64_t work = core.control().left().consumed() + core.result_writer().stats().writes;
+std::uint64_t CameraSimulation::work_done() {
+  computer_.board.core.catch_up();
+  const fpga::CoreControl& core = computer_.board.core.control();
+  std::uint64_t work = core.left().consumed() + core.result().cycles().granted();
   const pci::PciBus::Stats bus = computer_.pci_bus.stats();
   for (std::size_t master = 0; master < platform::Computer::kLoad; ++master)
     work += bus.masters[master].words;

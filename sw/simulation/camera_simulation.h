@@ -20,7 +20,8 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the computer cannot be
   // built.
   CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder);
+                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   void end_early() override;
   platform::Statistics statistics() const override;
@@ -42,7 +43,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
-  std::uint64_t work_done() const;
+  std::uint64_t work_done();
 
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;

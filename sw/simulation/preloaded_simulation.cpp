@@ -3,11 +3,12 @@
 namespace stereotlm::simulation {
 
 PreloadedSimulation::PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                                         host::FrameSource& pairs, std::uint64_t frames)
-    : Simulation(board, pairs, frames),
+                                         host::FrameSource& pairs, std::uint64_t frames,
+                                         fpga::Fidelity fidelity)
+    : Simulation(board, pairs, frames, fidelity),
       board_(board),
       tables_(tables),
-      system_("system", board, tables, frames, *this, *this, binder_),
+      system_("system", board, tables, frames, *this, *this, binder_, fidelity),
       counters_(platform::counters_of(system_.board)) {}
 
 platform::Statistics PreloadedSimulation::statistics() const {

@@ -16,7 +16,8 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
  public:
   // All but `frames` outlives the simulation. Throws std::exception if the board cannot be built.
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                      host::FrameSource& pairs, std::uint64_t frames);
+                      host::FrameSource& pairs, std::uint64_t frames,
+                      fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   void end_early() override { set_frames(frames_done()); }
   platform::Statistics statistics() const override;

@@ -8,17 +8,23 @@
 namespace stereotlm::simulation {
 namespace {
 
+// FPGA cycles that take some ten ms, whatever else the board has to do.
 constexpr double kSliceCycles = 40'000;
+constexpr double kFastSliceCycles = 2'000'000;
 
 }  // namespace
 
-Simulation::Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames)
-    : board_(board), pairs_(pairs), frames_(frames) {}
+Simulation::Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames,
+                       fpga::Fidelity fidelity)
+    : board_(board),
+      pairs_(pairs),
+      slice_cycles_(fidelity == fpga::Fidelity::kCycle ? kSliceCycles : kFastSliceCycles),
+      frames_(frames) {}
 
 std::vector<Result> Simulation::advance() {
   new_.clear();
   try {
-    sc_core::sc_start(kSliceCycles / board_.fpga.clock_mhz, sc_core::SC_US);
+    sc_core::sc_start(slice_cycles_ / board_.fpga.clock_mhz, sc_core::SC_US);
   } catch (const sc_core::sc_report&) {
     if (failure_) std::rethrow_exception(failure_);  // SystemC has put a report in its place
     throw;

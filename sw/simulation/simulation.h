@@ -5,6 +5,7 @@
 #include <systemc>
 #include <vector>
 
+#include "models/fpga/stereo_core.h"
 #include "models/host/ideal_host.h"
 #include "models/kernels/gray_image.h"
 #include "platform/board_config.h"
@@ -25,7 +26,7 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Simulates about 40,000 FPGA cycles and returns the results that have come in them, in order. Throws
+  // Simulates for a while, some ten ms of wall time, and returns the results that have come in them, in order. Throws
   // sc_core::sc_report if a model reports an error, what the source throws, and std::runtime_error if nothing is left to
   // happen, or nothing goes on, before the last frame is finished.
   std::vector<Result> advance();
@@ -47,7 +48,8 @@ class Simulation {
 
  protected:
   // `board` and `pairs` outlive the simulation.
-  Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames);
+  Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames,
+             fpga::Fidelity fidelity);
 
   void set_frames(std::uint64_t frames) { frames_ = frames; }
   // Within a SystemC process, which an exception of the source ends.
@@ -59,6 +61,7 @@ class Simulation {
  private:
   const platform::BoardConfig& board_;
   host::FrameSource& pairs_;
+  double slice_cycles_;
   std::uint64_t frames_;
   std::uint64_t frames_done_ = 0;
   std::uint64_t cycles_of_done_ = 0;

@@ -38,11 +38,12 @@ std::string blame_key(const std::string& port, const std::string& bank, const st
 }  // namespace
 
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
-                           const std::vector<host::StereoPair>& pairs, std::uint64_t frames) {
+                           const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
+                           fpga::Fidelity fidelity) {
   PairsInTurn source(pairs);
   KeptFrames sink;
   MonitoringBinder binder;
-  platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder);
+  platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder, fidelity);
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
   // Two of the host, three to five from the ports of the core, one to each bank.

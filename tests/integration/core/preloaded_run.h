@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/stereo_core.h"
 #include "models/host/ideal_host.h"
 #include "platform/board_config.h"
 #include "platform/statistics.h"
@@ -21,7 +22,8 @@ struct PreloadedRun {
 // Simulates `frames` frames, frame f with pair f mod length, every memory-mapped link under a protocol
 // monitor (a violation fails the test). Once per process.
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
-                           const std::vector<host::StereoPair>& pairs, std::uint64_t frames);
+                           const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
+                           fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
 // Every counter under a name of its own, "left_lut granted", "bank0 reads", "left_lut blames result in
 // bank0", "frame 0 cycles": of the model and of the plain loop alike.

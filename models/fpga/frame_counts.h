@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/fpga/core_config.h"
+#include "models/fpga/frame_geometry.h"
+#include "models/fpga/log_filter.h"
+#include "models/fpga/lr_check.h"
+#include "models/fpga/lut_reader.h"
+#include "models/fpga/pixel_reader.h"
+#include "models/fpga/result_packer.h"
+#include "models/fpga/row_buffer.h"
+#include "models/fpga/sad_array.h"
+#include "models/fpga/select_min_chain.h"
+#include "models/fpga/select_min_tree.h"
+#include "models/fpga/sequencer.h"
+#include "models/fpga/slot_pattern.h"
+
+namespace stereotlm::fpga {
+
+// What the stages count in one frame, whenever it runs through them: nothing of it depends on the timing but the
+// queue's longest. Known without the frame's cycles from the geometry, the pattern of the slots, and the answers.
+struct FrameCounts {
+  // Of a frame in which `answered` pixels have a disparity.
+  FrameCounts(const CoreConfig& config, const SlotPattern& left, const SlotPattern& right,
+              std::uint64_t answered);
+
+  struct Lane {
+    Sequencer::Stats slots;
+    LutReader::Stats table;
+    PixelReader::Stats image;
+  };
+  Lane left;
+  Lane right;
+  LogFilter::Stats filter;
+  RowBuffer::Stats rows;
+  SadArray::Stats sums;
+  SelectMinChain::Stats chain;
+  SelectMinTree::Stats tree;
+  LrCheck::Stats check;
+  ResultPacker::Stats packed;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,106 @@
+#include "models/fpga/slot_pattern.h"
+
+#include <algorithm>
+
+#include "models/kernels/rectification_table.h"
+
+namespace stereotlm::fpga {
+
+SlotPattern::SlotPattern(const FrameGeometry& geometry)
+    : geometry_(geometry),
+      words_((static_cast<std::size_t>(geometry.width) + 63) / 64),
+      valid_(words_ * static_cast<std::size_t>(geometry.height)),
+      changes_(words_ * static_cast<std::size_t>(geometry.strips)),
+      next_change_(static_cast<std::size_t>(geometry.strips)) {
+  for (int row = 0; row < geometry.height; ++row) {
+    std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
+    std::fill_n(bits, words_, ~std::uint64_t{0});
+    if (geometry.width % 64 != 0) bits[words_ - 1] = (std::uint64_t{1} << geometry.width % 64) - 1;
+  }
+  find_changes();
+}
+
+void SlotPattern::set_entries(const std::uint32_t* entries) {
+  for (int row = 0; row < geometry_.height; ++row) {
+    std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
+    for (std::size_t word = 0; word < words_; ++word) {
+      const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
+      std::uint64_t found = 0;
+      for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
+      bits[word] = found;
+      entries += count;
+    }
+  }
+  find_changes();
+}
+
+void SlotPattern::find_changes() {
+  empty_slots_ = 0;
+  valid_entries_ = 0;
+  std::vector<std::uint64_t> valid_in_row(static_cast<std::size_t>(geometry_.height));
+  for (int row = 0; row < geometry_.height; ++row) {
+    for (std::size_t word = 0; word < words_; ++word)
+      valid_in_row[static_cast<std::size_t>(row)] +=
+          static_cast<std::uint64_t>(__builtin_popcountll(valid_row(row)[word]));
+  }
+  for (int strip = 0; strip < geometry_.strips; ++strip) {
+    std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
+    std::fill_n(changes, words_, std::uint64_t{0});
+    for (int k = 0; k < geometry_.slots_per_column; ++k) {
+      const int row = geometry_.first_row + strip + k;
+      if (!inside(row)) {
+        empty_slots_ += geometry_.columns_per_strip();
+        continue;
+      }
+      valid_entries_ += valid_in_row[static_cast<std::size_t>(row)];
+      const std::uint64_t* const bits = valid_row(row);
+      std::uint64_t before = bits[0] & 1U;  // the first column has none before it
+      for (std::size_t word = 0; word < words_; ++word) {
+        changes[word] |= bits[word] ^ (bits[word] << 1U | before);
+        before = bits[word] >> 63U;
+      }
+    }
+    if (geometry_.width % 64 != 0) changes[words_ - 1] &= (std::uint64_t{1} << geometry_.width % 64) - 1;
+    if (strip > 0 && !strip_begins_alike(strip)) changes[0] |= 1U;
+  }
+  auto next = static_cast<std::uint32_t>(geometry_.strips);
+  for (int strip = geometry_.strips - 1; strip >= 0; --strip) {
+    const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(words_) * strip;
+    const auto last = first + static_cast<std::ptrdiff_t>(words_);
+    if (std::any_of(first, last, [](std::uint64_t word) { return word != 0; }))
+      next = static_cast<std::uint32_t>(strip);
+    next_change_[static_cast<std::size_t>(strip)] = next;
+  }
+}
+
+// Whether the first column of a strip is like the last one of the strip before.
+bool SlotPattern::strip_begins_alike(int strip) const {
+  for (int k = 0; k < geometry_.slots_per_column; ++k) {
+    const int row = geometry_.first_row + strip + k;
+    if (inside(row) != inside(row - 1)) return false;
+    if (inside(row) && entry_valid(0, row) != entry_valid(geometry_.width - 1, row - 1)) return false;
+  }
+  return true;
+}
+
+std::uint64_t SlotPattern::alike_until(std::uint64_t frame_column) const {
+  const std::uint64_t width = geometry_.columns_per_strip();
+  const auto strips = static_cast<std::size_t>(geometry_.strips);
+  const std::uint64_t next = frame_column + 1;
+  auto strip = static_cast<std::size_t>(next / width);
+  std::size_t place = next % width;  // in the strip
+  while (strip < strips) {
+    const std::uint64_t* const changes = changes_.data() + strip * words_;
+    std::uint64_t mask = ~std::uint64_t{0} << place % 64;
+    for (std::size_t word = place / 64; word < words_; ++word, mask = ~std::uint64_t{0}) {
+      const std::uint64_t found = changes[word] & mask;
+      if (found != 0)
+        return strip * width + word * 64 + static_cast<std::uint64_t>(__builtin_ctzll(found));
+    }
+    place = 0;
+    if (++strip < strips) strip = next_change_[strip];
+  }
+  return strips * width;
+}
+
+}  // namespace stereotlm::fpga

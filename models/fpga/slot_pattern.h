@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "models/fpga/frame_geometry.h"
+
+namespace stereotlm::fpga {
+
+// Which slots of one side make which accesses, known before they are made: where the sequence lies outside the
+// image, and which table entries are valid. What the columns of slots have in common is found when the entries are
+// set, so that asking is cheap.
+class SlotPattern {
+ public:
+  // Every entry is valid, or there is no table.
+  explicit SlotPattern(const FrameGeometry& geometry);
+
+  // `entries`: width * height, row-major.
+  void set_entries(const std::uint32_t* entries);
+
+  bool entry_valid(int column, int row) const {
+    const auto place = static_cast<std::size_t>(column);
+    return (valid_row(row)[place / 64] >> place % 64 & 1U) != 0;
+  }
+  // Columns of slots are counted over the whole frame, strip after strip. The first one behind `frame_column` whose
+  // slots do not make the same accesses, one by one; the number of columns if there is none.
+  std::uint64_t alike_until(std::uint64_t frame_column) const;
+
+  // Slots of a frame.
+  std::uint64_t empty_slots() const { return empty_slots_; }
+  std::uint64_t valid_entries() const { return valid_entries_; }  // of those that are not empty
+
+ private:
+  const std::uint64_t* valid_row(int row) const {
+    return valid_.data() + static_cast<std::size_t>(row) * words_;
+  }
+  bool inside(int row) const { return row >= 0 && row < geometry_.height; }
+  void find_changes();
+  bool strip_begins_alike(int strip) const;
+
+  FrameGeometry geometry_;
+  std::size_t words_;                   // of 64 bits, for a row of the image
+  std::vector<std::uint64_t> valid_;    // [row][word]
+  std::vector<std::uint64_t> changes_;  // [strip][word]: columns that differ from the one before
+  std::vector<std::uint32_t>
+      next_change_;  // [strip]: the first strip from it on with a change, or the number of strips
+  std::uint64_t empty_slots_ = 0;
+  std::uint64_t valid_entries_ = 0;
+};
+
+}  // namespace stereotlm::fpga

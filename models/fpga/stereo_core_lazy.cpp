@@ -1,0 +1,258 @@
+// StereoCore at the fidelities that do not go cycle by cycle.
+#include <algorithm>
+#include <string>
+
+#include "models/fpga/frame_counts.h"
+#include "models/fpga/stereo_core.h"
+#include "models/kernels/words.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::Port;
+using memory::PortMask;
+
+// Cycles that it runs at most before it looks whether the frame goes on at all.
+constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
+
+constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
+
+struct Range {
+  std::uint64_t first;
+  std::uint64_t end;
+  bool overlaps(const Range& other) const { return first < other.end && other.first < end; }
+};
+
+bool entries_lie_inside(const std::uint32_t* entries, int width, int height) {
+  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  bool inside = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t entry = entries[i];
+    inside &= !kernels::entry_is_valid(entry) ||
+              (kernels::entry_column(entry) < width && kernels::entry_row(entry) < height);
+  }
+  return inside;
+}
+
+}  // namespace
+
+// The data.
+
+// Reads all that the frame works on, and works on it. False if that is not possible at once.
+bool StereoCore::read_frame(const FrameStart& start) {
+  if (!buffers_are_apart(start)) return false;
+  const std::uint32_t* left_table = nullptr;
+  const std::uint32_t* right_table = nullptr;
+  if (left_lut_) {
+    left_table = read_table(*left_lut_, Port::kLeftLut, start.left_lut, left_pattern_, left_table_is_sound_);
+    if (left_table == nullptr) return false;
+  }
+  if (right_lut_) {
+    right_table =
+        read_table(*right_lut_, Port::kRightLut, start.right_lut, right_pattern_, right_table_is_sound_);
+    if (right_table == nullptr) return false;
+  }
+  const std::uint8_t* const left = left_pixel_.image(config_.core.height);
+  const std::uint8_t* const right = right_pixel_.image(config_.core.height);
+  if (left == nullptr || right == nullptr ||
+      result_writer_.buffer(control().geometry().result_words) == nullptr) {
+    return false;
+  }
+  if (config_.fidelity != Fidelity::kTiming)
+    pipeline_->run(left, right, left_table, right_table, disparities_.data());
+  return true;
+}
+
+// Null if it cannot be read directly, or points outside the image.
+const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, std::uint32_t base,
+                                            SlotPattern& pattern, bool& is_sound) {
+  const std::uint32_t* const entries = reader.table(config_.core.height);
+  if (entries == nullptr) return nullptr;
+  const std::uint64_t first = registers::base_address(base);
+  const std::uint64_t bytes = control().geometry().result_words * 16;
+  if (crossbar_.may_have_changed(port, first, first + bytes)) {
+    is_sound = entries_lie_inside(entries, config_.core.width, config_.core.height);
+    if (is_sound) pattern.set_entries(entries);
+  }
+  return is_sound ? entries : nullptr;
+}
+
+// Whether the disparities go where nothing is read from.
+bool StereoCore::buffers_are_apart(const FrameStart& start) const {
+  const std::uint64_t bytes = control().geometry().result_words * 4;
+  const auto range = [](std::uint32_t base, std::uint64_t size) {
+    const std::uint64_t first = registers::base_address(base);
+    return Range{first, first + size};
+  };
+  const Range disparity = range(start.disparity, bytes);
+  return !disparity.overlaps(range(start.left_image, bytes)) &&
+         !disparity.overlaps(range(start.right_image, bytes)) &&
+         !(left_lut_ && disparity.overlaps(range(start.left_lut, 4 * bytes))) &&
+         !(right_lut_ && disparity.overlaps(range(start.right_lut, 4 * bytes)));
+}
+
+// At the end of the frame.
+void StereoCore::write_frame() {
+  const std::uint64_t words = control().geometry().result_words;
+  std::uint64_t answered = 0;
+  if (config_.fidelity != Fidelity::kTiming) {
+    std::uint8_t* const buffer = result_writer_.buffer(words);
+    if (buffer == nullptr) {
+      SC_REPORT_ERROR("/stereotlm/core",
+                      (std::string(name()) + ": direct access to the disparities was taken back "
+                                             "within a frame")
+                          .c_str());
+      return;
+    }
+    std::copy(disparities_.begin(), disparities_.end(), buffer);
+    crossbar_.changes(registers::base_address(frame_.disparity), words * 4);
+    answered = static_cast<std::uint64_t>(
+        std::count_if(disparities_.begin(), disparities_.end(),
+                      [](std::uint8_t d) { return d != kernels::kInvalidDisparity; }));
+  }
+  count_frame(answered);
+}
+
+void StereoCore::count_frame(std::uint64_t answered) {
+  const FrameCounts counts(config_.core, left_pattern_, right_pattern_, answered);
+  sequencer_.count(Side::kLeft, counts.left.slots);
+  sequencer_.count(Side::kRight, counts.right.slots);
+  if (left_lut_) left_lut_->count(counts.left.table);
+  if (right_lut_) right_lut_->count(counts.right.table);
+  left_pixel_.count(counts.left.image);
+  right_pixel_.count(counts.right.image);
+  left_filter_.count(counts.filter);
+  right_filter_.count(counts.filter);
+  if (left_rows_) left_rows_->count(counts.rows);
+  if (right_rows_) right_rows_->count(counts.rows);
+  sad_array_.count(counts.sums);
+  select_min_chain_.count(counts.chain);
+  select_min_tree_.count(counts.tree);
+  if (config_.fidelity != Fidelity::kTiming) lr_check_.count(counts.check);
+  result_packer_.count(counts.packed);
+  result_writer_.count(
+      {counts.packed.words, static_cast<std::uint64_t>(control().result().most_queued()), 0});
+  crossbar_.count_direct(Port::kLeftLut, counts.left.table.reads);
+  crossbar_.count_direct(Port::kRightLut, counts.right.table.reads);
+  crossbar_.count_direct(Port::kLeftPixel, counts.left.image.reads);
+  crossbar_.count_direct(Port::kRightPixel, counts.right.image.reads);
+  crossbar_.count_direct(Port::kResult, counts.packed.words);
+}
+
+// A burst that would notice that the data is not moved word by word.
+void StereoCore::check_burst(const HostRoute& route) const {
+  const std::uint64_t bytes = control().geometry().result_words * 4;
+  const Range burst{route.first, route.end};
+  const auto touches = [&burst](std::uint32_t base, std::uint64_t size) {
+    const std::uint64_t first = registers::base_address(base);
+    return burst.overlaps({first, first + size});
+  };
+  const bool reads = touches(frame_.left_image, bytes) || touches(frame_.right_image, bytes) ||
+                     (left_lut_ && touches(frame_.left_lut, 4 * bytes)) ||
+                     (right_lut_ && touches(frame_.right_lut, 4 * bytes));
+  if (!(route.write && reads) && !touches(frame_.disparity, bytes)) return;
+  SC_REPORT_ERROR(
+      "/stereotlm/core",
+      (std::string(name()) + ": a burst of the local bus from " + std::to_string(route.first) + " on " +
+       (route.write ? "writes" : "reads") + " a buffer of the running frame: needs fidelity cycle")
+          .c_str());
+}
+
+// The time.
+
+void StereoCore::catch_up() {
+  if (state_ != State::kRunning || !whole_) return;
+  cycle_ = timing_.run_ahead(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp())));
+}
+
+// Does what is due now, and waits for what comes next. What happens at the time of an edge belongs to the cycle that
+// begins there.
+void StereoCore::run_lazily() {
+  const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
+  if (local_bus_.word_waits()) {
+    if (state_ == State::kRunning && crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank)) {
+      serve_beside_frame();
+    } else {
+      serve_alone(now);
+    }
+    return;
+  }
+  if (state_ == State::kFinishing) {
+    finish_frame(now);
+    return;
+  }
+  if (state_ == State::kIdle) {
+    wait(start_event_ | local_bus_.request_event());
+    return;
+  }
+  // Cycles before the next thing that is pending, or the present, hold no surprise.
+  const std::uint64_t horizon = now + Clock::to_ps(sc_core::sc_time_to_pending_activity());
+  const std::uint64_t most = clock_.edge_ps(cycle_ + kMostCycles);
+  cycle_ = timing_.run_ahead(cycle_, clock_.edge_at_or_after(std::min(horizon, most)));
+  if (control().frame_done()) {
+    finish_cycles(cycle_);
+    return;
+  }
+  const std::uint64_t next = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
+  if (next > now) wait(Clock::to_time(next - now), local_bus_.request_event());
+}
+
+// Words for a bank that the frame uses: cycle by cycle.
+void StereoCore::serve_beside_frame() {
+  const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
+  join_host();
+  cycle_ = timing_.run_ahead(cycle_, first);
+  const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
+  for (const std::uint64_t last = cycle_ + kMostCycles; cycle_ < last && !control().frame_done(); ++cycle_) {
+    const std::uint64_t edge = clock_.edge_ps(cycle_);
+    const PortMask granted = timing_.step(cycle_, local_bus_.requests(edge));
+    if ((granted & kHostPort) == 0) continue;
+    crossbar_.grant(kHostPort);
+    if (!access_host(cycle_, Clock::to_time(std::max(edge, now) - now))) continue;
+    ++cycle_;
+    break;
+  }
+  if (control().frame_done()) finish_cycles(cycle_);
+}
+
+// Words for a bank that nobody else uses.
+void StereoCore::serve_alone(std::uint64_t now_ps) {
+  memory::Arbitration& arbitration = crossbar_.arbitration();
+  const std::size_t bank = *host_route_.bank;
+  count_served(UINT64_MAX, true);  // of the burst before, which has ended
+  served_bank_ = bank;
+  // Somebody at the registers may start a frame that uses the bank, at any time that something is pending for.
+  const bool is_only_master = registers.size() == 0;
+  for (std::uint64_t cycle = 0; local_bus_.word_waits();) {
+    cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
+    const std::uint64_t edge = clock_.edge_ps(cycle);
+    if (!is_only_master && edge >= now_ps &&
+        edge >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
+      if (state_ != State::kRunning) count_served(UINT64_MAX, false);
+      wait(Clock::to_time(edge + 1 - now_ps));
+      return;
+    }
+    const auto outcome = arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);
+    served_.push_back({cycle, outcome});
+    if (arbitration.grants(bank, outcome)) {
+      crossbar_.grant(kHostPort);
+      access_host(cycle, Clock::to_time(std::max(edge, now_ps) - now_ps));
+    }
+    ++cycle;
+  }
+  if (state_ != State::kRunning) count_served(UINT64_MAX, false);
+}
+
+// Counts the words that were served before a cycle; `in_frame`: they lie in the counted cycles of a frame.
+void StereoCore::count_served(std::uint64_t end_cycle, bool in_frame) {
+  memory::Arbitration& arbitration = crossbar_.arbitration();
+  std::size_t counted = 0;
+  for (; counted < served_.size() && served_[counted].cycle < end_cycle; ++counted) {
+    const Served& word = served_[counted];
+    arbitration.count_unrouted(served_bank_, word.cycle, word.outcome);
+    if (in_frame) timing_.control().host_was_busy(arbitration.grants(served_bank_, word.outcome));
+  }
+  served_.erase(served_.begin(), served_.begin() + static_cast<std::ptrdiff_t>(counted));
+}
+
+}  // namespace stereotlm::fpga

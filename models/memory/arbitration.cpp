@@ -1,0 +1,130 @@
+#include "models/memory/arbitration.h"
+
+namespace stereotlm::memory {
+namespace {
+
+constexpr std::size_t lowest(PortMask mask) { return static_cast<std::size_t>(__builtin_ctz(mask)); }
+
+}  // namespace
+
+Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks) {
+  arbiters_.reserve(banks.size());
+  for (const SsramBankConfig& bank : banks) arbiters_.emplace_back(arbiter, bank.turnaround_cycles);
+}
+
+void Arbitration::route(Port port, std::size_t bank, bool write) {
+  settle();
+  routes_[index_of(port)] = {bank, write};
+  routed_ = static_cast<PortMask>(routed_ | mask_of(port));
+  share_banks();
+}
+
+void Arbitration::unroute(Port port) {
+  settle();
+  routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
+  share_banks();
+}
+
+bool Arbitration::is_used_beside(Port port, std::size_t bank) const {
+  for (std::size_t other = 0; other < kPortCount; ++other) {
+    if (other != index_of(port) && is_routed(other) && routes_[other].bank == bank) return true;
+  }
+  return false;
+}
+
+BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port,
+                                                  bool write) {
+  return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});
+}
+
+// Which ports meet in which banks.
+void Arbitration::share_banks() {
+  recording_ = false;
+  writes_ = 0;
+  alone_ = 0;
+  shared_bank_count_ = 0;
+  std::array<PortMask, kPortCount> together{};  // [port]: the ports on its bank
+  for (std::size_t i = 0; i < kPortCount; ++i) {
+    if (!is_routed(i)) continue;
+    writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
+    for (std::size_t other = 0; other < kPortCount; ++other) {
+      const bool meet = is_routed(other) && routes_[other].bank == routes_[i].bank;
+      together[i] = static_cast<PortMask>(together[i] | unsigned{meet} << other);
+    }
+  }
+  for (std::size_t i = 0; i < kPortCount; ++i) {
+    const auto port_mask = static_cast<PortMask>(1U << i);
+    if (together[i] == 0 || lowest(together[i]) != i) continue;
+    BankArbiter& arbiter = arbiters_[routes_[i].bank];
+    if (together[i] == port_mask && !arbiter.needs_turnaround()) {
+      alone_ = static_cast<PortMask>(alone_ | port_mask);
+    } else {
+      SharedBank& shared = shared_banks_[shared_bank_count_++];
+      shared.arbiter = &arbiter;
+      shared.ports = together[i];
+    }
+  }
+}
+
+// Tells the arbiters what was granted without them.
+void Arbitration::settle() const {
+  std::array<std::uint64_t, kPortCount> cycles{};
+  for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
+    if (alone_cycles_[ports_alone] == 0) continue;
+    for (std::size_t port = 0; port < kPortCount; ++port)
+      cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
+  }
+  alone_cycles_ = {};
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    arbiters_[routes_[port].bank].grant_alone(static_cast<PortMask>(1U << port), routes_[port].write,
+                                              cycles[port]);
+  }
+}
+
+// The rest of arbitrate(): requests of ports that are not alone on their banks.
+PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
+  PortMask granted = 0;
+  SharedBank* const end = shared_banks_.data() + shared_bank_count_;
+  for (SharedBank* shared = shared_banks_.data(); shared != end; ++shared) {
+    const auto asking = static_cast<PortMask>(requests & shared->ports);
+    if (asking == 0) continue;
+    BankArbiter& arbiter = *shared->arbiter;
+    const BankArbiter::Outcome outcome = arbiter.decide(cycle, asking, writes_);
+    arbiter.count(cycle, outcome);
+    if (recording_) shared->period.push_back(outcome);
+    granted = static_cast<PortMask>(granted | arbiter.granted_in(outcome));
+  }
+  return granted;
+}
+
+Arbitration::State Arbitration::state(std::uint64_t cycle) const {
+  State state{};
+  for (std::size_t i = 0; i < shared_bank_count_; ++i) state[i] = shared_banks_[i].arbiter->state(cycle);
+  return state;
+}
+
+void Arbitration::begin_period() {
+  recording_ = true;
+  alone_before_period_ = alone_cycles_;
+  for (std::size_t i = 0; i < shared_bank_count_; ++i) shared_banks_[i].period.clear();
+}
+
+void Arbitration::repeat(std::uint64_t period_cycles, std::uint64_t times) {
+  recording_ = false;
+  for (std::size_t ports = 0; ports < alone_cycles_.size(); ++ports)
+    alone_cycles_[ports] += times * (alone_cycles_[ports] - alone_before_period_[ports]);
+  for (std::size_t i = 0; i < shared_bank_count_; ++i)
+    shared_banks_[i].arbiter->repeat(period_cycles, shared_banks_[i].period, times);
+}
+
+void Arbitration::begin_counting(std::uint64_t first_cycle) {
+  settle();
+  for (BankArbiter& arbiter : arbiters_) arbiter.begin_counting(first_cycle);
+}
+
+void Arbitration::end_counting(std::uint64_t end_cycle) {
+  settle();
+  for (BankArbiter& arbiter : arbiters_) arbiter.end_counting(end_cycle);
+}
+
+}  // namespace stereotlm::memory

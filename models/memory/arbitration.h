@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "models/memory/bank_arbiter.h"
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::memory {
+
+// Which port works on which bank, and what the banks' arbiters grant them in a cycle (contract section 2). Plain
+// C++, no SystemC: the crossbar is built around it.
+class Arbitration {
+ public:
+  Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
+
+  // Requests of this port go to this bank, in this direction, from the next arbitrate() on. The bank must
+  // exist.
+  void route(Port port, std::size_t bank, bool write);
+  // The port has nothing to request any more.
+  void unroute(Port port);
+  std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
+  bool writes(Port port) const { return routes_[index_of(port)].write; }
+  // Whether a port other than this one is routed to the bank.
+  bool is_used_beside(Port port, std::size_t bank) const;
+
+  // One cycle: decides these requests, and returns the ports granted. Cycles must increase.
+  PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
+    const auto granted = static_cast<PortMask>(requests & alone_);
+    ++alone_cycles_[granted];
+    if (requests == granted) return granted;
+    return static_cast<PortMask>(granted |
+                                 arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
+  }
+  // One request of a port for a bank that no port is routed to, in the given direction. True if it is granted; it is
+  // counted later, by count_unrouted().
+  BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
+  void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome) {
+    arbiters_[bank].count(cycle, outcome);
+  }
+  bool grants(std::size_t bank, BankArbiter::Outcome outcome) const {
+    return arbiters_[bank].granted_in(outcome) != 0;
+  }
+
+  // All that arbitration from `cycle` on depends on as long as no route changes, one word a shared bank; the others
+  // are 0.
+  using State = std::array<std::uint32_t, kPortCount>;
+  State state(std::uint64_t cycle) const;
+  // From here on a period is recorded, until end_period(), repeat() or a change of routes.
+  void begin_period();
+  void end_period() { recording_ = false; }
+  // What has happened since begin_period(), in `period_cycles` cycles, happens `times` times again; the state is the
+  // same as at begin_period().
+  void repeat(std::uint64_t period_cycles, std::uint64_t times);
+
+  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
+  // counting has ended; their uncounted_accesses() always.
+  void begin_counting(std::uint64_t first_cycle);
+  void end_counting(std::uint64_t end_cycle);
+  const std::vector<BankArbiter>& arbiters() const {
+    settle();
+    return arbiters_;
+  }
+
+ private:
+  struct Route {
+    std::size_t bank = 0;
+    bool write = false;
+  };
+  // A bank whose ports meet, or which needs turnaround.
+  struct SharedBank {
+    BankArbiter* arbiter = nullptr;
+    PortMask ports = 0;
+    std::vector<BankArbiter::Outcome> period;  // recorded
+  };
+
+  bool is_routed(std::size_t port) const { return (routed_ >> port & 1U) != 0; }
+  void share_banks();
+  void settle() const;
+  PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
+
+  mutable std::vector<BankArbiter> arbiters_;
+  std::array<Route, kPortCount> routes_{};
+  PortMask routed_ = 0;
+  PortMask writes_ = 0;  // ports whose route writes
+  // Ports alone on a bank without turnaround need no arbitration: the arbiter hears of their grants later, at
+  // the latest when somebody asks it.
+  PortMask alone_ = 0;
+  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
+  mutable AloneCycles alone_cycles_{};
+  AloneCycles alone_before_period_{};
+  std::array<SharedBank, kPortCount> shared_banks_{};
+  std::size_t shared_bank_count_ = 0;
+  bool recording_ = false;
+};
+
+}  // namespace stereotlm::memory
