@@ -347,6 +347,7 @@ void StereoCore::finish_cycles(std::uint64_t end_cycle) {
   count_served(end_cycle, true);
   crossbar_.end_counting(end_cycle);
   count_served(UINT64_MAX, false);
+  if (whole_) write_frame();
 }
 
 // The host's word is granted. True if its burst is answered with it.
@@ -357,7 +358,6 @@ bool StereoCore::access_host(std::uint64_t cycle, const sc_core::sc_time& at) {
 
 void StereoCore::end_frame() {
   state_ = State::kIdle;
-  if (whole_) write_frame();
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
   register_file_.finish_frame(frame_cycles_.back(), access_errors() != errors_before_);
 }

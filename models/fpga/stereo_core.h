@@ -57,7 +57,7 @@ struct StereoCoreConfig {
 //
 // At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for a bank
 // that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the start strobe,
-// and the disparities appear at the frame's end; a burst of the local bus that would notice (it writes what the frame
+// and the disparities appear with the last write; a burst of the local bus that would notice (it writes what the frame
 // reads, or touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose memory
 // cannot be had directly, whose buffers overlap or whose tables point outside the image is done cycle by cycle.
 //

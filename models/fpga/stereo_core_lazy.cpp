@@ -15,6 +15,8 @@ using memory::PortMask;
 // Cycles that it runs at most before it looks whether the frame goes on at all.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
 
+constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // stepped for a burst, likewise
+
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
 
 struct Range {
@@ -91,7 +93,7 @@ bool StereoCore::buffers_are_apart(const FrameStart& start) const {
          !(right_lut_ && disparity.overlaps(range(start.right_lut, 4 * bytes)));
 }
 
-// At the end of the frame.
+// With the last write.
 void StereoCore::write_frame() {
   const std::uint64_t words = control().geometry().result_words;
   std::uint64_t answered = 0;
@@ -203,7 +205,7 @@ void StereoCore::serve_beside_frame() {
   join_host();
   cycle_ = timing_.run_ahead(cycle_, first);
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
-  for (const std::uint64_t last = cycle_ + kMostCycles; cycle_ < last && !control().frame_done(); ++cycle_) {
+  for (const std::uint64_t last = cycle_ + kHostCycles; cycle_ < last && !control().frame_done(); ++cycle_) {
     const std::uint64_t edge = clock_.edge_ps(cycle_);
     const PortMask granted = timing_.step(cycle_, local_bus_.requests(edge));
     if ((granted & kHostPort) == 0) continue;

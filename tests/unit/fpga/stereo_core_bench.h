@@ -25,6 +25,8 @@ namespace stereotlm::fpga {
 // monitor; the times at which the interrupt rises are recorded.
 class StereoCoreBench : public testing::Test {
  protected:
+  virtual Fidelity fidelity() const { return Fidelity::kCycle; }
+
   static constexpr std::uint32_t kWords = 64;
   enum Bank : std::uint32_t { kLeft, kRight, kResult, kLeftTable, kRightTable, kSpare, kBankCount };
 
@@ -42,8 +44,9 @@ class StereoCoreBench : public testing::Test {
 
   void build(const StereoCoreConfig& board) {
     config = board;
+    config.fidelity = fidelity();
     clock = std::make_unique<Clock>(board.core.clock_mhz);
-    core = std::make_unique<StereoCore>("core", board, binder);
+    core = std::make_unique<StereoCore>("core", config, binder);
     for (std::size_t bank = 0; bank < board.memory.banks.size(); ++bank) {
       const std::string number = std::to_string(bank);
       banks.push_back(
@@ -114,6 +117,11 @@ class StereoCoreBench : public testing::Test {
   }
   std::uint64_t pipeline() const { return static_cast<std::uint64_t>(config.core.pipeline_latency_cycles); }
   const PortCycles& port(memory::Port which) const { return core->control().port_cycles(which); }
+  // Transported, and direct.
+  std::uint64_t accesses(Bank bank) const {
+    const memory::SsramBank::Stats& stats = banks[bank]->stats();
+    return stats.reads + stats.writes + core->crossbar().direct_accesses(bank);
+  }
   std::uint64_t blamed(Bank bank, memory::Port victim, memory::Port by) const {
     return core->crossbar().arbiters()[bank].stats().blame[memory::index_of(victim)][memory::index_of(by)];
   }
@@ -131,5 +139,14 @@ class StereoCoreBench : public testing::Test {
   std::vector<sc_core::sc_time> done_at;
   std::function<void()> on_done;
 };
+
+// The same at each fidelity with pixels.
+class StereoCoreFidelities : public StereoCoreBench, public testing::WithParamInterface<Fidelity> {
+ protected:
+  Fidelity fidelity() const override { return GetParam(); }
+};
+inline std::string name_of_fidelity(const testing::TestParamInfo<Fidelity>& info) {
+  return info.param == Fidelity::kCycle ? "Cycle" : "Fast";
+}
 
 }  // namespace stereotlm::fpga

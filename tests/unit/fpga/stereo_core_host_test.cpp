@@ -21,7 +21,7 @@ constexpr std::uint64_t kFirst = 3;     // address, decode and word clock
 constexpr std::uint64_t kReadEnd = 3;   // read latency and idle clock, from the cycle of the last grant
 constexpr std::uint64_t kWriteEnd = 1;  // idle clock
 
-class StereoCoreHost : public StereoCoreBench {
+class StereoCoreHost : public StereoCoreFidelities {
  protected:
   static StereoCoreConfig host_last() {
     StereoCoreConfig board = small_board();
@@ -44,7 +44,7 @@ class StereoCoreHost : public StereoCoreBench {
   }
 };
 
-TEST_F(StereoCoreHost, ReachesTheBanksWhileNoFrameRuns) {
+TEST_P(StereoCoreHost, ReachesTheBanksWhileNoFrameRuns) {
   build(small_board());
   at(edge(5), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 3), 77); });
   at(edge(10) + kPicosecond, [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 3)); });
@@ -58,7 +58,7 @@ TEST_F(StereoCoreHost, ReachesTheBanksWhileNoFrameRuns) {
   EXPECT_EQ(port(Port::kHost).sum(), 0U);
 }
 
-TEST_F(StereoCoreHost, ReachesABankByBursts) {
+TEST_P(StereoCoreHost, ReachesABankByBursts) {
   build(small_board());
   at(edge(1), [this] {
     memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 7), std::vector<std::uint32_t>{1, 2, 3, 4});
@@ -73,7 +73,7 @@ TEST_F(StereoCoreHost, ReachesABankByBursts) {
   EXPECT_EQ(uncounted(), 7U);
 }
 
-TEST_F(StereoCoreHost, StartsAFrameAtTheEndOfTheClockThatCarriesTheStrobe) {
+TEST_P(StereoCoreHost, StartsAFrameAtTheEndOfTheClockThatCarriesTheStrobe) {
   build(small_board());
   at(edge(2), [this] {
     memory.access(TLM_WRITE_COMMAND, kLocalRegisters + registers::kControl, registers::kControlStart);
@@ -82,7 +82,7 @@ TEST_F(StereoCoreHost, StartsAFrameAtTheEndOfTheClockThatCarriesTheStrobe) {
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(2 + kFirst + frame_cycles_alone(4))});
 }
 
-TEST_F(StereoCoreHost, ReachesTheBanksWordAfterWord) {
+TEST_P(StereoCoreHost, ReachesTheBanksWordAfterWord) {
   build(small_board());
   at(edge(1), [this] {
     for (std::uint32_t word = 0; word < 5; ++word)
@@ -96,7 +96,7 @@ TEST_F(StereoCoreHost, ReachesTheBanksWordAfterWord) {
   }
 }
 
-TEST_F(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
+TEST_P(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
   build(small_board());
   at(edge(0), [this] { start(); });
   // Slot 1 of the sequence is read in cycle 3 (tables 2 cycles); the host is first in the list.
@@ -114,7 +114,7 @@ TEST_F(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
   EXPECT_EQ(uncounted(), 0U);
 }
 
-TEST_F(StereoCoreHost, CostsNothingInABankThatNoPortWants) {
+TEST_P(StereoCoreHost, CostsNothingInABankThatNoPortWants) {
   build(small_board());
   at(edge(0), [this] { start(); });
   at(edge(3 - kFirst), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 0), 5); });
@@ -127,7 +127,7 @@ TEST_F(StereoCoreHost, CostsNothingInABankThatNoPortWants) {
   EXPECT_EQ(stats.idle_cycles, frame_cycles_alone(4) - pipeline() - 1);
 }
 
-TEST_F(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
+TEST_P(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
   build(host_last());
   at(edge(0), [this] { start(); });
   // Slots 1 and 2 are read in cycles 3 and 4; slot 3, the next column's first, is empty in cycle 5.
@@ -142,7 +142,7 @@ TEST_F(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
   EXPECT_EQ(core->crossbar().arbiters()[kLeft].stats().contended_cycles, 2U);
 }
 
-TEST_F(StereoCoreHost, TakesPartFromTheFirstCycleAtOrAfterItsRequest) {
+TEST_P(StereoCoreHost, TakesPartFromTheFirstCycleAtOrAfterItsRequest) {
   build(small_board());
   at(edge(0), [this] { start(); });
   at(edge(20), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
@@ -156,7 +156,7 @@ TEST_F(StereoCoreHost, TakesPartFromTheFirstCycleAtOrAfterItsRequest) {
   EXPECT_EQ(memory.answers[2].at, edge(43 + kFirst + kReadEnd));
 }
 
-TEST_F(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
+TEST_P(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
   StereoCoreConfig board = small_board();
   board.core.pipeline_latency_cycles = 20;
   build(board);
@@ -175,7 +175,7 @@ TEST_F(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
 }
 
-TEST_F(StereoCoreHost, AsksThroughTheEndOfAFrameAndTheBeginOfTheNext) {
+TEST_P(StereoCoreHost, AsksThroughTheEndOfAFrameAndTheBeginOfTheNext) {
   build(small_board());
   on_done = [this] {
     if (core->frame_cycles().size() == 1) start();
@@ -193,7 +193,7 @@ TEST_F(StereoCoreHost, AsksThroughTheEndOfAFrameAndTheBeginOfTheNext) {
   EXPECT_EQ(port(Port::kHost).sum(), 2 * counted);
 }
 
-TEST_F(StereoCoreHost, SeesTheWordsThatAFrameHasWritten) {
+TEST_P(StereoCoreHost, SeesTheWordsThatAFrameHasWritten) {
   build(small_board());
   start();
   finish();
@@ -205,12 +205,12 @@ TEST_F(StereoCoreHost, SeesTheWordsThatAFrameHasWritten) {
   }
 }
 
-TEST_F(StereoCoreHost, IsRefusedABlockingAccess) {
+TEST_P(StereoCoreHost, IsRefusedABlockingAccess) {
   build(small_board());
   EXPECT_EQ(memory.read(crossbar_address(kSpare, 0)).status, tlm::TLM_GENERIC_ERROR_RESPONSE);
 }
 
-TEST_F(StereoCoreHost, IsGrantedDirectAccess) {
+TEST_P(StereoCoreHost, IsGrantedDirectAccess) {
   build(small_board());
   tlm::tlm_dmi dmi;
   ASSERT_TRUE(memory.dmi(crossbar_address(kResult, 0), dmi));
@@ -235,14 +235,14 @@ class StereoCoreStarved : public StereoCoreHost {
   }
 };
 
-TEST_F(StereoCoreStarved, GoesOnAfterShorterThanItsPatience) {
+TEST_P(StereoCoreStarved, GoesOnAfterShorterThanItsPatience) {
   write_for(kPatience - 10);
   run_until(edge(30'000));
   EXPECT_EQ(done_at.size(), 1U);
 }
 
-TEST_F(StereoCoreStarved, SaysWhoWaitsForWhat) {
-  write_for(60'000);
+TEST_P(StereoCoreStarved, SaysWhoWaitsForWhat) {
+  write_for(30'000);
   // Not thrown, so that the address sanitizer need not follow it through SystemC's stacks.
   sc_core::sc_report_handler::set_actions("/stereotlm/core", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
   const test::ExpectedReport expected("/stereotlm/core");
@@ -254,6 +254,11 @@ TEST_F(StereoCoreStarved, SaysWhoWaitsForWhat) {
                                      "left_pixel asks for bank number 0, lost 2[0-9]+ cycles to host; "
                                      "right_pixel is starved; result is idle; host asks for bank number 0"));
 }
+
+INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreHost, testing::Values(Fidelity::kCycle, Fidelity::kFast),
+                         name_of_fidelity);
+INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreStarved, testing::Values(Fidelity::kCycle, Fidelity::kFast),
+                         name_of_fidelity);
 
 }  // namespace
 }  // namespace stereotlm::fpga

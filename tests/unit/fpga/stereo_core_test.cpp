@@ -20,7 +20,7 @@ using sc_core::sc_time;
 
 const sc_time kPicosecond = sc_time::from_value(1);
 
-class StereoCoreTest : public StereoCoreBench {
+class StereoCoreTest : public StereoCoreFidelities {
  protected:
   std::vector<std::uint32_t> expected_words() const {
     test::ReferenceInput input;
@@ -41,7 +41,7 @@ class StereoCoreTest : public StereoCoreBench {
   }
 };
 
-TEST_F(StereoCoreTest, BeginsInTheCycleThatBeginsWithTheStrobe) {
+TEST_P(StereoCoreTest, BeginsInTheCycleThatBeginsWithTheStrobe) {
   build(small_board());
   at(edge(10), [this] { start(); });
   finish();
@@ -49,7 +49,7 @@ TEST_F(StereoCoreTest, BeginsInTheCycleThatBeginsWithTheStrobe) {
   EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
 }
 
-TEST_F(StereoCoreTest, BeginsInTheCycleAfterAStrobeAPicosecondEarlier) {
+TEST_P(StereoCoreTest, BeginsInTheCycleAfterAStrobeAPicosecondEarlier) {
   build(small_board());
   at(edge(10) - kPicosecond, [this] { start(); });
   finish();
@@ -57,7 +57,7 @@ TEST_F(StereoCoreTest, BeginsInTheCycleAfterAStrobeAPicosecondEarlier) {
   EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
 }
 
-TEST_F(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
+TEST_P(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
   build(small_board());
   at(edge(10) + kPicosecond, [this] { start(); });
   finish();
@@ -65,7 +65,7 @@ TEST_F(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
   EXPECT_EQ(done_at[0], edge(11 + frame_cycles_alone(4)));
 }
 
-TEST_F(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
+TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   build(small_board());
   at(edge(0), [this] { start(); });
   run_until(edge(frame_cycles_alone(4)) - kPicosecond);
@@ -80,7 +80,7 @@ TEST_F(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
 }
 
-TEST_F(StereoCoreTest, KeepsItsCyclesOnAClockWithoutWholePeriod) {
+TEST_P(StereoCoreTest, KeepsItsCyclesOnAClockWithoutWholePeriod) {
   StereoCoreConfig board = small_board();
   board.core.clock_mhz = 33.333;
   for (auto& bank : board.memory.banks) bank.clock_mhz = 33.333;
@@ -91,7 +91,7 @@ TEST_F(StereoCoreTest, KeepsItsCyclesOnAClockWithoutWholePeriod) {
   EXPECT_EQ(done_at[0], edge(7 + frame_cycles_alone(4)));
 }
 
-TEST_F(StereoCoreTest, EndsAFrameWithoutPipelineLatencyRightAfterItsLastWrite) {
+TEST_P(StereoCoreTest, EndsAFrameWithoutPipelineLatencyRightAfterItsLastWrite) {
   StereoCoreConfig board = small_board();
   board.core.pipeline_latency_cycles = 0;
   build(board);
@@ -101,7 +101,7 @@ TEST_F(StereoCoreTest, EndsAFrameWithoutPipelineLatencyRightAfterItsLastWrite) {
   EXPECT_EQ(done_at[0], edge(frame_cycles_alone(4)));
 }
 
-TEST_F(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
+TEST_P(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
   StereoCoreConfig board = small_board();
   for (const Bank bank : {kLeft, kRight, kLeftTable, kRightTable})
     board.memory.banks[bank].kind = BankKind::kZbtFlowThrough;
@@ -118,14 +118,14 @@ TEST_F(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
   EXPECT_EQ(result_words(), expected_words());
 }
 
-TEST_F(StereoCoreTest, ComputesTheDisparitiesOfTheContract) {
+TEST_P(StereoCoreTest, ComputesTheDisparitiesOfTheContract) {
   build(small_board());
   start();
   finish();
   EXPECT_EQ(result_words(), expected_words());
 }
 
-TEST_F(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
+TEST_P(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
   StereoCoreConfig board = small_board();
   board.core.filter = kernels::log7();
   board.core.fetch = Fetch::kLineBuffer;
@@ -139,7 +139,7 @@ TEST_F(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
   EXPECT_EQ(core->left_row_buffer()->stats().columns, core->left_filter().stats().columns);
 }
 
-TEST_F(StereoCoreTest, ComputesThemWithoutTables) {
+TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
   StereoCoreConfig board = small_board();
   board.core.left_table = false;
   board.core.right_table = false;
@@ -156,7 +156,7 @@ TEST_F(StereoCoreTest, ComputesThemWithoutTables) {
   EXPECT_EQ(port(Port::kLeftLut).idle(), frame_cycles_alone(2) - pipeline());
 }
 
-TEST_F(StereoCoreTest, CountsTheSameAtAllItsStages) {
+TEST_P(StereoCoreTest, CountsTheSameAtAllItsStages) {
   build(small_board());
   start();
   finish();
@@ -173,11 +173,11 @@ TEST_F(StereoCoreTest, CountsTheSameAtAllItsStages) {
   EXPECT_EQ(core->lr_check().stats().answered + core->lr_check().stats().invalid, 48U);
   EXPECT_EQ(core->result_packer().stats().words, 12U);
   EXPECT_EQ(core->result_writer().stats().writes, 12U);
-  EXPECT_EQ(banks[kLeft]->stats().reads, port(Port::kLeftPixel).granted());
-  EXPECT_EQ(banks[kResult]->stats().writes, 12U);
+  EXPECT_EQ(accesses(kLeft), port(Port::kLeftPixel).granted());
+  EXPECT_EQ(accesses(kResult), 12U);
 }
 
-TEST_F(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
+TEST_P(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
   build(small_board());
   int frames = 1;
   on_done = [&] {
@@ -191,7 +191,7 @@ TEST_F(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
   EXPECT_EQ(result_words(), expected_words());
 }
 
-TEST_F(StereoCoreTest, RunsAFrameAfterAPause) {
+TEST_P(StereoCoreTest, RunsAFrameAfterAPause) {
   build(small_board());
   start();
   finish();
@@ -202,7 +202,7 @@ TEST_F(StereoCoreTest, RunsAFrameAfterAPause) {
   EXPECT_EQ(done_at[1], edge(9001 + frame_cycles_alone(4)));
 }
 
-TEST_F(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
+TEST_P(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
   build(small_board());
   start();
   at(edge(20), [this] {
@@ -215,7 +215,7 @@ TEST_F(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
   EXPECT_EQ(result_words(), expected_words());
 }
 
-TEST_F(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtTheEnd) {
+TEST_P(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtTheEnd) {
   build(small_board());
   const std::uint64_t cycles = frame_cycles_alone(4);
   at(edge(0), [this] { start(); });
@@ -232,7 +232,7 @@ TEST_F(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtT
   EXPECT_EQ(done_at, (std::vector<sc_time>{edge(cycles), edge(4 * cycles), edge(5 * cycles)}));
 }
 
-TEST_F(StereoCoreTest, KeepsItsTimesInAFrameOfManyThousandCycles) {
+TEST_P(StereoCoreTest, KeepsItsTimesInAFrameOfManyThousandCycles) {
   StereoCoreConfig board = small_board();
   board.core.width = 64;
   board.core.height = 96;
@@ -307,7 +307,7 @@ TEST_P(StereoCoreBases, RaiseErrorBehindABanksEndAndTheFrameEnds) {
 INSTANTIATE_TEST_SUITE_P(StereoCore, StereoCoreBases,
                          testing::Values("left_image", "right_image", "disparity", "left_lut", "right_lut"));
 
-TEST_F(StereoCoreTest, RefusesAConfigurationWithProblems) {
+TEST_P(StereoCoreTest, RefusesAConfigurationWithProblems) {
   StereoCoreConfig window = small_board();
   window.core.window = 4;
   EXPECT_THROW(StereoCore("a", window, binder), std::invalid_argument);
@@ -318,6 +318,9 @@ TEST_F(StereoCoreTest, RefusesAConfigurationWithProblems) {
   two_clocks.core.clock_mhz += 1;
   EXPECT_THROW(StereoCore("c", two_clocks, binder), std::invalid_argument);
 }
+
+INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreTest, testing::Values(Fidelity::kCycle, Fidelity::kFast),
+                         name_of_fidelity);
 
 }  // namespace
 }  // namespace stereotlm::fpga
