@@ -32,6 +32,7 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
     if (filter_) side->filtered.resize(pixels + ImageFilter::kPadding);
     side->disparity.resize(pixels);
   }
+  pointed_to_.resize(static_cast<std::size_t>(width));
 }
 
 const std::uint8_t* StereoPipeline::prepare(Side& side, const std::uint8_t* image,
@@ -55,26 +56,30 @@ void StereoPipeline::run(const std::uint8_t* left, const std::uint8_t* right, co
   check(left_table, disparity);
 }
 
-void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* disparity) const {
-  const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* disparity) {
+  const std::size_t pixels = left_.disparity.size();
   std::copy_n(left_.disparity.data(), pixels, disparity);
+  const auto invalid_if = [](bool condition) {
+    return static_cast<std::uint8_t>(condition ? kInvalidDisparity : 0);
+  };
   if (tolerance_) {
-    // Inside this frame every pixel has a left-based disparity, which points to a pixel inside it.
+    // Where windows are, every pixel has a left-based disparity, which points to another of them.
+    const int tolerance = *tolerance_;
+    const int count = width_ - 2 * radius_;
     for (int row = radius_; row < height_ - radius_; ++row) {
-      const std::ptrdiff_t begin = std::ptrdiff_t{row} * width_;
+      const std::ptrdiff_t begin = std::ptrdiff_t{row} * width_ + radius_;
       const std::uint8_t* left_based = left_.disparity.data() + begin;
       const std::uint8_t* right_based = right_.disparity.data() + begin;
-      for (int column = radius_; column < width_ - radius_; ++column) {
-        const std::uint8_t d = left_based[column];
-        const bool consistent = left_right_consistent(d, right_based[column - d], tolerance_);
-        disparity[begin + column] = consistent ? d : kInvalidDisparity;
-      }
+      std::uint8_t* pointed_to = pointed_to_.data();
+      for (int i = 0; i < count; ++i) pointed_to[i] = right_based[i - left_based[i]];
+      std::uint8_t* out = disparity + begin;
+      for (int i = 0; i < count; ++i)
+        out[i] |= invalid_if(!left_right_consistent(left_based[i], pointed_to[i], tolerance));
     }
   }
   if (left_table != nullptr) {
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      if (!entry_is_valid(left_table[pixel])) disparity[pixel] = kInvalidDisparity;
-    }
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+      disparity[pixel] |= invalid_if(!entry_is_valid(left_table[pixel]));
   }
 }
 

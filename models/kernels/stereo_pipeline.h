@@ -33,7 +33,7 @@ class StereoPipeline {
   };
 
   const std::uint8_t* prepare(Side& side, const std::uint8_t* image, const std::uint32_t* table);
-  void check(const std::uint32_t* left_table, std::uint8_t* disparity) const;
+  void check(const std::uint32_t* left_table, std::uint8_t* disparity);
 
   int width_;
   int height_;
@@ -44,6 +44,8 @@ class StereoPipeline {
   ImageMatcher matcher_;
   Side left_;
   Side right_;
+  std::vector<std::uint8_t>
+      pointed_to_;  // a row: the right-based disparity of what the left-based one points to
 };
 
 }  // namespace stereotlm::kernels

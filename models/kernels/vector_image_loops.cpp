@@ -102,39 +102,49 @@ Halves change(Halves right, Halves left) {
 
 void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, int width,
              std::uint8_t* out) {
-  constexpr int kBlock = kBytes / 4;
   // An entry is a pair of 16-bit numbers, column and row with the valid bit above it.
   const auto weights = reinterpret_cast<Halves>(words(width << 16 | 1));
-  alignas(kBytes) std::uint32_t place[kBlock];
-  alignas(kBytes) std::uint32_t valid[kBlock];
-  int i = 0;
-  for (; i + kBlock <= count; i += kBlock) {
-    const auto entries = load<Words>(table + i);
-    const Words is_valid = entries >> 31;
-    store(multiply_pairs(reinterpret_cast<Halves>(entries & is_valid & 0x7FF07FF), weights), place);
-    store(is_valid, valid);
-    for (int k = 0; k < kBlock; ++k) out[i + k] = static_cast<std::uint8_t>(source[place[k]] & valid[k]);
-  }
-  for (; i < count; ++i) {
-    const std::uint32_t entry = table[i];
-    const std::uint32_t at = (entry >> 16 & 0x7FFU) * static_cast<std::uint32_t>(width) + (entry & 0x7FFU);
-    out[i] = entry >> 31 != 0 ? source[at] : std::uint8_t{0};
+  constexpr int kChunk = 512;
+  alignas(kBytes) std::uint32_t places[kChunk];
+  for (; count > 0; count -= kChunk, table += kChunk, out += kChunk) {
+    const int pixels = count < kChunk ? count : kChunk;
+    int i = 0;
+    for (; i + kLanes / 2 <= pixels; i += kLanes / 2) {
+      const auto entries = load<Words>(table + i);
+      store(multiply_pairs(reinterpret_cast<Halves>(entries & entries >> 31 & 0x7FF07FF), weights),
+            places + i);
+    }
+    for (; i < pixels; ++i) {
+      const std::uint32_t entry = table[i] >> 31 != 0 ? table[i] : 0;
+      places[i] = (entry >> 16 & 0x7FF) * static_cast<std::uint32_t>(width) + (entry & 0x7FF);
+    }
+    for (i = 0; i < pixels; ++i) out[i] = source[places[i]];
+    for (i = 0; i < pixels; ++i) out[i] &= static_cast<std::uint8_t>(table[i] >> 31 != 0 ? 0xFF : 0);
   }
 }
 
-void add_rows(const std::uint8_t* const* rows, int count, int width, std::int16_t* out) {
+// The sum of two rows, the second of which may be none, in `out`, or added to what is there.
+template <bool kMore, bool kSecond>
+void add_two_rows(const std::uint8_t* first, const std::uint8_t* second, int width, std::int16_t* out) {
   int u = 0;
   for (; u + kLanes <= width; u += kLanes) {
-    Halves sum = {};
-    for (int row = 0; row < count; ++row)
-      sum += __builtin_convertvector(load<HalfBytes>(rows[row] + u), Halves);
+    Halves sum = __builtin_convertvector(load<HalfBytes>(first + u), Halves);
+    if (kSecond) sum += __builtin_convertvector(load<HalfBytes>(second + u), Halves);
+    if (kMore) sum += load<Halves>(out + u);
     store(sum, out + u);
   }
-  for (; u < width; ++u) {
-    int sum = 0;
-    for (int row = 0; row < count; ++row) sum += rows[row][u];
-    out[u] = static_cast<std::int16_t>(sum);
+  for (; u < width; ++u)
+    out[u] = static_cast<std::int16_t>(first[u] + (kSecond ? second[u] : 0) + (kMore ? out[u] : 0));
+}
+
+void add_rows(const std::uint8_t* const* rows, int count, int width, std::int16_t* out) {
+  if (count == 1) {
+    add_two_rows<false, false>(rows[0], nullptr, width, out);
+  } else {
+    add_two_rows<false, true>(rows[0], rows[1], width, out);
   }
+  for (int row = 2; row + 1 < count; row += 2) add_two_rows<true, true>(rows[row], rows[row + 1], width, out);
+  if (count > 2 && count % 2 != 0) add_two_rows<true, false>(rows[count - 1], nullptr, width, out);
 }
 
 Words level(Words sum, int shift) { return larger(smaller(sum >> shift, words(127)), words(-128)) + 128; }
