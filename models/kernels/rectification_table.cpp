@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "models/kernels/image_loops.h"
+
 namespace stereotlm::kernels {
 namespace {
 
@@ -55,19 +57,22 @@ std::vector<std::string> problems(const RectificationTable& table) {
   return found;
 }
 
-GrayImage rectify(const GrayImage& source, const RectificationTable& table) {
-  if (source.width != table.width || source.height != table.height) {
-    throw std::invalid_argument("rectify: image of " + std::to_string(source.width) + " x " +
-                                std::to_string(source.height) + " with a table of " +
+void require_usable(const RectificationTable& table, const GrayImage& image) {
+  if (image.width != table.width || image.height != table.height) {
+    throw std::invalid_argument("rectify: image of " + std::to_string(image.width) + " x " +
+                                std::to_string(image.height) + " with a table of " +
                                 std::to_string(table.width) + " x " + std::to_string(table.height));
   }
   if (const auto found = problems(table); !found.empty())
     throw std::invalid_argument("rectify: " + found.front());
+}
+
+GrayImage rectify(const GrayImage& source, const RectificationTable& table) {
+  require_usable(table, source);
   GrayImage rectified(table.width, table.height);
-  for (std::size_t index = 0; index < table.entries.size(); ++index) {
-    const std::uint32_t entry = table.entries[index];
-    if (entry_is_valid(entry)) rectified.pixels[index] = source.at(entry_column(entry), entry_row(entry));
-  }
+  image_loops().front()->rectify(source.pixels.data(), table.entries.data(),
+                                 static_cast<int>(table.entries.size()), table.width,
+                                 rectified.pixels.data());
   return rectified;
 }
 

@@ -35,6 +35,9 @@ RectificationTable identity_table(int width, int height);
 // loaded.
 std::vector<std::string> problems(const RectificationTable& table);
 
+// Throws std::invalid_argument if the table has problems or is not of the image's size.
+void require_usable(const RectificationTable& table, const GrayImage& image);
+
 // P(u, v) of contract 1.1: the source pixel, or 0 where the entry is not valid. Throws std::invalid_argument
 // if the sizes differ or the table has problems.
 GrayImage rectify(const GrayImage& source, const RectificationTable& table);

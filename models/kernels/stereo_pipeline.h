@@ -1,21 +1,51 @@
 #pragma once
-#include <algorithm>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "models/kernels/image_filter.h"
+#include "models/kernels/image_loops.h"
+#include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
+
 namespace stereotlm::kernels {
+
+// The whole of contract section 1 on whole images, frame after frame: rectify, filter, match, check. All memory is
+// taken at construction.
 class StereoPipeline {
  public:
-  StereoPipeline(int width, int height, const StereoConfig& config) : width_(width), height_(height), config_(config) {}
-  void run(const std::uint8_t* left, const std::uint8_t* right, const std::uint32_t* left_table, const std::uint32_t* right_table, std::uint8_t* disparity) {
-    const auto n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    GrayImage l(width_, height_), r(width_, height_);
-    std::copy_n(left, n, l.pixels.begin()); std::copy_n(right, n, r.pixels.begin());
-    const auto table = [&](const std::uint32_t* t) { RectificationTable x{width_, height_, {}}; if (t) x.entries.assign(t, t + n); return x; };
-    const auto lt = table(left_table), rt = table(right_table);
-    const auto out = disparity_image(l, r, left_table ? &lt : nullptr, right_table ? &rt : nullptr, config_);
-    std::copy_n(out.pixels.begin(), n, disparity);
-  }
+  // Throws std::invalid_argument if the configuration has problems, or the images are to be filtered but empty.
+  // `loops`: one of image_loops().
+  StereoPipeline(int width, int height, const StereoConfig& config,
+                 const ImageLoops& loops = *image_loops().front());
+
+  // Images hold width * height pixels, tables as many entries, row-major; a table that is null does not exist. The
+  // caller has checked the tables: valid entries lie inside the image.
+  void run(const std::uint8_t* left, const std::uint8_t* right, const std::uint32_t* left_table,
+           const std::uint32_t* right_table, std::uint8_t* disparity);
+
  private:
-  int width_, height_;
-  StereoConfig config_;
+  struct Side {
+    std::vector<std::uint8_t> rectified;
+    std::vector<std::uint8_t> filtered;
+    std::vector<std::uint8_t> disparity;  // of the match based on this side
+  };
+
+  const std::uint8_t* prepare(Side& side, const std::uint8_t* image, const std::uint32_t* table);
+  void check(const std::uint32_t* left_table, std::uint8_t* disparity);
+
+  int width_;
+  int height_;
+  int radius_;
+  std::optional<int> tolerance_;
+  const ImageLoops& loops_;
+  std::optional<ImageFilter> filter_;
+  ImageMatcher matcher_;
+  Side left_;
+  Side right_;
+  std::vector<std::uint8_t>
+      pointed_to_;  // a row: the right-based disparity of what the left-based one points to
 };
-}
+
+}  // namespace stereotlm::kernels

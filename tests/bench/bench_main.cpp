@@ -5,13 +5,18 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
 #include <string>
 #include <systemc>
 #include <vector>
 
+#include "models/kernels/image_filter.h"
+#include "models/kernels/image_loops.h"
+#include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
+#include "models/kernels/stereo_pipeline.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
 
@@ -85,17 +90,49 @@ void add(const std::string& name, const std::function<void(benchmark::State&)>& 
   benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
+// The arithmetic on whole images, part by part, with each instruction set of this machine.
 void add_kernels(const host::StereoPair& pair) {
-  add("kernels/filter_image", [&pair](benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(kernels::filter_image(pair.left, kernels::log7()));
-  });
-  add("kernels/match", [&pair](benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(kernels::match(pair.left, pair.right, 7, 80));
-  });
-  add("kernels/disparity_image", [&pair](benchmark::State& state) {
-    const auto table = kernels::identity_table(pair.left.width, pair.left.height);
+  const int width = pair.left.width;
+  const int height = pair.left.height;
+  const auto table = std::make_shared<kernels::RectificationTable>(kernels::identity_table(width, height));
+  for (const kernels::ImageLoops* loops : kernels::image_loops()) {
+    const std::string end = std::string("_") + loops->name;
+    add("kernels/two_tables" + end, [=, &pair](benchmark::State& state) {
+      kernels::GrayImage out(width, height);
+      for (auto _ : state) {
+        for (const auto* image : {&pair.left, &pair.right})
+          loops->rectify(image->pixels.data(), table->entries.data(), width * height, width,
+                         out.pixels.data());
+      }
+    });
+    add("kernels/two_filters" + end, [=, &pair](benchmark::State& state) {
+      kernels::ImageFilter filter(width, height, kernels::log7(), *loops);
+      std::vector<std::uint8_t> out(pair.left.pixels.size() + kernels::ImageFilter::kPadding);
+      for (auto _ : state) {
+        for (const auto* image : {&pair.left, &pair.right}) filter.run(image->pixels.data(), out.data());
+      }
+    });
+    add("kernels/match" + end, [=, &pair](benchmark::State& state) {
+      kernels::ImageMatcher matcher(width, height, 7, 80, true, *loops);
+      kernels::GrayImage left_based(width, height);
+      kernels::GrayImage right_based(width, height);
+      for (auto _ : state) {
+        matcher.run(pair.left.pixels.data(), pair.right.pixels.data(), left_based.pixels.data(),
+                    right_based.pixels.data());
+      }
+    });
+    add("kernels/pipeline" + end, [=, &pair](benchmark::State& state) {
+      kernels::StereoPipeline pipeline(width, height, {}, *loops);
+      kernels::GrayImage out(width, height);
+      for (auto _ : state) {
+        pipeline.run(pair.left.pixels.data(), pair.right.pixels.data(), table->entries.data(),
+                     table->entries.data(), out.pixels.data());
+      }
+    });
+  }
+  add("kernels/disparity_image", [=, &pair](benchmark::State& state) {
     for (auto _ : state)
-      benchmark::DoNotOptimize(kernels::disparity_image(pair.left, pair.right, &table, &table, {}));
+      benchmark::DoNotOptimize(kernels::disparity_image(pair.left, pair.right, table.get(), table.get(), {}));
   });
 }
 

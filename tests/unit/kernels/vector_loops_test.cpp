@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "models/kernels/sad_columns.h"
+#include "models/kernels/select_min.h"
+#include "models/kernels/words.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"
 #include "tests/unit/kernels/reference_types.h"
@@ -38,12 +41,62 @@ void with_each_instruction_set(const std::function<void()>& check) {
   EXPECT_GE(targets, 1);
 }
 
-TEST(VectorLoops, GiveTheReferencesDisparityWithEachInstructionSet) {
+// Both matches of one pair of filtered images, by the kernels of the FPGA's stages, one window row after the other.
+struct Streamed {
+  std::vector<int> right_based;  // -1 where invalid
+  std::vector<int> left_based;
+};
+
+Streamed streamed_matches(const test::RandomBoard& board, const std::vector<std::uint8_t>& left,
+                          const std::vector<std::uint8_t>& right) {
+  const int width = board.width;
+  const int radius = (board.window - 1) / 2;
+  Streamed matches{std::vector<int>(left.size(), -1), std::vector<int>(left.size(), -1)};
+  const auto place = [&](int column, int row) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+  };
+  const auto signed_of = [](std::uint8_t d) { return d == kInvalidDisparity ? -1 : int{d}; };
+  SadColumns sums(board.window, board.disparities);
+  SelectMinChain chain(board.disparities);
+  std::array<std::uint8_t, 31> left_pixels{};
+  std::array<std::uint8_t, 31> right_pixels{};
+  for (int row = radius; row < board.height - radius; ++row) {
+    sums.start_frame();
+    chain.start_frame();
+    // `column` ends the window around left pixel column - radius; unit A runs on until its last pixel has left it.
+    for (int column = 0; column < width + radius + board.disparities - 1; ++column) {
+      for (int k = 0; k < board.window && column < width; ++k) {
+        left_pixels[static_cast<std::size_t>(k)] = left[place(column, row - radius + k)];
+        right_pixels[static_cast<std::size_t>(k)] = right[place(column, row - radius + k)];
+      }
+      sums.push_column(left_pixels.data(), right_pixels.data());
+      const int centre = column - radius;
+      if (centre < 0) continue;
+      const int candidates =
+          candidate_count(centre, row, width, board.height, board.window, board.disparities);
+      if (centre < width) {
+        matches.left_based[place(centre, row)] =
+            signed_of(select_min_tree(sums.window_sums(), candidates, sums.lanes()));
+      }
+      const int right_based = signed_of(chain.step(sums.window_sums(), candidates));
+      const int right_column = centre - (board.disparities - 1);
+      if (right_column >= 0 && right_column < width)
+        matches.right_based[place(right_column, row)] = right_based;
+    }
+  }
+  return matches;
+}
+
+TEST(VectorLoops, GiveTheReferencesMatchesWithEachInstructionSet) {
   for (std::uint64_t seed = 5000; seed < 5080; ++seed) {
     const test::RandomBoard board = test::make_random_board(seed);
     SCOPED_TRACE(describe(board));
-    const auto expected = test::compute_reference(test::reference_input(board, 0)).disparity;
-    with_each_instruction_set([&] { EXPECT_EQ(test::disparity_image(board).pixels, expected); });
+    const auto expected = test::compute_reference(test::reference_input(board, 0));
+    with_each_instruction_set([&] {
+      const Streamed found = streamed_matches(board, expected.filtered_left, expected.filtered_right);
+      EXPECT_EQ(found.right_based, expected.right_based);
+      EXPECT_EQ(found.left_based, expected.left_based);
+    });
   }
 }
 

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "models/kernels/filter_kernel.h"
+#include "models/kernels/image_loops.h"
+#include "models/kernels/vector_array.h"
+
+namespace stereotlm::kernels {
+
+// The filter of contract 1.2 on whole images.
+class ImageFilter {
+ public:
+  // Bytes behind the last pixel that run() may write.
+  static constexpr std::size_t kPadding = 2 * kMostImageLanes;
+
+  // Throws std::invalid_argument if the kernel has problems or the image has no pixels.
+  ImageFilter(int width, int height, const FilterKernel& kernel,
+              const ImageLoops& loops = *image_loops().front());
+  ImageFilter(const ImageFilter&) = delete;
+  ImageFilter& operator=(const ImageFilter&) = delete;
+
+  // `image` holds width * height pixels, row-major; `filtered` has room for kPadding more.
+  void run(const std::uint8_t* image, std::uint8_t* filtered);
+
+ private:
+  // Kernel rows with the same weights: their pixels are added first.
+  struct EqualRows {
+    std::vector<int> rows;  // offsets from the centre
+    std::vector<int> weights;
+    VectorArray sums;  // of their pixels, from `half` columns left of the image to as many right of it
+  };
+
+  void add_rows(EqualRows& equal, const std::uint8_t* image, int row);
+  void filter_row_wide(std::uint8_t* out) const;
+
+  int width_;
+  int height_;
+  int half_;
+  const ImageLoops& loops_;
+  std::vector<EqualRows> equal_rows_;
+  std::vector<const std::int16_t*> sums_;
+  std::vector<std::int32_t> pair_weights_;
+  FilterTaps taps_;
+  bool wide_ = false;  // a sum may leave 32 bits
+};
+
+}  // namespace stereotlm::kernels

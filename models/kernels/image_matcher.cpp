@@ -1,0 +1,151 @@
+#include "models/kernels/image_matcher.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "models/kernels/limits.h"
+#include "models/kernels/words.h"
+
+namespace stereotlm::kernels {
+namespace {
+
+constexpr std::int16_t kSmallest = std::numeric_limits<std::int16_t>::min();
+constexpr std::int16_t kLargest = std::numeric_limits<std::int16_t>::max();
+
+// Column sums that are walked through once a row should stay in a core's second cache.
+constexpr double kMostColumnSumBytes = 400e3;
+
+constexpr int divided_up(int value, int divisor) { return (value + divisor - 1) / divisor; }
+constexpr int rounded_up(int value, int unit) { return divided_up(value, unit) * unit; }
+
+}  // namespace
+
+ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, bool right_based,
+                           const ImageLoops& loops)
+    : width_(width), height_(height), radius_((window - 1) / 2), loops_(loops) {
+  plan_.window = kWindowRule.required("window", window);
+  plan_.disparities = kDisparitiesRule.required("disparities", disparities);
+  plan_.right_based = right_based;
+  windows_across_ = width - 2 * radius_;
+  windows_down_ = height - 2 * radius_;
+  if (windows_across_ < 1 || windows_down_ < 1) return;
+  // No right window has more candidates.
+  plan_.disparities = std::min(plan_.disparities, windows_across_);
+  choose_bands();
+  plan_.first_outside = windows_across_ - (segments_ - 1) * plan_.columns;
+
+  const int positions = plan_.columns + window - 1;
+  const int more = plan_.disparities - 1;
+  row_stride_ = static_cast<std::size_t>(
+      rounded_up((segments_ - 1) * plan_.columns + rounded_up(positions + more, 8), kMostImageLanes));
+  row_stride_ = std::max(row_stride_, static_cast<std::size_t>(rounded_up(width, kMostImageLanes)));
+  prepare(left_, positions + more, plan_.columns + more);
+  prepare(right_, positions, plan_.columns);
+  no_row_.resize(static_cast<std::size_t>(width));
+
+  const auto lanes = static_cast<std::size_t>(loops_.lanes);
+  outside_ = VectorArray(static_cast<std::size_t>(plan_.columns + plan_.disparities) * lanes);
+  for (int position = 0; position < plan_.columns + plan_.disparities; ++position) {
+    for (int lane = 0; lane < loops_.lanes; ++lane) {
+      const int window_column = lane % segments_ * plan_.columns + position;
+      outside_.data()[static_cast<std::size_t>(position) * lanes + static_cast<std::size_t>(lane)] =
+          window_column < windows_across_ ? kSmallest : kLargest;
+    }
+  }
+  band_begins_ = VectorArray(lanes);
+  for (int lane = 0; lane < loops_.lanes; ++lane)
+    band_begins_.data()[lane] = lane % segments_ == 0 ? kLargest : kSmallest;
+  column_sums_ = VectorArray(static_cast<std::size_t>(plan_.disparities) *
+                             static_cast<std::size_t>(plan_.columns + window) * lanes);
+  memory_ = {right_.lanes.data(), left_.lanes.data(), outside_.data(),  band_begins_.data(),
+             column_sums_.data(), right_.best.data(), left_.best.data()};
+}
+
+// Segments share window - 1 columns with the next, bands as many rows: what is shared is done twice, at about half
+// the work of a window. More segments keep less column sums.
+void ImageMatcher::choose_bands() {
+  const double shared = plan_.window - 1;
+  double least = std::numeric_limits<double>::max();
+  for (int bands = 1; bands <= loops_.lanes; bands *= 2) {
+    const int segments = loops_.lanes / bands;
+    const int columns = rounded_up(divided_up(windows_across_, segments), 8);
+    const int rows = divided_up(windows_down_, bands);
+    const double bytes = 2.0 * loops_.lanes * plan_.disparities * (columns + plan_.window);
+    const double work = (rows + 0.5 * shared) * (columns + 0.5 * shared);
+    if (work >= least || (bands > 1 && bytes > kMostColumnSumBytes)) continue;
+    least = work;
+    bands_ = bands;
+    segments_ = segments;
+    plan_.columns = columns;
+    band_rows_ = rows;
+  }
+}
+
+void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
+  const auto lanes = static_cast<std::size_t>(loops_.lanes);
+  const auto rows = static_cast<std::size_t>(bands_) * row_stride_;
+  side.positions = positions;
+  side.rows = VectorArray(rows);
+  side.out.resize(rows);
+  side.lanes = VectorArray(static_cast<std::size_t>(rounded_up(positions, 8)) * lanes);
+  side.best = VectorArray(2 * static_cast<std::size_t>(best_positions) * lanes);
+}
+
+// Row `step` of each band enters its windows. Bands that end below the image take its last row again; nothing of
+// them is used.
+void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
+  const auto width = static_cast<std::size_t>(width_);
+  const auto row_of = [&](int row) {
+    return image + static_cast<std::size_t>(std::min(row, height_ - 1)) * width;
+  };
+  std::array<const std::int16_t*, kMostImageLanes> lanes{};
+  for (int band = 0; band < bands_; ++band) {
+    const int row = band * band_rows_ + step;
+    std::int16_t* pairs = side.rows.data() + static_cast<std::size_t>(band) * row_stride_;
+    loops_.pair_pixels(row_of(row), step < plan_.window ? no_row_.data() : row_of(row - plan_.window), width_,
+                       pairs);
+    for (int segment = 0; segment < segments_; ++segment)
+      lanes[static_cast<std::size_t>(band * segments_ + segment)] = pairs + segment * plan_.columns;
+  }
+  loops_.to_lanes(lanes.data(), side.positions, side.lanes.data());
+}
+
+void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
+  std::array<std::uint8_t*, kMostImageLanes> lanes{};
+  for (int lane = 0; lane < loops_.lanes; ++lane) {
+    lanes[static_cast<std::size_t>(lane)] = side.out.data() +
+                                            static_cast<std::size_t>(lane / segments_) * row_stride_ +
+                                            lane % segments_ * plan_.columns;
+  }
+  loops_.from_lanes(side.best.data(), plan_.columns, lanes.data());
+  for (int band = 0; band < bands_; ++band) {
+    const int row = band * band_rows_ + step - (plan_.window - 1);
+    if (row >= windows_down_) continue;
+    const std::uint8_t* from = side.out.data() + static_cast<std::size_t>(band) * row_stride_;
+    std::copy_n(from, windows_across_,
+                disparity + static_cast<std::ptrdiff_t>(row + radius_) * width_ + radius_);
+  }
+}
+
+void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
+                       std::uint8_t* right_disparity) {
+  const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  std::fill_n(left_disparity, pixels, kInvalidDisparity);
+  if (plan_.right_based) std::fill_n(right_disparity, pixels, kInvalidDisparity);
+  if (windows_across_ < 1 || windows_down_ < 1) return;
+  column_sums_.clear();
+  for (int step = 0; step < band_rows_ + plan_.window - 1; ++step) {
+    enter_rows(left_, left, step);
+    enter_rows(right_, right, step);
+    if (step < plan_.window - 1) {
+      loops_.add_row(plan_, memory_);
+      continue;
+    }
+    loops_.match_row(plan_, memory_);
+    leave_rows(left_, step, left_disparity);
+    if (plan_.right_based) leave_rows(right_, step, right_disparity);
+  }
+}
+
+}  // namespace stereotlm::kernels

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "models/kernels/image_loops.h"
+#include "models/kernels/vector_array.h"
+
+namespace stereotlm::kernels {
+
+// Contract 1.3 on whole images.
+class ImageMatcher {
+ public:
+  // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
+  ImageMatcher(int width, int height, int window, int disparities, bool right_based,
+               const ImageLoops& loops = *image_loops().front());
+  ImageMatcher(const ImageMatcher&) = delete;
+  ImageMatcher& operator=(const ImageMatcher&) = delete;
+
+  // All width * height pixels, row-major. right_disparity is not touched without `right_based`.
+  void run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
+           std::uint8_t* right_disparity);
+
+ private:
+  struct Side {
+    VectorArray rows;               // per band: one row, each pixel with the one that leaves the window
+    VectorArray lanes;              // the same, one vector per position
+    VectorArray best;               // per position
+    std::vector<std::uint8_t> out;  // per band: one row of disparities
+    int positions = 0;
+  };
+
+  void choose_bands();
+  void prepare(Side& side, int positions, int best_positions);
+  void enter_rows(Side& side, const std::uint8_t* image, int step);
+  void leave_rows(Side& side, int step, std::uint8_t* disparity);
+
+  int width_;
+  int height_;
+  int radius_;
+  const ImageLoops& loops_;
+  MatchPlan plan_;
+  int bands_ = 1;     // each of band_rows_ rows of windows
+  int segments_ = 1;  // lanes of a band, each of plan_.columns columns of windows
+  int band_rows_ = 0;
+  int windows_across_ = 0;
+  int windows_down_ = 0;
+  std::size_t row_stride_ = 0;  // of Side::rows and Side::out
+  Side left_;
+  Side right_;
+  VectorArray outside_;
+  VectorArray band_begins_;
+  VectorArray column_sums_;
+  std::vector<std::uint8_t> no_row_;  // leaves the first windows
+  MatchMemory memory_;
+};
+
+}  // namespace stereotlm::kernels

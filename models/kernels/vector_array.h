@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "models/kernels/image_loops.h"
+
+namespace stereotlm::kernels {
+
+// 16-bit numbers for ImageLoops, zeros at first, aligned to the longest vector.
+class VectorArray {
+ public:
+  VectorArray() = default;
+  explicit VectorArray(std::size_t size) : blocks_((size + kMostImageLanes - 1) / kMostImageLanes) {}
+  std::int16_t* data() { return blocks_.data()->data(); }
+  const std::int16_t* data() const { return blocks_.data()->data(); }
+  void clear() {
+    for (Block& block : blocks_) block = {};
+  }
+
+ private:
+  struct alignas(kMostImageVectorBytes) Block : std::array<std::int16_t, kMostImageLanes> {};
+  std::vector<Block> blocks_;
+};
+
+}  // namespace stereotlm::kernels
