@@ -9,11 +9,12 @@ namespace {
 
 using kernels::RectificationTable;
 
-host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames) {
+host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames, fpga::Fidelity fidelity) {
   host::IdealHostConfig config;
   config.width = board.image.width;
   config.height = board.image.height;
   config.frames = frames;
+  config.pixels = fidelity != fpga::Fidelity::kTiming;
   config.buffers = frame_buffers(board);
   return config;
 }
@@ -39,7 +40,7 @@ PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const Boar
                                  host::FrameSink& sink, Binder& binder, fpga::Fidelity fidelity)
     : sc_module(name),
       board("board", config, binder, fidelity),
-      host("host", host_config(config, frames), checked(tables.left, config, "left"),
+      host("host", host_config(config, frames, fidelity), checked(tables.left, config, "left"),
            checked(tables.right, config, "right"), source, sink) {
   binder.bind(host.registers, board.core.registers, "host_to_registers");
   binder.bind(host.memory, board.core.local_bus, "host_to_local_bus");

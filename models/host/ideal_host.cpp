@@ -43,7 +43,7 @@ IdealHost::IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig&
       right_entries_(entries_of(right_table, config.buffers.right_lut.has_value(), "right")),
       source_(source),
       sink_(sink),
-      disparity_(config.width, config.height) {
+      disparity_(config.pixels ? config.width : 0, config.pixels ? config.height : 0) {
   SC_HAS_PROCESS(IdealHost);
   if (config.buffers.left_images.empty() || config.buffers.right_images.empty() ||
       config.buffers.disparities.empty()) {
@@ -72,7 +72,7 @@ void IdealHost::load_tables() {
   load_table(config_.buffers.right_lut, right_entries_, registers_of::kRightLutBase);
 }
 
-bool IdealHost::start_frame() {
+bool IdealHost::load_pictures(std::uint32_t left, std::uint32_t right) {
   const StereoPair& pair = source_.pair(frames_done_);
   for (const kernels::GrayImage* image : {&pair.left, &pair.right}) {
     if (image->width == config_.width && image->height == config_.height) continue;
@@ -83,10 +83,15 @@ bool IdealHost::start_frame() {
                      .c_str());
     return false;
   }
-  const std::uint32_t left = in_turn(config_.buffers.left_images, frames_done_);
-  const std::uint32_t right = in_turn(config_.buffers.right_images, frames_done_);
   preload(left, pair.left.pixels.data(), pair.left.pixels.size());
   preload(right, pair.right.pixels.data(), pair.right.pixels.size());
+  return true;
+}
+
+bool IdealHost::start_frame() {
+  const std::uint32_t left = in_turn(config_.buffers.left_images, frames_done_);
+  const std::uint32_t right = in_turn(config_.buffers.right_images, frames_done_);
+  if (config_.pixels && !load_pictures(left, right)) return false;
   write_register(registers_of::kLeftImageBase, left);
   write_register(registers_of::kRightImageBase, right);
   const std::uint32_t disparity = in_turn(config_.buffers.disparities, frames_done_);
@@ -109,8 +114,10 @@ bool IdealHost::end_frame() {
                     ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
     return false;
   }
-  read_back(in_turn(config_.buffers.disparities, frames_done_), disparity_.pixels.data(),
-            disparity_.pixels.size());
+  if (config_.pixels) {
+    read_back(in_turn(config_.buffers.disparities, frames_done_), disparity_.pixels.data(),
+              disparity_.pixels.size());
+  }
   const std::uint64_t frame = frames_done_++;
   sink_.take(frame, disparity_);
   return true;

@@ -37,6 +37,7 @@ struct IdealHostConfig {
   int width = 0;   // pixels
   int height = 0;  // pixels
   std::uint64_t frames = 1;
+  bool pixels = true;  // false: pictures are neither asked for nor loaded, and results are empty
   fpga::FrameBuffers buffers;
 };
 
@@ -66,6 +67,7 @@ class IdealHost : public sc_core::sc_module {
  private:
   void run();
   void load_tables();
+  bool load_pictures(std::uint32_t left, std::uint32_t right);
   bool start_frame();  // false, like end_frame(): an error has been reported, the host stops
   bool end_frame();
   void write_register(std::uint64_t address, std::uint32_t value);

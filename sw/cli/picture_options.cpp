@@ -36,8 +36,9 @@ void PictureOptions::add_to(CLI::App& command) {
                     "A made scene that moves, with known disparities; another one for each SEED, 0 or more");
 }
 
-void PictureOptions::check_given(Problems& problems) const {
-  if (sources_given().empty()) problems.add(fmt::format("pictures: missing: a run needs {}", kSources));
+void PictureOptions::check_given(Problems& problems, bool may_be_missing) const {
+  if (!may_be_missing && sources_given().empty())
+    problems.add(fmt::format("pictures: missing: a run needs {}", kSources));
   if (left_.is_given() == right_.is_given()) return;
   problems.add(left_.is_given() ? "--right: missing: goes with --left F"
                                 : "--left: missing: goes with --right F");

@@ -23,10 +23,10 @@ class PictureOptions {
   void add_to(CLI::App& command);
 
   // While the command's callback runs: reports what is missing, and everything else that is wrong.
-  void check_given(Problems& problems) const;
+  void check_given(Problems& problems, bool may_be_missing) const;
   void check_usage(Problems& problems);
 
-  // As check_usage() leaves them: one of the four is there, if nothing was wrong.
+  // As check_usage() leaves them: one of the four is there, if nothing was wrong and it may not be missing.
   struct Pair {
     std::string left;
     std::string right;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "platform/bounds.h"
 #include "sw/cli/add_command.h"
@@ -10,11 +11,11 @@
 #include "sw/cli/interrupt.h"
 #include "sw/cli/progress.h"
 #include "sw/cli/run_input.h"
+#include "sw/cli/run_mode.h"
 #include "sw/cli/run_options.h"
 #include "sw/cli/run_results.h"
 #include "sw/cli/streams.h"
-#include "sw/simulation/camera_simulation.h"
-#include "sw/simulation/preloaded_simulation.h"
+#include "sw/cli/verification.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -22,14 +23,9 @@ namespace {
 using simulation::Simulation;
 
 // What can go wrong here is known before the first cycle.
-std::unique_ptr<Simulation> build(const RunInput& input, Binder& binder) {
+std::unique_ptr<Simulation> build(const RunInput& input, host::FrameSource& pairs, Binder& binder) {
   try {
-    if (input.camera) {
-      return std::make_unique<simulation::CameraSimulation>(input.board, input.tables, *input.pairs,
-                                                            input.frames, binder);
-    }
-    return std::make_unique<simulation::PreloadedSimulation>(input.board, input.tables, *input.pairs,
-                                                             input.frames);
+    return simulation::make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
   } catch (const std::exception& error) {
     refuse(fmt::format("the board cannot be built: {}", error.what()));
   }
@@ -44,7 +40,7 @@ std::uint64_t least_frame_cycles(const RunInput& input) {
 }
 
 // Until the last frame, or the end of an interruption.
-void simulate(Simulation& simulation, const RunInput& input) {
+void simulate(Simulation& simulation, const RunInput& input, Verification* verification) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
   ProgressLine progress;
   bool ends_early = false;
@@ -60,7 +56,10 @@ void simulate(Simulation& simulation, const RunInput& input) {
       }
       continue;
     }
-    for (const simulation::Result& result : simulation.advance()) save_frame(input, result);
+    for (const simulation::Result& result : simulation.advance()) {
+      save_frame(input, result);
+      if (verification != nullptr) verification->add(result);
+    }
     progress.show({simulation.frames(), simulation.frames_done(), simulation.cycles_of_done(),
                    simulation.cycles(), frame_cycles});
   }
@@ -68,17 +67,25 @@ void simulate(Simulation& simulation, const RunInput& input) {
 
 int run(const RunOptions& options) {
   RunInput input = load_run_input(options);
+  std::optional<Verification> verification;
+  if (options.verify) verification.emplace(input, options);
   Binder binder;
-  const std::unique_ptr<Simulation> simulation = build(input, binder);
-  simulate(*simulation, input);
+  simulation::BlankPairs blank(input.board);
+  host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
+  const std::unique_ptr<Simulation> simulation = build(input, pairs, binder);
+  simulate(*simulation, input, verification ? &*verification : nullptr);
   const std::uint64_t done = simulation->frames_done();
   if (done < input.frames) {
     say("note", fmt::format("interrupted after {} of {} frames{}", done, input.frames,
                             done == 0 ? ": there is no result" : ""));
+    if (verification) say("note", "--verify: interrupted: nothing is compared");
     if (done == 0) return kInterrupted;
     leave_out_truth_of_another_pair(input, done);
   }
-  if (!deliver(input, simulation->statistics(), simulation->last())) return kFailed;
+  const platform::Statistics statistics = simulation->statistics();
+  const bool is_sound = deliver(input, statistics, simulation->last());
+  const bool agrees = !verification || done < input.frames || verification->finish(statistics);
+  if (!is_sound || !agrees) return kFailed;
   return done < input.frames ? kInterrupted : kDone;
 }
 

@@ -64,7 +64,7 @@ class InputLoader {
     });
     problems_.check();
     for (const std::string& note : source_.notes) say("note", note);
-    if (input_.calibration) {
+    if (input_.calibration && !options_.timing_only) {
       say_what_is_not_seen();
       attempt("", [&] { say_how_rows_agree(); });
     }
@@ -161,11 +161,15 @@ class InputLoader {
   void describe() {
     const bool has_end = options_.pictures.sequence || options_.pictures.video;
     input_.camera = options_.camera;
+    input_.fast = options_.fast;
+    input_.timing_only = options_.timing_only;
     input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
     report::RunOptions& run = input_.described;
     run.program_version = kVersion;
     run.source = options_.camera ? "camera" : "preloaded";
-    run.fidelity = "cycle";
+    run.fidelity = options_.fast ? "fast" : "cycle";
+    run.timing_only = options_.timing_only;
+    run.verify = options_.verify;
     run.frames = input_.frames;
     run.truth_scale = options_.truth_scale;
     run.save_frames = options_.save_frames;

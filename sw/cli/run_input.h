@@ -20,8 +20,10 @@ struct RunInput {
   platform::BoardConfig board;
   std::optional<calib::Calibration> calibration;
   platform::Tables tables;
-  std::unique_ptr<PairSource> pairs;
-  bool camera = true;                            // --source camera, else preloaded
+  std::unique_ptr<PairSource> pairs;  // null: blank ones; only with timing_only
+  bool camera = true;                 // --source camera, else preloaded
+  bool fast = true;                   // --fidelity fast, else cycle
+  bool timing_only = false;
   std::uint64_t frames = 1;                      // to deliver
   std::optional<media::Truth> truth;             // of the pair that the last one shows
   std::string config_yaml;                       // the text of that result file

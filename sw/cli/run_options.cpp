@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "platform/board_keys.h"
@@ -12,11 +13,10 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kExample = "stereotlm run fpl2003 --fidelity cycle --left left.png --right right.png";
+constexpr const char* kExample = "stereotlm run fpl2003 --left left.png --right right.png";
 
 const std::vector<std::string> kSources = {"camera", "preloaded"};  // the first is the default
-const std::vector<std::string> kFidelities = {"cycle", "fast"};  // the second is the default, and not built
-constexpr const char* kFidelityProblem = "--fidelity fast{}: {}; built: --fidelity cycle";
+const std::vector<std::string> kFidelities = {"fast", "cycle"};
 
 }  // namespace
 
@@ -31,9 +31,15 @@ void RunOptions::add_to(CLI::App& command) {
       command, "--source", fmt::format("{}", fmt::join(kSources, "|")),
       "Where pictures come from: cameras of a whole computer, or they appear in their buffers in no "
       "time (default camera)");
-  fidelity_.add_to(
-      command, "--fidelity", fmt::format("{}", fmt::join(kFidelities, "|")),
-      "How exact the timing is (default fast; this version has cycle: every bank and port, cycle by cycle)");
+  fidelity_.add_to(command, "--fidelity", fmt::format("{}", fmt::join(kFidelities, "|")),
+                   "How the simulation works, not what comes out, which is the same to the bit and to the "
+                   "cycle: fast (the default), "
+                   "or cycle by cycle, every access a transaction");
+  add_flag(command, "--timing-only", timing_only,
+           "Leave out all pixels: the times and counts are the same, and no picture is needed; writes no "
+           "disparities");
+  add_flag(command, "--verify", verify,
+           "Run at the other fidelity too, in a second process, and compare every figure, time and pixel");
   truth_.add_to(command, "--truth", "F",
                 "Ground truth of the left picture that the last frame shows, 8-bit grey, 0 = unknown");
   truth_scale_.add_to(command, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)");
@@ -44,11 +50,9 @@ void RunOptions::add_to(CLI::App& command) {
            "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
            "--out, numbered by "
            "camera frame");
-  unbuilt_.add(command, "--timing-only", 0);
-  unbuilt_.add(command, "--verify", 0);
   unbuilt_.add(command, "--trace", 1);
   set_footer(command,
-             paragraph("", 0, fmt::format("Not in this version: {}; --fidelity fast.", unbuilt_.names())) +
+             paragraph("", 0, fmt::format("Not in this version: {}.", unbuilt_.names())) +
                  "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
                  "those that the\ncore has begun are finished first.");
 }
@@ -58,7 +62,7 @@ void RunOptions::check_usage() {
   unbuilt_.report(problems);
   problems.check();  // what stands in for the pictures may be among them
   board.check_given(problems);
-  pictures.check_given(problems);
+  pictures.check_given(problems, timing_only);
   const bool is_complete = problems.empty();
   pictures.check_usage(problems);
   check_choices(problems);
@@ -74,11 +78,8 @@ void RunOptions::check_choices(Problems& problems) {
   if (source_.is_given() && is_one_of(kSources, "--source", source_.text, problems)) {
     camera = source_.text == kSources.front();
   }
-  if (!fidelity_.is_given()) {
-    problems.add(fmt::format(kFidelityProblem, ", the default", kNotInThisVersion));
-  } else if (is_one_of(kFidelities, "--fidelity", fidelity_.text, problems) &&
-             fidelity_.text != kFidelities.front()) {
-    problems.add(fmt::format(kFidelityProblem, "", kNotInThisVersion));
+  if (fidelity_.is_given() && is_one_of(kFidelities, "--fidelity", fidelity_.text, problems)) {
+    fast = fidelity_.text == kFidelities.front();
   }
 }
 
@@ -103,6 +104,11 @@ void RunOptions::check_combinations(Problems& problems) const {
   if (truth_scale_.is_given() && !truth_.is_given()) problems.add("--truth-scale: goes with --truth F");
   if (truth_.is_given() && pictures.synthetic) {
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
+  }
+  for (const auto& [name, given] :
+       {std::pair("--truth", truth_.is_given()), std::pair("--save-frames", save_frames)}) {
+    if (timing_only && given)
+      problems.add(fmt::format("{}: does not go with --timing-only, which has no disparities", name));
   }
   if (save_frames && !out_.is_given()) problems.add("--save-frames: goes with --out DIR");
 }

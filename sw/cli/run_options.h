@@ -28,6 +28,9 @@ class RunOptions {
   PictureOptions pictures;
   // As check_usage() leaves them.
   bool camera = true;  // else preloaded
+  bool fast = true;    // else cycle by cycle
+  bool timing_only = false;
+  bool verify = false;
   std::optional<std::uint64_t> frames;
   std::optional<std::string> truth;
   double truth_scale = 1;

@@ -12,23 +12,26 @@
 namespace stereotlm::cli {
 namespace {
 
-void write_files(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last,
-                 const std::optional<report::Accuracy>& accuracy) {
+void add_pictures(const RunInput& input, const simulation::Result& last, report::ResultFolder& folder) {
   const kernels::GrayImage& disparity = last.disparity;
   const MediaFunctions& media = media_functions();
-  report::ResultFolder& folder = *input.folder;
   folder.add("disparity.png", media.encode_png_gray(disparity));
   folder.add("disparity.pfm", media.encode_pfm(disparity));
   folder.add("disparity_color.png",
              media.encode_disparity_color_png(disparity, input.board.matcher.disparities));
-  if (input.calibration) {
-    const calib::DepthGeometry geometry = {input.calibration->rectification.q,
-                                           input.calibration->disparity_offset};
-    const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
-    folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height,
-                                                calib::depth_millimetres(geometry, disparity)));
-    folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
-  }
+  if (!input.calibration) return;
+  const calib::DepthGeometry geometry = {input.calibration->rectification.q,
+                                         input.calibration->disparity_offset};
+  const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
+  folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height,
+                                              calib::depth_millimetres(geometry, disparity)));
+  folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
+}
+
+void write_files(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last,
+                 const std::optional<report::Accuracy>& accuracy) {
+  report::ResultFolder& folder = *input.folder;
+  if (!input.timing_only) add_pictures(input, last, folder);
   folder.add("stats.json", report::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
   // An interrupted run is the same as a whole one of the frames that it finished.
@@ -40,7 +43,7 @@ void write_files(RunInput& input, const platform::Statistics& statistics, const 
 // A made scene's own truth, which is without calibration, is shown to the user only: stats.json has the accuracy against --truth.
 std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const simulation::Result& last,
                                                  const std::optional<report::Accuracy>& accuracy) {
-  if (accuracy || !input.pairs || input.calibration) return accuracy;
+  if (accuracy || !input.pairs || input.calibration || input.timing_only) return accuracy;
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
   return report::accuracy(last.disparity, *truth);
@@ -55,8 +58,9 @@ void save_frame(const RunInput& input, const simulation::Result& result) {
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
+  if (!input.truth) return;
   const std::uint64_t length = input.pairs->length();
-  if (!input.truth || (frames_done - 1) % length == (input.frames - 1) % length) return;
+  if ((frames_done - 1) % length == (input.frames - 1) % length) return;
   say("note", fmt::format("--truth is of the pair of frame {}, which was not reached: no accuracy",
                           input.frames - 1));
   input.truth.reset();

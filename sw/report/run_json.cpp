@@ -65,6 +65,8 @@ std::string run_json(const RunOptions& options) {
                    {"source", options.source},
                    {"fidelity", options.fidelity},
                    {"frames", options.frames}};
+  if (options.timing_only) document["timing_only"] = true;
+  if (options.verify) document["verify"] = true;
   if (options.left) document["left"] = to_json("--left", *options.left);
   if (options.right) document["right"] = to_json("--right", *options.right);
   if (options.sequence) document["sequence"] = to_json("--sequence", *options.sequence);

@@ -28,7 +28,9 @@ struct InputFolder {
 struct RunOptions {
   std::string program_version;
   std::string source;    // "preloaded"
-  std::string fidelity;  // "cycle"
+  std::string fidelity;  // "fast"
+  bool timing_only = false;
+  bool verify = false;
   std::uint64_t frames = 1;
   std::optional<InputFile> left;
   std::optional<InputFile> right;

@@ -66,8 +66,11 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   deliveries_.push_back({begin->second, Clock::to_ps(sc_core::sc_time_stamp())});
   begins_ps_.erase(begins_ps_.begin(), std::next(begin));
   if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
-  kernels::GrayImage disparity(board_.image.width, board_.image.height);
-  disparity.pixels.assign(frame.disparity, frame.disparity + disparity.pixels.size());
+  kernels::GrayImage disparity;
+  if (computer_.board.core.fidelity() != fpga::Fidelity::kTiming) {
+    disparity = kernels::GrayImage(board_.image.width, board_.image.height);
+    disparity.pixels.assign(frame.disparity, frame.disparity + disparity.pixels.size());
+  }
   add_result({frame.camera_frame, std::move(disparity)});
 }
 

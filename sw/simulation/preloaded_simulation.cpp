@@ -3,12 +3,12 @@
 namespace stereotlm::simulation {
 
 PreloadedSimulation::PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                                         host::FrameSource& pairs, std::uint64_t frames,
+                                         host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                                          fpga::Fidelity fidelity)
     : Simulation(board, pairs, frames, fidelity),
       board_(board),
       tables_(tables),
-      system_("system", board, tables, frames, *this, *this, binder_, fidelity),
+      system_("system", board, tables, frames, *this, *this, binder, fidelity),
       counters_(platform::counters_of(system_.board)) {}
 
 platform::Statistics PreloadedSimulation::statistics() const {

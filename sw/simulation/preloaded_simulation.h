@@ -14,9 +14,9 @@ namespace stereotlm::simulation {
 // is given up.
 class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
  public:
-  // All but `frames` outlives the simulation. Throws std::exception if the board cannot be built.
+  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the board cannot be built.
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                      host::FrameSource& pairs, std::uint64_t frames,
+                      host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   void end_early() override { set_frames(frames_done()); }
@@ -28,7 +28,6 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
 
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;
-  Binder binder_;
   platform::PreloadedSystem system_;
   platform::BoardCounters counters_;  // at the end of the last finished frame
 };

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "models/clock.h"
+
 namespace stereotlm::simulation {
 namespace {
 
@@ -54,6 +56,7 @@ const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
 
 void Simulation::add_result(Result result) {
   ++frames_done_;
+  result.time_ps = Clock::to_ps(sc_core::sc_time_stamp());
   cycles_of_done_ = cycles();
   last_ = result;
   new_.push_back(std::move(result));

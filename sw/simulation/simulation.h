@@ -16,6 +16,7 @@ namespace stereotlm::simulation {
 struct Result {
   std::uint64_t number = 0;  // of the camera frame, which shows pair `number` modulo the number of pairs
   kernels::GrayImage disparity;
+  std::uint64_t time_ps = 0;  // when it was there, from time 0
 };
 
 // A board and what is around it, on the pairs of a source, until `frames` results are there. One of these a process:

@@ -60,7 +60,8 @@ TEST(PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
-  PreloadedSimulation simulation(board, tables, pairs, 10);
+  Binder binder;
+  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   EXPECT_FALSE(simulation.finished());
   EXPECT_EQ(simulation.frames_done(), 0U);
   EXPECT_EQ(simulation.statistics().frames, 0U);
@@ -90,7 +91,8 @@ TEST(PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
-  PreloadedSimulation simulation(board, tables, pairs, 10);
+  Binder binder;
+  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   std::vector<Result> ended = simulation.advance();
   EXPECT_EQ(ended.size(), 6U);
   for (Result& result : simulation.advance()) ended.push_back(std::move(result));
@@ -106,7 +108,8 @@ TEST(PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
-  PreloadedSimulation simulation(board, tables, pairs, 10);
+  Binder binder;
+  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   simulation.advance();
   simulation.end_early();
   EXPECT_TRUE(simulation.finished());
@@ -119,7 +122,8 @@ TEST(PreloadedSimulation, PassesOnWhatTheSourceThrows) {
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
   pairs.failing_frame = 3;
-  PreloadedSimulation simulation(board, tables, pairs, 10);
+  Binder binder;
+  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
   EXPECT_EQ(message_of_advancing(simulation), "the disk is gone");
   EXPECT_EQ(simulation.frames_done(), 3U);
@@ -130,7 +134,8 @@ TEST(PreloadedSimulation, PassesOnWhatAModelReports) {
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   pairs.pair_.right = kernels::GrayImage(28, 24);
-  PreloadedSimulation simulation(board, tables, pairs, 1);
+  Binder binder;
+  PreloadedSimulation simulation(board, tables, pairs, 1, binder);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
   EXPECT_THROW(simulation.advance(), sc_core::sc_report);
 }
@@ -139,7 +144,8 @@ TEST(PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
-  PreloadedSimulation simulation(board, tables, pairs, 10);
+  Binder binder;
+  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   simulation.advance();
   ASSERT_EQ(simulation.frames_done(), 6U);
   // An error that is not thrown: the host does no more.

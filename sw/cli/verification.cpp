@@ -1,0 +1,107 @@
+#include "sw/cli/verification.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string_view>
+
+#include "models/binder.h"
+#include "sw/cli/open_source.h"
+#include "sw/cli/progress.h"
+#include "sw/cli/run_mode.h"
+#include "sw/cli/streams.h"
+#include "sw/report/stats_differences.h"
+#include "sw/report/stats_json.h"
+
+namespace stereotlm::cli {
+namespace {
+
+constexpr std::size_t kMostLines = 10;
+
+// The result of a frame, short enough to be kept for all of them.
+std::string line_of(const simulation::Result& result, bool with_pixels) {
+  std::string line = fmt::format("camera frame {}, done at {} ps", result.number, result.time_ps);
+  if (with_pixels) {
+    const auto& pixels = result.disparity.pixels;
+    const std::string_view bytes(reinterpret_cast<const char*>(pixels.data()), pixels.size());
+    line += fmt::format(", pixels {:016x}", std::hash<std::string_view>()(bytes));
+  }
+  return line;
+}
+
+// But for the name of the fidelity.
+std::string stats_text(platform::Statistics statistics) {
+  statistics.fidelity = "both";
+  return report::stats_json(statistics, std::nullopt);
+}
+
+std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" : "fast"; }
+
+// The pictures of `options`, opened by this process.
+std::unique_ptr<PairSource> open_pairs(const RunInput& input, const RunOptions& options) {
+  Problems problems;
+  report::RunOptions described;
+  OpenedSource source = open_source(options.pictures, &input.board, described, problems);
+  if (!problems.empty()) throw std::runtime_error("the pictures cannot be read any more");
+  return std::move(source.pairs);
+}
+
+void run_other(const RunInput& input, const RunOptions& options, const simulation::Child::Tell& tell) {
+  const std::unique_ptr<PairSource> pairs = open_pairs(input, options);
+  simulation::BlankPairs blank(input.board);
+  host::FrameSource& source = pairs ? static_cast<host::FrameSource&>(*pairs) : blank;
+  Binder binder;
+  simulation::RunMode mode = run_mode(input);
+  mode.fidelity = input.fast ? fpga::Fidelity::kCycle : fpga::Fidelity::kFast;
+  const auto simulation = simulation::make_simulation(input.board, input.tables, source, mode, binder);
+  while (!simulation->finished()) {
+    for (const simulation::Result& result : simulation->advance()) tell(line_of(result, !input.timing_only));
+  }
+  tell(stats_text(simulation->statistics()));
+}
+
+}  // namespace
+
+Verification::Verification(const RunInput& input, const RunOptions& options)
+    : input_(input),
+      other_(std::make_unique<simulation::Child>(
+          [&input, &options](const simulation::Child::Tell& tell) { run_other(input, options, tell); })) {}
+
+void Verification::add(const simulation::Result& result) {
+  results_.push_back(line_of(result, !input_.timing_only));
+}
+
+bool Verification::finish(const platform::Statistics& statistics) {
+  const std::string ours = input_.fast ? "fast" : "cycle";
+  const std::string other = name_of_other(input_);
+  std::vector<std::string> lines;
+  ProgressLine progress;
+  try {
+    for (std::size_t frame = 0; frame < results_.size(); ++frame) {
+      const std::string theirs = other_->next().value_or("nothing");
+      if (theirs != results_[frame])
+        lines.push_back(fmt::format("frame {}: {}: {}; {}: {}", frame, ours, results_[frame], other, theirs));
+      progress.show({results_.size(), frame + 1, 0, 0, 1});
+    }
+    for (const std::string& difference :
+         report::stats_differences(stats_text(statistics), other_->next().value_or("{}"), ours, other))
+      lines.push_back("stats.json: " + difference);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("--verify: the run at fidelity {}: {}", other, error.what()));
+  }
+  progress.erase();
+  if (lines.empty()) {
+    say("note", fmt::format("verified: fast and cycle agree in every figure, time{} of {} frame{}",
+                            input_.timing_only ? "" : " and pixel", results_.size(),
+                            results_.size() == 1 ? "" : "s"));
+    return true;
+  }
+  for (std::size_t i = 0; i < lines.size() && i < kMostLines; ++i)
+    say("error", "the fidelities differ: " + lines[i]);
+  if (lines.size() > kMostLines)
+    say("error", fmt::format("the fidelities differ: {} more lines", lines.size() - kMostLines));
+  return false;
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "platform/statistics.h"
+#include "sw/cli/run_input.h"
+#include "sw/simulation/child.h"
+#include "sw/simulation/simulation.h"
+
+namespace stereotlm::cli {
+
+// `--verify`: the same run at the other fidelity, in a process of its own, and what differs.
+class Verification {
+ public:
+  // Begins the other run; before this process elaborates its own. It opens the pictures anew. `input` outlives it.
+  Verification(const RunInput& input, const RunOptions& options);
+
+  // A result of this process's run, in turn.
+  void add(const simulation::Result& result);
+  // Waits for the other run, and says on standard error what is not the same. True if everything is.
+  bool finish(const platform::Statistics& statistics);
+
+ private:
+  const RunInput& input_;
+  std::vector<std::string> results_;  // one line each, in the order of the frames
+  std::unique_ptr<simulation::Child> other_;
+};
+
+}  // namespace stereotlm::cli

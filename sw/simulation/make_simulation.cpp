@@ -1,0 +1,17 @@
+#include "sw/simulation/make_simulation.h"
+
+#include "sw/simulation/camera_simulation.h"
+#include "sw/simulation/preloaded_simulation.h"
+
+namespace stereotlm::simulation {
+
+std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
+                                            const platform::Tables& tables, host::FrameSource& pairs,
+                                            const RunMode& mode, Binder& binder) {
+  if (mode.camera) {
+    return std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+  }
+  return std::make_unique<PreloadedSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+}
+
+}  // namespace stereotlm::simulation
