@@ -35,6 +35,11 @@ class Clock {
     return edge;
   }
 
+  // Whether every edge of the two lies at the same time, known from their periods in whole ps.
+  bool has_edges_of(const Clock& other) const {
+    return whole_period_ps_ != 0 && whole_period_ps_ == other.whole_period_ps_;
+  }
+
   static sc_core::sc_time to_time(std::uint64_t ps) { return sc_core::sc_time::from_value(ps); }
   static std::uint64_t to_ps(const sc_core::sc_time& time) { return time.value(); }
 

@@ -160,10 +160,10 @@ class CoreControl {
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
     host_cycles_.count(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
   }
-  // In a cycle that was counted as one without request, or will be, the host had one for a bank of its own.
-  void host_was_busy(bool granted) {
-    host_cycles_.count(Intent::kIdle, false, ~std::uint64_t{0});
-    count_host(true, granted);
+  // In some cycles that were counted as ones without request, or will be, the host had one for a bank of its own.
+  void host_was_busy(bool granted, std::uint64_t cycles) {
+    host_cycles_.count(Intent::kIdle, false, ~cycles + 1);  // may become negative until they are counted
+    count_host(true, granted, cycles);
   }
   // So many cycles like this one, beside those committed.
   void count(const Decision& decision, memory::PortMask granted, std::uint64_t cycles);

@@ -117,11 +117,31 @@ bool LocalBus::transfer(memory::WordAccess& through, std::uint64_t address, sc_c
 void LocalBus::access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps) {
   sc_core::sc_time delay = at;
   const std::uint64_t address = burst_->get_address() + next_word_ * 4;
-  if (transfer(memory_access_, address, delay)) {
+  const bool taken = transfer(memory_access_, address, delay);
+  if (taken) {
     ++(burst_->is_write() ? stats_.words_written : stats_.words_read);
     if (burst_->is_write()) words_granted_.add(address, 1);
   }
-  if (--words_left_ != 0) {
+  go_on(1, grant_ps, usable_ps);
+}
+
+void LocalBus::move_words(unsigned char* words) {
+  unsigned char* const data = burst_->get_data_ptr() + next_word_ * 4;
+  const std::size_t bytes = words_left_ * 4;
+  std::memcpy(burst_->is_write() ? words : data, burst_->is_write() ? data : words, bytes);
+}
+
+void LocalBus::count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
+  (burst_->is_write() ? stats_.words_written : stats_.words_read) += words;
+  if (burst_->is_write()) words_granted_.add(burst_->get_address() + next_word_ * 4, words);
+  next_word_ += words;
+  go_on(words, grant_ps, usable_ps);
+}
+
+// The next word, or the end of the burst.
+void LocalBus::go_on(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
+  words_left_ -= words;
+  if (words_left_ != 0) {
     request_ps_ = clock_.edge_ps(clock_.edge_at_or_after(grant_ps) + 1);
     return;
   }

@@ -76,6 +76,14 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
   // The word is granted, in the cycle at `at` from now, which begins at `grant_ps`; read, it is usable at `usable_ps`.
   void access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps);
+  std::size_t words_left() const { return words_left_; }
+  // Instead of access(): the data of all words that wait goes to or comes from there at once ..
+  void move_words(unsigned char* words);
+  // .. and they are granted, `words` more of them, the last one in the cycle that begins at `grant_ps`; read, it is usable
+  // at `usable_ps`.
+  void count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
+  // Whether its clocks begin when those of this clock do.
+  bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
   // Notified when the first word of a burst begins to ask.
   const sc_core::sc_event& request_event() const { return request_event_; }
   // Up to now.
@@ -99,6 +107,7 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   void run_registers();
   void access_register();
   bool transfer(memory::WordAccess& through, std::uint64_t address, sc_core::sc_time& delay);
+  void go_on(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   void end(std::uint64_t last_clock_end_ps);
 
   Clock clock_;

@@ -94,8 +94,7 @@ std::uint64_t SlotPattern::alike_until(std::uint64_t frame_column) const {
     std::uint64_t mask = ~std::uint64_t{0} << place % 64;
     for (std::size_t word = place / 64; word < words_; ++word, mask = ~std::uint64_t{0}) {
       const std::uint64_t found = changes[word] & mask;
-      if (found != 0)
-        return strip * width + word * 64 + static_cast<std::uint64_t>(__builtin_ctzll(found));
+      if (found != 0) return strip * width + word * 64 + static_cast<std::uint64_t>(__builtin_ctzll(found));
     }
     place = 0;
     if (++strip < strips) strip = next_change_[strip];

@@ -170,6 +170,7 @@ void StereoCore::start_frame(const FrameStart& start) {
   state_ = State::kRunning;
   cycle_ = std::max(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay)));
   first_cycle_ = cycle_;
+  look_ps_ = 0;
   work_cycle_ = cycle_;
   crossbar_.begin_counting(first_cycle_);
   if (!is_lazy()) join_host();

@@ -131,6 +131,8 @@ class StereoCore : public sc_core::sc_module {
   void run_lazily();
   void serve_beside_frame();
   void serve_alone(std::uint64_t now_ps);
+  bool move_burst();
+  void serve_in_step();
   void count_served(std::uint64_t end_cycle, bool in_frame);
   void finish_cycles(std::uint64_t end_cycle);
   void finish_frame(std::uint64_t now_ps);
@@ -179,7 +181,8 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t host_read_latency_ = 2;  // cycles, of its bank
 
   // The other fidelities.
-  bool whole_ = false;  // the frame's data is worked on at once
+  bool whole_ = false;         // the frame's data is worked on at once
+  std::uint64_t look_ps_ = 0;  // not before then has the frame that runs been done
   SlotPattern left_pattern_{FrameGeometry(config_.core)};
   SlotPattern right_pattern_{FrameGeometry(config_.core)};
   bool left_table_is_sound_ = true;
@@ -190,6 +193,7 @@ class StereoCore : public sc_core::sc_module {
   // Words of the local bus in a bank that the running frame does not use, until it is known which of them count.
   struct Served {
     std::uint64_t cycle;
+    std::uint64_t cycles;  // from it on
     memory::BankArbiter::Outcome outcome;
   };
   std::vector<Served> served_;

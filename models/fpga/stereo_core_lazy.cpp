@@ -187,6 +187,10 @@ void StereoCore::run_lazily() {
     wait(start_event_ | local_bus_.request_event());
     return;
   }
+  if (now < look_ps_) {
+    wait(Clock::to_time(look_ps_ - now), local_bus_.request_event());
+    return;
+  }
   // Cycles before the next thing that is pending, or the present, hold no surprise.
   const std::uint64_t horizon = now + Clock::to_ps(sc_core::sc_time_to_pending_activity());
   const std::uint64_t most = clock_.edge_ps(cycle_ + kMostCycles);
@@ -195,8 +199,7 @@ void StereoCore::run_lazily() {
     finish_cycles(cycle_);
     return;
   }
-  const std::uint64_t next = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
-  if (next > now) wait(Clock::to_time(next - now), local_bus_.request_event());
+  look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
 }
 
 // Words for a bank that the frame uses: cycle by cycle.
@@ -214,7 +217,11 @@ void StereoCore::serve_beside_frame() {
     ++cycle_;
     break;
   }
-  if (control().frame_done()) finish_cycles(cycle_);
+  if (control().frame_done()) {
+    finish_cycles(cycle_);
+  } else {
+    look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
+  }
 }
 
 // Words for a bank that nobody else uses.
@@ -225,6 +232,10 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   served_bank_ = bank;
   // Somebody at the registers may start a frame that uses the bank, at any time that something is pending for.
   const bool is_only_master = registers.size() == 0;
+  const bool is_moved = is_only_master && move_burst();
+  if (is_moved && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
+    serve_in_step();
+  }
   for (std::uint64_t cycle = 0; local_bus_.word_waits();) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
@@ -235,26 +246,61 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
       return;
     }
     const auto outcome = arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);
-    served_.push_back({cycle, outcome});
+    served_.push_back({cycle, 1, outcome});
     if (arbitration.grants(bank, outcome)) {
-      crossbar_.grant(kHostPort);
-      access_host(cycle, Clock::to_time(std::max(edge, now_ps) - now_ps));
+      if (is_moved) {
+        local_bus_.count_granted(1, edge, clock_.edge_ps(cycle + host_read_latency_));
+      } else {
+        crossbar_.grant(kHostPort);
+        access_host(cycle, Clock::to_time(std::max(edge, now_ps) - now_ps));
+      }
     }
     ++cycle;
   }
   if (state_ != State::kRunning) count_served(UINT64_MAX, false);
 }
 
-// Counts the words that were served before a cycle; `in_frame`: they lie in the counted cycles of a frame.
+// The data of a burst that has just begun. False if its bank does not grant direct access.
+bool StereoCore::move_burst() {
+  const std::uint64_t bytes = host_route_.end - host_route_.first;
+  if (local_bus_.words_left() * 4 != bytes) return false;
+  unsigned char* const words = crossbar_.direct(host_route_.first, bytes);
+  if (words == nullptr) return false;
+  local_bus_.move_words(words);
+  if (host_route_.write) crossbar_.changes(host_route_.first, bytes);
+  crossbar_.count_direct(*host_route_.bank, bytes / 4);
+  return true;
+}
+
+// A word in each cycle, until the end of the burst.
+void StereoCore::serve_in_step() {
+  memory::Arbitration& arbitration = crossbar_.arbitration();
+  const std::size_t bank = *host_route_.bank;
+  const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
+  const std::size_t words = local_bus_.words_left();
+  const auto decide = [&](std::uint64_t cycle) {
+    return arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);
+  };
+  served_.push_back({first, 1, decide(first)});
+  // After its own grant it asks in the same place again and again.
+  if (words > 1) served_.push_back({first + 1, words - 1, decide(first + 1)});
+  const std::uint64_t last = first + words - 1;
+  local_bus_.count_granted(words, clock_.edge_ps(last), clock_.edge_ps(last + host_read_latency_));
+}
+
+// Counts what was served before a cycle; `in_frame`: in the counted cycles of a frame.
 void StereoCore::count_served(std::uint64_t end_cycle, bool in_frame) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
-  std::size_t counted = 0;
-  for (; counted < served_.size() && served_[counted].cycle < end_cycle; ++counted) {
-    const Served& word = served_[counted];
-    arbitration.count_unrouted(served_bank_, word.cycle, word.outcome);
-    if (in_frame) timing_.control().host_was_busy(arbitration.grants(served_bank_, word.outcome));
+  auto next = served_.begin();
+  for (; next != served_.end() && next->cycle < end_cycle; ++next) {
+    const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
+    arbitration.count_unrouted(served_bank_, next->cycle, next->outcome, cycles);
+    if (in_frame) timing_.control().host_was_busy(arbitration.grants(served_bank_, next->outcome), cycles);
+    next->cycle += cycles;
+    next->cycles -= cycles;
+    if (next->cycles != 0) break;
   }
-  served_.erase(served_.begin(), served_.begin() + static_cast<std::ptrdiff_t>(counted));
+  served_.erase(served_.begin(), next);
 }
 
 }  // namespace stereotlm::fpga

@@ -36,9 +36,11 @@ class Arbitration {
   // One request of a port for a bank that no port is routed to, in the given direction. True if it is granted; it is
   // counted later, by count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
-  void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome) {
-    arbiters_[bank].count(cycle, outcome);
+  void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
+                      std::uint64_t cycles) {
+    arbiters_[bank].count(cycle, outcome, cycles);
   }
+  bool needs_turnaround(std::size_t bank) const { return arbiters_[bank].needs_turnaround(); }
   bool grants(std::size_t bank, BankArbiter::Outcome outcome) const {
     return arbiters_[bank].granted_in(outcome) != 0;
   }

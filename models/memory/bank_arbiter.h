@@ -52,13 +52,14 @@ class BankArbiter {
   PortMask granted_in(Outcome outcome) const {
     return outcome % kKinds == kTurning ? PortMask{0} : winners_[outcome / kKinds].port;
   }
-  void count(std::uint64_t cycle, Outcome outcome) {
+  // The outcome of this cycle, and of all of `cycles` from it on.
+  void count(std::uint64_t cycle, Outcome outcome, std::uint64_t cycles = 1) {
     if (counting_) {
       idle_cycles_ += cycle - next_uncounted_cycle_;
-      next_uncounted_cycle_ = cycle + 1;
-      ++outcomes_[outcome];
-    } else {
-      uncounted_accesses_ += std::uint64_t{outcome % kKinds != kTurning};
+      next_uncounted_cycle_ = cycle + cycles;
+      outcomes_[outcome] += cycles;
+    } else if (outcome % kKinds != kTurning) {
+      uncounted_accesses_ += cycles;
     }
   }
   // Both at once. Returns the port that is granted.

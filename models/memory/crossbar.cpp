@@ -30,7 +30,8 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
       ports("port", kPortCount),
       banks("bank", config.banks.size()),
       arbitration_(checked(this->name(), config).arbiter, config.banks),
-      direct_accesses_(config.banks.size()) {
+      direct_accesses_(config.banks.size()),
+      direct_banks_(config.banks.size()) {
   for (std::size_t port = 0; port < kPortCount; ++port) {
     targets_.emplace_back(*this, static_cast<Port>(port));
     ports[port].bind(targets_.back());
@@ -77,6 +78,21 @@ bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t en
   return changed;
 }
 
+unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
+  const std::size_t bank = bank_of_address(address);
+  const std::uint64_t first = address & kOffsetMask;
+  std::optional<tlm::tlm_dmi>& dmi = direct_banks_[bank];
+  if (!dmi || first < dmi->get_start_address() || first > dmi->get_end_address()) {
+    tlm::tlm_generic_payload access;
+    access.set_command(tlm::TLM_WRITE_COMMAND);
+    access.set_address(first);
+    dmi.emplace();
+    if (!banks[bank]->get_direct_mem_ptr(access, *dmi) || !dmi->is_read_write_allowed()) dmi.reset();
+  }
+  if (!dmi || first < dmi->get_start_address() || first + bytes - 1 > dmi->get_end_address()) return nullptr;
+  return dmi->get_dmi_ptr() + (first - dmi->get_start_address());
+}
+
 void Crossbar::changes(std::uint64_t first, std::uint64_t bytes) {
   for (Watch& watch : watches_)
     watch.changed = watch.changed || (first < watch.end && watch.first < first + bytes);
@@ -117,6 +133,7 @@ bool Crossbar::grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::t
 }
 
 void Crossbar::invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end) {
+  direct_banks_[static_cast<std::size_t>(bank)].reset();
   const std::uint64_t base = static_cast<std::uint64_t>(bank) << kBankAddressBits;
   const std::uint64_t first = base + std::min<std::uint64_t>(start, kOffsetMask);
   const std::uint64_t last = base + std::min<std::uint64_t>(end, kOffsetMask);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <systemc>
 #include <tlm>
 #include <vector>
@@ -66,6 +67,10 @@ class Crossbar : public sc_core::sc_module {
   void changes(std::uint64_t first, std::uint64_t bytes);
   // Accesses that a stage has made directly, to the bank that its port is routed to.
   void count_direct(Port port, std::uint64_t accesses) { direct_accesses_[bank_of(port)] += accesses; }
+  // As many bytes at this byte address of the crossbar, where the bank lets them be accessed directly; else null. For
+  // use at once, and to be told as above.
+  unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
+  void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
 
   void begin_counting(std::uint64_t first_cycle) { arbitration_.begin_counting(first_cycle); }
@@ -114,7 +119,8 @@ class Crossbar : public sc_core::sc_module {
   std::array<Watch, kPortCount> watches_{};
   std::uint64_t open_banks_ = 0;  // bit per bank: the host may write there directly
   std::vector<std::uint64_t> direct_accesses_;
-  PortMask granted_ = 0;  // in the current cycle, and not yet used
+  std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: as granted, until it is taken back
+  PortMask granted_ = 0;                                   // in the current cycle, and not yet used
 };
 
 }  // namespace stereotlm::memory
