@@ -15,7 +15,7 @@ namespace stereotlm::kernels {
 class ImageFilter {
  public:
   // Bytes behind the last pixel that run() may write.
-  static constexpr std::size_t kPadding = 2 * kMostImageLanes;
+  static constexpr std::size_t kPadding = kMostImageVectorBytes;
 
   // Throws std::invalid_argument if the kernel has problems or the image has no pixels.
   ImageFilter(int width, int height, const FilterKernel& kernel,

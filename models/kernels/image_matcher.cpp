@@ -100,13 +100,14 @@ void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
     return image + static_cast<std::size_t>(std::min(row, height_ - 1)) * width;
   };
   std::array<const std::int16_t*, kMostImageLanes> lanes{};
+  std::size_t lane = 0;
   for (int band = 0; band < bands_; ++band) {
     const int row = band * band_rows_ + step;
     std::int16_t* pairs = side.rows.data() + static_cast<std::size_t>(band) * row_stride_;
     loops_.pair_pixels(row_of(row), step < plan_.window ? no_row_.data() : row_of(row - plan_.window), width_,
                        pairs);
     for (int segment = 0; segment < segments_; ++segment)
-      lanes[static_cast<std::size_t>(band * segments_ + segment)] = pairs + segment * plan_.columns;
+      lanes[lane++] = pairs + std::ptrdiff_t{segment} * plan_.columns;
   }
   loops_.to_lanes(lanes.data(), side.positions, side.lanes.data());
 }
@@ -116,15 +117,14 @@ void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
   for (int lane = 0; lane < loops_.lanes; ++lane) {
     lanes[static_cast<std::size_t>(lane)] = side.out.data() +
                                             static_cast<std::size_t>(lane / segments_) * row_stride_ +
-                                            lane % segments_ * plan_.columns;
+                                            std::ptrdiff_t{lane % segments_} * plan_.columns;
   }
   loops_.from_lanes(side.best.data(), plan_.columns, lanes.data());
   for (int band = 0; band < bands_; ++band) {
     const int row = band * band_rows_ + step - (plan_.window - 1);
     if (row >= windows_down_) continue;
     const std::uint8_t* from = side.out.data() + static_cast<std::size_t>(band) * row_stride_;
-    std::copy_n(from, windows_across_,
-                disparity + static_cast<std::ptrdiff_t>(row + radius_) * width_ + radius_);
+    std::copy_n(from, windows_across_, disparity + (std::ptrdiff_t{row} + radius_) * width_ + radius_);
   }
 }
 

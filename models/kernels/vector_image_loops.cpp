@@ -20,7 +20,7 @@ constexpr int kBytes = 32;
 #else
 constexpr int kBytes = 16;
 #endif
-constexpr int kLanes = kBytes / 2;
+constexpr std::ptrdiff_t kLanes = kBytes / 2;
 static_assert(kBytes <= kMostImageVectorBytes);
 
 using Bytes = std::uint8_t __attribute__((vector_size(kBytes)));
@@ -108,7 +108,7 @@ void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, 
   alignas(kBytes) std::uint32_t places[kChunk];
   for (; count > 0; count -= kChunk, table += kChunk, out += kChunk) {
     const int pixels = count < kChunk ? count : kChunk;
-    int i = 0;
+    std::ptrdiff_t i = 0;
     for (; i + kLanes / 2 <= pixels; i += kLanes / 2) {
       const auto entries = load<Words>(table + i);
       store(multiply_pairs(reinterpret_cast<Halves>(entries & entries >> 31 & 0x7FF07FF), weights),
@@ -126,7 +126,7 @@ void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, 
 // The sum of two rows, the second of which may be none, in `out`, or added to what is there.
 template <bool kMore, bool kSecond>
 void add_two_rows(const std::uint8_t* first, const std::uint8_t* second, int width, std::int16_t* out) {
-  int u = 0;
+  std::ptrdiff_t u = 0;
   for (; u + kLanes <= width; u += kLanes) {
     Halves sum = __builtin_convertvector(load<HalfBytes>(first + u), Halves);
     if (kSecond) sum += __builtin_convertvector(load<HalfBytes>(second + u), Halves);
@@ -151,7 +151,7 @@ Words level(Words sum, int shift) { return larger(smaller(sum >> shift, words(12
 
 void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int width, std::uint8_t* out) {
   constexpr int kVectors = 2;
-  for (int u = 0; u < width; u += kVectors * kLanes) {
+  for (std::ptrdiff_t u = 0; u < width; u += kVectors * kLanes) {
     // Pairs of columns that begin at even and at odd positions.
     Words even[kVectors] = {};
     Words odd[kVectors] = {};
@@ -160,13 +160,13 @@ void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int wid
       const std::int16_t* pixels = rows[row] + u;
       for (int pair = 0; pair < taps.pairs; ++pair, pixels += 2) {
         const auto weights = reinterpret_cast<Halves>(words(*weight++));
-        for (int v = 0; v < kVectors; ++v) {
+        for (std::ptrdiff_t v = 0; v < kVectors; ++v) {
           even[v] += multiply_pairs(load<Halves>(pixels + v * kLanes), weights);
           odd[v] += multiply_pairs(load<Halves>(pixels + v * kLanes + 1), weights);
         }
       }
     }
-    for (int v = 0; v < kVectors; ++v) {
+    for (std::ptrdiff_t v = 0; v < kVectors; ++v) {
       const Halves levels = join_lanes(level(even[v], taps.shift), level(odd[v], taps.shift));
       store(__builtin_convertvector(levels, HalfBytes), out + u + v * kLanes);
     }
@@ -176,11 +176,12 @@ void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int wid
 // ---- match ----
 
 void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int width, std::int16_t* out) {
-  for (int i = 0; i < width; ++i) out[i] = static_cast<std::int16_t>(entering[i] | leaving[i] << 8);
+  for (std::ptrdiff_t i = 0; i < width; ++i)
+    out[i] = static_cast<std::int16_t>(entering[i] | leaving[i] << 8);
 }
 
 // Blocks of 8 x 8 lanes of 16 bit, whatever the instruction set.
-constexpr int kBlock = 8;
+constexpr std::ptrdiff_t kBlock = 8;
 using Block8 = std::uint8_t __attribute__((vector_size(8)));
 using Block16 = std::int16_t __attribute__((vector_size(16)));
 using Block32 = std::int32_t __attribute__((vector_size(16)));
@@ -188,39 +189,40 @@ using Block64 = std::int64_t __attribute__((vector_size(16)));
 
 void transpose(Block16 (&rows)[kBlock]) {
   Block16 a[kBlock];
-  for (int i = 0; i < 4; ++i) {
+  for (std::ptrdiff_t i = 0; i < 4; ++i) {
     a[2 * i] = __builtin_shufflevector(rows[i], rows[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
     a[2 * i + 1] = __builtin_shufflevector(rows[i], rows[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
   }
   Block16 b[kBlock];
-  for (int i = 0; i < 4; ++i) {
+  for (std::ptrdiff_t i = 0; i < 4; ++i) {
     b[2 * i] = __builtin_shufflevector(a[i], a[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
     b[2 * i + 1] = __builtin_shufflevector(a[i], a[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
   }
-  for (int i = 0; i < 4; ++i) {
+  for (std::ptrdiff_t i = 0; i < 4; ++i) {
     rows[2 * i] = __builtin_shufflevector(b[i], b[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
     rows[2 * i + 1] = __builtin_shufflevector(b[i], b[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
   }
 }
 
 void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out) {
-  for (int lane = 0; lane < kLanes; lane += kBlock) {
-    for (int i = 0; i < count; i += kBlock) {
+  for (std::ptrdiff_t lane = 0; lane < kLanes; lane += kBlock) {
+    for (std::ptrdiff_t i = 0; i < count; i += kBlock) {
       Block16 rows[kBlock];
-      for (int k = 0; k < kBlock; ++k) rows[k] = load<Block16>(from[lane + k] + i);
+      for (std::ptrdiff_t k = 0; k < kBlock; ++k) rows[k] = load<Block16>(from[lane + k] + i);
       transpose(rows);
-      for (int k = 0; k < kBlock; ++k) store(rows[k], out + (i + k) * kLanes + lane);
+      for (std::ptrdiff_t k = 0; k < kBlock; ++k) store(rows[k], out + (i + k) * kLanes + lane);
     }
   }
 }
 
 void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out) {
-  for (int lane = 0; lane < kLanes; lane += kBlock) {
-    for (int i = 0; i < count; i += kBlock) {
+  for (std::ptrdiff_t lane = 0; lane < kLanes; lane += kBlock) {
+    for (std::ptrdiff_t i = 0; i < count; i += kBlock) {
       Block16 rows[kBlock];
-      for (int k = 0; k < kBlock; ++k) rows[k] = load<Block16>(from + (i + k) * kLanes + lane);
+      for (std::ptrdiff_t k = 0; k < kBlock; ++k) rows[k] = load<Block16>(from + (i + k) * kLanes + lane);
       transpose(rows);
-      for (int k = 0; k < kBlock; ++k) store(__builtin_convertvector(rows[k], Block8), out[lane + k] + i);
+      for (std::ptrdiff_t k = 0; k < kBlock; ++k)
+        store(__builtin_convertvector(rows[k], Block8), out[lane + k] + i);
     }
   }
 }
@@ -295,7 +297,7 @@ struct ColumnSums {
   std::int16_t* sums;
 
   // Adds the change at this position to the sum of the j-th disparity and returns it.
-  Halves add(Halves right_pixels, int j) const {
+  Halves add(Halves right_pixels, std::ptrdiff_t j) const {
     std::int16_t* place = sums + j * kLanes;
     const Halves sum = load<Halves>(place) + change<kScale>(right_pixels, load<Halves>(left + j * kLanes));
     store(sum, place);
@@ -337,25 +339,25 @@ struct Group {
   }
 
   void enter_first(int count) {
-    for (int u = 0; u < count; ++u) {
+    for (std::ptrdiff_t u = 0; u < count; ++u) {
       const auto right = load<Halves>(columns.right);
-      for (int j = 0; j < kCount; ++j) Keys::add(keys[j], columns.add(right, j));
+      for (std::ptrdiff_t j = 0; j < kCount; ++j) Keys::add(keys[j], columns.add(right, j));
       columns.next();
     }
   }
 
   template <bool kRightBased, bool kSomeOutside>
   void match(int count) {
-    for (int s = 0; s < count; ++s) {
+    for (std::ptrdiff_t s = 0; s < count; ++s) {
       const auto right = load<Halves>(columns.right);
-      for (int j = 0; j < kCount; ++j) {
+      for (std::ptrdiff_t j = 0; j < kCount; ++j) {
         const auto leaving = load<Halves>(columns.sums + window_begin + j * kLanes);
         Keys::add(keys[j], columns.add(right, j) - leaving);
       }
       columns.next();
       if (kRightBased) {
         auto least = keys[0];
-        for (int j = 0; j < kCount; ++j) {
+        for (std::ptrdiff_t j = 0; j < kCount; ++j) {
           auto key = keys[j];
           if (kSomeOutside) key = Keys::most(key, load<Halves>(outside + j * kLanes));
           least = j == 0 ? key : Keys::least(least, key);
@@ -366,13 +368,14 @@ struct Group {
       }
       *left_best = Keys::better(*left_best, kCount > 1 ? Keys::least(keys[0], passing[0]) : keys[0], first);
       ++left_best;
-      for (int j = 1; j < kCount; ++j)
+      for (std::ptrdiff_t j = 1; j < kCount; ++j)
         passing[j - 1] = j + 1 < kCount ? Keys::least(keys[j], passing[j]) : keys[j];
     }
   }
 
   void leave() {
-    for (int j = 0; j + 1 < kCount; ++j) left_best[j] = Keys::better(left_best[j], passing[j], first);
+    for (std::ptrdiff_t j = 0; j + 1 < kCount; ++j)
+      left_best[j] = Keys::better(left_best[j], passing[j], first);
   }
 };
 
@@ -393,9 +396,9 @@ template <int kScale, int kCount>
 void add_group(const MatchPlan& plan, const MatchMemory& memory, int first, std::int16_t* column_sums) {
   ColumnSums<kScale, kCount> columns{memory.right_pixels, memory.left_pixels + first * kLanes, column_sums};
   const int positions = plan.columns + plan.window - 1;
-  for (int u = 0; u < positions; ++u) {
+  for (std::ptrdiff_t u = 0; u < positions; ++u) {
     const auto right = load<Halves>(columns.right);
-    for (int j = 0; j < kCount; ++j) columns.add(right, j);
+    for (std::ptrdiff_t j = 0; j < kCount; ++j) columns.add(right, j);
     columns.next();
   }
 }
@@ -413,7 +416,7 @@ void visit_rest(int count, int first, std::int16_t* column_sums, const Visit& vi
 
 template <class Keys, class Visit>
 void visit_groups(const MatchPlan& plan, const MatchMemory& memory, const Visit& visit) {
-  const int stride = (plan.columns + plan.window) * kLanes;
+  const std::ptrdiff_t stride = (plan.columns + plan.window) * kLanes;
   // A vector of zeros stands before the sums of each disparity.
   std::int16_t* column_sums = memory.column_sums;
   int first = 0;
@@ -452,7 +455,7 @@ struct MatchGroup {
 template <class Keys>
 void store_disparities(const typename Keys::Best* best, int count, std::int16_t* out) {
   // In place: `out` is where the keys begin, and they are longer.
-  for (int p = 0; p < count; ++p) store(Keys::disparity(best[p]), out + p * kLanes);
+  for (std::ptrdiff_t p = 0; p < count; ++p) store(Keys::disparity(best[p]), out + p * kLanes);
 }
 
 template <class Keys>
@@ -460,12 +463,12 @@ void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   auto* right = reinterpret_cast<typename Keys::Best*>(memory.right_best);
   auto* left = reinterpret_cast<typename Keys::Best*>(memory.left_best);
   const int left_positions = plan.columns + plan.disparities - 1;
-  for (int p = 0; p < plan.columns; ++p) right[p] = Keys::best_of_none();
-  for (int p = 0; p < left_positions; ++p) left[p] = Keys::best_of_none();
+  for (std::ptrdiff_t p = 0; p < plan.columns; ++p) right[p] = Keys::best_of_none();
+  for (std::ptrdiff_t p = 0; p < left_positions; ++p) left[p] = Keys::best_of_none();
   visit_groups<Keys>(plan, memory, MatchGroup<Keys>{plan, memory});
   // Left windows beyond the end of a segment belong to the next one, where their disparities are smaller.
   const auto band_begins = load<Halves>(memory.band_begins);
-  for (int p = left_positions - 1; p >= plan.columns; --p) {
+  for (std::ptrdiff_t p = left_positions - 1; p >= plan.columns; --p) {
     auto& own = left[p - plan.columns];
     own = Keys::better(own, Keys::load_moved(left + p, band_begins));
   }
@@ -493,7 +496,7 @@ void match_row(const MatchPlan& plan, const MatchMemory& memory) {
 
 extern const ImageLoops STEREOTLM_IMAGE_LOOPS;
 const ImageLoops STEREOTLM_IMAGE_LOOPS = {STEREOTLM_INSTRUCTION_SET,
-                                          kLanes,
+                                          int{kLanes},
                                           rectify,
                                           add_rows,
                                           filter_row,

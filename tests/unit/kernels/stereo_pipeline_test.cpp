@@ -97,49 +97,48 @@ TEST(StereoPipeline, EqualsTheReferenceForEachCountOfDisparities) {
   }
 }
 
+void expect_filtered(int width, int height, const std::vector<std::uint8_t>& image,
+                     const test::ReferenceKernel& kernel) {
+  const auto expected = test::reference_filter(width, height, image, kernel);
+  for (const ImageLoops* loops : image_loops()) {
+    ImageFilter filter(width, height, *test::filter_kernel(kernel), *loops);
+    std::vector<std::uint8_t> filtered(image.size() + ImageFilter::kPadding);
+    filter.run(image.data(), filtered.data());
+    filtered.resize(image.size());
+    ASSERT_EQ(filtered, expected) << loops->name;
+  }
+}
+
 // 255 times the positive weights on both sides of 2^31; all shifts.
-TEST(StereoPipeline, FiltersExactlyOnBothSidesOf32Bits) {
-  SplitMix64 random(13);
+TEST(ImageFilter, IsExactOnBothSidesOf32Bits) {
   constexpr int kPairs = 257;  // 255 * (257 * 32767 + 385) = 2^31 - 128
   for (const int more : {385, 386}) {
     for (int shift = 0; shift < 32; ++shift) {
-      test::ReferenceKernel kernel{31, std::vector<int>(31 * 31, 0), shift};
+      test::ReferenceKernel kernel{31, std::vector<int>(std::size_t{31} * 31, 0), shift};
       for (std::size_t pair = 0; pair < kPairs; ++pair) {
         kernel.weights[3 * pair] = 32767;
         kernel.weights[3 * pair + 1] = -32767;
       }
       kernel.weights[2] = more;
       kernel.weights[5] = -more;
-      for (const int extreme : {0, 1}) {
-        // The pixels that meet the weights of one sign, and a few others.
-        const int width = 36;
-        const int height = 33;
-        std::vector<std::uint8_t> image(static_cast<std::size_t>(width * height));
-        for (int row = 0; row < height; ++row) {
-          for (int column = 0; column < width; ++column) {
-            const int i = column - 2;
-            const bool in_kernel = i >= 0 && i < 31 && row >= 1 && row < 32;
-            const int weight = in_kernel ? kernel.weights[static_cast<std::size_t>((row - 1) * 31 + i)] : 0;
-            const bool white = extreme == 0 ? weight > 0 : weight < 0;
-            image[static_cast<std::size_t>(row * width + column)] =
-                static_cast<std::uint8_t>(in_kernel ? (white ? 255 : 0) : random.between(0, 255));
+      for (const bool positive : {true, false}) {
+        // White where the kernel around (17, 16) has weights of one sign.
+        GrayImage image(36, 33);
+        for (int row = 0; row < 31; ++row) {
+          for (int column = 0; column < 31; ++column) {
+            const int weight = test::filter_kernel(kernel)->weight(column, row);
+            if (positive ? weight > 0 : weight < 0) image.at(column + 2, row + 1) = 255;
           }
         }
-        const auto expected = test::reference_filter(width, height, image, kernel);
-        for (const ImageLoops* loops : image_loops()) {
-          ImageFilter filter(width, height, *test::filter_kernel(kernel), *loops);
-          std::vector<std::uint8_t> filtered(image.size() + ImageFilter::kPadding);
-          filter.run(image.data(), filtered.data());
-          filtered.resize(image.size());
-          ASSERT_EQ(filtered, expected) << loops->name << ", shift " << shift << ", more " << more;
-        }
+        ASSERT_NO_FATAL_FAILURE(expect_filtered(image.width, image.height, image.pixels, kernel))
+            << "shift " << shift << ", more " << more;
       }
     }
   }
 }
 
 // Kernels with equal rows, whose pixels are added first: all of them, pairs, none.
-TEST(StereoPipeline, FiltersWithEqualKernelRows) {
+TEST(ImageFilter, AddsEqualKernelRowsFirst) {
   SplitMix64 random(14);
   for (const int size : {3, 7, 9, 31}) {
     for (const int kinds : {1, 2, 3, 31}) {
@@ -149,15 +148,8 @@ TEST(StereoPipeline, FiltersWithEqualKernelRows) {
           kernel.weights.push_back((row % kinds + 1) * (column - size / 2));
       }
       const RandomBoard board = noise_board(4 * random.between(1, 30), random.between(1, 40), 3, 2, random);
-      const auto& image = board.pictures[0].left;
-      const auto expected = test::reference_filter(board.width, board.height, image, kernel);
-      for (const ImageLoops* loops : image_loops()) {
-        ImageFilter filter(board.width, board.height, *test::filter_kernel(kernel), *loops);
-        std::vector<std::uint8_t> filtered(image.size() + ImageFilter::kPadding);
-        filter.run(image.data(), filtered.data());
-        filtered.resize(image.size());
-        ASSERT_EQ(filtered, expected) << loops->name << ", size " << size << ", kinds " << kinds;
-      }
+      ASSERT_NO_FATAL_FAILURE(expect_filtered(board.width, board.height, board.pictures[0].left, kernel))
+          << "size " << size << ", kinds " << kinds;
     }
   }
 }
