@@ -74,7 +74,9 @@ struct ImageLoops {
   void (*match_row)(const MatchPlan& plan, const MatchMemory& memory);
 };
 
-// Those that this machine can run, the best first.
+// Those that this machine can run, the best first. The environment variable STEREOTLM_VECTORS leaves out what is better
+// than the one that it names (avx512, avx2, base), for measurements; throws std::invalid_argument if there is none of
+// this name.
 const std::vector<const ImageLoops*>& image_loops();
 
 }  // namespace stereotlm::kernels

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <opencv2/calib3d.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <systemc>
@@ -17,11 +19,17 @@
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
 #include "models/kernels/stereo_pipeline.h"
+#include "platform/board_yaml.h"
+#include "sw/report/stats_json.h"
+#include "sw/simulation/child.h"
+#include "sw/simulation/make_simulation.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
 
 namespace stereotlm::bench {
 namespace {
+
+using fpga::Fidelity;
 
 // A contended board has lists of one bank, so that every frame is contended, not only those of some buffers.
 struct Case {
@@ -30,6 +38,14 @@ struct Case {
   std::vector<std::string> sets;
   bool contended = false;
 };
+
+// The five buffers of a frame in one bank, which is large enough for them.
+std::vector<std::string> one_bank(std::vector<std::string> sets) {
+  sets.emplace_back("ssram.default.words=1048576");
+  for (const char* buffer : {"left_image", "right_image", "disparity", "left_lut", "right_lut"})
+    sets.push_back(std::string("allocation.") + buffer + "=bank0");
+  return sets;
+}
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = {
@@ -44,35 +60,59 @@ const std::vector<Case>& cases() {
        "fpl2003-syncburst",
        {"allocation.left_image=bank0", "allocation.right_image=bank2", "allocation.disparity=bank0"},
        true},
+      {"one_bank", "fpl2003", one_bank({}), true},
+      {"one_bank_in_turn", "fpl2003-syncburst", one_bank({"fpga.arbitration=round_robin"}), true},
   };
   return all;
 }
 
-// One iteration is one frame.
-void run_frames(benchmark::State& state, const Case& c, const host::StereoPair& pair) {
-  BoardProcess board(c.board, c.sets, pair);
-  board.run_frame();  // its pages are in memory now
+// One iteration is as many frames as make up some ms; its time is that of one.
+void run_frames(benchmark::State& state, const Case& c, const BoardProcess::Setting& setting,
+                const host::StereoPair& pair) {
+  const std::uint32_t frames = setting.fidelity == Fidelity::kTiming ? 200
+                               : setting.fidelity == Fidelity::kFast ? 5
+                                                                     : 1;
+  BoardProcess board(setting, pair);
+  board.run_frames(1);  // its pages are in memory now
   const BoardProcess::Count before = board.count();
-  for (auto _ : state) board.run_frame();
-  const BoardProcess::Count after = board.count();
-  if (after.frames - before.frames != static_cast<std::uint64_t>(state.iterations())) {
-    throw std::runtime_error("an iteration was not one frame");
+  for (auto _ : state) {
+    const std::uint64_t done = board.count().frames;
+    board.run_frames(frames);
+    state.SetIterationTime(board.count().seconds / static_cast<double>(board.count().frames - done));
   }
+  if (setting.camera) return;
+  const BoardProcess::Count after = board.count();
   if ((after.stalls > before.stalls) != c.contended) {
     throw std::runtime_error(c.name + ": stalls = " + std::to_string(after.stalls - before.stalls) +
                              (c.contended ? ": must be contended" : ": must not be contended"));
   }
-  const auto rate = [](std::uint64_t count) {
-    return benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsRate);
+  const auto a_frame = [frames = static_cast<double>(after.frames - before.frames)](std::uint64_t count) {
+    return benchmark::Counter(static_cast<double>(count) / frames);
   };
-  state.counters["frame_cycles"] = benchmark::Counter(static_cast<double>(after.cycles - before.cycles),
-                                                      benchmark::Counter::kAvgIterations);
-  state.counters["fpga_cycles"] = rate(after.cycles - before.cycles);
-  state.counters["bank_accesses"] = rate(after.accesses - before.accesses);
+  state.counters["frame_cycles"] = a_frame(after.cycles - before.cycles);
+  state.counters["frame_accesses"] = a_frame(after.accesses - before.accesses);
 }
 
 void start(benchmark::State& state, const host::StereoPair& pair) {
-  for (auto _ : state) state.SetIterationTime(BoardProcess("fpl2003", {}, pair).count().start_seconds);
+  for (auto _ : state) state.SetIterationTime(BoardProcess({"fpl2003", {}}, pair).count().start_seconds);
+}
+
+// A point of a sweep: a child of this process simulates a frame without pixels, and tells its statistics.
+void run_point(benchmark::State& state, const std::vector<std::string>& sets, bool camera) {
+  for (auto _ : state) {
+    simulation::Child child([&](const simulation::Child::Tell& tell) {
+      const platform::BoardConfig board = platform::load_board("fpl2003", sets);
+      const platform::Tables tables = platform::identity_tables(board);
+      simulation::BlankPairs pairs(board);
+      Binder binder;
+      const auto run =
+          simulation::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
+      while (!run->finished()) run->advance();
+      tell(report::stats_json(run->statistics(), std::nullopt));
+    });
+    while (child.next()) {
+    }
+  }
 }
 
 cv::Mat view(const kernels::GrayImage& image) {
@@ -136,19 +176,67 @@ void add_kernels(const host::StereoPair& pair) {
   });
 }
 
+void add_timed(const std::string& name, const std::function<void(benchmark::State&)>& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseManualTime();
+}
+
+void add_frames(const host::StereoPair& pair, const platform::Tables* rig_tables) {
+  const std::vector<std::pair<std::string, Fidelity>> fidelities = {
+      {"fast", Fidelity::kFast}, {"timing", Fidelity::kTiming}, {"cycle", Fidelity::kCycle}};
+  for (const auto& [fidelity_name, fidelity] : fidelities) {
+    const auto add_case = [&, fidelity = fidelity](const std::string& name, const Case& c,
+                                                   const platform::Tables* tables, bool camera) {
+      add_timed(name, [=, &pair](benchmark::State& state) {
+        run_frames(state, c, {c.board, c.sets, tables, camera, fidelity}, pair);
+      });
+    };
+    for (const Case& c : cases()) add_case("frame_" + fidelity_name + '/' + c.name, c, nullptr, false);
+    const Case& usual = cases().front();
+    if (rig_tables != nullptr) add_case("frame_" + fidelity_name + "/rig", usual, rig_tables, false);
+    add_case("computer_" + fidelity_name + "/fpl2003", usual, nullptr, true);
+  }
+}
+
+// Takes `--left-lut F --right-lut F` (calibrate writes them), of images of 640x480, off the command line.
+std::optional<platform::Tables> take_tables(int& argc, char** argv) {
+  std::vector<std::string> files;
+  for (const char* option : {"--left-lut", "--right-lut"}) {
+    for (int i = 1; i + 1 < argc; ++i) {
+      if (std::string(argv[i]) != option) continue;
+      files.emplace_back(argv[i + 1]);
+      std::copy(argv + i + 2, argv + argc, argv + i);
+      argc -= 2;
+      break;
+    }
+  }
+  if (files.size() != 2) return std::nullopt;
+  const auto table = [](const std::string& file) {
+    kernels::RectificationTable read{640, 480, std::vector<std::uint32_t>(std::size_t{640} * 480)};
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(read.entries.data()),
+            static_cast<std::streamsize>(read.entries.size() * 4));
+    if (!in) throw std::runtime_error(file + ": must hold 640 x 480 entries");
+    return read;
+  };
+  return platform::Tables{table(files[0]), table(files[1])};
+}
+
 int run(int argc, char** argv) {
+  const std::optional<platform::Tables> rig_tables = take_tables(argc, argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   cv::setNumThreads(1);
   const BenchPair input = bench_pair(STEREOTLM_PICTURES);
   benchmark::AddCustomContext("pair", input.origin);
-  benchmark::RegisterBenchmark("start/fpl2003", start, input.pair)
-      ->Unit(benchmark::kMillisecond)
-      ->UseManualTime();
+  benchmark::AddCustomContext("vectors", kernels::image_loops().front()->name);
+  add_timed("start/fpl2003", [&input](benchmark::State& state) { start(state, input.pair); });
   add("opencv/stereo_bm", [&input](benchmark::State& state) { stereo_bm(state, input.pair); });
   add_kernels(input.pair);
-  for (const Case& c : cases())
-    add("frame/" + c.name, [&c, &input](benchmark::State& state) { run_frames(state, c, input.pair); });
+  add_frames(input.pair, rig_tables ? &*rig_tables : nullptr);
+  const std::vector<std::string> small = {"image.width=160", "image.height=120"};
+  add("point/fpl2003", [](benchmark::State& state) { run_point(state, {}, false); });
+  add("point/small", [small](benchmark::State& state) { run_point(state, small, false); });
+  add("point/computer", [](benchmark::State& state) { run_point(state, {}, true); });
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -15,74 +15,82 @@
 #include <systemc>
 
 #include "platform/board_yaml.h"
-#include "platform/collect.h"
-#include "platform/preloaded_system.h"
 #include "platform/statistics.h"
-#include "platform/tables.h"
+#include "sw/simulation/make_simulation.h"
 
 namespace stereotlm::bench {
 namespace {
 
-// The one board of a process.
-class SteppedBoard : private host::FrameSource, private host::FrameSink {
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+class OnePair : public host::FrameSource {
  public:
-  SteppedBoard(const std::string& board, const std::vector<std::string>& sets, const host::StereoPair& pair)
-      : config_(platform::load_board(board, sets)),
-        tables_(platform::identity_tables(config_)),
+  explicit OnePair(const host::StereoPair& pair) : pair_(pair) {}
+  const host::StereoPair& pair(std::uint64_t /*frame*/) override { return pair_; }
+
+ private:
+  const host::StereoPair& pair_;
+};
+
+// The one board of a process.
+class SteppedBoard {
+ public:
+  SteppedBoard(const BoardProcess::Setting& setting, const host::StereoPair& pair)
+      : config_(platform::load_board(setting.board, setting.sets)),
+        tables_(setting.tables != nullptr ? *setting.tables : platform::identity_tables(config_)),
         pair_(pair),
-        system_("system", config_, tables_, std::numeric_limits<std::uint64_t>::max(), *this, *this,
-                binder_) {
-    sc_core::sc_start();
+        simulation_(simulation::make_simulation(
+            config_, tables_, pair_,
+            {setting.camera, setting.fidelity, std::numeric_limits<std::uint64_t>::max()}, binder_)) {
+    if (setting.fidelity == fpga::Fidelity::kCycle) sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
 
-  void run_frame() {
-    go_.notify(sc_core::SC_ZERO_TIME);
-    sc_core::sc_start();
+  void run_frames(std::uint32_t frames) {
+    for (const std::uint64_t end = simulation_->frames_done() + frames; simulation_->frames_done() < end;)
+      simulation_->advance();
   }
 
+  // The board alone; a computer is seldom between two frames.
   BoardProcess::Count count() const {
-    const platform::Statistics found = platform::collect_statistics(config_, tables_, system_.board);
+    const platform::Statistics found = simulation_->statistics();
     if (!found.failed.empty()) throw std::runtime_error(found.failed.front());
     BoardProcess::Count count;
-    count.frames = found.frames;
     count.cycles = std::accumulate(found.frame_cycles.begin(), found.frame_cycles.end(), std::uint64_t{0});
     for (const platform::BankStatistics& bank : found.banks) count.accesses += bank.reads + bank.writes;
     for (const platform::PortStatistics& port : found.ports) count.stalls += port.stall_cycles;
     return count;
   }
+  std::uint64_t frames() const { return simulation_->frames_done(); }
 
  private:
-  // Called by the host's thread, which waits here until the next frame is wanted.
-  const host::StereoPair& pair(std::uint64_t /*frame*/) override {
-    sc_core::wait(go_);
-    return pair_;
-  }
-  void take(std::uint64_t /*frame*/, const kernels::GrayImage& /*disparity*/) override {
-    sc_core::sc_pause();
-  }
-
   platform::BoardConfig config_;
   platform::Tables tables_;
-  const host::StereoPair& pair_;
+  OnePair pair_;
   Binder binder_;
-  sc_core::sc_event go_{"go"};
-  platform::PreloadedSystem system_;
+  std::unique_ptr<simulation::Simulation> simulation_;
 };
 
 // Until the parent wants no more frames.
-void serve(const std::string& name, const std::vector<std::string>& sets, const host::StereoPair& pair,
-           int orders, int counts) {
+void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, int orders, int counts) {
   const auto tell = [counts](const BoardProcess::Count& count) {
     if (write(counts, &count, sizeof count) != sizeof count) throw std::runtime_error("nobody listens");
   };
   const auto start = std::chrono::steady_clock::now();
-  SteppedBoard board(name, sets, pair);
+  SteppedBoard board(setting, pair);
   BoardProcess::Count ready;
-  ready.start_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ready.start_seconds = seconds_since(start);
   tell(ready);
-  for (char order = 0; read(orders, &order, 1) == 1;) {
-    board.run_frame();
-    tell(board.count());
+  for (std::uint32_t frames = 0; read(orders, &frames, sizeof frames) == sizeof frames;) {
+    const auto begin = std::chrono::steady_clock::now();
+    board.run_frames(frames);
+    const double seconds = seconds_since(begin);
+    BoardProcess::Count count;
+    if (!setting.camera) count = board.count();
+    count.frames = board.frames();
+    count.seconds = seconds;
+    tell(count);
   }
 }
 
@@ -94,8 +102,7 @@ std::array<int, 2> make_pipe() {
 
 }  // namespace
 
-BoardProcess::BoardProcess(const std::string& board, const std::vector<std::string>& sets,
-                           const host::StereoPair& pair) {
+BoardProcess::BoardProcess(const Setting& setting, const host::StereoPair& pair) {
   const std::array<int, 2> orders = make_pipe();
   const std::array<int, 2> counts = make_pipe();
   child_ = fork();
@@ -104,9 +111,9 @@ BoardProcess::BoardProcess(const std::string& board, const std::vector<std::stri
     close(orders[1]);
     close(counts[0]);
     try {
-      serve(board, sets, pair, orders[0], counts[1]);
+      serve(setting, pair, orders[0], counts[1]);
     } catch (const std::exception& exception) {
-      std::fprintf(stderr, "%s: %s\n", board.c_str(), exception.what());
+      std::fprintf(stderr, "%s: %s\n", setting.board.c_str(), exception.what());
       _exit(1);
     }
     _exit(0);
@@ -124,16 +131,18 @@ BoardProcess::~BoardProcess() {
   waitpid(child_, nullptr, 0);
 }
 
-void BoardProcess::run_frame() {
-  const char order = 1;
-  if (write(orders_, &order, 1) != 1) throw std::runtime_error("the board's process has ended");
+void BoardProcess::run_frames(std::uint32_t frames) {
+  if (write(orders_, &frames, sizeof frames) != sizeof frames)
+    throw std::runtime_error("the board's process has ended");
   read_count();
 }
 
 void BoardProcess::read_count() {
-  if (read(counts_, &count_, sizeof count_) != sizeof count_) {
+  Count count;
+  if (read(counts_, &count, sizeof count) != sizeof count) {
     throw std::runtime_error("the board's process has ended");
   }
+  count_ = count;
 }
 
 }  // namespace stereotlm::bench
