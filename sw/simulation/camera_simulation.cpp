@@ -65,8 +65,11 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   deliveries_.push_back({begin->second, Clock::to_ps(sc_core::sc_time_stamp())});
   begins_ps_.erase(begins_ps_.begin(), std::next(begin));
   if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
-  kernels::GrayImage disparity(board_.image.width, board_.image.height);
-  disparity.pixels.assign(frame.disparity, frame.disparity + disparity.pixels.size());
+  kernels::GrayImage disparity;
+  disparity.width = board_.image.width;
+  disparity.height = board_.image.height;
+  const std::ptrdiff_t pixels = std::ptrdiff_t{disparity.width} * disparity.height;
+  disparity.pixels.assign(frame.disparity, frame.disparity + pixels);
   add_result({frame.camera_frame, std::move(disparity)});
 }
 
