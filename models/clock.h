@@ -32,8 +32,6 @@ class Clock {
   }
   // The first edge at or after a time in ps.
   std::uint64_t edge_at_or_after(std::uint64_t time_ps) const {
-    if (whole_period_ps_ != 0)
-      return time_ps / whole_period_ps_ + std::uint64_t{time_ps % whole_period_ps_ != 0};
     const double edges = static_cast<double>(time_ps) * edges_per_ps_;
     auto edge = static_cast<std::uint64_t>(edges);
     // An edge lies up to half a ps off its exact place; twice that, and the error of `edges`, leave no doubt.

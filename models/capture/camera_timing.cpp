@@ -70,10 +70,11 @@ CameraTiming::CameraTiming(const CameraConfig& config, const Rate& rate)
 int CameraTiming::pixels_by(int row, std::uint64_t since_begin_ps) const {
   const double steps = static_cast<double>(since_begin_ps) * steps_per_ps_;
   const double row_steps = static_cast<double>(row_steps_ * static_cast<std::uint64_t>(row));
-  const double arrived = (steps - row_steps) / kPixelSteps + 1;
+  constexpr double kPixelsPerStep = 1.0 / kPixelSteps;
+  const double arrived = (steps - row_steps) * kPixelsPerStep + 1;
   int pixels = static_cast<int>(std::clamp(arrived, 0.0, static_cast<double>(width_)));
   // A pixel arrives up to half a ps off its exact time; twice that, and the error of `steps`, leave no doubt.
-  const double doubt = (steps_per_ps_ + steps * 0x1p-49) / kPixelSteps;
+  const double doubt = (steps_per_ps_ + steps * 0x1p-49) * kPixelsPerStep;
   const double past_pixel = arrived - pixels;
   if (past_pixel > doubt && past_pixel < 1 - doubt) return pixels;
   while (pixels > 0 && pixel_ps(pixels - 1, row) > since_begin_ps) --pixels;

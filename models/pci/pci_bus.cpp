@@ -104,9 +104,9 @@ void PciBus::arbitrate() {
   const std::uint64_t edge_ps = clock_.edge_ps(clock);
   decision_clock_ = kNever;
   state_ = State::kOccupied;
-  const std::size_t last = last_granted_;
+  std::size_t master = last_granted_;
   for (std::size_t tried = 0; tried < requests_.size(); ++tried) {
-    const std::size_t master = (last + 1 + tried) % requests_.size();
+    master = master + 1 < requests_.size() ? master + 1 : 0;
     Request& request = requests_[master];
     if (request.clock > clock) continue;
     const std::uint64_t request_clock = std::exchange(request.clock, kNever);
