@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -24,9 +25,12 @@ class WordsByRange {
 
   // Counts `words` words from `address` on.
   void add(std::uint64_t address, std::uint64_t words) {
-    for (const std::uint64_t end = address + 4 * words; address < end; address += 4) {
+    while (words > 0) {
       if (latest_ == ranges_.size() || !ranges_[latest_].contains(address)) latest_ = find(address);
-      ++words_[latest_];
+      const std::uint64_t here = std::min(words, words_until(border_behind(address), address));
+      words_[latest_] += here;
+      words -= here;
+      address += 4 * here;
     }
   }
   // [range], then those outside of all.
@@ -39,6 +43,21 @@ class WordsByRange {
     while (range < ranges_.size() && !ranges_[range].contains(address)) ++range;
     return range;
   }
+  // The next address that belongs elsewhere than this one, which belongs to latest_; kNone: there is none.
+  std::uint64_t border_behind(std::uint64_t address) const {
+    if (latest_ < ranges_.size()) return ranges_[latest_].end;
+    std::uint64_t border = kNone;
+    for (const AddressRange& range : ranges_) {
+      if (range.first > address) border = std::min(border, range.first);
+    }
+    return border;
+  }
+  // That begin before `end`.
+  static std::uint64_t words_until(std::uint64_t end, std::uint64_t address) {
+    return (end - address - 1) / 4 + 1;
+  }
+
+  static constexpr std::uint64_t kNone = UINT64_MAX;
 
   std::vector<AddressRange> ranges_;
   std::vector<std::uint64_t> words_;

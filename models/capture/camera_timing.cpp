@@ -16,7 +16,8 @@ std::uint64_t power_of_ten(int exponent) {
 
 }  // namespace
 
-CameraTiming::Period::Period(Wide numerator, Wide denominator) {
+CameraTiming::Period::Period(Wide numerator, Wide denominator)
+    : near_(static_cast<double>(numerator) / static_cast<double>(denominator)) {
   Wide divisor = denominator;
   for (Wide rest = numerator; rest != 0;) {
     const Wide next = divisor % rest;
@@ -67,9 +68,15 @@ CameraTiming::CameraTiming(const CameraConfig& config, const Rate& rate)
       steps_per_ps_(35.0 / 32e12 * static_cast<double>(row_steps_) * config.height * config.frame_rate_hz) {}
 
 int CameraTiming::pixels_by(int row, std::uint64_t since_begin_ps) const {
-  const double steps = static_cast<double>(since_begin_ps) * steps_per_ps_ -
-                       static_cast<double>(row_steps_ * static_cast<std::uint64_t>(row));
-  int pixels = static_cast<int>(std::clamp(steps / kPixelSteps + 1, 0.0, static_cast<double>(width_)));
+  const double steps = static_cast<double>(since_begin_ps) * steps_per_ps_;
+  const double row_steps = static_cast<double>(row_steps_ * static_cast<std::uint64_t>(row));
+  constexpr double kPixelsPerStep = 1.0 / kPixelSteps;
+  const double arrived = (steps - row_steps) * kPixelsPerStep + 1;
+  int pixels = static_cast<int>(std::clamp(arrived, 0.0, static_cast<double>(width_)));
+  // A pixel arrives up to half a ps off its exact time; twice that, and the error of `steps`, leave no doubt.
+  const double doubt = (steps_per_ps_ + steps * 0x1p-49) * kPixelsPerStep;
+  const double past_pixel = arrived - pixels;
+  if (past_pixel > doubt && past_pixel < 1 - doubt) return pixels;
   while (pixels > 0 && pixel_ps(pixels - 1, row) > since_begin_ps) --pixels;
   while (pixels < width_ && pixel_ps(pixels, row) <= since_begin_ps) ++pixels;
   return pixels;

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "models/capture/capture_config.h"
+#include "models/rounding.h"
 
 namespace stereotlm::capture {
 
@@ -40,6 +41,7 @@ class CameraTiming {
    public:
     Period(Wide numerator, Wide denominator);
     std::uint64_t times(std::uint64_t count) const {
+      if (const auto time = rounded_if_certain(static_cast<double>(count) * near_)) return *time;
       // A division of 128 bits takes several times as long.
       const std::uint64_t doubled_rest =
           count <= narrow_counts_
@@ -49,6 +51,7 @@ class CameraTiming {
     }
 
    private:
+    double near_;  // to the number
     std::uint64_t whole_;
     Wide rest_;  // of denominator_
     Wide denominator_;

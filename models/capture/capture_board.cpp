@@ -30,7 +30,7 @@ CaptureBoard::CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoa
   sensitive << decision_;
   dont_initialize();
   SC_METHOD(proceed);
-  sensitive << fifo_due_;
+  sensitive << finish_due_;
   dont_initialize();
   SC_METHOD(drive_interrupt);
   sensitive << interrupt_changed_;
@@ -200,14 +200,14 @@ void CaptureBoard::proceed() {
   fifo_.advance(now);
   const auto next = fifo_.next_ps();
   if (!next) return;
-  if (*next > now) {
-    fifo_due_.notify(Clock::to_time(*next - now));
-  } else if (fifo_.finished()) {
-    finish(now);
-  } else {
+  if (!fifo_.finishes_next()) {
     bus_state_ = BusState::kRequested;
-    requested_ps_ = now;
-    pci->request(*this);
+    requested_ps_ = *next;
+    pci->request(*this, *next);
+  } else if (*next > now) {
+    finish_due_.notify(Clock::to_time(*next - now));
+  } else {
+    finish(now);
   }
 }
 
@@ -230,17 +230,13 @@ pci::PciBurst CaptureBoard::begin_burst(std::uint64_t address_clock_ps) {
   bus_state_ = BusState::kBurst;
   ++stats_.bursts;
   fifo_.advance(address_clock_ps);
-  fifo_.grant(burst_);
-  burst_words_.clear();
+  burst_words_.resize(static_cast<std::size_t>(fifo_.grant(burst_)));
+  std::uint32_t* to = burst_words_.data();
   for (const LineWords& line : burst_) {
     const std::uint8_t* pixel =
         lines_[static_cast<std::size_t>(line.row)] + std::ptrdiff_t{line.first} * kernels::kPixelsPerWord;
-    for (int word = 0; word < line.count; ++word, pixel += kernels::kPixelsPerWord) {
-      std::uint32_t value = 0;
-      for (std::size_t i = 0; i < kernels::kPixelsPerWord; ++i)
-        value = kernels::insert_pixel(value, i, pixel[i]);
-      burst_words_.push_back(value);
-    }
+    for (int word = 0; word < line.count; ++word, pixel += kernels::kPixelsPerWord)
+      *to++ = kernels::word_of_pixels(pixel);
   }
   const auto line = static_cast<std::uint64_t>(burst_.front().row);
   const auto word = static_cast<std::uint64_t>(burst_.front().first);

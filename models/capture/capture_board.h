@@ -30,8 +30,8 @@ class CapturePartnerIf : public virtual sc_core::sc_interface {
 // those of fpga/register_file.h. Debug transport reads.
 //
 // Whether a frame is taken is decided 1 ps after its beginning, when everything that happens at that
-// beginning has happened, in whatever order. Words leave the FIFO at the end of their data clock. Two or
-// three events per burst, none per pixel or word.
+// beginning has happened, in whatever order. Words leave the FIFO at the end of their data clock. The bus is asked
+// in advance, for the time at which the FIFO will ask: no event per burst, pixel or word beside those of the bus.
 //
 // SC_REPORT_ERROR (type /stereotlm/capture_board): a line that no capture expects; a grant without request or
 // from before it; the end of a burst that there is not, or that does not fit it.
@@ -105,7 +105,7 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
   Readiness readiness();
   void decide();
   void start();
-  void proceed();  // with the bus idle: asks for it, or waits until it must
+  void proceed();  // with the bus idle: asks for it from when it must, or finishes then
   void finish(std::uint64_t now_ps);
 
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
@@ -115,7 +115,7 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
 
   CaptureFifo fifo_;
   sc_core::sc_event decision_{"decision"};
-  sc_core::sc_event fifo_due_{"fifo_due"};
+  sc_core::sc_event finish_due_{"finish_due"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
 
   std::uint32_t buffer_address_ = 0;

@@ -69,18 +69,19 @@ int CaptureFifo::complete_words() const {
   return occupancy_ - (arrival_ps(last_column, last.row) > now_ps_ ? 1 : 0);
 }
 
-void CaptureFifo::grant(std::vector<LineWords>& burst) {
+int CaptureFifo::grant(std::vector<LineWords>& burst) {
   burst.clear();
   owed_ = complete_words();
-  int left = owed_;
+  int granted = 0;
   for (const LineWords& line : lines_) {
     const bool contiguous = burst.empty() || (line.row == burst.back().row + 1 && line.first == 0 &&
                                               burst.back().first + burst.back().count == words_per_line_);
-    const int count = std::min(left, line.count);
-    if (!contiguous || count == 0) return;
+    const int count = std::min(owed_ - granted, line.count);
+    if (!contiguous || count == 0) break;
     burst.push_back({line.row, line.first, count});
-    left -= count;
+    granted += count;
   }
+  return granted;
 }
 
 void CaptureFifo::leave(std::uint64_t now_ps, int words, const LeftBy& left_by) {

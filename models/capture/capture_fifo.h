@@ -42,14 +42,16 @@ class CaptureFifo {
   // Pixels arrive until now, and no word leaves.
   void advance(std::uint64_t now_ps);
   // The bus is granted now, after advance(): the complete words as far as their addresses are contiguous.
-  // They stay in the FIFO until they leave.
-  void grant(std::vector<LineWords>& burst);
+  // They stay in the FIFO until they leave. Returns how many.
+  int grant(std::vector<LineWords>& burst);
   // The burst ends now: its first `words` words have left, when left_by says.
   void leave(std::uint64_t now_ps, int words, const LeftBy& left_by);
 
   // As of the last advance() or leave(): when the bus is to be asked for, or the frame finishes; at that time
   // itself if it has come. None if that waits for another line. Not while a burst is running.
   std::optional<std::uint64_t> next_ps() const;
+  // Whether that is the time at which the frame finishes, with nothing left to ask for.
+  bool finishes_next() const { return occupancy_ == 0 && word_ == words_per_line_; }
   std::uint64_t words_per_line() const { return static_cast<std::uint64_t>(words_per_line_); }
   // All pixels have arrived and all words left, or been dropped.
   bool finished() const;

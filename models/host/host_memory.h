@@ -22,7 +22,7 @@ inline constexpr kernels::IntegerRule kHostMemoryRule{4, std::int64_t{1} << 31, 
 class HostMemory : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {
-    std::uint64_t reads = 0;  // accesses
+    std::uint64_t reads = 0;  // accesses by transactions
     std::uint64_t writes = 0;
     std::uint64_t errors = 0;  // refused accesses
   };

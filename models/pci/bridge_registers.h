@@ -63,8 +63,6 @@ constexpr std::uint64_t local_address(std::uint32_t board_word) {
 }
 
 // A burst on the local bus stays in one bank.
-constexpr bool same_bank(std::uint64_t local_address, std::uint64_t other) {
-  return local_address >> 28U == other >> 28U;
-}
+inline constexpr std::uint64_t kBankBytes = std::uint64_t{1} << 28U;
 
 }  // namespace stereotlm::pci::bridge

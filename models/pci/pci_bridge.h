@@ -14,6 +14,7 @@
 #include "models/kernels/integer_rule.h"
 #include "models/pci/bridge_registers.h"
 #include "models/pci/pci_slot.h"
+#include "models/pci/posted_writes.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::pci {
@@ -40,7 +41,10 @@ struct PciBridgeConfig {
 //   the local bus. Reads wait until all writes before them have gone, and block until their words are there.
 // - A DMA channel fetches a descriptor, then moves its words in bursts. PCI and local bus overlap: one burst can be on
 //   either while the last one is on the other.
-// - The local bus serves posted writes first, then reads, then the channels in turn.
+// - The local bus serves posted writes first, then reads, then the channels in turn; when it has nothing to serve, the
+//   turn moves on.
+//
+// The end of a burst on the local bus is an event only if something waits for it, or it was refused.
 //
 // Errors are those of bridge_registers.h; a register access that is not one aligned word, or in the wrong direction, and a
 // slave access outside the window are answered with an error response.
@@ -72,26 +76,17 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   WordsByRange words_held() const;
 
  private:
-  struct PostedWord {
-    std::uint64_t address = 0;  // on the local bus
-    std::uint32_t word = 0;
-  };
+  static constexpr std::uint64_t kNever = UINT64_MAX;
+
+  struct Channel;
   // Words on their way over one of the two buses.
   struct Transfer {
+    Channel* channel = nullptr;  // null for the one of the slave window
     bool write = false;
     std::uint64_t address = 0;
-    std::vector<std::uint32_t> words;
+    std::vector<std::uint32_t> words = {};
     bool under_way = false;
-    bool on_local_bus = false;
     bool failed = false;
-    sc_core::sc_event ended;
-  };
-  struct Channel {
-    std::uint32_t descriptor = 0;
-    bool busy = false;
-    sc_core::sc_event start;
-    Transfer pci;
-    Transfer local;
   };
   // What one descriptor asks for.
   struct Piece {
@@ -99,6 +94,16 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
     std::uint64_t pci_address = 0;
     std::uint64_t local_address = 0;
     std::size_t words = 0;
+    std::uint32_t next = 0;  // descriptor
+  };
+  struct Channel {
+    std::uint32_t descriptor = 0;
+    bool busy = false;
+    bool fetching = false;  // the descriptor of the next piece
+    Piece piece;
+    std::size_t moved = 0;  // words of it, read and on their way or there
+    Transfer pci{this};
+    Transfer local{this};
   };
   class Manager : public tlm::tlm_mm_interface {
     void free(tlm::tlm_generic_payload* /*payload*/) override {}
@@ -107,6 +112,8 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   // As a target of the PCI bus.
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override;
   void slave_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  void post(std::uint64_t offset, const unsigned char* data, std::uint64_t bytes,
+            const sc_core::sc_time& delay);
   void register_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
   bool read_register(std::uint64_t offset, std::uint32_t& value) const;
   bool write_register(std::uint64_t offset, std::uint32_t value);
@@ -116,21 +123,30 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
   void start_on_pci(Transfer& transfer);
+  void count_words(WordsByRange& counts, std::uint64_t address, std::size_t words) const;
 
   // The local bus.
-  void run_local();
-  void send_posted();
-  bool serve(Transfer& transfer);
-  tlm::tlm_response_status move(bool write, std::uint64_t address, std::vector<std::uint32_t>& words);
+  void start_on_local(Transfer& transfer);
+  void wake(const sc_core::sc_time& delay = sc_core::SC_ZERO_TIME);
+  void work();
+  bool serve();
+  void begin(Transfer* transfer, bool write, std::uint64_t address, std::uint32_t* words, std::size_t count);
   tlm::tlm_sync_enum local_response(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
                                     sc_core::sc_time& delay);
-  void start_on_local(Transfer& transfer);
+  void answer_at(const sc_core::sc_time& delay);
+  bool end_is_awaited() const;
+  bool has_ended() const;
+  void settle();
 
   // The channels.
-  void run_channel(std::size_t channel);
-  bool run_chain(Channel& channel);
-  bool move_piece(Channel& channel, const Piece& piece);
-  static bool finish(Transfer& transfer);
+  void start(Channel& channel);
+  void finish(Channel& channel, std::uint32_t bits);
+  void go_on(Channel& channel);
+  void fetch(Channel& channel, std::uint32_t descriptor);
+  bool take_descriptor(Channel& channel);
+  void read_burst(Channel& channel);
+  void write_burst(Channel& channel);
+  void start_burst(Channel& channel, Transfer& transfer, bool write);
 
   void ring();
   void raise(std::uint32_t bits);
@@ -141,18 +157,21 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   std::uint32_t interrupt_status_ = 0;
   std::uint32_t interrupt_enable_ = 0;
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
-  std::deque<PostedWord> posted_;
-  std::size_t posted_on_local_bus_ = 0;      // of these, the first
-  std::vector<std::uint32_t> posted_burst_;  // of these, on the local bus
-  Transfer read_;                            // of the slave window
+  PostedWrites posted_;
+  Transfer read_;  // of the slave window
+  sc_core::sc_event read_ended_{"read_ended"};
   std::array<Channel, bridge::kChannels> channels_;
-  std::size_t next_channel_ = 0;  // on the local bus
   std::deque<Transfer*> pci_queue_;
   Transfer* on_pci_ = nullptr;
   std::size_t pci_done_ = 0;              // words of the transfer at the front of the queue
   std::vector<std::uint32_t> pci_words_;  // of the burst under way
-  sc_core::sc_event work_{"work"};        // for the local bus
-  sc_core::sc_event responded_{"responded"};
+
+  // The burst on the local bus.
+  bool local_is_busy_ = false;
+  Transfer* on_local_ = nullptr;         // null: posted writes
+  std::uint64_t local_end_ps_ = kNever;  // of its idle clock, once it has been answered
+  std::size_t next_channel_ = 1;         // the first has been passed over at the start, with nothing to serve
+  sc_core::sc_event work_{"work_to_do"};
   Manager manager_;
   tlm::tlm_generic_payload burst_{&manager_};
   WordsByRange words_taken_;

@@ -1,12 +1,15 @@
 #include "models/pci/pci_bus.h"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace stereotlm::pci {
 namespace {
 
 constexpr char kReport[] = "/stereotlm/pci_bus";
+constexpr std::size_t kNobody = SIZE_MAX;
 constexpr std::uint64_t kDevselClocks = 4;  // that a master waits for DEVSEL# after its address clock
 
 const PciBusConfig& checked(const char* name, const PciBusConfig& config) {
@@ -32,148 +35,265 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
       stops("stop", config.windows.size()),
       config_(checked(this->name(), config)),
       clock_(config.clock_mhz),
-      last_granted_(config.masters.size() - 1) {
+      requests_(config.masters.size()),
+      last_granted_(config.masters.size() - 1),
+      memories_(config.windows.size()) {
   SC_HAS_PROCESS(PciBus);
   for (std::size_t master = 0; master < slots.size(); ++master) {
-    slots[master].bind(slots_.emplace_back(*this));
+    slots[master].bind(slots_.emplace_back(*this, master));
     master_stats_.emplace_back().name = config.masters[master];
   }
-  SC_THREAD(run);
+  for (auto& target : targets) target.register_invalidate_direct_mem_ptr(this, &PciBus::forget_memories);
+  SC_METHOD(step);
+  sensitive << step_;
+  dont_initialize();
+  SC_THREAD(run_transports);
 }
 
-void PciBus::Slot::request(PciMasterIf& from) {
-  if (request_ps != kNever) return;
-  master = &from;
-  request_ps = now_ps();
-  bus_.requested_.notify(sc_core::SC_ZERO_TIME);
-}
+// Requests.
 
-void PciBus::run() {
-  std::uint64_t clock = 0;  // the first that can be an address clock
-  for (;;) {
-    while (earliest_request_ps() == kNever) wait(requested_);
-    clock = std::max(clock, clock_.edge_at_or_after(earliest_request_ps()));
-    wait_until(clock_.edge_ps(clock) + 1);
-    clock = arbitrate(clock);
+void PciBus::request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps) {
+  if (requests_[master].clock != kNever) return;
+  requests_[master] = {&from, clock_.edge_at_or_after(from_ps)};
+  if (state_ == State::kFree) {
+    await_request();
+  } else if (state_ == State::kWords && master != running_.master) {
+    cut_words();
   }
 }
 
-// Grants the clock to its requests in turn until one is used. Returns the clock after that burst's idle
-// clock; the same clock if none is used.
-std::uint64_t PciBus::arbitrate(std::uint64_t clock) {
+// Decides 1 ps after the beginning of the clock.
+void PciBus::await_request() {
+  const std::uint64_t earliest = earliest_request(kNobody);
+  if (earliest == kNever) return;
+  const std::uint64_t clock = std::max(free_clock_, earliest);
+  if (clock >= decision_clock_) return;
+  decision_clock_ = clock;
+  step_at(clock_.edge_ps(clock) + 1);
+}
+
+std::uint64_t PciBus::earliest_request(std::size_t except) const {
+  std::uint64_t earliest = kNever;
+  for (std::size_t master = 0; master < requests_.size(); ++master) {
+    if (master != except) earliest = std::min(earliest, requests_[master].clock);
+  }
+  return earliest;
+}
+
+// The steps of a burst.
+
+void PciBus::step() {
+  switch (state_) {
+    case State::kFree:
+      arbitrate();
+      break;
+    case State::kWords:
+      end_words();
+      break;
+    case State::kEnding:
+      end();
+      break;
+    case State::kOccupied:
+      break;
+  }
+}
+
+// Grants the clock to its requests in turn until one is used.
+void PciBus::arbitrate() {
+  const std::uint64_t clock = decision_clock_;
   const std::uint64_t edge_ps = clock_.edge_ps(clock);
-  const std::size_t first = last_granted_ + 1;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    const std::size_t master = (first + i) % slots_.size();
-    Slot& slot = slots_[master];
-    if (slot.request_ps > edge_ps) continue;
-    const std::uint64_t request_clock = clock_.edge_at_or_after(slot.request_ps);
-    slot.request_ps = kNever;
+  decision_clock_ = kNever;
+  state_ = State::kOccupied;
+  std::size_t master = last_granted_;
+  for (std::size_t tried = 0; tried < requests_.size(); ++tried) {
+    master = master + 1 < requests_.size() ? master + 1 : 0;
+    Request& request = requests_[master];
+    if (request.clock > clock) continue;
+    const std::uint64_t request_clock = std::exchange(request.clock, kNever);
     last_granted_ = master;
-    const PciBurst burst = slot.master->begin_burst(edge_ps);
+    const PciBurst burst = request.from->begin_burst(edge_ps);
     if (burst.words == nullptr || burst.words->empty()) continue;
     master_stats_[master].wait_clocks += clock - request_clock;
     address_clock_ = clock;
-    const Outcome outcome = carry_out({master, burst, clock});
-    address_clock_.reset();
-    busy_clocks_ += outcome.end_clock - clock;
-    count(master, outcome.result);
-    slot.master->end_burst(outcome.result);
-    return outcome.end_clock + 1;
+    begin(master, burst);
+    return;
   }
-  return clock;
+  state_ = State::kFree;
+  await_request();
 }
 
-// Waits for the end of the burst.
-PciBus::Outcome PciBus::carry_out(const Running& running) {
-  const auto window = window_of(running.burst);
-  if (window) return running.burst.write ? write(running, *window) : read(running, *window);
-  const std::uint64_t end = running.address_clock + 1 + kDevselClocks;
-  wait_until(clock_.edge_ps(end));
-  return {{BurstEnd::kMasterAbort, 0, end}, end};
-}
-
-PciBus::Outcome PciBus::write(const Running& running, std::size_t window) {
-  const std::size_t taken = writable_words(running, window);
-  if (taken == 0) {
-    const std::uint64_t end = running.address_clock + 1;
-    wait_until(clock_.edge_ps(end));
-    return {{BurstEnd::kDisconnect, 0, end}, end};
+void PciBus::begin(std::size_t master, const PciBurst& burst) {
+  const std::uint64_t address_clock = *address_clock_;
+  const auto window = window_of(burst);
+  running_ = {master, burst, window.value_or(0), burst.words->size(), address_clock, 0, false, {}};
+  if (!window) {
+    const std::uint64_t end_clock = address_clock + 1 + kDevselClocks;
+    end_at(end_clock, {BurstEnd::kMasterAbort, 0, end_clock});
+  } else if (!burst.write) {
+    read_words_.assign(burst.words->size(), 0);
+    access(read_words_, running_.taken);
+  } else if (running_.taken = writable_words(); running_.taken == 0) {
+    end_at(address_clock + 1, {BurstEnd::kDisconnect, 0, address_clock + 1});
+  } else {
+    begin_words(address_clock + 1 + static_cast<std::uint64_t>(config_.windows[*window].wait_clocks),
+                running_.taken);
   }
-  const std::uint64_t first =
-      running.address_clock + 1 + static_cast<std::uint64_t>(config_.windows[window].wait_clocks);
-  std::uint64_t end = transfer_words(running, first, taken);
-  const auto words = static_cast<std::size_t>(end - first);
-  sc_core::sc_time delay;
-  const bool ok = transport(tlm::TLM_WRITE_COMMAND, running, window, *running.burst.words, words, delay);
-  end = std::max(end, clock_.edge_at_or_after(now_ps() + Clock::to_ps(delay)));
-  wait_until(clock_.edge_ps(end));
-  if (!ok) return {{BurstEnd::kTargetError, 0, first}, end};
-  return {{end_of(words, taken, running.burst.words->size()), words, first}, end};
 }
 
-PciBus::Outcome PciBus::read(const Running& running, std::size_t window) {
-  const std::size_t asked = running.burst.words->size();
-  const std::uint64_t data_clock = running.address_clock + 1;
-  read_words_.assign(asked, 0);
-  sc_core::sc_time delay = Clock::to_time(clock_.edge_ps(data_clock) - now_ps());
-  const bool ok = transport(tlm::TLM_READ_COMMAND, running, window, read_words_, asked, delay);
-  const std::uint64_t first =
-      std::max(data_clock + static_cast<std::uint64_t>(config_.windows[window].wait_clocks),
-               clock_.edge_at_or_after(now_ps() + Clock::to_ps(delay)));
-  if (!ok) {
-    wait_until(clock_.edge_ps(first + 1));
-    return {{BurstEnd::kTargetError, 0, first}, first + 1};
-  }
-  const std::uint64_t end = transfer_words(running, first, asked);
-  const auto words = static_cast<std::size_t>(end - first);
-  std::copy_n(read_words_.begin(), words, running.burst.words->begin());
-  return {{end_of(words, asked, asked), words, first}, end};
-}
-
-std::size_t PciBus::writable_words(const Running& running, std::size_t window) {
-  const std::size_t asked = running.burst.words->size();
-  if (stops[window].size() == 0) return asked;
-  const std::size_t taken = stops[window]->writable_words(offset(running.burst, window), asked);
-  if (taken <= asked) return taken;
-  SC_REPORT_ERROR(kReport, (std::string(stops[window].name()) + ": " + std::to_string(taken) + " of " +
-                            std::to_string(asked) + " words can be written")
-                               .c_str());
-  return asked;
+void PciBus::begin_words(std::uint64_t first_clock, std::size_t words) {
+  running_.result.first_data_clock = first_clock;
+  running_.end_clock = first_clock + words;
+  running_.transported = running_.burst.write && memories_[running_.window].data == nullptr;
+  state_ = State::kWords;
+  end_words_at(running_.end_clock);
+  cut_words();
 }
 
 // Only the earliest request of the others matters: a later one cuts no earlier.
-std::uint64_t PciBus::transfer_words(const Running& running, std::uint64_t first_data_clock,
-                                     std::size_t words) {
-  const std::uint64_t end = first_data_clock + words;
-  const std::uint64_t end_ps = clock_.edge_ps(end);
-  const Slot& owner = slots_[running.master];
-  while (earliest_request_ps(&owner) == kNever) {
-    if (now_ps() >= end_ps) return end;
-    wait(Clock::to_time(end_ps - now_ps()), requested_);
-  }
+void PciBus::cut_words() {
+  const std::uint64_t request = earliest_request(running_.master);
+  if (request == kNever) return;
   const std::uint64_t last_word =
-      std::max({running.address_clock + static_cast<std::uint64_t>(config_.latency_timer_clocks),
-                clock_.edge_at_or_after(earliest_request_ps(&owner)), first_data_clock});
-  const std::uint64_t cut = std::min(end, last_word + 1);
-  wait_until(clock_.edge_ps(cut));
-  return cut;
+      std::max({running_.address_clock + static_cast<std::uint64_t>(config_.latency_timer_clocks), request,
+                running_.result.first_data_clock});
+  if (last_word + 1 < running_.end_clock) end_words_at(last_word + 1);
 }
 
-bool PciBus::transport(tlm::tlm_command command, const Running& running, std::size_t window,
-                       std::vector<std::uint32_t>& words, std::size_t count, sc_core::sc_time& delay) {
-  const auto bytes = static_cast<unsigned>(count * sizeof(std::uint32_t));
-  access_.set_command(command);
-  access_.set_address(offset(running.burst, window));
+void PciBus::end_words_at(std::uint64_t clock) {
+  running_.end_clock = clock;
+  (running_.transported ? transport_ : step_).notify(Clock::to_time(clock_.edge_ps(clock) - now_ps()));
+}
+
+void PciBus::end_words() {
+  state_ = State::kOccupied;
+  const std::uint64_t first = running_.result.first_data_clock;
+  const auto words = static_cast<std::size_t>(running_.end_clock - first);
+  std::vector<std::uint32_t>& to = *running_.burst.words;
+  running_.result = {end_of(words, running_.taken, to.size()), words, first};
+  if (running_.burst.write) {
+    access(to, words);
+  } else {
+    std::copy_n(read_words_.begin(), words, to.begin());
+    end();
+  }
+}
+
+// In a clock to come.
+void PciBus::end_at(std::uint64_t clock, const BurstResult& result) {
+  running_.result = result;
+  running_.end_clock = clock;
+  state_ = State::kEnding;
+  step_at(clock_.edge_ps(clock));
+}
+
+void PciBus::end() {
+  state_ = State::kOccupied;
+  address_clock_.reset();
+  busy_clocks_ += running_.end_clock - running_.address_clock;
+  count(running_.master, running_.result);
+  free_clock_ = running_.end_clock + 1;
+  requests_[running_.master].from->end_burst(running_.result);
+  state_ = State::kFree;
+  await_request();
+}
+
+// The access to the target.
+
+// A write, when its words have been transferred; a read, from the end of the address clock on.
+void PciBus::access(std::vector<std::uint32_t>& words, std::size_t count) {
+  const bool write = running_.burst.write;
+  access_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+  access_.set_address(running_.burst.address - config_.windows[running_.window].base);
   access_.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
-  access_.set_data_length(bytes);
-  access_.set_streaming_width(bytes);
+  access_.set_data_length(static_cast<unsigned>(count * sizeof(std::uint32_t)));
+  if (access_memory()) {
+    answered(true, access_clock());
+  } else {
+    transport_is_due_ = true;
+    transport_.notify();
+  }
+}
+
+std::uint64_t PciBus::access_clock() const {
+  return running_.burst.write ? running_.end_clock : running_.address_clock + 1;
+}
+
+bool PciBus::access_memory() {
+  const Memory& memory = memories_[running_.window];
+  const std::uint64_t first = access_.get_address();
+  const std::size_t bytes = access_.get_data_length();
+  if (memory.data == nullptr || first < memory.first || first + bytes - 1 > memory.last) return false;
+  unsigned char* const stored = memory.data + (first - memory.first);
+  unsigned char* const words = access_.get_data_ptr();
+  std::memcpy(access_.is_write() ? stored : words, access_.is_write() ? words : stored, bytes);
+  return true;
+}
+
+// b_transport may wait. The words of a write that needs it end here.
+void PciBus::run_transports() {
+  for (;;) {
+    wait(transport_);
+    if (state_ == State::kWords) end_words();
+    if (std::exchange(transport_is_due_, false)) transport();
+  }
+}
+
+void PciBus::transport() {
+  access_.set_streaming_width(access_.get_data_length());
   access_.set_byte_enable_ptr(nullptr);
   access_.set_byte_enable_length(0);
   access_.set_dmi_allowed(false);
   access_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-  targets[window]->b_transport(access_, delay);
-  return access_.is_response_ok();
+  const std::uint64_t access_ps = clock_.edge_ps(access_clock());
+  sc_core::sc_time delay = Clock::to_time(access_ps - now_ps());
+  targets[running_.window]->b_transport(access_, delay);
+  if (access_.is_dmi_allowed()) learn_memory();
+  const std::uint64_t answer_ps = now_ps() + Clock::to_ps(delay);
+  answered(access_.is_response_ok(),
+           answer_ps == access_ps ? access_clock() : clock_.edge_at_or_after(answer_ps));
+}
+
+void PciBus::learn_memory() {
+  tlm::tlm_dmi dmi;
+  const bool granted = targets[running_.window]->get_direct_mem_ptr(access_, dmi);
+  if (!granted || !dmi.is_read_write_allowed() || dmi.get_read_latency() != sc_core::SC_ZERO_TIME ||
+      dmi.get_write_latency() != sc_core::SC_ZERO_TIME) {
+    return;
+  }
+  memories_[running_.window] = {dmi.get_dmi_ptr(), dmi.get_start_address(), dmi.get_end_address()};
+}
+
+// `clock`: the first that begins with or after the response.
+void PciBus::answered(bool ok, std::uint64_t clock) {
+  BurstResult result = running_.result;
+  if (running_.burst.write) {
+    if (!ok) result = {BurstEnd::kTargetError, 0, result.first_data_clock};
+    if (clock > running_.end_clock) return end_at(clock, result);
+    running_.result = result;
+    end();
+    return;
+  }
+  const std::uint64_t first = std::max(
+      running_.address_clock + 1 + static_cast<std::uint64_t>(config_.windows[running_.window].wait_clocks),
+      clock);
+  if (ok) {
+    begin_words(first, running_.taken);
+  } else {
+    end_at(first + 1, {BurstEnd::kTargetError, 0, first});
+  }
+}
+
+std::size_t PciBus::writable_words() const {
+  const std::size_t asked = running_.burst.words->size();
+  const PciStopPort& stop = stops[running_.window];
+  if (stop.size() == 0) return asked;
+  const std::uint64_t address = running_.burst.address - config_.windows[running_.window].base;
+  const std::size_t taken = stop->writable_words(address, asked);
+  if (taken <= asked) return taken;
+  SC_REPORT_ERROR(kReport, (std::string(stop.name()) + ": " + std::to_string(taken) + " of " +
+                            std::to_string(asked) + " words can be written")
+                               .c_str());
+  return asked;
 }
 
 void PciBus::count(std::size_t master, const BurstResult& result) {
@@ -206,16 +326,6 @@ std::optional<std::size_t> PciBus::window_of(const PciBurst& burst) const {
   return std::nullopt;
 }
 
-std::uint64_t PciBus::earliest_request_ps(const Slot* except) const {
-  std::uint64_t earliest = kNever;
-  for (const Slot& slot : slots_) {
-    if (&slot != except) earliest = std::min(earliest, slot.request_ps);
-  }
-  return earliest;
-}
-
-void PciBus::wait_until(std::uint64_t time_ps) {
-  if (const std::uint64_t now = now_ps(); time_ps > now) wait(Clock::to_time(time_ps - now));
-}
+void PciBus::step_at(std::uint64_t time_ps) { step_.notify(Clock::to_time(time_ps - now_ps())); }
 
 }  // namespace stereotlm::pci

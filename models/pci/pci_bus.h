@@ -21,7 +21,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 
 // A 32-bit PCI bus (contract section 3). A burst is an address clock, the target's wait clocks, one clock a
 // word and an idle clock; the next address clock can be the one after that, since arbitration is hidden
-// behind the burst. It costs a few waits of one process, however long it is.
+// behind the burst. It costs two events, however long it is: where it is granted, and where it ends. A request that
+// cuts it moves its end.
 //
 // Arbitration is round robin, from the slot after the last one granted (at first from slot 0), among the
 // requests made at or before the beginning of the clock: it is decided 1 ps later, so that every request made
@@ -41,6 +42,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // first word comes after the window's wait clocks, and not before the first clock that begins at or after
 // the time that b_transport returns with (by waiting, or by its delay). The master's words are filled as far
 // as transferred.
+//
+// A memory that allows DMI, and whose DMI takes no time, is accessed by it, at these times.
 //
 // A response other than OK ends the burst with kTargetError: a write after its words, a read (target abort)
 // with the clock that the first word would have had. A burst that lies in no window, or not wholly inside
@@ -81,51 +84,93 @@ class PciBus : public sc_core::sc_module {
 
   class Slot : public PciSlotIf {
    public:
-    explicit Slot(PciBus& bus) : bus_(bus) {}
-    void request(PciMasterIf& master) override;
+    Slot(PciBus& bus, std::size_t master) : bus_(bus), master_(master) {}
+    using PciSlotIf::request;
+    void request(PciMasterIf& master, std::uint64_t from_ps) override {
+      bus_.request(master_, master, from_ps);
+    }
     const Clock& clock() const override { return bus_.clock_; }
-
-    PciMasterIf* master = nullptr;
-    std::uint64_t request_ps = kNever;  // of the request that waits
 
    private:
     PciBus& bus_;
+    std::size_t master_;
   };
-  // A burst that has the bus.
+  // Of one master.
+  struct Request {
+    PciMasterIf* from = nullptr;
+    std::uint64_t clock = kNever;  // the first that it can have, while it waits
+  };
+  enum class State : std::uint8_t {
+    kFree,      // step_ comes when a request can be granted
+    kOccupied,  // a master or a target is being asked: requests are noted
+    kWords,     // step_ or transport_ comes when the words have been transferred; a request may cut them
+    kEnding,    // step_ comes when the burst ends, whatever is requested
+  };
+  // The burst that has the bus.
   struct Running {
-    std::size_t master;
+    std::size_t master = 0;
     PciBurst burst;
-    std::uint64_t address_clock;
-  };
-  struct Outcome {
+    std::size_t window = 0;
+    std::size_t taken = 0;  // words that the target takes, or is read
+    std::uint64_t address_clock = 0;
+    std::uint64_t end_clock = 0;  // the idle clock, as far as known
+    bool transported = false;     // its words end with transport_
     BurstResult result;
-    std::uint64_t end_clock;  // the idle clock
+  };
+  // What the target behind a window has granted.
+  struct Memory {
+    unsigned char* data = nullptr;  // of address `first`
+    std::uint64_t first = 0;
+    std::uint64_t last = 0;
   };
 
-  void run();
-  std::uint64_t arbitrate(std::uint64_t clock);
-  Outcome carry_out(const Running& running);
-  Outcome write(const Running& running, std::size_t window);
-  Outcome read(const Running& running, std::size_t window);
-  std::size_t writable_words(const Running& running, std::size_t window);
-  // Waits for the end of the data clocks, and returns the clock behind them.
-  std::uint64_t transfer_words(const Running& running, std::uint64_t first_data_clock, std::size_t words);
-  bool transport(tlm::tlm_command command, const Running& running, std::size_t window,
-                 std::vector<std::uint32_t>& words, std::size_t count, sc_core::sc_time& delay);
+  // Requests.
+  void request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps);
+  void await_request();
+  std::uint64_t earliest_request(std::size_t except) const;
+
+  // The steps of a burst.
+  void step();
+  void arbitrate();
+  void begin(std::size_t master, const PciBurst& burst);
+  void begin_words(std::uint64_t first_clock, std::size_t words);
+  void cut_words();
+  void end_words_at(std::uint64_t clock);
+  void end_words();
+  void end_at(std::uint64_t clock, const BurstResult& result);
+  void end();
+
+  // Its access to the target, in the clock that begins with it.
+  void access(std::vector<std::uint32_t>& words, std::size_t count);
+  std::uint64_t access_clock() const;
+  bool access_memory();
+  void run_transports();
+  void transport();
+  void learn_memory();
+  void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) {
+    memories_.assign(memories_.size(), {});
+  }
+  void answered(bool ok, std::uint64_t clock);
+
+  std::size_t writable_words() const;
   void count(std::size_t master, const BurstResult& result);
   std::optional<std::size_t> window_of(const PciBurst& burst) const;
-  std::uint64_t offset(const PciBurst& burst, std::size_t window) const {
-    return burst.address - config_.windows[window].base;
-  }
-  std::uint64_t earliest_request_ps(const Slot* except = nullptr) const;
-  void wait_until(std::uint64_t time_ps);
+  void step_at(std::uint64_t time_ps);
 
   PciBusConfig config_;
   Clock clock_;
   std::deque<Slot> slots_;
+  std::vector<Request> requests_;  // [master]
   std::size_t last_granted_;
-  sc_core::sc_event requested_{"requested"};
+  State state_ = State::kFree;
+  std::uint64_t free_clock_ = 0;           // the first that can be an address clock
+  std::uint64_t decision_clock_ = kNever;  // that step_ is to grant, in kFree
+  Running running_;
+  sc_core::sc_event step_{"next_step"};
+  sc_core::sc_event transport_{"next_transport"};  // or the end of words that are transported
+  bool transport_is_due_ = false;
   tlm::tlm_generic_payload access_;
+  std::vector<Memory> memories_;  // [window]
   std::vector<std::uint32_t> read_words_;
   std::optional<std::uint64_t> address_clock_;  // of the burst that runs
   std::uint64_t busy_clocks_ = 0;               // of those that have ended

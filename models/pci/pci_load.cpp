@@ -1,5 +1,6 @@
 #include "models/pci/pci_load.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -10,18 +11,11 @@ namespace stereotlm::pci {
 
 PciLoad::PciLoad(const sc_core::sc_module_name& name, const PciLoadConfig& config)
     : sc_module(name), config_(config) {
-  SC_HAS_PROCESS(PciLoad);
   if (const auto found = problems(config); !found.empty()) {
     throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
   }
   device.register_b_transport(this, &PciLoad::answer);
-  SC_METHOD(request);
-  sensitive << due_;
-  dont_initialize();
-  due_.notify(Clock::to_time(config.first_request_ps));
 }
-
-void PciLoad::request() { pci->request(*this); }
 
 PciBurst PciLoad::begin_burst(std::uint64_t /*address_clock_ps*/) {
   words_.resize(static_cast<std::size_t>(config_.burst_words) - words_done_);
@@ -39,18 +33,13 @@ void PciLoad::end_burst(const BurstResult& result) {
   }
   words_done_ += result.words;
   if (result.end != BurstEnd::kComplete) {
-    request();
+    pci->request(*this);
     return;
   }
   words_done_ = 0;
   ++transfers_;
   const std::uint64_t due_ps = config_.first_request_ps + transfers_ * config_.interval_ps;
-  const std::uint64_t now_ps = Clock::to_ps(sc_core::sc_time_stamp());
-  if (due_ps <= now_ps) {
-    request();
-  } else {
-    due_.notify(Clock::to_time(due_ps - now_ps));
-  }
+  pci->request(*this, std::max(due_ps, Clock::to_ps(sc_core::sc_time_stamp())));
 }
 
 void PciLoad::answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {

@@ -33,11 +33,10 @@ class PciLoad : public sc_core::sc_module, private PciMasterIf {
  private:
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
-  void request();
+  void start_of_simulation() override { pci->request(*this, config_.first_request_ps); }
   void answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
   PciLoadConfig config_;
-  sc_core::sc_event due_{"due"};
   std::vector<std::uint32_t> words_;
   std::size_t words_done_ = 0;  // of the running transfer
   std::uint64_t transfers_ = 0;

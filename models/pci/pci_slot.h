@@ -49,9 +49,10 @@ class PciMasterIf {
 // A place on the bus, as its master sees it.
 class PciSlotIf : public virtual sc_core::sc_interface {
  public:
-  // REQ#, until the bus is granted: from the first clock that begins now or later. Asking again meanwhile changes
-  // nothing.
-  virtual void request(PciMasterIf& master) = 0;
+  // REQ#, until the bus is granted: from the first clock that begins now or later, or at or after a time that is to
+  // come. Asking again meanwhile changes nothing.
+  void request(PciMasterIf& master) { request(master, Clock::to_ps(sc_core::sc_time_stamp())); }
+  virtual void request(PciMasterIf& master, std::uint64_t from_ps) = 0;
   virtual const Clock& clock() const = 0;
 };
 

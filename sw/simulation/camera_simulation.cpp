@@ -68,8 +68,10 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
   kernels::GrayImage disparity;
   if (computer_.board.core.fidelity() != fpga::Fidelity::kTiming) {
-    disparity = kernels::GrayImage(board_.image.width, board_.image.height);
-    disparity.pixels.assign(frame.disparity, frame.disparity + disparity.pixels.size());
+    disparity.width = board_.image.width;
+    disparity.height = board_.image.height;
+    const std::ptrdiff_t pixels = std::ptrdiff_t{disparity.width} * disparity.height;
+    disparity.pixels.assign(frame.disparity, frame.disparity + pixels);
   }
   add_result({frame.camera_frame, std::move(disparity)});
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <initializer_list>
+#include <random>
 
 namespace stereotlm {
 namespace {
@@ -53,6 +55,50 @@ TEST(Clock, FindsTheEdgeAtATimeAndTheNextOneAPicosecondLater) {
       EXPECT_EQ(clock.edge_at_or_after(time - 1), edge) << mhz;
       EXPECT_EQ(clock.edge_at_or_after(time), edge) << mhz;
       EXPECT_EQ(clock.edge_at_or_after(time + 1), edge + 1) << mhz;
+    }
+  }
+}
+
+// The definition in extended precision, without the short ways.
+std::uint64_t plain_edge_ps(std::uint64_t edge, double mhz) {
+  return static_cast<std::uint64_t>(
+      std::floor(static_cast<long double>(edge) * 1e6L / static_cast<long double>(mhz) + 0.5L));
+}
+std::uint64_t plain_edge_at_or_after(std::uint64_t time_ps, double mhz) {
+  auto edge =
+      static_cast<std::uint64_t>(static_cast<long double>(time_ps) * static_cast<long double>(mhz) / 1e6L);
+  while (edge > 0 && plain_edge_ps(edge - 1, mhz) >= time_ps) --edge;
+  while (plain_edge_ps(edge, mhz) < time_ps) ++edge;
+  return edge;
+}
+
+TEST(Clock, TakesNoShortWayPastTheDefinition) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> rate(1, 1000);
+  for (int i = 0; i < 400; ++i) {
+    constexpr double kUsual[] = {33.333, 66.667, 66.666, 40, 640, 29.97, 1, 1000, 999.999, 133.3333};
+    const double mhz = i < 10 ? kUsual[i] : rate(random);
+    const Clock clock(mhz);
+    for (int j = 0; j < 500; ++j) {
+      const std::uint64_t edge = random() >> (24 + random() % 40);  // up to 2^40
+      const std::uint64_t time = plain_edge_ps(edge, mhz);
+      ASSERT_EQ(clock.edge_ps(edge), time) << mhz << " MHz, edge " << edge;
+      for (const std::uint64_t at :
+           {time, time + 1, time - std::min<std::uint64_t>(time, 1), time + random() % 1'000'000}) {
+        ASSERT_EQ(clock.edge_at_or_after(at), plain_edge_at_or_after(at, mhz)) << mhz << " MHz, " << at;
+      }
+    }
+  }
+}
+
+// 1562.5 ps, and 2^k / 3 ps, of which many edges lie near a half.
+TEST(Clock, RoundsEdgesNearAHalfAsDefined) {
+  for (const double mhz : {640.0, 1e6 / 1562.4999999999, 1e6 / 1562.5000000001, 1.5, 3e6 / 32768}) {
+    const Clock clock(mhz);
+    for (std::uint64_t edge = 0; edge < 3'000; ++edge) {
+      for (const std::uint64_t far : {std::uint64_t{0}, std::uint64_t{1} << 20U, std::uint64_t{1} << 38U}) {
+        ASSERT_EQ(clock.edge_ps(far + edge), plain_edge_ps(far + edge, mhz)) << mhz << " MHz, " << far + edge;
+      }
     }
   }
 }

@@ -27,6 +27,23 @@ TEST(WordsByRange, GoesBackToAnEarlierRange) {
   EXPECT_EQ(words.words(), (Words{1, 2, 0}));
 }
 
+TEST(WordsByRange, CountsEachWordWhereItBegins) {
+  const std::vector<AddressRange> ranges = {{40, 50}, {12, 21}, {50, 50}, {64, 68}, {70, 1000}};
+  for (std::uint64_t address = 0; address < 100; ++address) {
+    for (std::uint64_t count = 0; count < 40; ++count) {
+      Words expected(ranges.size() + 1);
+      for (std::uint64_t word = address; word < address + 4 * count; word += 4) {
+        std::size_t range = 0;
+        while (range < ranges.size() && !ranges[range].contains(word)) ++range;
+        ++expected[range];
+      }
+      WordsByRange words(ranges);
+      words.add(address, count);
+      ASSERT_EQ(words.words(), expected) << address << ", " << count;
+    }
+  }
+}
+
 TEST(WordsByRange, CountsAllWithoutRanges) {
   WordsByRange words({});
   words.add(std::uint64_t{1} << 33U, 5);

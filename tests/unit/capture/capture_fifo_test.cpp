@@ -206,6 +206,28 @@ TEST_F(CaptureFifoTest, FinishesWithTheLastWord) {
   EXPECT_EQ(fifo->next_ps(), word_ps(3, 2) + 30);
 }
 
+TEST_F(CaptureFifoTest, AsksNextAsLongAsWordsAreInItOrCome) {
+  build({4, 4});
+  fifo->advance(kBegin);
+  EXPECT_FALSE(fifo->finishes_next());
+  for (int row = 0; row < 2; ++row) {
+    ASSERT_EQ(granted(word_ps(3, row)), 4);
+    leave_at(word_ps(3, row) + 10, 4);
+  }
+  fifo->advance(pixel_ps(0, 2) - 1);
+  EXPECT_EQ(fifo->next_ps(), std::nullopt);
+  fifo->advance(word_ps(2, 2));
+  EXPECT_FALSE(fifo->finishes_next());
+  ASSERT_EQ(granted(word_ps(2, 2)), 3);
+  leave_at(word_ps(3, 2) - 1, 3);  // the last word comes
+  EXPECT_EQ(fifo->next_ps(), word_ps(3, 2));
+  EXPECT_FALSE(fifo->finishes_next());
+  ASSERT_EQ(granted(word_ps(3, 2)), 1);
+  leave_at(word_ps(3, 2) + 10, 1);
+  EXPECT_EQ(fifo->next_ps(), word_ps(3, 2) + 10);
+  EXPECT_TRUE(fifo->finishes_next());
+}
+
 TEST_F(CaptureFifoTest, FinishesWithTheLastDroppedPixel) {
   build({1, 1});
   for (int row = 0; row < 3; ++row) {
@@ -215,6 +237,7 @@ TEST_F(CaptureFifoTest, FinishesWithTheLastDroppedPixel) {
   EXPECT_EQ(fifo->dropped_pixels(), 36U);
   EXPECT_FALSE(fifo->finished());
   EXPECT_EQ(fifo->next_ps(), pixel_ps(15, 2));
+  EXPECT_TRUE(fifo->finishes_next());
   fifo->advance(pixel_ps(15, 2) - 1);
   EXPECT_FALSE(fifo->finished());
   fifo->advance(pixel_ps(15, 2));

@@ -13,6 +13,9 @@ std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
 
 TestBus::TestBus(const sc_core::sc_module_name& name, double clock_mhz) : sc_module(name), clock_(clock_mhz) {
   SC_HAS_PROCESS(TestBus);
+  SC_METHOD(ask);
+  sensitive << ask_;
+  dont_initialize();
   SC_METHOD(begin);
   sensitive << begin_;
   dont_initialize();
@@ -22,9 +25,19 @@ TestBus::TestBus(const sc_core::sc_module_name& name, double clock_mhz) : sc_mod
   slot.bind(*this);
 }
 
-void TestBus::request(pci::PciMasterIf& master) {
+void TestBus::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
   EXPECT_EQ(requests_ps.size(), bursts.size()) << "asks again at " << sc_core::sc_time_stamp();
+  EXPECT_GE(from_ps, now_ps());
   master_ = &master;
+  if (from_ps > now_ps()) {
+    ask_.notify(Clock::to_time(from_ps - now_ps()));
+  } else {
+    ask();
+  }
+}
+
+// At the time of the request.
+void TestBus::ask() {
   turn_ = plan ? plan(requests_ps.size()) : turn;
   requests_ps.push_back(now_ps());
   address_clock_ = std::max(clock_.edge_at_or_after(now_ps()) + turn_.busy_clocks, free_clock_);

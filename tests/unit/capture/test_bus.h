@@ -52,7 +52,9 @@ class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
   pci::PciMasterIf& master() { return *master_; }
 
  private:
-  void request(pci::PciMasterIf& master) override;
+  using PciSlotIf::request;
+  void request(pci::PciMasterIf& master, std::uint64_t from_ps) override;
+  void ask();
   void begin();
   void end();
 
@@ -61,6 +63,7 @@ class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
   BusTurn turn_;
   std::uint64_t address_clock_ = 0;
   std::uint64_t free_clock_ = 0;  // the first after the last burst
+  sc_core::sc_event ask_{"ask_for_burst"};
   sc_core::sc_event begin_{"begin_burst"};
   sc_core::sc_event end_{"end_burst"};
 };

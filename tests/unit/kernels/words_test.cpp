@@ -28,6 +28,8 @@ TEST(Words, AreThoseOfTheReference) {
   for (std::size_t index = 0; index < pixels.size(); ++index)
     words[index / 4] = insert_pixel(words[index / 4], index, pixels[index]);
   EXPECT_EQ(words, test::reference_words(pixels));
+  EXPECT_EQ(word_of_pixels(pixels.data()), words[0]);
+  EXPECT_EQ(word_of_pixels(pixels.data() + 4), words[1]);
   for (std::size_t index = 0; index < pixels.size(); ++index)
     EXPECT_EQ(pixel_of_word(words[index / 4], index), pixels[index]);
 }

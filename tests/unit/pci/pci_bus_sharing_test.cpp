@@ -113,6 +113,21 @@ TEST(PciBus, CountsARepeatedRequestFromTheFirstOn) {
   EXPECT_EQ(bench.bus->stats().masters[1].wait_clocks, 10U);
 }
 
+TEST(PciBus, TakesARequestThatIsAnnouncedFromItsTimeOn) {
+  PciBusBench bench(PciBusBench::with_window(0), 2);
+  bench.masters[0]->bursts = {write_of(1)};
+  bench.masters[1]->bursts = {write_of(1)};
+  bench.at(0, [&bench] { bench.masters[0]->pci->request(*bench.masters[0], bench.edge(10) + 1); });
+  bench.request_at(bench.edge(3), 1);
+  sc_core::sc_start();
+  ASSERT_EQ(bench.masters[0]->ended.size(), 1U);
+  ASSERT_EQ(bench.masters[1]->ended.size(), 1U);
+  EXPECT_EQ(bench.masters[1]->ended[0].address_ps, bench.edge(3));
+  EXPECT_EQ(bench.masters[0]->ended[0].address_ps, bench.edge(11));
+  EXPECT_EQ(bench.masters[0]->ended[0].granted_ps, bench.edge(11) + 1);
+  EXPECT_EQ(bench.bus->stats().masters[0].wait_clocks, 0U);
+}
+
 TEST(PciBus, PassesAGrantThatIsGivenBackToTheNextInTheSameClock) {
   PciBusBench bench(PciBusBench::with_window(0), 3);
   bench.masters[2]->bursts = {write_of(1)};

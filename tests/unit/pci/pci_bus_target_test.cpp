@@ -230,5 +230,87 @@ TEST(PciBus, ReachesEachWindowWithItsOwnWaitClocks) {
   }
 }
 
+// A target that grants DMI to its words, and the same bursts as before.
+class PciBusMemory : public PciBusTarget {
+ protected:
+  PciBusMemory() {
+    target.memory.resize(PciBusBench::kBytes / 4);
+    for (std::size_t i = 0; i < target.memory.size(); ++i) target.memory[i] = word_at(4 * i);
+  }
+  // One burst each; the first is transported, and asks.
+  void simulate(const std::vector<Script>& scripts) {
+    master.bursts.assign(scripts.begin(), scripts.end());
+    bench.request_at(0);
+    sc_core::sc_start();
+    ASSERT_EQ(master.ended.size(), scripts.size());
+  }
+};
+
+TEST_F(PciBusMemory, IsAccessedDirectlyFromTheSecondBurstOnAtTheSameTimes) {
+  simulate({read_of(3, 0x40), read_of(3, 0x40), write_of(5, 0x80), read_of(5, 0x80)});
+  EXPECT_EQ(target.accesses.size(), 1U);
+  EXPECT_EQ(master.ended[0].words, words_from(0x40, 3));
+  EXPECT_EQ(master.ended[1].words, words_from(0x40, 3));
+  EXPECT_EQ(master.ended[3].words, words_from(PciBusBench::kBase + 0x80, 5));
+  std::uint64_t clock = 0;
+  for (const auto& burst : master.ended) {
+    EXPECT_EQ(burst.result.end, BurstEnd::kComplete);
+    EXPECT_EQ(burst.address_ps, bench.edge(clock));
+    EXPECT_EQ(burst.result.first_data_clock, clock + 1 + kWait);
+    clock += 1 + kWait + burst.result.words;
+    EXPECT_EQ(burst.end_ps, bench.edge(clock++));
+  }
+}
+
+TEST_F(PciBusMemory, IsWrittenWhenTheLastWordIsTransferred) {
+  master.bursts = {read_of(1), write_of(4, 0x40)};
+  bench.request_at(0);
+  const std::uint64_t end_ps = bench.edge(2 * (1 + kWait) + 1 + 1 + 4);
+  sc_core::sc_start(Clock::to_time(end_ps - 1));
+  EXPECT_EQ(target.memory[0x10], word_at(0x40));
+  sc_core::sc_start(Clock::to_time(2));
+  EXPECT_EQ(target.memory[0x10], word_at(PciBusBench::kBase + 0x40));
+  EXPECT_EQ(master.ended.at(1).end_ps, end_ps);
+}
+
+TEST_F(PciBusMemory, IsTransportedToOutsideOfWhatItGrants) {
+  target.granted_bytes = 0x40;
+  simulate({read_of(1), read_of(16), read_of(2, 0x3c), write_of(2, 0x3c), read_of(1, 0x40)});
+  ASSERT_EQ(target.accesses.size(), 4U);
+  EXPECT_EQ(target.accesses[1].address, 0x3cU);
+  EXPECT_EQ(target.accesses[2].words, words_from(PciBusBench::kBase + 0x3c, 2));
+}
+
+TEST_F(PciBusMemory, IsTransportedToOnceItsGrantIsInvalidated) {
+  master.on_end = [this] {
+    if (master.ended.size() == 2) {
+      target.socket->invalidate_direct_mem_ptr(0, UINT64_MAX);
+      target.memory.clear();
+    }
+  };
+  simulate({read_of(2), read_of(2), read_of(2), write_of(2), write_of(2)});
+  EXPECT_EQ(target.accesses.size(), 4U);
+}
+
+TEST_F(PciBusMemory, IsTransportedToIfItsGrantIsTakenBackDuringABurst) {
+  target.socket->invalidate_direct_mem_ptr(0, UINT64_MAX);
+  master.bursts = {read_of(1), write_of(40), write_of(1)};
+  bench.request_at(0);
+  bench.at(bench.edge(20), [this] {
+    target.socket->invalidate_direct_mem_ptr(0, UINT64_MAX);
+    target.memory.clear();
+  });
+  sc_core::sc_start();
+  ASSERT_EQ(target.accesses.size(), 3U);
+  EXPECT_EQ(target.accesses[1].words, words_from(PciBusBench::kBase, 40));
+  EXPECT_EQ(target.accesses[1].at_ps, master.ended[1].end_ps);
+}
+
+TEST_F(PciBusMemory, IsTransportedToIfItTakesTime) {
+  target.memory_latency = sc_core::sc_time(1, sc_core::SC_PS);
+  simulate({read_of(1), read_of(1), write_of(1)});
+  EXPECT_EQ(target.accesses.size(), 3U);
+}
+
 }  // namespace
 }  // namespace stereotlm::pci
