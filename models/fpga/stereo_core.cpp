@@ -291,6 +291,7 @@ void StereoCore::route_host(const HostRoute& route) {
   crossbar_.aim(Port::kHost, *route.bank, route.write);
   if (is_lazy()) {
     if (state_ == State::kRunning) check_burst(route);
+    if (nobody_else_starts() && !shares_bank_with_host()) serve_alone(Clock::to_ps(sc_core::sc_time_stamp()));
   } else {
     join_host();
   }

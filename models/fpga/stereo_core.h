@@ -129,6 +129,8 @@ class StereoCore : public sc_core::sc_module {
   void check_progress();
   void run_ahead();
   void run_lazily();
+  bool nobody_else_starts() const { return registers.size() == 0; }
+  bool shares_bank_with_host() const;
   void serve_beside_frame();
   void serve_alone(std::uint64_t now_ps);
   bool move_burst();

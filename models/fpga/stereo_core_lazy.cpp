@@ -172,7 +172,7 @@ void StereoCore::catch_up() {
 void StereoCore::run_lazily() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   if (local_bus_.word_waits()) {
-    if (state_ == State::kRunning && crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank)) {
+    if (shares_bank_with_host()) {
       serve_beside_frame();
     } else {
       serve_alone(now);
@@ -202,6 +202,10 @@ void StereoCore::run_lazily() {
   look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
 }
 
+bool StereoCore::shares_bank_with_host() const {
+  return state_ == State::kRunning && crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank);
+}
+
 // Words for a bank that the frame uses: cycle by cycle.
 void StereoCore::serve_beside_frame() {
   const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
@@ -224,22 +228,21 @@ void StereoCore::serve_beside_frame() {
   }
 }
 
-// Words for a bank that nobody else uses.
+// Words for a bank that nobody else uses. They may be served before their time, unless somebody at the registers can
+// start a frame that uses the bank, at any time that something is pending for.
 void StereoCore::serve_alone(std::uint64_t now_ps) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::size_t bank = *host_route_.bank;
   count_served(UINT64_MAX, true);  // of the burst before, which has ended
   served_bank_ = bank;
-  // Somebody at the registers may start a frame that uses the bank, at any time that something is pending for.
-  const bool is_only_master = registers.size() == 0;
-  const bool is_moved = is_only_master && move_burst();
+  const bool is_moved = nobody_else_starts() && move_burst();
   if (is_moved && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
     serve_in_step();
   }
   for (std::uint64_t cycle = 0; local_bus_.word_waits();) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
-    if (!is_only_master && edge >= now_ps &&
+    if (!nobody_else_starts() && edge >= now_ps &&
         edge >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
       if (state_ != State::kRunning) count_served(UINT64_MAX, false);
       wait(Clock::to_time(edge + 1 - now_ps));

@@ -59,6 +59,7 @@ class Crossbar : public sc_core::sc_module {
   // The same in two steps: these ports have been granted by arbitration() in the current cycle.
   PortMask grant(PortMask granted) { return granted_ = granted; }
   Arbitration& arbitration() { return arbitration_; }
+  const Arbitration& arbitration() const { return arbitration_; }
 
   // Tells from the last call on whether words of this port's bank may have changed, first .. end - 1 by their byte
   // addresses on the crossbar. The first call, and one for other words, says yes.
