@@ -189,6 +189,8 @@ class CoreControl {
   const FrameGeometry& geometry() const { return geometry_; }
   // Over all frames, for the cycles from the start of each to its last write.
   const PortCycles& port_cycles(memory::Port port) const;
+  LaneControl& left() { return left_; }
+  LaneControl& right() { return right_; }
   const LaneControl& left() const { return left_; }
   const LaneControl& right() const { return right_; }
 

@@ -13,25 +13,57 @@ constexpr bool has(memory::PortMask mask, memory::Port port) { return (mask & me
 }  // namespace
 
 CoreTiming::CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration)
-    : control_(config), arbitration_(arbitration) {}
+    : control_(config), arbitration_(arbitration), all_valid_(control_.geometry()) {}
+
+void CoreTiming::start_frame(const FrameLatencies& latencies) {
+  control_.start_frame(latencies);
+  left_ = {};
+  right_ = {};
+  tracking_ = false;
+}
 
 void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern& left,
                              const SlotPattern& right) {
-  control_.start_frame(latencies);
-  left_ = &left;
-  right_ = &right;
+  start_frame(latencies);
+  // Where no entry is valid the port is never granted, and the bank's round-robin place stays.
+  const auto looks = [this](memory::Port port, const SlotPattern& pattern) {
+    return !arbitration_.is_alone(port) || pattern.valid_entries() == 0;
+  };
+  left_ = {&left, looks(memory::Port::kLeftPixel, left)};
+  right_ = {&right, looks(memory::Port::kRightPixel, right)};
+}
+
+void CoreTiming::begin_routing() {
   tracking_ = false;
+  look_at_entries();
+}
+
+void CoreTiming::look_at_entries() {
+  look_at_entries(left_, memory::Port::kLeftPixel, control_.left());
+  look_at_entries(right_, memory::Port::kRightPixel, control_.right());
+}
+
+// From now on; and what has happened until now is put right.
+void CoreTiming::look_at_entries(Side& side, memory::Port port, LaneControl& lane) {
+  if (side.looks) return;
+  side.looks = true;
+  const std::uint64_t passed = side.pattern->invalid_before(lane.handled());
+  std::uint64_t marks = 0;
+  for (std::uint64_t slot = lane.handled(); slot < lane.taken(); ++slot)
+    marks |= std::uint64_t{side.pattern->is_valid(slot)} << (slot - lane.handled());
+  lane.correct_passes(passed, marks);
+  arbitration_.take_back(port, passed);
 }
 
 memory::PortMask CoreTiming::step(std::uint64_t cycle, bool host_requests) {
   return step(cycle, host_requests, [this](const CoreControl::Decision& decision, memory::PortMask granted) {
     if (tracking_) period_.push_back({decision, granted});
-    const auto valid = [granted](memory::Port lut, const LaneControl& lane, const SlotPattern& pattern) {
+    const auto valid = [granted](memory::Port lut, const LaneControl& lane, const Side& side) {
       const SlotCursor& slot = lane.next_slot();
-      return has(granted, lut) && pattern.entry_valid(slot.column(), slot.row());
+      return has(granted, lut) && (!side.looks || side.pattern->entry_valid(slot.column(), slot.row()));
     };
-    return EntriesRead{valid(memory::Port::kLeftLut, control_.left(), *left_),
-                       valid(memory::Port::kRightLut, control_.right(), *right_)};
+    return EntriesRead{valid(memory::Port::kLeftLut, control_.left(), left_),
+                       valid(memory::Port::kRightLut, control_.right(), right_)};
   });
 }
 
@@ -88,12 +120,13 @@ void CoreTiming::begin_period(const State& state, std::uint64_t cycle) {
                 cycle,
                 control_.match().state(),
                 control_.match().columns(),
-                alike_to(control_.left(), *left_),
-                alike_to(control_.right(), *right_)};
+                alike_to(control_.left(), left_),
+                alike_to(control_.right(), right_)};
 }
 
-std::uint64_t CoreTiming::alike_to(const LaneControl& lane, const SlotPattern& pattern) const {
+std::uint64_t CoreTiming::alike_to(const LaneControl& lane, const Side& side) const {
   if (lane.next_slot().done()) return lane.taken();
+  const SlotPattern& pattern = side.looks ? *side.pattern : all_valid_;
   return pattern.alike_until(lane.next_slot().frame_column()) *
          static_cast<std::uint64_t>(control_.geometry().slots_per_column);
 }

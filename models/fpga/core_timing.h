@@ -21,16 +21,22 @@ struct EntriesRead {
 // A frame can be stepped cycle by cycle, while whoever steps it moves the data; or it runs ahead by itself. Then what
 // repeats is not stepped again: where the state after four columns of the matcher is what it was some columns before,
 // and the slots to come make the same accesses as those in between, everything happens again and again, exactly, until
-// that ends.
+// that ends. Of a pixel port that is alone on its bank it does not matter which entries are valid: a slot that needs an
+// access takes the cycle of one that passes. Running ahead, all are taken for valid then, and the counts are put right
+// in the end.
 class CoreTiming {
  public:
   // `arbitration` outlives it. Throws std::invalid_argument if the configuration has problems.
   CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration);
 
-  // Ports are routed, and counting has begun. `left` and `right` are used by run_ahead() only, and outlive the frame.
+  // Ports are routed. A frame whose data is moved as it is stepped ..
+  void start_frame(const FrameLatencies& latencies);
+  // .. or one that runs ahead, on these accesses, which outlive it.
   void start_frame(const FrameLatencies& latencies, const SlotPattern& left, const SlotPattern& right);
-  // Routes have changed within a frame.
-  void forget_period() { tracking_ = false; }
+  // Routes are about to change within a frame.
+  void begin_routing();
+  // All cycles of the frame have been run: puts the counts right.
+  void end_frame() { look_at_entries(); }
 
   // One cycle, in which the host requests or not. `move` is called as move(decision, granted) between the grants and
   // what follows from them, and returns EntriesRead.
@@ -79,15 +85,24 @@ class CoreTiming {
     memory::PortMask granted;
   };
 
+  // The table of one side, and its pixel port.
+  struct Side {
+    const SlotPattern* pattern = nullptr;
+    bool looks = true;  // else all entries are taken for valid
+  };
+
+  void look_at_entries();
+  void look_at_entries(Side& side, memory::Port port, LaneControl& lane);
   std::uint64_t repeat(std::uint64_t cycle, std::uint64_t end);
   void begin_period(const State& state, std::uint64_t cycle);
-  std::uint64_t alike_to(const LaneControl& lane, const SlotPattern& pattern) const;
+  std::uint64_t alike_to(const LaneControl& lane, const Side& side) const;
   std::uint64_t times_alike(std::uint64_t columns) const;
 
   CoreControl control_;
   memory::Arbitration& arbitration_;
-  const SlotPattern* left_ = nullptr;
-  const SlotPattern* right_ = nullptr;
+  SlotPattern all_valid_;
+  Side left_;
+  Side right_;
   bool four_columns_ = false;  // the last cycle completed them
 
   bool tracking_ = false;

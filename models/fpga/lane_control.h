@@ -93,6 +93,14 @@ class LaneControl {
     arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
+  // In so many cycles of this frame the pixel port had no access to make, as it turns out, but passed a slot. `marks`:
+  // bit i for slot handled() + i, whether it needs an access, of those taken and not handled.
+  void correct_passes(std::uint64_t cycles, std::uint64_t marks) {
+    pixel_cycles_.count(Intent::kRequest, true, ~cycles + 1);
+    pixel_cycles_.count(Intent::kPass, false, cycles);
+    const std::uint64_t place = handled_ % kMostSlots;
+    marks_ = place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
+  }
   // So many cycles like this one, beside those committed.
   void count(Decision decision, bool lut_granted, bool pixel_granted, std::uint64_t cycles) {
     lut_cycles_.count(decision.lut, lut_granted, cycles);
@@ -128,8 +136,9 @@ class LaneControl {
     next_slot_.skip_columns(columns);
   }
 
-  // Slots of this frame that it has taken.
+  // Slots of this frame that it has taken, and of these those that the pixel port has handled.
   std::uint64_t taken() const { return taken_; }
+  std::uint64_t handled() const { return handled_; }
   // The slot that the lane takes next.
   const SlotCursor& next_slot() const { return next_slot_; }
   const PortCycles& lut_cycles() const { return lut_cycles_; }

@@ -11,6 +11,7 @@ SlotPattern::SlotPattern(const FrameGeometry& geometry)
       words_((static_cast<std::size_t>(geometry.width) + 63) / 64),
       valid_(words_ * static_cast<std::size_t>(geometry.height)),
       changes_(words_ * static_cast<std::size_t>(geometry.strips)),
+      invalid_before_strip_(static_cast<std::size_t>(geometry.strips)),
       next_change_(static_cast<std::size_t>(geometry.strips)) {
   for (int row = 0; row < geometry.height; ++row) {
     std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
@@ -43,16 +44,20 @@ void SlotPattern::find_changes() {
       valid_in_row[static_cast<std::size_t>(row)] +=
           static_cast<std::uint64_t>(__builtin_popcountll(valid_row(row)[word]));
   }
+  std::uint64_t invalid = 0;
   for (int strip = 0; strip < geometry_.strips; ++strip) {
     std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
     std::fill_n(changes, words_, std::uint64_t{0});
+    invalid_before_strip_[static_cast<std::size_t>(strip)] = invalid;
     for (int k = 0; k < geometry_.slots_per_column; ++k) {
       const int row = geometry_.first_row + strip + k;
       if (!inside(row)) {
         empty_slots_ += geometry_.columns_per_strip();
         continue;
       }
-      valid_entries_ += valid_in_row[static_cast<std::size_t>(row)];
+      const std::uint64_t valid = valid_in_row[static_cast<std::size_t>(row)];
+      valid_entries_ += valid;
+      invalid += geometry_.columns_per_strip() - valid;
       const std::uint64_t* const bits = valid_row(row);
       std::uint64_t before = bits[0] & 1U;  // the first column has none before it
       for (std::size_t word = 0; word < words_; ++word) {
@@ -81,6 +86,36 @@ bool SlotPattern::strip_begins_alike(int strip) const {
     if (inside(row) && entry_valid(0, row) != entry_valid(geometry_.width - 1, row - 1)) return false;
   }
   return true;
+}
+
+std::uint64_t SlotPattern::invalid_before(std::uint64_t slots) const {
+  const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
+  const std::uint64_t slots_per_strip = geometry_.columns_per_strip() * slots_per_column;
+  const std::uint64_t strip = slots / slots_per_strip;
+  if (strip == static_cast<std::uint64_t>(geometry_.strips))
+    return geometry_.slots - empty_slots_ - valid_entries_;
+  std::uint64_t invalid = invalid_before_strip_[strip];
+  for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot)
+    invalid += std::uint64_t{is_invalid(slot)};
+  return invalid;
+}
+
+bool SlotPattern::is_valid(std::uint64_t slot) const {
+  const Place place = place_of(slot);
+  return inside(place.row) && entry_valid(place.column, place.row);
+}
+
+bool SlotPattern::is_invalid(std::uint64_t slot) const {
+  const Place place = place_of(slot);
+  return inside(place.row) && !entry_valid(place.column, place.row);
+}
+
+SlotPattern::Place SlotPattern::place_of(std::uint64_t slot) const {
+  const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
+  const std::uint64_t column = slot / slots_per_column;
+  const std::uint64_t strip = column / geometry_.columns_per_strip();
+  return {static_cast<int>(column % geometry_.columns_per_strip()),
+          geometry_.first_row + static_cast<int>(strip) + static_cast<int>(slot % slots_per_column)};
 }
 
 std::uint64_t SlotPattern::alike_until(std::uint64_t frame_column) const {

@@ -26,6 +26,11 @@ class SlotPattern {
   // slots do not make the same accesses, one by one; the number of columns if there is none.
   std::uint64_t alike_until(std::uint64_t frame_column) const;
 
+  // Of the first `slots` slots of a frame those whose entries are read and not valid.
+  std::uint64_t invalid_before(std::uint64_t slots) const;
+  // Whether this slot makes an access for its pixel.
+  bool is_valid(std::uint64_t slot) const;
+
   // Slots of a frame.
   std::uint64_t empty_slots() const { return empty_slots_; }
   std::uint64_t valid_entries() const { return valid_entries_; }  // of those that are not empty
@@ -35,13 +40,20 @@ class SlotPattern {
     return valid_.data() + static_cast<std::size_t>(row) * words_;
   }
   bool inside(int row) const { return row >= 0 && row < geometry_.height; }
+  struct Place {
+    int column;
+    int row;
+  };
+  Place place_of(std::uint64_t slot) const;
+  bool is_invalid(std::uint64_t slot) const;
   void find_changes();
   bool strip_begins_alike(int strip) const;
 
   FrameGeometry geometry_;
-  std::size_t words_;                   // of 64 bits, for a row of the image
-  std::vector<std::uint64_t> valid_;    // [row][word]
-  std::vector<std::uint64_t> changes_;  // [strip][word]: columns that differ from the one before
+  std::size_t words_;                                // of 64 bits, for a row of the image
+  std::vector<std::uint64_t> valid_;                 // [row][word]
+  std::vector<std::uint64_t> changes_;               // [strip][word]: columns that differ from the one before
+  std::vector<std::uint64_t> invalid_before_strip_;  // [strip]: slots
   std::vector<std::uint32_t>
       next_change_;  // [strip]: the first strip from it on with a change, or the number of strips
   std::uint64_t empty_slots_ = 0;

@@ -161,10 +161,14 @@ void StereoCore::start_frame(const FrameStart& start) {
   select_min_chain_.start_frame();
   lr_check_.start_frame();
   result_packer_.start_frame();
-  timing_.start_frame(latencies, left_pattern_, right_pattern_);
   errors_before_ = access_errors();
   frame_ = start;
   whole_ = config_.fidelity != Fidelity::kCycle && read_frame(start);
+  if (whole_) {
+    timing_.start_frame(latencies, left_pattern_, right_pattern_);
+  } else {
+    timing_.start_frame(latencies);
+  }
 
   // Cycle 0 is the first that begins at or after the strobe.
   state_ = State::kRunning;
@@ -282,8 +286,8 @@ void StereoCore::route_host(const HostRoute& route) {
   if (!route.bank) {
     if (!host_is_routed_) return;
     host_is_routed_ = false;
+    timing_.begin_routing();
     crossbar_.unroute(Port::kHost);
-    timing_.forget_period();
     return;
   }
   host_read_latency_ =
@@ -301,8 +305,8 @@ void StereoCore::route_host(const HostRoute& route) {
 void StereoCore::join_host() {
   if (!host_route_.bank || host_is_routed_) return;
   host_is_routed_ = true;
+  timing_.begin_routing();
   crossbar_.route(Port::kHost, *host_route_.bank, host_route_.write);
-  timing_.forget_period();
 }
 
 // One cycle. True if a burst of the local bus has been answered in it.
@@ -347,6 +351,7 @@ void StereoCore::finish_cycles(std::uint64_t end_cycle) {
   state_ = State::kFinishing;
   done_cycle_ = end_cycle + static_cast<std::uint64_t>(config_.core.pipeline_latency_cycles);
   count_served(end_cycle, true);
+  timing_.end_frame();
   crossbar_.end_counting(end_cycle);
   count_served(UINT64_MAX, false);
   if (whole_) write_frame();

@@ -77,8 +77,9 @@ void Arbitration::settle() const {
   alone_cycles_ = {};
   for (std::size_t port = 0; port < kPortCount; ++port) {
     arbiters_[routes_[port].bank].grant_alone(static_cast<PortMask>(1U << port), routes_[port].write,
-                                              cycles[port]);
+                                              cycles[port] - taken_back_[port]);
   }
+  taken_back_ = {};
 }
 
 // The rest of arbitrate(): requests of ports that are not alone on their banks.

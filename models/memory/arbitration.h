@@ -33,6 +33,12 @@ class Arbitration {
     return static_cast<PortMask>(granted |
                                  arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
   }
+  // Whether whatever this port requests is granted at once, as long as no route changes.
+  bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
+  // So many of the cycles granted to a port that is alone held no request, as it turns out; before a route changes or
+  // counting ends.
+  void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
+
   // One request of a port for a bank that no port is routed to, in the given direction. True if it is granted; it is
   // counted later, by count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
@@ -92,6 +98,7 @@ class Arbitration {
   using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
   mutable AloneCycles alone_cycles_{};
   AloneCycles alone_before_period_{};
+  mutable std::array<std::uint64_t, kPortCount> taken_back_{};  // of the alone_cycles_
   std::array<SharedBank, kPortCount> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;
