@@ -31,12 +31,16 @@ inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   return config;
 }
 
+// Of a pixel, in a table.
+inline std::size_t place_of(const CoreConfig& config, int column, int row) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(config.width) +
+         static_cast<std::size_t>(column);
+}
+
 // The table entries of one side: all valid, valid but for a block or some columns, or some anywhere.
 inline std::vector<std::uint32_t> random_entries(test::SplitMix64& random, const CoreConfig& config) {
   auto entries = kernels::identity_table(config.width, config.height).entries;
-  const auto invalidate = [&](int column, int row) {
-    entries[static_cast<std::size_t>(row * config.width + column)] = 0;
-  };
+  const auto invalidate = [&](int column, int row) { entries[place_of(config, column, row)] = 0; };
   const int kind = random.between(0, 3);
   const int percent = random.between(1, 99);
   const int first_column = random.between(0, config.width - 1);

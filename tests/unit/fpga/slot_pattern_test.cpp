@@ -25,8 +25,7 @@ std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
         columns.back().push_back(Access::kNone);
         continue;
       }
-      const auto index = static_cast<std::size_t>(slot.row() * config.width + slot.column());
-      const bool valid = kernels::entry_is_valid(entries[index]);
+      const bool valid = kernels::entry_is_valid(entries[place_of(config, slot.column(), slot.row())]);
       columns.back().push_back(valid ? Access::kTableAndImage : Access::kTable);
     }
   }
@@ -75,8 +74,8 @@ TEST(SlotPattern, KnowsEveryEntry) {
   for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
     for (int row = 0; row < config.height; ++row) {
       for (int column = 0; column < config.width; ++column) {
-        const auto index = static_cast<std::size_t>(row * config.width + column);
-        ASSERT_EQ(pattern.entry_valid(column, row), kernels::entry_is_valid(entries[index]));
+        ASSERT_EQ(pattern.entry_valid(column, row),
+                  kernels::entry_is_valid(entries[place_of(config, column, row)]));
       }
     }
   });
