@@ -128,6 +128,7 @@ class StereoCore : public sc_core::sc_module {
   bool is_lazy() const;
   void check_progress();
   void run_ahead();
+  bool is_only_master() const { return registers.size() == 0; }  // the host of the local bus
   void run_lazily();
   void serve_beside_frame();
   void serve_alone(std::uint64_t now_ps);

@@ -172,7 +172,9 @@ void StereoCore::catch_up() {
 void StereoCore::run_lazily() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   if (local_bus_.word_waits()) {
-    if (state_ == State::kRunning && crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank)) {
+    const bool is_alone =
+        is_only_master() && !crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank);
+    if (state_ == State::kRunning && !is_alone) {
       serve_beside_frame();
     } else {
       serve_alone(now);
@@ -202,7 +204,8 @@ void StereoCore::run_lazily() {
   look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
 }
 
-// Words for a bank that the frame uses: cycle by cycle.
+// Words for a bank that the frame uses, or beside somebody who may start the next one as soon as it ends: cycle by
+// cycle.
 void StereoCore::serve_beside_frame() {
   const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
   join_host();
@@ -230,18 +233,23 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   const std::size_t bank = *host_route_.bank;
   count_served(UINT64_MAX, true);  // of the burst before, which has ended
   served_bank_ = bank;
-  // Somebody at the registers may start a frame that uses the bank, at any time that something is pending for.
-  const bool is_only_master = registers.size() == 0;
-  const bool is_moved = is_only_master && move_burst();
+  const bool is_moved = is_only_master() && move_burst();
   if (is_moved && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
     serve_in_step();
   }
   for (std::uint64_t cycle = 0; local_bus_.word_waits();) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
-    if (!is_only_master && edge >= now_ps &&
+    // Somebody at the registers may start a frame that uses the bank: at its predecessor's end, and at any time that
+    // something is pending for.
+    if (!is_only_master() && state_ == State::kFinishing && cycle >= done_cycle_) {
+      count_served(UINT64_MAX, false);
+      finish_frame(now_ps);
+      return;
+    }
+    if (!is_only_master() && edge >= now_ps &&
         edge >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
-      if (state_ != State::kRunning) count_served(UINT64_MAX, false);
+      count_served(UINT64_MAX, false);
       wait(Clock::to_time(edge + 1 - now_ps));
       return;
     }
