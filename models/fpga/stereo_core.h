@@ -133,7 +133,7 @@ class StereoCore : public sc_core::sc_module {
   void serve_beside_frame();
   void serve_alone(std::uint64_t now_ps);
   bool move_burst();
-  void serve_in_step();
+  void serve_in_step(std::uint64_t first_cycle);
   void count_served(std::uint64_t end_cycle, bool in_frame);
   void finish_cycles(std::uint64_t end_cycle);
   void finish_frame(std::uint64_t now_ps);

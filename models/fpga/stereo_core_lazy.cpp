@@ -233,11 +233,13 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   const std::size_t bank = *host_route_.bank;
   count_served(UINT64_MAX, true);  // of the burst before, which has ended
   served_bank_ = bank;
+  // The first cycle that is not decided yet: a word that the frame has refused to its end asks on from there.
+  std::uint64_t cycle = state_ == State::kRunning ? 0 : cycle_;
   const bool is_moved = is_only_master() && move_burst();
   if (is_moved && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
-    serve_in_step();
+    serve_in_step(cycle);
   }
-  for (std::uint64_t cycle = 0; local_bus_.word_waits();) {
+  while (local_bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
     // Somebody at the registers may start a frame that uses the bank: at its predecessor's end, and at any time that
@@ -280,11 +282,11 @@ bool StereoCore::move_burst() {
   return true;
 }
 
-// A word in each cycle, until the end of the burst.
-void StereoCore::serve_in_step() {
+// A word in each cycle, until the end of the burst, from this one on.
+void StereoCore::serve_in_step(std::uint64_t first_cycle) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::size_t bank = *host_route_.bank;
-  const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
+  const std::uint64_t first = std::max(first_cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
   const std::size_t words = local_bus_.words_left();
   const auto decide = [&](std::uint64_t cycle) {
     return arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);
