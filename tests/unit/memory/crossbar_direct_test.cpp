@@ -90,9 +90,9 @@ TEST_F(CrossbarWatch, SeesAWriteByDebugTransportOfAsManyWordsAsThereAre) {
 
 TEST_F(CrossbarWatch, IsToldOfWordsWrittenDirectly) {
   build_and_look();
-  crossbar->changes(crossbar_address(kPipelined, 0), kFirst * 4);
+  crossbar->changes(crossbar_address(kPipelined, 0), std::uint64_t{4} * kFirst);
   EXPECT_FALSE(has_changed());
-  crossbar->changes(crossbar_address(kPipelined, 0), kFirst * 4 + 1);
+  crossbar->changes(crossbar_address(kPipelined, 0), std::uint64_t{4} * kFirst + 1);
   EXPECT_TRUE(has_changed());
   crossbar->changes(crossbar_address(kPipelined, kEnd), 4);
   EXPECT_FALSE(has_changed());
@@ -137,8 +137,8 @@ TEST_F(CrossbarDirect, ReachesTheWordsOfTheBank) {
 
 TEST_F(CrossbarDirect, ReachesAllWordsOfABankAndNoneBehindItsEnd) {
   build();
-  EXPECT_NE(crossbar->direct(crossbar_address(kPipelined, 0), 4 * kWords), nullptr);
-  EXPECT_EQ(crossbar->direct(crossbar_address(kPipelined, 0), 4 * kWords + 1), nullptr);
+  EXPECT_NE(crossbar->direct(crossbar_address(kPipelined, 0), std::uint64_t{4} * kWords), nullptr);
+  EXPECT_EQ(crossbar->direct(crossbar_address(kPipelined, 0), std::uint64_t{4} * kWords + 1), nullptr);
   EXPECT_EQ(crossbar->direct(crossbar_address(kPipelined, kWords), 4), nullptr);
   EXPECT_NE(crossbar->direct(crossbar_address(kPipelined, kWords - 1), 4), nullptr);
 }
