@@ -29,9 +29,8 @@ FrameCounts::FrameCounts(const CoreConfig& config, const SlotPattern& left_patte
   left = lane_counts(geometry, left_pattern, config.left_table);
   right = lane_counts(geometry, right_pattern, config.right_table);
   filter.pixels = geometry.slots + geometry.drain_cycles;
-  // The first columns stay in the filter, and the first windows in the array.
-  filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column) -
-                   static_cast<std::uint64_t>(geometry.filter_half);
+  // Also the first ones, of which the filter makes nothing yet; their windows stay in the array.
+  filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column);
   rows.columns = filter.columns;
   sums.columns = filter.columns;
   sums.absolute_differences = sums.columns * static_cast<std::uint64_t>(config.window) *

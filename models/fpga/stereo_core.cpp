@@ -246,11 +246,12 @@ void StereoCore::run_ahead() {
   sc_core::sc_time at;  // of the cycle, from now; mostly one period later than that of the last
   std::uint64_t offset_before = 0;
   for (const std::uint64_t last = cycle_ + kQuantumCycles;; ++cycle_) {
+    std::uint64_t next = cycle_;
     if (state_ != State::kRunning) {
-      // There is nothing to step before the next request.
+      // There is nothing to step before the next request. (A frame may yet begin before it.)
       const bool pending = local_bus_.word_waits();
-      if (pending) cycle_ = std::max(cycle_, clock_.edge_at_or_after(local_bus_.request_ps()));
-      if (state_ == State::kFinishing && (!pending || cycle_ >= done_cycle_)) {
+      if (pending) next = std::max(next, clock_.edge_at_or_after(local_bus_.request_ps()));
+      if (state_ == State::kFinishing && (!pending || next >= done_cycle_)) {
         finish_frame(now);
         return;
       }
@@ -259,11 +260,12 @@ void StereoCore::run_ahead() {
         return;
       }
     }
-    const std::uint64_t edge = clock_.edge_ps(cycle_);
-    if (edge >= now && (edge >= horizon || cycle_ >= last)) {
+    const std::uint64_t edge = clock_.edge_ps(next);
+    if (edge >= now && (edge >= horizon || next >= last)) {
       wait(Clock::to_time(edge + 1 - now));
       return;
     }
+    cycle_ = next;
     const std::uint64_t offset = edge > now ? edge - now : 0;
     at = offset == offset_before + period_ps_ ? at + period_ : Clock::to_time(offset);
     offset_before = offset;
@@ -295,7 +297,8 @@ void StereoCore::route_host(const HostRoute& route) {
   crossbar_.aim(Port::kHost, *route.bank, route.write);
   if (is_lazy()) {
     if (state_ == State::kRunning) check_burst(route);
-    if (nobody_else_starts() && !shares_bank_with_host()) serve_alone(Clock::to_ps(sc_core::sc_time_stamp()));
+    if (nobody_else_starts() && !serves_host_beside_frame())
+      serve_alone(Clock::to_ps(sc_core::sc_time_stamp()));
   } else {
     join_host();
   }

@@ -130,11 +130,11 @@ class StereoCore : public sc_core::sc_module {
   void run_ahead();
   void run_lazily();
   bool nobody_else_starts() const { return registers.size() == 0; }
-  bool shares_bank_with_host() const;
+  bool serves_host_beside_frame() const;
   void serve_beside_frame();
   void serve_alone(std::uint64_t now_ps);
   bool move_burst();
-  void serve_in_step();
+  void serve_in_step(std::uint64_t first_cycle);
   void count_served(std::uint64_t end_cycle, bool in_frame);
   void finish_cycles(std::uint64_t end_cycle);
   void finish_frame(std::uint64_t now_ps);

@@ -172,7 +172,7 @@ void StereoCore::catch_up() {
 void StereoCore::run_lazily() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   if (local_bus_.word_waits()) {
-    if (shares_bank_with_host()) {
+    if (serves_host_beside_frame()) {
       serve_beside_frame();
     } else {
       serve_alone(now);
@@ -202,11 +202,13 @@ void StereoCore::run_lazily() {
   look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
 }
 
-bool StereoCore::shares_bank_with_host() const {
-  return state_ == State::kRunning && crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank);
+// A burst for a bank that the frame uses, or beside somebody who may start the next frame as soon as this one ends.
+bool StereoCore::serves_host_beside_frame() const {
+  return state_ == State::kRunning &&
+         (!nobody_else_starts() || crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank));
 }
 
-// Words for a bank that the frame uses: cycle by cycle.
+// Its words, cycle by cycle.
 void StereoCore::serve_beside_frame() {
   const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
   join_host();
@@ -235,16 +237,25 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   const std::size_t bank = *host_route_.bank;
   count_served(UINT64_MAX, true);  // of the burst before, which has ended
   served_bank_ = bank;
+  // The first cycle that is not decided yet: a word that the frame has refused to its end asks on from there.
+  std::uint64_t cycle = state_ == State::kRunning ? 0 : cycle_;
   const bool is_moved = nobody_else_starts() && move_burst();
   if (is_moved && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
-    serve_in_step();
+    serve_in_step(cycle);
   }
-  for (std::uint64_t cycle = 0; local_bus_.word_waits();) {
+  while (local_bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
+    // Somebody at the registers may start a frame that uses the bank: at its predecessor's end, and at any time that
+    // something is pending for.
+    if (!nobody_else_starts() && state_ == State::kFinishing && cycle >= done_cycle_) {
+      count_served(UINT64_MAX, false);
+      finish_frame(now_ps);
+      return;
+    }
     if (!nobody_else_starts() && edge >= now_ps &&
         edge >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
-      if (state_ != State::kRunning) count_served(UINT64_MAX, false);
+      count_served(UINT64_MAX, false);
       wait(Clock::to_time(edge + 1 - now_ps));
       return;
     }
@@ -275,11 +286,11 @@ bool StereoCore::move_burst() {
   return true;
 }
 
-// A word in each cycle, until the end of the burst.
-void StereoCore::serve_in_step() {
+// A word in each cycle, until the end of the burst, from this one on.
+void StereoCore::serve_in_step(std::uint64_t first_cycle) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::size_t bank = *host_route_.bank;
-  const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
+  const std::uint64_t first = std::max(first_cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
   const std::size_t words = local_bus_.words_left();
   const auto decide = [&](std::uint64_t cycle) {
     return arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);

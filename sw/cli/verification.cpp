@@ -92,9 +92,9 @@ bool Verification::finish(const platform::Statistics& statistics) {
   }
   progress.erase();
   if (lines.empty()) {
-    say("note", fmt::format("verified: fast and cycle agree in every figure, time{} of {} frame{}",
-                            input_.timing_only ? "" : " and pixel", results_.size(),
-                            results_.size() == 1 ? "" : "s"));
+    say("note", fmt::format("verified: fast and cycle agree in every {} of {} frame{}",
+                            input_.timing_only ? "figure and time" : "figure, time and pixel",
+                            results_.size(), results_.size() == 1 ? "" : "s"));
     return true;
   }
   for (std::size_t i = 0; i < lines.size() && i < kMostLines; ++i)

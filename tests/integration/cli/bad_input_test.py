@@ -9,7 +9,7 @@ import unittest
 import zlib
 
 import program
-from program import BUILT, HEIGHT, WIDTH, ProgramTest, noise, pgm, run
+from program import HEIGHT, PRELOADED, WIDTH, ProgramTest, noise, pgm, run
 
 
 def png(width, height, depth, kind, rows):
@@ -89,7 +89,7 @@ class Pictures(ProgramTest):
         strange = os.fsencode(self.folder) + b"/\xff.pgm"
         shutil.copy(self.left, strange)
         process = subprocess.run(
-            [program.PROGRAM, "run", "fpl2003", *program.SMALL, *BUILT, "--left", strange, "--right", self.right],
+            [program.PROGRAM, "run", "fpl2003", *program.SMALL, *PRELOADED, "--left", strange, "--right", self.right],
             capture_output=True, timeout=60, check=False,
         )
         self.assertEqual((process.returncode, process.stdout), (2, b""))

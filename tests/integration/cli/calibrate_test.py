@@ -8,7 +8,7 @@ import struct
 import tempfile
 
 import program
-from program import BUILT, RESULT_FILES, ProgramTest, pgm, read_png, run
+from program import PRELOADED, RESULT_FILES, ProgramTest, pgm, read_png, run
 
 GRID = ["--grid", "7x5", "--square-mm", "30"]
 DISPARITIES = 120
@@ -48,7 +48,7 @@ class CalibrateTest(ProgramTest):
 
     def scene(self, rig=None, *more):
         """A run of the scene with the tables of the rig."""
-        return ["run", "fpl2003", *BUILT, "--set", "matcher.disparities=80", "--calibration", rig or self.rig,
+        return ["run", "fpl2003", *PRELOADED, "--set", "matcher.disparities=80", "--calibration", rig or self.rig,
                 "--left", self.pictures / "scene_left.png", "--right", self.pictures / "scene_right.png", *more]
 
 
@@ -180,7 +180,7 @@ class Run(CalibrateTest):
 
     def test_cannot_tell_where_the_pictures_show_nothing(self):
         flat = self.file("flat.pgm", pgm(640, 480, bytes(640 * 480)))
-        process = run("run", "fpl2003", *BUILT, "--calibration", self.rig, "--left", flat, "--right", flat)
+        process = run("run", "fpl2003", *PRELOADED, "--calibration", self.rig, "--left", flat, "--right", flat)
         self.succeeds(process)
         self.assertIn("note: --calibration: of 0 conspicuous points", process.stderr)
         self.assertIn("too few to see whether it is of this rig", process.stderr)
@@ -194,7 +194,7 @@ class Run(CalibrateTest):
         self.assertRegex(process.stderr, r"warning: --calibration: .* is it of this rig")
 
     def test_says_that_the_board_has_fewer_disparities(self):
-        process = run("run", "fpl2003", *BUILT, "--synthetic", "1", "--set", "matcher.disparities=16",
+        process = run("run", "fpl2003", *PRELOADED, "--synthetic", "1", "--set", "matcher.disparities=16",
                       "--set", "matcher.window=3", "--calibration", self.rig)
         self.assertNotIn("accuracy", self.succeeds(process))  # the scene is not one of this rig
         self.assertIn("was made for 80 disparities: of this board's 16 the nearest things need more", process.stderr)

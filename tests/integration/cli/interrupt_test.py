@@ -12,7 +12,7 @@ import termios
 import time
 
 import program
-from program import RESULT_FILES, ProgramTest
+from program import CYCLE, PRELOADED, RESULT_FILES, ProgramTest
 
 MANY = ["--frames", "18446744073709551615"]
 PROGRESS = re.compile(
@@ -78,7 +78,7 @@ def shown(text):
 
 class ProgressLine(ProgramTest):
     def test_shows_rate_and_remaining_time_and_is_erased(self):
-        terminal = Terminal(self.run_arguments("--frames", "1000"))
+        terminal = Terminal(self.run_arguments(*CYCLE, "--frames", "1000"))
         found = terminal.read_until(PROGRESS)
         status, out = terminal.finish()
         self.assertEqual(status, 0, terminal.text)
@@ -91,7 +91,7 @@ class ProgressLine(ProgramTest):
         self.assertEqual(shown(terminal.text), [""])
 
     def test_fits_into_a_narrow_terminal(self):
-        terminal = Terminal(self.run_arguments("--frames", "1000"), columns=20)
+        terminal = Terminal(self.run_arguments(*CYCLE, "--frames", "1000"), columns=20)
         terminal.read_until(re.compile(r"/1000 fra"))
         terminal.finish()
         self.assertLess(max(len(part) for part in terminal.text.split("\r")), 20)
@@ -141,7 +141,7 @@ class Interrupted(ProgramTest):
 
     def test_not_where_the_caller_ignores_the_signal(self):
         ignore = lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
-        terminal = Terminal(self.run_arguments("--frames", "1000"), preexec_fn=ignore)
+        terminal = Terminal(self.run_arguments(*CYCLE, "--frames", "1000"), preexec_fn=ignore)
         terminal.read_until(PROGRESS)
         terminal.process.send_signal(signal.SIGINT)
         status, out = terminal.finish()
@@ -154,7 +154,7 @@ class Interrupted(ProgramTest):
         size = 2048
         big = self.file("big.pgm", program.pgm(size, size, bytes(size * size)))
         terminal = Terminal(
-            ["run", "fpl2003", *program.BUILT, "--left", big, "--right", big, "--out", self.out]
+            ["run", "fpl2003", *PRELOADED, *CYCLE, "--left", big, "--right", big, "--out", self.out]
             + ["--set", f"image.width={size}", "--set", f"image.height={size}"]
             + ["--set", "matcher.window=31", "--set", "ssram.default.words=4194304"]
         )

@@ -19,7 +19,8 @@ PROGRAM = None  # set by main()
 WIDTH = 32
 HEIGHT = 24
 SMALL = ["--set", f"image.width={WIDTH}", "--set", f"image.height={HEIGHT}"]
-BUILT = ["--source", "preloaded", "--fidelity", "cycle"]
+PRELOADED = ["--source", "preloaded"]
+CYCLE = ["--fidelity", "cycle"]  # also for runs that have to take a while
 RESULT_FILES = ["config.yaml", "disparity.pfm", "disparity.png", "disparity_color.png", "run.json", "stats.json"]
 
 
@@ -111,11 +112,11 @@ class ProgramTest(unittest.TestCase):
 
     def run_arguments(self, *more, board="fpl2003", left=None, right=None):
         pair = ["--left", self.left if left is None else left, "--right", self.right if right is None else right]
-        return ["run", board, *SMALL, *BUILT, *pair, *more]
+        return ["run", board, *SMALL, *PRELOADED, *pair, *more]
 
     def run_with(self, *source, board="fpl2003"):
         """A small run with these options instead of a pair."""
-        return run("run", board, *SMALL, *BUILT, *source)
+        return run("run", board, *SMALL, *PRELOADED, *source)
 
     def run_small(self, *more, **pair):
         return run(*self.run_arguments(*more, **pair))

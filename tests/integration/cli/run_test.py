@@ -6,7 +6,7 @@ import os
 import unittest
 
 import program
-from program import BUILT, HEIGHT, RESULT_FILES, SMALL, WIDTH, ProgramTest, noise, pgm, read_pfm, read_png, run
+from program import HEIGHT, PRELOADED, RESULT_FILES, SMALL, WIDTH, ProgramTest, noise, pgm, read_pfm, read_png, run
 
 
 class ResultFiles(ProgramTest):
@@ -30,7 +30,7 @@ class ResultFiles(ProgramTest):
     def test_stats_add_up(self):
         self.succeeds(self.run_small("--out", self.out, "--frames", "3"))
         stats = self.stats()
-        self.assertEqual((stats["schema"], stats["board"], stats["fidelity"]), (1, "fpl2003", "cycle"))
+        self.assertEqual((stats["schema"], stats["board"], stats["fidelity"]), (1, "fpl2003", "fast"))
         self.assertEqual((stats["frames"], len(stats["frame_cycles"])), (3, 3))
         self.assertEqual(stats["cycles"], sum(stats["frame_cycles"]) - 3 * 16)
         self.assertEqual(stats["frames_per_second"]["core"], 40e6 * 3 / sum(stats["frame_cycles"]))
@@ -75,14 +75,14 @@ class ResultFiles(ProgramTest):
         self.assertEqual(self.succeeds(run("check", config)), small.replace("fpl2003", str(config)))
         self.assertIn("lr_tolerance: \"off\"", config.read_text())
         pair = ["--left", self.left, "--right", self.right]
-        self.succeeds(run("run", config, *BUILT, *pair, "--out", self.folder / "again"))
+        self.succeeds(run("run", config, *PRELOADED, *pair, "--out", self.folder / "again"))
         self.assertEqual(self.result(self.folder / "again"), self.result())
 
     def test_run_json_has_the_options_and_what_was_read(self):
         options = ["--frames", "2", "--truth", self.right, "--truth-scale", "0.5"]
         self.succeeds(run(*self.run_arguments("--out", "out", *options, left="left.pgm"), cwd=self.folder))
         run_json = json.loads((self.out / "run.json").read_text())
-        self.assertEqual((run_json["source"], run_json["fidelity"], run_json["frames"]), ("preloaded", "cycle", 2))
+        self.assertEqual((run_json["source"], run_json["fidelity"], run_json["frames"]), ("preloaded", "fast", 2))
         for name, path in (("left", self.left), ("right", self.right), ("truth", self.right)):
             self.assertEqual(os.path.realpath(run_json[name]["path"]), os.path.realpath(path))
             self.assertTrue(os.path.isabs(run_json[name]["path"]))

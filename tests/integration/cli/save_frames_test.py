@@ -57,7 +57,7 @@ class SaveFrames(ProgramTest):
 
     def start(self, *source):
         """A process that saves frames, without waiting for it."""
-        command = ["run", "fpl2003", *program.SMALL, *program.BUILT, *source, "--save-frames", "--out", self.out]
+        command = ["run", "fpl2003", *program.SMALL, *program.PRELOADED, *source, "--save-frames", "--out", self.out]
         command = [program.PROGRAM] + [str(word) for word in command]
         return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 

@@ -12,7 +12,7 @@ import unittest
 
 import program
 from avi import avi
-from program import BUILT, HEIGHT, SMALL, WIDTH, ProgramTest, noise, pgm, run
+from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, noise, pgm, run
 
 
 class SourceTest(ProgramTest):
@@ -98,7 +98,7 @@ class Sequence(SourceTest):
     def test_can_be_run_again(self):
         folder = self.sequence(3)
         arguments = ["--sequence", "sequence", "--frames", "5", "--save-frames", "--out", self.out]
-        self.succeeds(run("run", "fpl2003", *SMALL, *BUILT, *arguments, cwd=self.folder))
+        self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *arguments, cwd=self.folder))
         told = json.loads((self.out / "run.json").read_text())
         self.assertEqual(os.path.realpath(told["sequence"]["path"]), os.path.realpath(folder))
         self.assertTrue(os.path.isabs(told["sequence"]["path"]))
@@ -174,7 +174,7 @@ class Sequence(SourceTest):
         for side in (b"left_", b"right_"):
             strange = os.fsencode(folder) + b"/" + side + b"\xff.png"
             shutil.copy(self.left, strange)
-        command = [program.PROGRAM, "run", "fpl2003", *SMALL, *BUILT, "--sequence", folder]
+        command = [program.PROGRAM, "run", "fpl2003", *SMALL, *PRELOADED, "--sequence", folder]
         process = subprocess.run(command, capture_output=True, timeout=60, check=False)
         self.assertEqual((process.returncode, process.stdout), (2, b""))
         self.assertRegex(process.stderr, rb"--sequence 'left_\xff.png': a path that is not UTF-8")
@@ -198,7 +198,7 @@ class Sequence(SourceTest):
             for side in ("left", "right"):
                 (folder / f"{side}_{number:04}.png").symlink_to(picture)
         board = ["--set", "image.width=1024", "--set", "image.height=1024", "--set", "ssram.default.words=1048576"]
-        command = ["run", "fpl2003", *BUILT, *board, "--sequence", folder, "--out", self.out]
+        command = ["run", "fpl2003", *PRELOADED, *board, "--sequence", folder, "--out", self.out]
         process = subprocess.Popen([program.PROGRAM] + [str(word) for word in command], stderr=subprocess.PIPE)
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
@@ -332,7 +332,7 @@ class Synthetic(SourceTest):
     def test_prints_its_accuracy_and_keeps_it_out_of_the_figures(self):
         board = ["--set", "image.width=160", "--set", "image.height=120", "--set", "matcher.fetch=line_buffer"]
         source = ["--synthetic", "3", "--frames", "2", "--out", self.out]
-        table = self.succeeds(run("run", "fpl2003", *BUILT, *board, *source))
+        table = self.succeeds(run("run", "fpl2003", *PRELOADED, *board, *source))
         found = re.search(r"off by more than 1: (\S+) %, by more than 2: \S+ %, answered: (\S+) %", table)
         self.assertLess(float(found[1]), 5)
         self.assertGreater(float(found[2]), 75)
@@ -366,7 +366,7 @@ class Memory(SourceTest):
         """The largest resident set of a run, in kB."""
         board = ["--set", f"image.width={self.WIDE}", "--set", f"image.height={self.HIGH}"]
         board += ["--set", "matcher.fetch=line_buffer", "--set", "matcher.disparities=4", "--set", "matcher.filter=none"]
-        command = [program.PROGRAM, "run", "fpl2003", *BUILT, *board, *source]
+        command = [program.PROGRAM, "run", "fpl2003", *PRELOADED, *board, *source]
         process = subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL)
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)

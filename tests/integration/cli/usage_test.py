@@ -1,15 +1,11 @@
 """Help, and every way to use the command line wrongly."""
 
 import program
-from program import BUILT, ProgramTest, pgm, run
+from program import PRELOADED, ProgramTest, pgm, run
 
 COMMANDS = ["run", "check", "boards", "keys", "bounds", "calibrate"]
 UNBUILT_COMMANDS = ["explain", "sweep", "merge", "allocate", "paper", "plot", "diff", "report"]
-UNBUILT_RUN_OPTIONS = [
-    ["--timing-only"],
-    ["--verify"],
-    ["--trace", "vcd"],
-]
+UNBUILT_RUN_OPTIONS = [["--trace", "vcd"]]
 
 
 class Help(ProgramTest):
@@ -24,7 +20,9 @@ class Help(ProgramTest):
         text = self.succeeds(run("run", "--help"))
         for option in ("BOARD", "--left", "--right", "--sequence", "--video F [F2]", "--video-layout", "--synthetic"):
             self.assertIn(option, text)
-        for option in ("--frames", "--truth", "--truth-scale", "--set", "--out", "--save-frames"):
+        for option in ("--frames", "--truth", "--truth-scale", "--set", "--out", "--save-frames", "--fidelity fast|cycle"):
+            self.assertIn(option, text)
+        for option in ("--timing-only", "--verify"):
             self.assertIn(option, text)
         self.assertIn("default 1", text)
         for option in UNBUILT_RUN_OPTIONS:
@@ -58,7 +56,7 @@ class UnknownThings(ProgramTest):
             self.refused_in_one_line(run(command, "--bogus"), "--bogus", f"stereotlm {command} --help")
 
     def test_unknown_options_name_the_nearest(self):
-        for typed, nearest in (("--fames", "--frames"), ("--rigth", "--right"), ("--sett", "--set"), ("--verfy", "--verify")):
+        for typed, nearest in (("--fames", "--frames"), ("--rigth", "--right"), ("--sett", "--set"), ("--verfy", "--verify"), ("--timing-onyl", "--timing-only")):
             for arguments in ([typed, "3"], [f"{typed}=3"]):
                 self.refused_in_one_line(
                     run("run", "fpl2003", *arguments),
@@ -98,24 +96,6 @@ class NotInThisVersion(ProgramTest):
             self.refused_in_one_line(run("run", "fpl2003", *option), text)
             self.refused_in_one_line(run("run", "fpl2003", option[0]), text)
 
-    def test_all_at_once(self):
-        lines = self.refused(run("run", "fpl2003", "--verify", "--timing-only", "--trace", "vcd"))
-        self.assertEqual(len(lines), 3)
-
-    def test_defaults_that_are_not_built_are_not_replaced(self):
-        pair = ["--left", self.left, "--right", self.right]
-        fidelity = "--fidelity fast, the default: not in this version; built: --fidelity cycle"
-        self.refused_in_one_line(run("run", "fpl2003", *pair), fidelity)
-        self.refused_in_one_line(run("run", "fpl2003", *pair, "--source", "preloaded"), fidelity)
-
-    def test_values_that_are_not_built(self):
-        pair = ["--left", self.left, "--right", self.right]
-        for source in ([], ["--source", "preloaded"], ["--source", "camera"]):
-            self.refused_in_one_line(
-                run("run", "fpl2003", *pair, *source, "--fidelity", "fast"),
-                "--fidelity fast: not in this version; built: --fidelity cycle",
-            )
-
 
 class WrongValues(ProgramTest):
     def refused_value(self, process, *texts):
@@ -126,12 +106,12 @@ class WrongValues(ProgramTest):
         pair = ["--left", self.left, "--right", self.right]
         for value in ("foo", "Preloaded", ""):
             self.refused_value(
-                run("run", "fpl2003", *pair, "--fidelity", "cycle", "--source", value),
+                run("run", "fpl2003", *pair, "--source", value),
                 f"--source = {value}: must be camera or preloaded",
             )
             self.refused_value(
                 run("run", "fpl2003", *pair, "--source", "preloaded", "--fidelity", value),
-                f"--fidelity = {value}: must be cycle or fast",
+                f"--fidelity = {value}: must be fast or cycle",
             )
 
     def test_frames_are_an_integer_from_one(self):
@@ -151,14 +131,18 @@ class WrongValues(ProgramTest):
         self.refused_value(self.run_small("--truth-scale", "2"), "--truth-scale: goes with --truth F")
 
     def test_a_pair_has_two_pictures(self):
-        run_it = ["run", "fpl2003", *BUILT]
+        run_it = ["run", "fpl2003", *PRELOADED]
         for given, path, missing in (("--left", self.left, ["--right"]), ("--right", self.right, ["--left"])):
             self.assertEqual(self.missing(run(*run_it, given, path)), missing)
 
     def test_a_run_has_pictures(self):
-        self.assertEqual(self.missing(run("run", "fpl2003", *BUILT)), ["pictures"])
+        self.assertEqual(self.missing(run("run", "fpl2003", *PRELOADED)), ["pictures"])
         sources = "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED"
-        self.refused(run("run", "fpl2003", *BUILT), f"error: pictures: missing: a run needs {sources}")
+        self.refused(run("run", "fpl2003", *PRELOADED), f"error: pictures: missing: a run needs {sources}")
+
+    def test_without_pixels_a_run_needs_no_pictures(self):
+        self.assertEqual(self.missing(run("run", "--timing-only")), ["BOARD"])
+        self.assertEqual(self.missing(run("run", "fpl2003", "--timing-only", "--left", self.left)), ["--right"])
 
     def test_a_run_has_pictures_of_one_source(self):
         pair = ["--left", self.left, "--right", self.right]
@@ -204,6 +188,14 @@ class WrongValues(ProgramTest):
             "--truth: does not go with --synthetic, whose scene is its own truth",
         )
 
+    def test_what_needs_disparities_does_not_go_without_pixels(self):
+        for option in (["--truth", self.left], ["--save-frames", "--out", self.out]):
+            self.refused_value(
+                self.run_small("--timing-only", *option),
+                f"{option[0]}: does not go with --timing-only, which has no disparities",
+            )
+        self.assertFalse(self.out.exists())
+
     def test_saved_frames_need_a_folder(self):
         self.refused_value(self.run_small("--save-frames"), "--save-frames: goes with --out DIR")
 
@@ -215,7 +207,6 @@ class WrongValues(ProgramTest):
 
     def test_a_run_without_anything_is_told_all_at_once(self):
         self.assertEqual(self.missing(run("run")), ["BOARD", "pictures"])
-        self.refused(run("run"), "--fidelity fast, the default")
         self.assertNotIn("complete command", run("run", "fpl2003", "--left", "a", "--right", "b").stderr)
 
     def test_the_complete_command_is_one(self):

@@ -1,15 +1,17 @@
-// Whole computers around random boards, each in a process of its own under the monitor: identities and bounds hold, and
-// results are those of the pictures that were captured.
+// Whole computers around random boards, each in a process of its own under the monitor: identities and bounds hold,
+// results are those of the pictures that were captured, and everything is the same at each fidelity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "models/kernels/stereo.h"
 #include "platform/board_yaml.h"
+#include "sw/report/stats_json.h"
 #include "sw/simulation/camera_simulation.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
@@ -20,6 +22,7 @@
 namespace stereotlm::simulation {
 namespace {
 
+using fpga::Fidelity;
 using kernels::RectificationTable;
 using platform::BoardConfig;
 using test::SplitMix64;
@@ -71,26 +74,39 @@ const RectificationTable* pointer(const std::optional<RectificationTable>& table
   return table ? &*table : nullptr;
 }
 
-// What is wrong with a run of this board.
-std::string run(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frames) {
+struct Outcome {
+  std::vector<Result> results;
+  platform::Statistics statistics;
+};
+
+Outcome simulate(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frames,
+                 Fidelity fidelity) {
   Noise pairs(board);
   test::MonitoringBinder binder;
-  CameraSimulation simulation(board, tables, pairs, frames, binder);
-  std::vector<Result> results;
+  CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
+  Outcome outcome;
   while (!simulation.finished()) {
-    for (Result& result : simulation.advance()) results.push_back(std::move(result));
+    for (Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
   }
-  const platform::Statistics statistics = simulation.statistics();
+  outcome.statistics = simulation.statistics();
+  return outcome;
+}
+
+// What is wrong with a run of this board.
+std::string problems_of_run(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frames,
+                            Fidelity fidelity) {
+  const Outcome outcome = simulate(board, tables, frames, fidelity);
   std::string text;
-  for (const std::string& failed : statistics.failed) text += failed + '\n';
-  for (const platform::CameraStatistics& camera : statistics.computer->cameras) {
+  for (const std::string& failed : outcome.statistics.failed) text += failed + '\n';
+  for (const platform::CameraStatistics& camera : outcome.statistics.computer->cameras) {
     if (camera.dropped_pixels > 0) return text;  // the pictures are not those of the cameras
     if (board.cameras.trigger == platform::CameraTrigger::kOnDemand && camera.dropped_frames > 0)
       text += "a camera on demand has dropped a frame\n";
   }
   const kernels::StereoConfig config{board.matcher.window, board.matcher.disparities, board.matcher.filter,
                                      board.matcher.lr_tolerance};
-  for (const Result& result : results) {
+  Noise pairs(board);
+  for (const Result& result : outcome.results) {
     const host::StereoPair& pair = pairs.pair(result.number);
     if (result.disparity !=
         kernels::disparity_image(pair.left, pair.right, pointer(tables.left), pointer(tables.right), config))
@@ -99,25 +115,73 @@ std::string run(const BoardConfig& board, const platform::Tables& tables, std::u
   return text;
 }
 
-std::string run_random(std::uint64_t seed) {
-  const test::RandomBoard random_board = test::make_random_board(seed);
-  BoardConfig board = test::board_config(random_board);
-  SplitMix64 random(seed + 1'000'000);
-  surround(board, random);
-  const std::string wrong =
-      run(board, test::board_tables(random_board), static_cast<std::uint64_t>(random.between(1, 6)));
-  return wrong.empty() ? wrong : wrong + platform::to_yaml(board);
+struct Computer {
+  explicit Computer(std::uint64_t seed) {
+    const test::RandomBoard random_board = test::make_random_board(seed);
+    board = test::board_config(random_board);
+    tables = test::board_tables(random_board);
+    SplitMix64 random(seed + 1'000'000);
+    surround(board, random);
+    frames = static_cast<std::uint64_t>(random.between(1, 6));
+  }
+  BoardConfig board;
+  platform::Tables tables;
+  std::uint64_t frames = 1;
+};
+
+std::string problems_of_random_run(std::uint64_t seed, Fidelity fidelity) {
+  const Computer computer(seed);
+  const std::string wrong = problems_of_run(computer.board, computer.tables, computer.frames, fidelity);
+  return wrong.empty() ? wrong : wrong + platform::to_yaml(computer.board);
 }
 
-TEST(RandomComputers, KeepTheirIdentitiesAndBoundsAndComputeWhatTheyCaptured) {
+// All that a run tells, but for the name of the fidelity.
+std::string report_of_random_run(std::uint64_t seed, Fidelity fidelity) {
+  const Computer computer(seed);
+  Outcome outcome = simulate(computer.board, computer.tables, computer.frames, fidelity);
+  outcome.statistics.fidelity = "any";
+  std::string text = report::stats_json(outcome.statistics, std::nullopt);
+  for (const Result& result : outcome.results)
+    text += "camera frame " + std::to_string(result.number) + " at " + std::to_string(result.time_ps) + '\n';
+  return text;
+}
+
+std::uint64_t computers() {
   const char* text = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
-  const std::uint64_t count = text != nullptr ? std::stoull(text) : 100;
+  return text != nullptr ? std::stoull(text) : 100;
+}
+
+int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+class RandomComputers : public testing::TestWithParam<Fidelity> {};
+
+TEST_P(RandomComputers, KeepTheirIdentitiesAndBoundsAndComputeWhatTheyCaptured) {
   std::vector<test::ChildWork> jobs;
-  for (std::uint64_t seed = 0; seed < count; ++seed) jobs.push_back([seed] { return run_random(seed); });
-  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors);
+  for (std::uint64_t seed = 0; seed < computers(); ++seed)
+    jobs.push_back([seed] { return problems_of_random_run(seed, GetParam()); });
+  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
   for (std::size_t seed = 0; seed < results.size(); ++seed)
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Fidelities, RandomComputers, testing::Values(Fidelity::kCycle, Fidelity::kFast),
+                         [](const auto& suite) {
+                           return std::string(suite.param == Fidelity::kCycle ? "Cycle" : "Fast");
+                         });
+
+TEST(RandomComputersReports, AreTheSameAtEachFidelity) {
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < computers(); ++seed) {
+    for (const Fidelity fidelity : {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming})
+      jobs.push_back([seed, fidelity] { return report_of_random_run(seed, fidelity); });
+  }
+  const std::vector<test::ChildResult> reports = test::run_in_children(jobs, processors());
+  for (std::size_t job = 0; job < reports.size(); job += 3) {
+    const std::string& cycle = reports[job].text;
+    ASSERT_EQ(cycle.front(), '{') << "seed " << job / 3 << ": " << cycle;
+    EXPECT_EQ(cycle, reports[job + 1].text) << "fast, seed " << job / 3;
+    EXPECT_EQ(cycle, reports[job + 2].text) << "without pixels, seed " << job / 3;
+  }
 }
 
 // Four local clocks a cycle and one word a burst: what lies between two words costs nothing.
@@ -129,7 +193,7 @@ TEST(SaturatedLocalBus, StaysBelowItsBound) {
        "pci.bridge_wait_clocks=0", "pci.memory_wait_clocks=0", "bridge.local_clock_mhz=4",
        "bridge.dma_burst_words=1", "bridge.posted_words=4096", "fpga.clock_mhz=1",
        "fpga.pipeline_latency_cycles=0", "ssram.default={words: 524288, kind: zbt_flow_through}"});
-  EXPECT_EQ(run(board, platform::identity_tables(board), 30), "");
+  EXPECT_EQ(problems_of_run(board, platform::identity_tables(board), 30, Fidelity::kCycle), "");
 }
 
 }  // namespace

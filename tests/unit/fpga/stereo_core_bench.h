@@ -27,6 +27,10 @@ class StereoCoreBench : public testing::Test {
  protected:
   virtual Fidelity fidelity() const { return Fidelity::kCycle; }
 
+  virtual void bind_bank(InitiatorSocket& from, TargetSocket& to, const std::string& link) {
+    binder.bind(from, to, link);
+  }
+
   static constexpr std::uint32_t kWords = 64;
   enum Bank : std::uint32_t { kLeft, kRight, kResult, kLeftTable, kRightTable, kSpare, kBankCount };
 
@@ -51,7 +55,7 @@ class StereoCoreBench : public testing::Test {
       const std::string number = std::to_string(bank);
       banks.push_back(
           std::make_unique<memory::SsramBank>(("ssram" + number).c_str(), board.memory.banks[bank]));
-      binder.bind(core->banks[bank], banks.back()->port, "crossbar_to_bank" + number);
+      bind_bank(core->banks[bank], banks.back()->port, "crossbar_to_bank" + number);
     }
     binder.bind(registers.socket, core->registers, "host_to_registers");
     binder.bind(memory.socket, core->local_bus, "host_to_local_bus");

@@ -4,6 +4,8 @@
 
 #include <initializer_list>
 #include <numeric>
+#include <string>
+#include <vector>
 
 namespace stereotlm::memory {
 namespace {
@@ -265,6 +267,95 @@ TEST(BankArbiter, BlamesEveryStalledRequestExactlyOnce) {
   EXPECT_EQ(std::accumulate(stats.grants.begin(), stats.grants.end(), uint64_t{0}), grants);
   EXPECT_EQ(stats.reads + stats.writes, grants);
   EXPECT_EQ(grants + stats.turnaround_cycles + stats.idle_cycles, 2000U);
+}
+
+// A result that writes and a pixel port that reads in turn, six cycles with the turnaround.
+std::vector<BankArbiter::Outcome> step_in_turn(BankArbiter& arbiter, uint64_t cycle) {
+  std::vector<BankArbiter::Outcome> outcomes;
+  const PortMask result = mask_of(Port::kResult);
+  const PortMask left = mask_of(Port::kLeftPixel);
+  for (uint64_t i = 0; i < 3; ++i) {
+    outcomes.push_back(arbiter.decide(cycle + i, result, result));
+    arbiter.count(cycle + i, outcomes.back());
+  }
+  for (uint64_t i = 3; i < 6; ++i) {
+    const PortMask both = ports({Port::kLeftPixel, Port::kRightPixel});
+    outcomes.push_back(arbiter.decide(cycle + i, i == 5 ? both : left, kNone));
+    arbiter.count(cycle + i, outcomes.back());
+  }
+  return outcomes;
+}
+
+class Repetition : public testing::TestWithParam<bool> {};
+
+TEST_P(Repetition, CountsAndDecidesOnAsIfItHadBeenStepped) {
+  const ArbiterConfig config{ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority};
+  constexpr uint64_t kPeriod = 8;  // two cycles idle
+  BankArbiter repeats(config, 1);
+  BankArbiter steps(config, 1);
+  for (BankArbiter* arbiter : {&repeats, &steps}) {
+    if (GetParam()) arbiter->begin_counting(0);
+    step_in_turn(*arbiter, 0);
+  }
+  const auto outcomes = step_in_turn(repeats, kPeriod);
+  repeats.repeat(kPeriod, outcomes, 3);
+  for (uint64_t period = 1; period < 5; ++period) step_in_turn(steps, period * kPeriod);
+  EXPECT_EQ(repeats.state(5 * kPeriod - 2), steps.state(5 * kPeriod - 2));
+  for (BankArbiter* arbiter : {&repeats, &steps}) {
+    arbiter->arbitrate(5 * kPeriod - 2, kAll, kAll);
+    if (GetParam()) arbiter->end_counting(100);
+  }
+  const ArbiterStats repeated = repeats.stats();
+  const ArbiterStats stepped = steps.stats();
+  EXPECT_EQ(repeats.uncounted_accesses(), steps.uncounted_accesses());
+  EXPECT_EQ(repeated.reads, stepped.reads);
+  EXPECT_EQ(repeated.writes, stepped.writes);
+  EXPECT_EQ(repeated.turnaround_cycles, stepped.turnaround_cycles);
+  EXPECT_EQ(repeated.idle_cycles, stepped.idle_cycles);
+  EXPECT_EQ(repeated.contended_cycles, stepped.contended_cycles);
+  EXPECT_EQ(repeated.grants, stepped.grants);
+  EXPECT_EQ(repeated.blame, stepped.blame);
+}
+
+INSTANTIATE_TEST_SUITE_P(BankArbiter, Repetition, testing::Bool(), [](const auto& suite) {
+  return std::string(suite.param ? "Counted" : "NotCounted");
+});
+
+TEST(BankArbiter, HasTheStateOfItsPlaceAndOfTheCyclesThatItStillTurnsRound) {
+  const ArbiterConfig config{ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority};
+  BankArbiter arbiter(config, 2);
+  const std::uint32_t fresh = arbiter.state(0);
+  EXPECT_EQ(fresh, arbiter.state(1000));
+  arbiter.arbitrate(10, mask_of(Port::kResult), kNone);
+  EXPECT_NE(arbiter.state(11), arbiter.state(12));
+  EXPECT_NE(arbiter.state(12), arbiter.state(13));
+  EXPECT_EQ(arbiter.state(13), arbiter.state(14));  // 10 + turnaround + 1: ready
+  EXPECT_NE(arbiter.state(14), fresh);              // the place is another
+  const std::uint32_t after_read = arbiter.state(11);
+  arbiter.arbitrate(20, mask_of(Port::kResult), mask_of(Port::kResult));
+  EXPECT_NE(arbiter.state(21), after_read);  // turning for the other direction
+  arbiter.arbitrate(30, mask_of(Port::kResult), kNone);
+  EXPECT_EQ(arbiter.state(31), after_read);
+}
+
+TEST(BankArbiter, CountsAnOutcomeOfManyCyclesAtOnce) {
+  BankArbiter at_once(ArbiterConfig{}, 0);
+  BankArbiter one_by_one(ArbiterConfig{}, 0);
+  const PortMask host = mask_of(Port::kHost);
+  for (const bool counts : {false, true}) {
+    const uint64_t first = counts ? 100 : 10;
+    for (BankArbiter* arbiter : {&at_once, &one_by_one}) {
+      if (counts) arbiter->begin_counting(first - 3);
+    }
+    at_once.count(first, at_once.decide(first, host, host), 5);
+    for (uint64_t cycle = first; cycle < first + 5; ++cycle) one_by_one.arbitrate(cycle, host, host);
+  }
+  for (BankArbiter* arbiter : {&at_once, &one_by_one}) {
+    arbiter->end_counting(110);
+    EXPECT_EQ(arbiter->uncounted_accesses(), 5U);
+    EXPECT_EQ(arbiter->stats().writes, 5U);
+    EXPECT_EQ(arbiter->stats().idle_cycles, 3U + 5U);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,266 @@
+// Running ahead against stepping, on random cores, banks and tables.
+#include "models/fpga/core_timing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/unit/fpga/random_core.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::ArbitrationPolicy;
+using memory::BankKind;
+using memory::Port;
+
+constexpr std::uint64_t kNever = UINT64_MAX;
+
+// A burst of the local bus, which begins to ask in a cycle counted from the frame's first, or later if the one before
+// it has not ended.
+struct Burst {
+  std::uint64_t cycle = 0;
+  std::size_t bank = 0;
+  bool write = false;
+  int words = 1;
+};
+
+struct Setting {
+  CoreConfig core;
+  memory::ArbiterConfig arbiter;
+  std::vector<memory::SsramBankConfig> banks;
+  std::array<std::size_t, memory::kPortCount> bank_of{};
+  std::vector<std::uint32_t> left_entries;
+  std::vector<std::uint32_t> right_entries;
+  int frames = 1;
+};
+
+Setting random_setting(test::SplitMix64& random) {
+  Setting setting;
+  setting.core = random_core(random, 64);
+  if (random.chance(40)) setting.arbiter.policy = ArbitrationPolicy::kRoundRobin;
+  auto& priority = setting.arbiter.priority;
+  for (std::size_t place = 0; place < priority.size(); ++place)
+    std::swap(priority[place],
+              priority[static_cast<std::size_t>(random.between(static_cast<int>(place), 5))]);
+  const int banks = random.between(1, 6);
+  for (int bank = 0; bank < banks; ++bank) {
+    memory::SsramBankConfig config;
+    config.kind = static_cast<BankKind>(random.between(0, 2));
+    if (config.kind == BankKind::kSyncBurst) config.turnaround_cycles = random.mostly_small(1, 3, 16);
+    setting.banks.push_back(config);
+  }
+  for (std::size_t& bank : setting.bank_of) bank = static_cast<std::size_t>(random.between(0, banks - 1));
+  setting.left_entries = random_entries(random, setting.core);
+  setting.right_entries = random_entries(random, setting.core);
+  setting.frames = random.between(1, 3);
+  return setting;
+}
+
+// A core with its arbiters, frame after frame.
+class Timing {
+ public:
+  explicit Timing(const Setting& setting)
+      : setting_(setting),
+        arbitration_(setting.arbiter, setting.banks),
+        timing_(setting.core, arbitration_),
+        left_(FrameGeometry(setting.core)),
+        right_(FrameGeometry(setting.core)) {
+    if (setting.core.left_table) left_.set_entries(setting.left_entries.data());
+    if (setting.core.right_table) right_.set_entries(setting.right_entries.data());
+  }
+
+  void start(std::uint64_t cycle) {
+    first_cycle_ = cycle_ = cycle;
+    const auto route = [this](Port port, bool exists, bool write) {
+      const std::size_t bank = setting_.bank_of[memory::index_of(port)];
+      if (exists) arbitration_.route(port, bank, write);
+      return memory::read_latency_cycles(setting_.banks[bank].kind);
+    };
+    FrameLatencies latencies;
+    latencies.left_lut = route(Port::kLeftLut, setting_.core.left_table, false);
+    latencies.right_lut = route(Port::kRightLut, setting_.core.right_table, false);
+    latencies.left_image = route(Port::kLeftPixel, true, false);
+    latencies.right_image = route(Port::kRightPixel, true, false);
+    route(Port::kResult, true, true);
+    timing_.start_frame(latencies, left_, right_);
+    arbitration_.begin_counting(cycle);
+  }
+  bool done() const { return timing_.control().frame_done(); }
+  std::uint64_t cycle() const { return cycle_; }
+  std::uint64_t earliest_last_write() const { return timing_.earliest_last_write(cycle_); }
+  bool step(bool host_requests = false) {
+    return (timing_.step(cycle_++, host_requests) & memory::mask_of(Port::kHost)) != 0;
+  }
+  void step_to(std::uint64_t end) {
+    while (cycle_ < end && !done()) step();
+  }
+  void run_to(std::uint64_t end) { cycle_ = timing_.run_ahead(cycle_, end); }
+  // The words of a burst, until it ends or the frame.
+  void serve(const Burst& burst) {
+    if (done()) return;
+    arbitration_.route(Port::kHost, burst.bank, burst.write);
+    timing_.forget_period();
+    for (int words = 0; words < burst.words && !done();) words += int{step(true)};
+    arbitration_.unroute(Port::kHost);
+    timing_.forget_period();
+  }
+  void finish() { arbitration_.end_counting(cycle_); }
+  std::uint64_t first_cycle() const { return first_cycle_; }
+
+  // All that is counted, and where it is.
+  std::string figures() const {
+    std::ostringstream text;
+    text << "next cycle " << cycle_ << '\n';
+    for (std::size_t port = 0; port < memory::kPortCount; ++port) {
+      const PortCycles& cycles = timing_.control().port_cycles(static_cast<Port>(port));
+      text << memory::kPortNames[port] << ": granted " << cycles.granted() << ", stalled " << cycles.stalled()
+           << ", passed " << cycles.passed() << ", idle " << cycles.idle() << ", blocked " << cycles.blocked()
+           << ", starved " << cycles.starved() << '\n';
+    }
+    for (const memory::BankArbiter& arbiter : arbitration_.arbiters()) {
+      const memory::ArbiterStats stats = arbiter.stats();
+      text << "bank: reads " << stats.reads << ", writes " << stats.writes << ", turnaround "
+           << stats.turnaround_cycles << ", idle " << stats.idle_cycles << ", contended "
+           << stats.contended_cycles << ", uncounted " << arbiter.uncounted_accesses() << "; blame";
+      for (const auto& victim : stats.blame) {
+        for (const std::uint64_t cycles : victim) text << ' ' << cycles;
+      }
+      text << '\n';
+    }
+    text << "consumed " << timing_.control().left().consumed() << ' ' << timing_.control().right().consumed()
+         << ", most queued " << timing_.control().result().most_queued() << '\n';
+    return text.str();
+  }
+
+ private:
+  const Setting& setting_;
+  memory::Arbitration arbitration_;
+  CoreTiming timing_;
+  SlotPattern left_;
+  SlotPattern right_;
+  std::uint64_t cycle_ = 0;
+  std::uint64_t first_cycle_ = 0;
+};
+
+// Two of the same setting, one stepped and one run ahead, frame after frame: `frame(random, stepped, ahead)` takes both
+// to the end of each.
+template <typename Frame>
+void expect_equal_in_random_settings(std::uint64_t settings, const Frame& frame) {
+  for (std::uint64_t seed = 0; seed < settings; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::SplitMix64 random(seed);
+    const Setting setting = random_setting(random);
+    Timing stepped(setting);
+    Timing ahead(setting);
+    std::uint64_t cycle = static_cast<std::uint64_t>(random.between(0, 100));
+    for (int number = 0; number < setting.frames; ++number) {
+      stepped.start(cycle);
+      ahead.start(cycle);
+      frame(random, setting, stepped, ahead);
+      stepped.finish();
+      ahead.finish();
+      ASSERT_TRUE(ahead.done());
+      ASSERT_EQ(ahead.figures(), stepped.figures()) << "frame " << number;
+      cycle = stepped.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 3, 1000));
+    }
+  }
+}
+
+TEST(CoreTiming, RunsAheadToWhatItsStepsCount) {
+  expect_equal_in_random_settings(400, [](auto&, const Setting&, Timing& stepped, Timing& ahead) {
+    stepped.step_to(kNever);
+    ahead.run_to(kNever);
+  });
+}
+
+TEST(CoreTiming, StopsAnywhereAndGoesOn) {
+  expect_equal_in_random_settings(200, [](auto& random, const Setting&, Timing& stepped, Timing& ahead) {
+    while (!ahead.done()) {
+      const std::uint64_t end = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(1, 300, 5000));
+      ahead.run_to(end);
+      EXPECT_LE(ahead.cycle(), end);
+      stepped.step_to(end);
+      EXPECT_EQ(ahead.cycle(), stepped.cycle());
+    }
+  });
+}
+
+TEST(CoreTiming, IsStoppedInTheMiddleWithTheCountsOfTheSteps) {
+  for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::SplitMix64 random(seed);
+    const Setting setting = random_setting(random);
+    Timing stepped(setting);
+    Timing ahead(setting);
+    const auto end = static_cast<std::uint64_t>(random.between(1, 3000));
+    for (Timing* timing : {&stepped, &ahead}) timing->start(0);
+    ahead.run_to(end);
+    stepped.step_to(end);
+    for (Timing* timing : {&stepped, &ahead}) timing->finish();
+    ASSERT_EQ(ahead.figures(), stepped.figures());
+  }
+}
+
+TEST(CoreTiming, IsSteppedForTheHostInBetween) {
+  expect_equal_in_random_settings(300, [](auto& random, const Setting& setting, Timing& stepped,
+                                          Timing& ahead) {
+    for (int bursts = random.between(0, 6); bursts > 0; --bursts) {
+      Burst burst;
+      burst.cycle = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 500, 5000));
+      burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));
+      burst.write = random.chance(50);
+      burst.words = random.mostly_small(1, 8, 100);
+      stepped.step_to(burst.cycle);
+      ahead.run_to(burst.cycle);
+      stepped.serve(burst);
+      ahead.serve(burst);
+    }
+    stepped.step_to(kNever);
+    ahead.run_to(kNever);
+  });
+}
+
+TEST(CoreTiming, NeverNamesALastWriteLaterThanItIs) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::SplitMix64 random(seed);
+    const Setting setting = random_setting(random);
+    Timing timing(setting);
+    timing.start(0);
+    std::vector<std::uint64_t> earliest;
+    while (!timing.done()) {
+      earliest.push_back(timing.earliest_last_write());
+      timing.step();
+    }
+    const std::uint64_t last_write = timing.cycle() - 1;
+    ASSERT_LE(*std::max_element(earliest.begin(), earliest.end()), last_write);
+    ASSERT_EQ(earliest.back(), last_write);
+  }
+}
+
+TEST(CoreTiming, NamesTheLastWriteFromTheFirstSlotConsumedOnWhereNothingContends) {
+  Setting setting;
+  setting.core.width = 16;
+  setting.core.height = 5;
+  setting.core.window = 3;
+  setting.core.disparities = 4;
+  setting.core.filter.reset();
+  setting.banks.resize(6);
+  for (std::size_t port = 0; port < memory::kPortCount; ++port) setting.bank_of[port] = port;
+  setting.left_entries = setting.right_entries = kernels::identity_table(16, 5).entries;
+  Timing timing(setting);
+  timing.start(100);
+  timing.step_to(100 + 4);  // the latencies of table and image
+  const std::uint64_t last_write = timing.earliest_last_write();
+  timing.run_to(kNever);
+  EXPECT_EQ(timing.cycle(), last_write + 1);
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

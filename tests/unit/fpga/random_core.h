@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "models/fpga/core_config.h"
+#include "models/kernels/rectification_table.h"
+#include "tests/support/random_board.h"
+
+namespace stereotlm::fpga {
+
+// Small cores for property tests: every way to fetch and filter, images lower than the window, short queues.
+// `widest`: pixels, a multiple of 4.
+inline CoreConfig random_core(test::SplitMix64& random, int widest) {
+  CoreConfig config;
+  config.width = 4 * random.mostly_small(1, 8, widest / 4);
+  config.height = random.mostly_small(1, 8, 24);
+  config.window = 2 * random.mostly_small(1, 4, 15) + 1;
+  config.disparities = random.between(1, 20);
+  config.filter.reset();
+  if (random.chance(50)) {
+    const int size = 2 * random.mostly_small(1, 3, 15) + 1;
+    config.filter = {size, std::vector<int>(static_cast<std::size_t>(size * size)), 0};
+  }
+  config.fetch = random.chance(70) ? Fetch::kColumn : Fetch::kLineBuffer;
+  config.left_table = random.chance(80);
+  config.right_table = random.chance(80);
+  config.lane_fifo_slots = random.mostly_small(1, 16, 64);
+  config.result_fifo_words = random.mostly_small(1, 8, 64);
+  config.pipeline_latency_cycles = random.between(0, 20);
+  return config;
+}
+
+// Of a pixel, in a table.
+inline std::size_t place_of(const CoreConfig& config, int column, int row) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(config.width) +
+         static_cast<std::size_t>(column);
+}
+
+// The table entries of one side: all valid, valid but for a block or some columns, or some anywhere.
+inline std::vector<std::uint32_t> random_entries(test::SplitMix64& random, const CoreConfig& config) {
+  auto entries = kernels::identity_table(config.width, config.height).entries;
+  const auto invalidate = [&](int column, int row) { entries[place_of(config, column, row)] = 0; };
+  const int kind = random.between(0, 3);
+  const int percent = random.between(1, 99);
+  const int first_column = random.between(0, config.width - 1);
+  const int first_row = kind == 1 ? random.between(0, config.height - 1) : 0;
+  for (int row = first_row; row < config.height; ++row) {
+    for (int column = 0; column < config.width; ++column) {
+      const bool in_block = kind != 0 && column >= first_column;
+      if (kind == 3 ? random.chance(percent) : in_block) invalidate(column, row);
+    }
+  }
+  return entries;
+}
+
+}  // namespace stereotlm::fpga

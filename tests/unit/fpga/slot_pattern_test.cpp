@@ -1,0 +1,120 @@
+#include "models/fpga/slot_pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/unit/fpga/random_core.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+// What a slot asks for.
+enum class Access : std::uint8_t { kNone, kTable, kTableAndImage };
+
+// Every column of slots of a frame, by a literal walk over all of them.
+std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
+                                            const std::vector<std::uint32_t>& entries) {
+  const FrameGeometry geometry(config);
+  std::vector<std::vector<Access>> columns;
+  for (SlotCursor slot(geometry); !slot.done();) {
+    columns.emplace_back();
+    for (int k = 0; k < geometry.slots_per_column; ++k, slot.advance()) {
+      if (slot.empty()) {
+        columns.back().push_back(Access::kNone);
+        continue;
+      }
+      const bool valid = kernels::entry_is_valid(entries[place_of(config, slot.column(), slot.row())]);
+      columns.back().push_back(valid ? Access::kTableAndImage : Access::kTable);
+    }
+  }
+  return columns;
+}
+
+std::uint64_t count(const std::vector<std::vector<Access>>& columns, Access what) {
+  std::uint64_t slots = 0;
+  for (const auto& column : columns) {
+    for (const Access access : column) slots += std::uint64_t{access == what};
+  }
+  return slots;
+}
+
+// Cores and tables; what a case looks at in each.
+template <typename Look>
+void for_random_patterns(const Look& look) {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::SplitMix64 random(seed);
+    const CoreConfig config = random_core(random, 140);
+    SlotPattern pattern{FrameGeometry(config)};
+    std::vector<std::uint32_t> entries;
+    // What a table before this one has left does not matter.
+    for (int table = random.between(1, 2); table > 0; --table) {
+      entries = random_entries(random, config);
+      pattern.set_entries(entries.data());
+    }
+    look(config, pattern, entries);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(SlotPattern, FindsTheNextColumnThatDiffers) {
+  for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
+    const auto columns = columns_of(config, entries);
+    std::size_t next = columns.size();
+    for (std::size_t column = columns.size(); column-- > 0;) {
+      if (column + 1 < columns.size() && columns[column + 1] != columns[column]) next = column + 1;
+      ASSERT_EQ(pattern.alike_until(column), next) << column;
+    }
+  });
+}
+
+TEST(SlotPattern, KnowsEveryEntry) {
+  for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
+    for (int row = 0; row < config.height; ++row) {
+      for (int column = 0; column < config.width; ++column) {
+        ASSERT_EQ(pattern.entry_valid(column, row),
+                  kernels::entry_is_valid(entries[place_of(config, column, row)]));
+      }
+    }
+  });
+}
+
+TEST(SlotPattern, CountsTheSlotsOfAFrame) {
+  for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
+    const auto columns = columns_of(config, entries);
+    ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
+    ASSERT_EQ(pattern.valid_entries(), count(columns, Access::kTableAndImage));
+  });
+}
+
+TEST(SlotPattern, BeginsWithEveryEntryValid) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    test::SplitMix64 random(seed);
+    const CoreConfig config = random_core(random, 140);
+    const SlotPattern fresh{FrameGeometry(config)};
+    SlotPattern all_valid{FrameGeometry(config)};
+    all_valid.set_entries(kernels::identity_table(config.width, config.height).entries.data());
+    ASSERT_EQ(fresh.valid_entries(), all_valid.valid_entries());
+    ASSERT_EQ(fresh.empty_slots(), all_valid.empty_slots());
+    ASSERT_EQ(fresh.alike_until(0), all_valid.alike_until(0));
+    ASSERT_TRUE(fresh.entry_valid(config.width - 1, config.height - 1));
+  }
+}
+
+TEST(SlotPattern, HasColumnsAlikeOverTheEndOfAStrip) {
+  CoreConfig config;
+  config.width = 8;
+  config.height = 9;
+  config.window = 3;
+  config.filter.reset();
+  const SlotPattern pattern{FrameGeometry(config)};
+  // The first and the last strip have rows outside the image.
+  EXPECT_EQ(pattern.alike_until(0), 8U);
+  EXPECT_EQ(pattern.alike_until(8), 64U);
+  EXPECT_EQ(pattern.alike_until(64), 72U);
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

@@ -1,0 +1,278 @@
+#include "models/memory/arbitration.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/random_board.h"
+
+namespace stereotlm::memory {
+namespace {
+
+using test::SplitMix64;
+
+constexpr PortMask kNone = 0;
+constexpr int kBanks = 4;
+
+constexpr PortMask both(PortMask a, PortMask b) { return static_cast<PortMask>(a | b); }
+constexpr PortMask kLeft = mask_of(Port::kLeftPixel);
+constexpr PortMask kRight = mask_of(Port::kRightPixel);
+constexpr PortMask kResult = mask_of(Port::kResult);
+constexpr PortMask kHost = mask_of(Port::kHost);
+
+// Banks without turnaround, and two with.
+std::vector<SsramBankConfig> banks() {
+  return {
+      {16}, {16, BankKind::kZbtFlowThrough}, {16, BankKind::kSyncBurst, 2}, {16, BankKind::kSyncBurst, 9}};
+}
+
+ArbiterConfig random_arbiter(SplitMix64& random) {
+  ArbiterConfig config;
+  if (random.chance(50)) config.policy = ArbitrationPolicy::kRoundRobin;
+  for (std::size_t place = 0; place < kPortCount; ++place)
+    std::swap(config.priority[place],
+              config.priority[static_cast<std::size_t>(random.between(static_cast<int>(place), 5))]);
+  return config;
+}
+
+std::string text_of(const BankArbiter& arbiter) {
+  const ArbiterStats stats = arbiter.stats();
+  std::ostringstream text;
+  text << "reads " << stats.reads << ", writes " << stats.writes << ", turnaround " << stats.turnaround_cycles
+       << ", idle " << stats.idle_cycles << ", contended " << stats.contended_cycles << ", uncounted "
+       << arbiter.uncounted_accesses() << "; grants";
+  for (const std::uint64_t grants : stats.grants) text << ' ' << grants;
+  text << "; blame";
+  for (const auto& row : stats.blame) {
+    for (const std::uint64_t cycles : row) text << ' ' << cycles;
+  }
+  return text.str();
+}
+
+std::string text_of(const std::vector<BankArbiter>& arbiters) {
+  std::string text;
+  for (const BankArbiter& arbiter : arbiters) text += text_of(arbiter) + '\n';
+  return text;
+}
+
+// An arbiter for each bank that is asked in every cycle.
+class PlainArbitration {
+ public:
+  explicit PlainArbitration(const ArbiterConfig& config) {
+    for (const SsramBankConfig& bank : banks()) arbiters.emplace_back(config, bank.turnaround_cycles);
+  }
+  void route(Port port, std::size_t bank, bool write) { routes[index_of(port)] = {bank, write}; }
+  PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
+    PortMask granted = 0;
+    for (std::size_t bank = 0; bank < arbiters.size(); ++bank) {
+      PortMask asking = 0;
+      PortMask writes = 0;
+      for (std::size_t port = 0; port < kPortCount; ++port) {
+        if ((requests >> port & 1U) == 0 || routes[port].first != bank) continue;
+        asking = static_cast<PortMask>(asking | 1U << port);
+        if (routes[port].second) writes = static_cast<PortMask>(writes | 1U << port);
+      }
+      if (asking != 0) granted = both(granted, arbiters[bank].arbitrate(cycle, asking, writes));
+    }
+    return granted;
+  }
+  std::vector<BankArbiter> arbiters;
+  std::array<std::pair<std::size_t, bool>, kPortCount> routes{};
+};
+
+// Every port gets a route, or most of them.
+struct Routes {
+  explicit Routes(SplitMix64& random) {
+    for (std::size_t port = 0; port < kPortCount; ++port) {
+      if (random.chance(10)) continue;
+      const auto bank = static_cast<std::size_t>(random.between(0, kBanks - 1));
+      routes[port] = {bank, random.chance(40)};
+      ports = static_cast<PortMask>(ports | 1U << port);
+    }
+  }
+  template <typename Target>
+  void apply(Target& target) const {
+    for (std::size_t port = 0; port < kPortCount; ++port) {
+      if ((ports >> port & 1U) != 0)
+        target.route(static_cast<Port>(port), routes[port].first, routes[port].second);
+    }
+  }
+  std::array<std::pair<std::size_t, bool>, kPortCount> routes{};
+  PortMask ports = 0;
+};
+
+PortMask random_requests(SplitMix64& random, PortMask ports) {
+  return random.chance(20) ? kNone : static_cast<PortMask>(random.next() & ports);
+}
+
+TEST(Arbitration, GrantsAndCountsAsAnArbiterForEachBankWhoeverMeetsThere) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    SplitMix64 random(seed);
+    const ArbiterConfig config = random_arbiter(random);
+    Arbitration arbitration(config, banks());
+    PlainArbitration plain(config);
+    std::uint64_t cycle = 0;
+    for (int part = 0; part < 6; ++part) {
+      for (std::size_t port = 0; port < kPortCount; ++port) arbitration.unroute(static_cast<Port>(port));
+      const Routes routes(random);
+      routes.apply(arbitration);
+      routes.apply(plain);
+      const bool counts = part % 2 == 1;
+      if (counts) {
+        arbitration.begin_counting(cycle);
+        for (BankArbiter& arbiter : plain.arbiters) arbiter.begin_counting(cycle);
+      }
+      for (const std::uint64_t end = cycle + 100; cycle < end; ++cycle) {
+        const PortMask requests = random_requests(random, routes.ports);
+        ASSERT_EQ(arbitration.arbitrate(cycle, requests), plain.arbitrate(cycle, requests)) << cycle;
+      }
+      if (counts) {
+        arbitration.end_counting(cycle);
+        for (BankArbiter& arbiter : plain.arbiters) arbiter.end_counting(cycle);
+      }
+      ASSERT_EQ(text_of(arbitration.arbiters()), text_of(plain.arbiters)) << part;
+    }
+  }
+}
+
+// Two in the same routes, counting or not.
+class ArbitrationPeriods : public testing::TestWithParam<bool> {};
+
+TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
+  int repeated = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    SplitMix64 random(seed);
+    const ArbiterConfig config = random_arbiter(random);
+    const Routes routes(random);
+    Arbitration repeats(config, banks());
+    Arbitration steps(config, banks());
+    std::vector<PortMask> period;
+    for (int cycles = random.between(1, 30); cycles > 0; --cycles)
+      period.push_back(random_requests(random, routes.ports));
+    std::uint64_t cycle = 7;
+    const auto step = [&](Arbitration& arbitration, std::uint64_t from) {
+      for (std::size_t i = 0; i < period.size(); ++i) arbitration.arbitrate(from + i, period[i]);
+    };
+    for (Arbitration* arbitration : {&repeats, &steps}) {
+      routes.apply(*arbitration);
+      if (GetParam()) arbitration->begin_counting(cycle);
+    }
+    // Until it comes back to where it was.
+    for (int tries = 0; tries < 20; ++tries) {
+      const Arbitration::State before = repeats.state(cycle);
+      repeats.begin_period();
+      step(repeats, cycle);
+      step(steps, cycle);
+      cycle += period.size();
+      if (!(repeats.state(cycle) == before)) continue;
+      const auto times = static_cast<std::uint64_t>(random.between(1, 5));
+      repeats.repeat(period.size(), times);
+      for (std::uint64_t i = 0; i < times; ++i) step(steps, cycle + i * period.size());
+      cycle += times * period.size();
+      ++repeated;
+      ASSERT_EQ(repeats.state(cycle), steps.state(cycle));
+    }
+    for (const std::uint64_t end = cycle + 50; cycle < end; ++cycle) {
+      const PortMask requests = random_requests(random, routes.ports);
+      ASSERT_EQ(repeats.arbitrate(cycle, requests), steps.arbitrate(cycle, requests));
+    }
+    for (Arbitration* arbitration : {&repeats, &steps}) {
+      if (GetParam()) arbitration->end_counting(cycle);
+    }
+    ASSERT_EQ(text_of(repeats.arbiters()), text_of(steps.arbiters()));
+  }
+  EXPECT_GT(repeated, 300);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arbitration, ArbitrationPeriods, testing::Bool(), [](const auto& suite) {
+  return std::string(suite.param ? "Counted" : "NotCounted");
+});
+
+TEST(Arbitration, HasAStateOnlyWherePortsMeetOrTheBankTurnsRound) {
+  Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());
+  const Arbitration::State none{};
+  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.arbitrate(0, kLeft);
+  EXPECT_EQ(arbitration.state(1), none);  // alone, its place is nobody's business
+  arbitration.route(Port::kRightPixel, 0, false);
+  EXPECT_NE(arbitration.state(1), none);
+  arbitration.unroute(Port::kRightPixel);
+  arbitration.unroute(Port::kLeftPixel);
+  arbitration.route(Port::kResult, 2, true);
+  arbitration.arbitrate(1, kResult);
+  EXPECT_NE(arbitration.state(2), none);
+}
+
+TEST(Arbitration, HasTheSameStateWheneverItTurnsRoundForAsLong) {
+  Arbitration arbitration(ArbiterConfig{}, banks());
+  arbitration.route(Port::kResult, 2, true);
+  arbitration.arbitrate(10, kResult);
+  const Arbitration::State after_one = arbitration.state(11);
+  EXPECT_NE(after_one, arbitration.state(12));
+  EXPECT_EQ(arbitration.state(13), arbitration.state(14));  // ready
+  arbitration.arbitrate(1000, kResult);
+  EXPECT_EQ(arbitration.state(1001), after_one);
+}
+
+TEST(Arbitration, KnowsWhoElseIsRoutedToABank) {
+  Arbitration arbitration(ArbiterConfig{}, banks());
+  arbitration.route(Port::kHost, 1, false);
+  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 1));
+  EXPECT_TRUE(arbitration.is_used_beside(Port::kResult, 1));
+  arbitration.route(Port::kLeftPixel, 1, false);
+  EXPECT_TRUE(arbitration.is_used_beside(Port::kHost, 1));
+  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 0));
+  arbitration.unroute(Port::kLeftPixel);
+  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 1));
+}
+
+TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {
+  Arbitration arbitration(ArbiterConfig{}, banks());
+  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.route(Port::kRightPixel, 0, false);
+  arbitration.unroute(Port::kLeftPixel);
+  EXPECT_EQ(arbitration.arbitrate(0, both(kLeft, kRight)), kRight);
+}
+
+// Requests for a bank that no port is routed to, decided now and counted later.
+TEST(Arbitration, DecidesAndCountsUnroutedAsRouted) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SplitMix64 random(seed);
+    const ArbiterConfig config = random_arbiter(random);
+    const auto bank = static_cast<std::size_t>(random.between(0, kBanks - 1));
+    Arbitration unrouted(config, banks());
+    Arbitration routed(config, banks());
+    unrouted.begin_counting(0);
+    routed.begin_counting(0);
+    std::vector<std::pair<std::uint64_t, BankArbiter::Outcome>> decided;
+    std::uint64_t cycle = 0;
+    for (int requests = 0; requests < 100; ++requests) {
+      cycle += static_cast<std::uint64_t>(random.mostly_small(1, 3, 20));
+      const bool write = random.chance(50);
+      routed.route(Port::kHost, bank, write);
+      const auto outcome = unrouted.decide_unrouted(bank, cycle, Port::kHost, write);
+      decided.emplace_back(cycle, outcome);
+      ASSERT_EQ(unrouted.grants(bank, outcome), routed.arbitrate(cycle, kHost) == kHost);
+    }
+    for (const auto& [at, outcome] : decided) unrouted.count_unrouted(bank, at, outcome, 1);
+    unrouted.end_counting(cycle + 5);
+    routed.end_counting(cycle + 5);
+    ASSERT_EQ(text_of(unrouted.arbiters()), text_of(routed.arbiters()));
+  }
+}
+
+TEST(Arbitration, KnowsWhichBanksNeedTurnaround) {
+  const Arbitration arbitration(ArbiterConfig{}, banks());
+  EXPECT_FALSE(arbitration.needs_turnaround(0));
+  EXPECT_FALSE(arbitration.needs_turnaround(1));
+  EXPECT_TRUE(arbitration.needs_turnaround(2));
+}
+
+}  // namespace
+}  // namespace stereotlm::memory
