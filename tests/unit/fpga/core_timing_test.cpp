@@ -65,8 +65,11 @@ Setting random_setting(test::SplitMix64& random) {
 // A core with its arbiters, frame after frame.
 class Timing {
  public:
-  explicit Timing(const Setting& setting)
+  enum class Way { kStepped, kAhead };
+
+  Timing(const Setting& setting, Way way)
       : setting_(setting),
+        way_(way),
         arbitration_(setting.arbiter, setting.banks),
         timing_(setting.core, arbitration_),
         left_(FrameGeometry(setting.core)),
@@ -88,14 +91,31 @@ class Timing {
     latencies.left_image = route(Port::kLeftPixel, true, false);
     latencies.right_image = route(Port::kRightPixel, true, false);
     route(Port::kResult, true, true);
-    timing_.start_frame(latencies, left_, right_);
+    if (way_ == Way::kAhead) {
+      timing_.start_frame(latencies, left_, right_);
+    } else {
+      timing_.start_frame(latencies);
+    }
     arbitration_.begin_counting(cycle);
   }
   bool done() const { return timing_.control().frame_done(); }
   std::uint64_t cycle() const { return cycle_; }
   std::uint64_t earliest_last_write() const { return timing_.earliest_last_write(cycle_); }
   bool step(bool host_requests = false) {
-    return (timing_.step(cycle_++, host_requests) & memory::mask_of(Port::kHost)) != 0;
+    const memory::PortMask granted =
+        way_ == Way::kAhead
+            ? timing_.step(cycle_, host_requests)
+            : timing_.step(cycle_, host_requests, [this](const auto&, memory::PortMask grants) {
+                const auto valid = [grants](Port lut, const LaneControl& lane, const SlotPattern& pattern) {
+                  const SlotCursor& slot = lane.next_slot();
+                  return (grants & memory::mask_of(lut)) != 0 &&
+                         pattern.entry_valid(slot.column(), slot.row());
+                };
+                return EntriesRead{valid(Port::kLeftLut, timing_.control().left(), left_),
+                                   valid(Port::kRightLut, timing_.control().right(), right_)};
+              });
+    ++cycle_;
+    return (granted & memory::mask_of(Port::kHost)) != 0;
   }
   void step_to(std::uint64_t end) {
     while (cycle_ < end && !done()) step();
@@ -104,13 +124,16 @@ class Timing {
   // The words of a burst, until it ends or the frame.
   void serve(const Burst& burst) {
     if (done()) return;
+    timing_.begin_routing();
     arbitration_.route(Port::kHost, burst.bank, burst.write);
-    timing_.forget_period();
     for (int words = 0; words < burst.words && !done();) words += int{step(true)};
+    timing_.begin_routing();
     arbitration_.unroute(Port::kHost);
-    timing_.forget_period();
   }
-  void finish() { arbitration_.end_counting(cycle_); }
+  void finish() {
+    timing_.end_frame();
+    arbitration_.end_counting(cycle_);
+  }
   std::uint64_t first_cycle() const { return first_cycle_; }
 
   // All that is counted, and where it is.
@@ -140,6 +163,7 @@ class Timing {
 
  private:
   const Setting& setting_;
+  Way way_;
   memory::Arbitration arbitration_;
   CoreTiming timing_;
   SlotPattern left_;
@@ -156,8 +180,8 @@ void expect_equal_in_random_settings(std::uint64_t settings, const Frame& frame)
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const Setting setting = random_setting(random);
-    Timing stepped(setting);
-    Timing ahead(setting);
+    Timing stepped(setting, Timing::Way::kStepped);
+    Timing ahead(setting, Timing::Way::kAhead);
     std::uint64_t cycle = static_cast<std::uint64_t>(random.between(0, 100));
     for (int number = 0; number < setting.frames; ++number) {
       stepped.start(cycle);
@@ -196,8 +220,8 @@ TEST(CoreTiming, IsStoppedInTheMiddleWithTheCountsOfTheSteps) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const Setting setting = random_setting(random);
-    Timing stepped(setting);
-    Timing ahead(setting);
+    Timing stepped(setting, Timing::Way::kStepped);
+    Timing ahead(setting, Timing::Way::kAhead);
     const auto end = static_cast<std::uint64_t>(random.between(1, 3000));
     for (Timing* timing : {&stepped, &ahead}) timing->start(0);
     ahead.run_to(end);
@@ -231,7 +255,7 @@ TEST(CoreTiming, NeverNamesALastWriteLaterThanItIs) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const Setting setting = random_setting(random);
-    Timing timing(setting);
+    Timing timing(setting, Timing::Way::kAhead);
     timing.start(0);
     std::vector<std::uint64_t> earliest;
     while (!timing.done()) {
@@ -254,7 +278,7 @@ TEST(CoreTiming, NamesTheLastWriteFromTheFirstSlotConsumedOnWhereNothingContends
   setting.banks.resize(6);
   for (std::size_t port = 0; port < memory::kPortCount; ++port) setting.bank_of[port] = port;
   setting.left_entries = setting.right_entries = kernels::identity_table(16, 5).entries;
-  Timing timing(setting);
+  Timing timing(setting, Timing::Way::kAhead);
   timing.start(100);
   timing.step_to(100 + 4);  // the latencies of table and image
   const std::uint64_t last_write = timing.earliest_last_write();
