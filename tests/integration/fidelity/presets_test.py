@@ -64,10 +64,11 @@ class Verified(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(scratch)
             say("stereotlm", "calibrate", "--left", PICTURES / "left[01][0-9].jpg", "--right",
-                PICTURES / "right[01][0-9].jpg", "--grid", "9x6", "--square-mm", "25", "--disparities", "80",
+                PICTURES / "right[01][0-9].jpg", "--grid", "9x6", "--square-mm", "25", "--disparities", "112",
                 "--out", folder / "rig.yaml")
             say("stereotlm-demo-pictures", "sequence", PICTURES, folder / "pairs")
-            self.verify("fpl2003", "--calibration", folder / "rig.yaml", "--sequence", folder / "pairs")
+            self.verify("fpl2003", "--calibration", folder / "rig.yaml", "--sequence", folder / "pairs",
+                        "--set", "matcher.disparities=112")
 
 
 if __name__ == "__main__":
