@@ -103,6 +103,16 @@ TEST(Clock, RoundsEdgesNearAHalfAsDefined) {
   }
 }
 
+TEST(Clock, HasTheEdgesOfOneWithItsPeriodInWholePicoseconds) {
+  EXPECT_TRUE(Clock(40).has_edges_of(Clock(40)));
+  EXPECT_TRUE(Clock(62.5).has_edges_of(Clock(62.5)));
+  EXPECT_FALSE(Clock(40).has_edges_of(Clock(80)));
+  EXPECT_FALSE(Clock(80).has_edges_of(Clock(40)));
+  // Not known of a period that is none.
+  EXPECT_FALSE(Clock(33.333).has_edges_of(Clock(33.333)));
+  EXPECT_FALSE(Clock(33.333).has_edges_of(Clock(66.666)));
+}
+
 TEST(Clock, CountsSimulatedTimeInPicoseconds) {
   EXPECT_EQ(Clock::to_time(25'000), sc_core::sc_time(25, sc_core::SC_NS));
   EXPECT_EQ(Clock::to_ps(sc_core::sc_time(3, sc_core::SC_US)), 3'000'000U);

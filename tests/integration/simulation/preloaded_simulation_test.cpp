@@ -161,7 +161,8 @@ TEST(PreloadedSimulation, CannotBeBuiltOfAWrongBoard) {
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   board.matcher.window = 4;
-  EXPECT_THROW(PreloadedSimulation(board, tables, pairs, 1), std::invalid_argument);
+  Binder binder;
+  EXPECT_THROW(PreloadedSimulation(board, tables, pairs, 1, binder), std::invalid_argument);
 }
 
 }  // namespace

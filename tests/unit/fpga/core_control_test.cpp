@@ -65,7 +65,7 @@ TEST(MatchControl, CompletesAWordWithTheColumnOfItsLastResult) {
         const bool last_of_column = cycle % per_column == per_column - 1;
         const bool word = last_of_column && column >= geometry.result_delay_columns &&
                           (column - geometry.result_delay_columns) % 4 == 3;
-        EXPECT_EQ(match.consume(), word) << cycle;
+        EXPECT_EQ(match.consume() && match.word_leaves(), word) << cycle;
         words += std::uint64_t{word};
       }
       EXPECT_EQ(words, geometry.result_words);

@@ -297,5 +297,58 @@ TEST(LocalBus, RefusesAClockOrBanksOutsideTheirRange) {
   EXPECT_THROW(LocalBus("f", {40}, 65), std::invalid_argument);
 }
 
+// Words that are moved at once, and granted later.
+TEST_F(LocalBusTest, MovesTheWordsOfABurstAtOnce) {
+  std::vector<std::uint32_t> moved(3);
+  host.request(TLM_WRITE_COMMAND, crossbar_address(0, 1), std::vector<std::uint32_t>{7, 8, 9});
+  run_until(local(3));
+  EXPECT_EQ(bus.words_left(), 3U);
+  bus.move_words(reinterpret_cast<unsigned char*>(moved.data()));
+  EXPECT_EQ(moved, (std::vector<std::uint32_t>{7, 8, 9}));
+  EXPECT_EQ(bus.words_left(), 3U);  // granted none
+  bus.count_granted(3, 3 * kLocalPs, 4 * kLocalPs);
+  moved = {10, 11};
+  run_until(local(10));
+  host.request(TLM_READ_COMMAND, crossbar_address(0, 1), std::vector<std::uint32_t>(2));
+  run_until(local(13));
+  bus.move_words(reinterpret_cast<unsigned char*>(moved.data()));
+  bus.count_granted(2, 14 * kLocalPs, 15 * kLocalPs);
+  run_until(local(20));
+  ASSERT_EQ(host.answers.size(), 2U);
+  EXPECT_EQ(host.answers[1].words, (std::vector<std::uint32_t>{10, 11}));
+}
+
+TEST_F(LocalBusTest, CountsWordsGrantedTogetherAsOneByOne) {
+  host.request(TLM_WRITE_COMMAND, crossbar_address(0, 1), std::vector<std::uint32_t>(4));
+  run_until(local(3));
+  bus.count_granted(3, 6 * kLocalPs, 7 * kLocalPs);
+  EXPECT_EQ(bus.words_left(), 1U);
+  EXPECT_EQ(bus.request_ps(), 7 * kLocalPs);  // the clock behind the last grant
+  EXPECT_TRUE(bus.word_waits());
+  bus.count_granted(1, 7 * kLocalPs, 8 * kLocalPs);
+  EXPECT_FALSE(bus.word_waits());
+  run_until(local(20));
+  ASSERT_EQ(host.answers.size(), 1U);
+  EXPECT_EQ(host.answers[0].at, local(7 + 1));  // behind the idle clock
+  EXPECT_EQ(bus.stats().words_written, 4U);
+  EXPECT_EQ(bus.stats().words_read, 0U);
+}
+
+TEST_F(LocalBusTest, EndsABurstThatReadsOnceItsLastWordIsUsable) {
+  host.request(TLM_READ_COMMAND, crossbar_address(0, 1), std::vector<std::uint32_t>(2));
+  run_until(local(3));
+  bus.count_granted(2, 4 * kLocalPs, 4 * kLocalPs + 1);
+  run_until(local(20));
+  ASSERT_EQ(host.answers.size(), 1U);
+  EXPECT_EQ(host.answers[0].at, local(5 + 1));
+  EXPECT_EQ(bus.stats().words_read, 2U);
+}
+
+TEST(LocalBus, IsInStepWithAClockThatHasItsEdges) {
+  const LocalBus bus("bus", {40, {}}, kBanks);
+  EXPECT_TRUE(bus.is_in_step_with(Clock(40)));
+  EXPECT_FALSE(bus.is_in_step_with(Clock(80)));
+}
+
 }  // namespace
 }  // namespace stereotlm::fpga

@@ -265,7 +265,7 @@ TEST_P(StereoCoreCatchUp, ShowsTheSlotsOfThePresent) {
   build(small_board());
   at(edge(0), [this] { start(); });
   std::vector<std::uint64_t> consumed;
-  for (const std::uint64_t cycle : {3, 4, 5, 30, 90}) {
+  for (const std::uint64_t cycle : {3U, 4U, 5U, 30U, 90U}) {
     at(edge(cycle) + sc_core::sc_time::from_value(2), [this, &consumed] {
       core->catch_up();
       consumed.push_back(core->control().left().consumed());
@@ -363,14 +363,14 @@ void expect_the_same(const std::vector<std::pair<std::uint64_t, std::uint32_t>>&
 }
 
 TEST(StereoCoreSlowFrame, OverlappingAnImageGivesTheSame) {
-  for (const std::uint32_t word : {0, 3, 11}) {
+  for (const std::uint32_t word : {0U, 3U, 11U}) {
     expect_the_same({{registers::kDisparityBase, registers::base(WholeBoard::kLeftImage, word)}});
     expect_the_same({{registers::kDisparityBase, registers::base(WholeBoard::kRightImage, word)}});
   }
 }
 
 TEST(StereoCoreSlowFrame, OverlappingATableGivesTheSame) {
-  for (const std::uint32_t word : {0, 20, 47})
+  for (const std::uint32_t word : {0U, 20U, 47U})
     expect_the_same({{registers::kDisparityBase, registers::base(WholeBoard::kTable, word)}});
 }
 

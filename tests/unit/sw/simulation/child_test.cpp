@@ -1,0 +1,109 @@
+#include "sw/simulation/child.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace stereotlm::simulation {
+namespace {
+
+using ::testing::HasSubstr;
+
+// What next() says of a child that fails.
+std::string failure_of(Child& child) {
+  try {
+    while (child.next()) {
+    }
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Child, TellsItsMessagesInOrderAndThenThatItIsDone) {
+  Child child([](const Child::Tell& tell) {
+    for (int number = 0; number < 100; ++number) tell(std::to_string(number));
+  });
+  for (int number = 0; number < 100; ++number) ASSERT_EQ(child.next(), std::to_string(number));
+  EXPECT_EQ(child.next(), std::nullopt);
+}
+
+TEST(Child, TellsMessagesOfAnySizeAndContent) {
+  const std::string large(1'000'000, 'x');
+  const std::string strange("a\0b\n", 4);
+  Child child([&](const Child::Tell& tell) {
+    tell("");
+    tell(large);
+    tell(strange);
+  });
+  EXPECT_EQ(child.next(), "");
+  EXPECT_TRUE(child.next() == large);
+  EXPECT_EQ(child.next(), strange);
+  EXPECT_EQ(child.next(), std::nullopt);
+}
+
+TEST(Child, WorksOnACopy) {
+  int value = 1;
+  Child child([&value](const Child::Tell& tell) { tell(std::to_string(++value)); });
+  EXPECT_EQ(child.next(), "2");
+  EXPECT_EQ(value, 1);
+}
+
+TEST(Child, HandsOnTheTextOfAnExceptionBehindTheMessagesBeforeIt) {
+  Child child([](const Child::Tell& tell) {
+    tell("first");
+    throw std::logic_error("the disk is gone");
+  });
+  EXPECT_EQ(child.next(), "first");
+  EXPECT_EQ(failure_of(child), "the disk is gone");
+}
+
+TEST(Child, SaysThatAnExceptionHasAnUnknownType) {
+  Child child([](const Child::Tell& /*tell*/) { throw 5; });
+  EXPECT_EQ(failure_of(child), "an exception of an unknown type");
+}
+
+TEST(Child, NamesTheSignalThatEndedIt) {
+  Child child([](const Child::Tell& tell) {
+    tell("before");
+    kill(getpid(), SIGKILL);
+  });
+  EXPECT_EQ(failure_of(child), "the process was ended by signal 9 (Killed)");
+}
+
+TEST(Child, NamesTheStatusWithWhichItEndedTooEarly) {
+  Child child([](const Child::Tell& /*tell*/) { _exit(3); });
+  EXPECT_EQ(failure_of(child), "the process ended with status 3 before its work was done");
+}
+
+TEST(Child, IsGoneWhenItIsDestroyed) {
+  pid_t pid = 0;
+  {
+    Child child([](const Child::Tell& tell) {
+      tell(std::to_string(getpid()));
+      for (;;) pause();
+    });
+    pid = static_cast<pid_t>(std::stol(child.next().value()));
+    EXPECT_EQ(kill(pid, 0), 0);
+  }
+  EXPECT_EQ(kill(pid, 0), -1);
+  EXPECT_EQ(errno, ESRCH);
+}
+
+TEST(Child, IsGoneWhenItIsDestroyedWhileItWaitsForSomebodyToListen) {
+  Child child([](const Child::Tell& tell) {
+    const std::string message(100'000, 'x');
+    for (;;) tell(message);
+  });
+  EXPECT_EQ(child.next().value().size(), 100'000U);
+}
+
+}  // namespace
+}  // namespace stereotlm::simulation
