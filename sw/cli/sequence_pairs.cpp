@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kLeft = "left_";
 constexpr const char* kRight = "right_";
 constexpr const char* kSuffix = ".png";
+constexpr std::size_t kMostKeptBytes = 128'000'000;
 
 // What stands for the `*` in the names with this beginning, sorted.
 std::vector<std::string> stems(const std::vector<std::string>& names, const std::string& beginning) {
@@ -77,32 +78,37 @@ SequencePairs::Contents SequencePairs::read(const std::string& folder, const pla
         fmt::format("'{}': no pictures: a sequence must have pairs left_*.png and right_*.png", folder));
   }
   Contents contents;
+  std::size_t kept_bytes = 0;
   contents.input.path = fs::absolute(folder).string();
   for (const std::string& stem : left) {
     for (const char* beginning : {kLeft, kRight}) {
       const std::string name = beginning + stem + kSuffix;
       const std::string path = (fs::path(folder) / name).string();
-      const media::LoadedGray picture = media_functions().load_gray(path);
+      media::LoadedGray picture = media_functions().load_gray(path);
       const auto problem =
           board != nullptr ? size_problem(picture.image.width, picture.image.height, *board) : std::nullopt;
       if (problem) throw std::runtime_error(fmt::format("'{}'{}", path, *problem));
       contents.converted += picture.converted_from_colour ? 1U : 0U;
       contents.input.files.push_back({name, report::sha256_file(path)});
+      kept_bytes += picture.image.pixels.size();
+      if (kept_bytes <= kMostKeptBytes) contents.kept.push_back(std::move(picture.image));
     }
   }
   return contents;
 }
 
 host::StereoPair SequencePairs::load(std::uint64_t index) {
-  return {load_picture(contents_.input.files[2 * index]), load_picture(contents_.input.files[2 * index + 1])};
+  const auto left = static_cast<std::size_t>(2 * index);
+  return {load_picture(left), load_picture(left + 1)};
 }
 
-kernels::GrayImage SequencePairs::load_picture(const report::InputFile& file) const {
+kernels::GrayImage SequencePairs::load_picture(std::size_t number) const {
+  const report::InputFile& file = contents_.input.files[number];
   const std::string path = (fs::path(contents_.input.path) / file.path).string();
   if (report::sha256_file(path) != file.sha256) {
     throw std::runtime_error(fmt::format("'{}': changed: a picture must not change during a run", path));
   }
-  return media_functions().load_gray(path).image;
+  return number < contents_.kept.size() ? contents_.kept[number] : media_functions().load_gray(path).image;
 }
 
 }  // namespace stereotlm::cli

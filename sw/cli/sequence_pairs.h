@@ -10,7 +10,8 @@
 namespace stereotlm::cli {
 
 // The pairs of `--sequence DIR`: left_*.png with right_*.png of the same `*`, in the order of their names, byte
-// by byte. Other files in the folder do not matter.
+// by byte. Other files in the folder do not matter. The first pictures are kept as they were decoded, up to 128 MB; the
+// others are decoded again when they are asked for.
 class SequencePairs : public PairSource {
  public:
   // Reads every picture once. Throws std::runtime_error, without the name of the option, if the folder cannot
@@ -25,12 +26,13 @@ class SequencePairs : public PairSource {
   struct Contents {
     report::InputFolder input;  // files: left and right in turn
     std::uint64_t converted = 0;
+    std::vector<kernels::GrayImage> kept;  // the first ones of the files
   };
   static Contents read(const std::string& folder, const platform::BoardConfig* board);
 
   explicit SequencePairs(Contents contents);
   host::StereoPair load(std::uint64_t index) override;
-  kernels::GrayImage load_picture(const report::InputFile& file) const;
+  kernels::GrayImage load_picture(std::size_t number) const;
 
   Contents contents_;
 };
