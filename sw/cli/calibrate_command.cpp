@@ -207,7 +207,7 @@ class Calibrator {
                         known.left.matrix(0, 0), known.translation.norm());
     const std::string folder = files.pictures.string();
     text += fmt::format(
-        "{:<16} stereotlm run fpl2003 --source preloaded --fidelity cycle --set matcher.disparities={} \\\n"
+        "{:<16} stereotlm run fpl2003 --source preloaded --set matcher.disparities={} \\\n"
         "{:<16}   --left {}/scene_left.png --right {}/scene_right.png --calibration {} \\\n"
         "{:<16}   --truth {}/scene_truth.png --truth-scale {}\n",
         "to go on", options_.disparities, "", folder, folder, files.calibration.string(), "", folder,

@@ -1,0 +1,59 @@
+// What `--verify` says of a run that is not the same: here one that never was.
+#include "sw/cli/verification.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "platform/board_yaml.h"
+#include "platform/tables.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class VerificationTest : public testing::Test {
+ protected:
+  VerificationTest() {
+    input.board =
+        platform::load_board("fpl2003", {"image.width=16", "image.height=8", "matcher.disparities=4"});
+    input.tables = platform::identity_tables(input.board);
+    input.camera = false;
+    input.timing_only = true;
+    input.frames = 2;
+    options.timing_only = true;
+  }
+  // What it says of this run, which did not take place.
+  std::string said_of(const std::vector<simulation::Result>& results,
+                      const platform::Statistics& statistics) {
+    Verification verification(input, options);
+    for (const simulation::Result& result : results) verification.add(result);
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(verification.finish(statistics));
+    return testing::internal::GetCapturedStderr();
+  }
+
+  RunInput input;
+  RunOptions options;
+};
+
+TEST_F(VerificationTest, NamesTheFramesAndFiguresThatDiffer) {
+  platform::Statistics statistics;
+  statistics.frames = 2;
+  const std::string said = said_of({{0, {}, 123}, {1, {}, 456}}, statistics);
+  EXPECT_THAT(said,
+              ContainsRegex("the fidelities differ: frame 0: fast: camera frame 0, done at 123 ps; cycle: "
+                            "camera frame 0, done at [0-9]+ ps"));
+  EXPECT_THAT(said, HasSubstr("the fidelities differ: frame 1: fast: camera frame 1, done at 456 ps;"));
+  EXPECT_THAT(
+      said, ContainsRegex("the fidelities differ: stats.json: /banks/0/[a-z_]+: fast absent, cycle [0-9]+"));
+  EXPECT_THAT(said, ContainsRegex("the fidelities differ: [0-9]+ more lines"));
+  EXPECT_THAT(said, Not(HasSubstr("/fidelity")));
+}
+
+}  // namespace
+}  // namespace stereotlm::cli
