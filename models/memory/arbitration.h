@@ -39,7 +39,7 @@ class Arbitration {
   // counting ends.
   void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
 
-  // One request of a port for a bank that no port is routed to, in the given direction. True if it is granted; it is
+  // One request of a port for a bank that no port is routed to, in the given direction, and what comes of it; it is
   // counted later, by count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
   void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
