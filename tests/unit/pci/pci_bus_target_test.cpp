@@ -91,13 +91,19 @@ TEST_F(PciBusTarget, AsksNoRoomForARead) {
   EXPECT_EQ(burst().result.words, 8U);
 }
 
+// So that the address sanitizer need not follow an exception through SystemC's stacks.
+void do_not_throw() {
+  sc_core::sc_report_handler::set_actions("/stereotlm/pci_bus", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+}
+
 TEST_F(PciBusTarget, ReportsRoomForMoreThanAsked) {
   bench.bind_stop();
   target.writable = [](auto, auto words) { return words + 1; };
   master.bursts = {write_of(8)};
   bench.request_at(0);
+  do_not_throw();
   test::ExpectedReport report("/stereotlm/pci_bus");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  sc_core::sc_start();
   EXPECT_EQ(report.text(), "bus.stop_0: 9 of 8 words can be written");
 }
 
@@ -189,8 +195,9 @@ TEST_F(PciBusTarget, AbortsABurstThatLeavesItsWindow) {
 TEST_F(PciBusTarget, ReportsAnAddressBetweenWords) {
   master.bursts = {write_of(1, 2)};
   bench.request_at(0);
+  do_not_throw();
   test::ExpectedReport report("/stereotlm/pci_bus");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+  sc_core::sc_start();
   EXPECT_EQ(report.text(), "address = 65538: must be a multiple of 4");
 }
 
