@@ -95,19 +95,16 @@ std::uint64_t SlotPattern::invalid_before(std::uint64_t slots) const {
   if (strip == static_cast<std::uint64_t>(geometry_.strips))
     return geometry_.slots - empty_slots_ - valid_entries_;
   std::uint64_t invalid = invalid_before_strip_[strip];
-  for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot)
-    invalid += std::uint64_t{is_invalid(slot)};
+  for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot) {
+    const Place place = place_of(slot);
+    if (inside(place.row) && !entry_valid(place.column, place.row)) ++invalid;
+  }
   return invalid;
 }
 
 bool SlotPattern::is_valid(std::uint64_t slot) const {
   const Place place = place_of(slot);
   return inside(place.row) && entry_valid(place.column, place.row);
-}
-
-bool SlotPattern::is_invalid(std::uint64_t slot) const {
-  const Place place = place_of(slot);
-  return inside(place.row) && !entry_valid(place.column, place.row);
 }
 
 SlotPattern::Place SlotPattern::place_of(std::uint64_t slot) const {

@@ -45,7 +45,6 @@ class SlotPattern {
     int row;
   };
   Place place_of(std::uint64_t slot) const;
-  bool is_invalid(std::uint64_t slot) const;
   void find_changes();
   bool strip_begins_alike(int strip) const;
 

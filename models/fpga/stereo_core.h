@@ -51,15 +51,16 @@ struct StereoCoreConfig {
 // file, and the one clocked process that steps them. Stages exchange data through streams, reach memory
 // through the crossbar's sockets, and move when CoreControl says so.
 //
-// At Fidelity::kCycle the process runs ahead of the kernel up to the next event that is pending, so that nothing which it could
-// have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every access carries its
-// own time. It sleeps while no frame runs and no word waits at the local bus.
+// At Fidelity::kCycle the process runs ahead of the kernel up to the next event that is pending, so that nothing
+// which it could have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every
+// access carries its own time. It sleeps while no frame runs and no word waits at the local bus.
 //
-// At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for a bank
-// that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the start strobe,
-// and the disparities appear with the last write; a burst of the local bus that would notice (it writes what the frame
-// reads, or touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose memory
-// cannot be had directly, whose buffers overlap or whose tables point outside the image is done cycle by cycle.
+// At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for
+// a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the
+// start strobe, and the disparities appear with the last write; a burst of the local bus that would notice (it
+// writes what the frame reads, or touches its disparities) is reported with SC_REPORT_ERROR (type
+// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap or whose tables point
+// outside the image is done cycle by cycle.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
 // ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).

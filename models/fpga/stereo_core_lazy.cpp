@@ -14,9 +14,7 @@ using memory::PortMask;
 
 // Cycles that it runs at most before it looks whether the frame goes on at all.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
-
 constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // stepped for a burst, likewise
-
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
 
 struct Range {

@@ -7,10 +7,9 @@ import signal
 
 import program
 from interrupt_test import PROGRESS, Terminal
-from program import HEIGHT, RESULT_FILES, SMALL, WIDTH, ProgramTest, noise, pgm, read_png, run
+from program import CAMERA_RATES, HEIGHT, RESULT_FILES, SMALL, WIDTH, ProgramTest, read_png, run
 
-# A frame of the core takes 1.6 of the cameras', as on the paper's board at 7x7.
-SYSTEM = [*SMALL, "--set", "cameras.frame_rate_hz=1000", "--set", f"fpga.clock_mhz={5992 / 1600}"]
+SYSTEM = [*SMALL, *CAMERA_RATES]
 
 
 class CameraTest(ProgramTest):
@@ -20,14 +19,6 @@ class CameraTest(ProgramTest):
     def camera_arguments(self, *more, board="fpl2003"):
         pair = [] if "--sequence" in more or "--synthetic" in more else ["--left", self.left, "--right", self.right]
         return ["run", board, *SYSTEM, *pair, *more]
-
-    def sequence(self, length):
-        folder = self.folder / "sequence"
-        folder.mkdir()
-        for number in range(length):
-            for side, seed in (("left", 2 * number), ("right", 2 * number + 1)):
-                (folder / f"{side}_{number:03}.png").write_bytes(pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, seed)))
-        return folder
 
 
 class Results(CameraTest):

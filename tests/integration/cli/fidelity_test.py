@@ -8,10 +8,9 @@ import time
 import program
 from avi import avi
 from interrupt_test import PROGRESS, Terminal
-from program import CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, noise, pgm, run
+from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, noise, pgm, run
 
-# The whole computer, with cameras that are faster than the core.
-CAMERA = ["--source", "camera", "--set", "cameras.frame_rate_hz=1000", "--set", f"fpga.clock_mhz={5992 / 1600}"]
+CAMERA = ["--source", "camera", *CAMERA_RATES]
 SOURCES = {"preloaded": PRELOADED, "camera": CAMERA}
 BOARDS = {
     "alone": [],
@@ -23,14 +22,6 @@ BOARDS = {
 
 
 class FidelityTest(ProgramTest):
-    def sequence(self, length):
-        folder = self.folder / "sequence"
-        folder.mkdir()
-        for number in range(length):
-            for side, seed in (("left", 2 * number), ("right", 2 * number + 1)):
-                (folder / f"{side}_{number:03}.png").write_bytes(pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, seed)))
-        return folder
-
     def run_it(self, *options):
         """A small run."""
         return run("run", "fpl2003", *SMALL, *options)

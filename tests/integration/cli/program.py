@@ -20,6 +20,8 @@ WIDTH = 32
 HEIGHT = 24
 SMALL = ["--set", f"image.width={WIDTH}", "--set", f"image.height={HEIGHT}"]
 PRELOADED = ["--source", "preloaded"]
+# Of the whole computer: a frame of the small core takes 1.6 of the cameras', as on the paper's board at 7x7.
+CAMERA_RATES = ["--set", "cameras.frame_rate_hz=1000", "--set", f"fpga.clock_mhz={5992 / 1600}"]
 CYCLE = ["--fidelity", "cycle"]  # also for runs that have to take a while
 RESULT_FILES = ["config.yaml", "disparity.pfm", "disparity.png", "disparity_color.png", "run.json", "stats.json"]
 
@@ -109,6 +111,19 @@ class ProgramTest(unittest.TestCase):
         path = self.folder / name
         path.write_bytes(data)
         return path
+
+    def side(self, number, side):
+        """The pixels of one side of a pair of a sequence."""
+        return noise(WIDTH, HEIGHT, 10 * number + (0 if side == "left" else 1))
+
+    def sequence(self, length, name="sequence"):
+        """A folder of pairs that all differ."""
+        folder = self.folder / name
+        folder.mkdir()
+        for number in range(length):
+            for side in ("left", "right"):
+                (folder / f"{side}_{number:03}.png").write_bytes(pgm(WIDTH, HEIGHT, self.side(number, side)))
+        return folder
 
     def run_arguments(self, *more, board="fpl2003", left=None, right=None):
         pair = ["--left", self.left if left is None else left, "--right", self.right if right is None else right]

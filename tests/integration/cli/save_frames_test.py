@@ -64,14 +64,6 @@ class SaveFrames(ProgramTest):
     def start_endless(self):
         return self.start("--left", self.left, "--right", self.right, "--frames", "1000000000")
 
-    def sequence(self, length):
-        folder = self.folder / "sequence"
-        folder.mkdir()
-        for number in range(length):
-            for side, path in (("left", self.left), ("right", self.right)):
-                (folder / f"{side}_{number:04}.png").write_bytes(path.read_bytes())
-        return folder
-
     def wait_for_frames(self, process):
         """Until some are there, aside."""
         path = self.out / ".partial" / "new" / "frames" / "000010.png"
@@ -122,7 +114,7 @@ class SaveFrames(ProgramTest):
         sequence = self.sequence(10)
         process = self.start("--sequence", sequence, "--frames", "1000000000")
         self.wait_for_frames(process)
-        changed = sequence / "left_0007.png"
+        changed = sequence / "left_007.png"
         other = self.file("other.pgm", pgm(WIDTH, HEIGHT, bytes(WIDTH * HEIGHT)))
         other.rename(changed)
         _, errors = process.communicate(timeout=60)

@@ -18,17 +18,6 @@ from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, noise, pgm, ru
 class SourceTest(ProgramTest):
     """Pairs of noise; what a run of each one alone gives."""
 
-    def side(self, number, side):
-        return noise(WIDTH, HEIGHT, 10 * number + (0 if side == "left" else 1))
-
-    def sequence(self, length, name="sequence"):
-        folder = self.folder / name
-        folder.mkdir()
-        for number in range(length):
-            for side in ("left", "right"):
-                (folder / f"{side}_{number:03}.png").write_bytes(pgm(WIDTH, HEIGHT, self.side(number, side)))
-        return folder
-
     def frames_of(self, *source, frames=None):
         """The disparities of each frame of a run, by number."""
         out = self.folder / "frames_of"
