@@ -361,7 +361,7 @@ class BoardReader {
       for (const std::string& path : rule.involved) {
         if (const Place* other = values_.find(path)) place = latest(place, *other);
       }
-      values_.report(place, rule.text);
+      values_.report_between_keys(place, rule.text);
     }
   }
 

@@ -19,8 +19,7 @@ std::string banks_text(std::vector<std::string> banks) {
   return list_text(banks);
 }
 
-std::string filter_text(const kernels::FilterKernel& filter) {
-  if (filter == kernels::log7()) return "log7";
+std::vector<std::string> filter_rows(const kernels::FilterKernel& filter) {
   std::vector<std::string> rows;
   for (int row = 0; row < filter.size; ++row) {
     std::vector<std::string> weights;
@@ -30,7 +29,18 @@ std::string filter_text(const kernels::FilterKernel& filter) {
     }
     rows.push_back(list_text(weights));
   }
+  return rows;
+}
+
+std::string filter_text(const kernels::FilterKernel& filter) {
+  if (filter == kernels::log7()) return "log7";
+  const std::vector<std::string> rows = filter_rows(filter);
   return fmt::format("\n    kernel:\n      - {}\n    shift: {}", fmt::join(rows, "\n      - "), filter.shift);
+}
+
+std::string filter_flow_text(const kernels::FilterKernel& filter) {
+  if (filter == kernels::log7()) return "log7";
+  return fmt::format("{{kernel: {}, shift: {}}}", list_text(filter_rows(filter)), filter.shift);
 }
 
 class BoardWriter {
@@ -42,7 +52,41 @@ class BoardWriter {
     return std::move(out_);
   }
 
+  std::vector<BoardValue> values() {
+    for (const Key& key : board_keys()) {
+      if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0) continue;  // told by others
+      if (key.path.find("pci.load.") == 0 && !board_.pci.load) continue;
+      if (key.path.find("ssram.") == 0) continue;
+      values_.push_back({key.path, std::visit([&](const auto& rule) { return value(key, rule); }, key.rule)});
+    }
+    for (const BankConfig& bank : board_.banks) {
+      const std::string path = below("ssram.banks", bank.name);
+      values_.push_back({path + ".words", std::int64_t{bank.words}});
+      values_.push_back({path + ".kind", memory::kBankKindNames[static_cast<std::size_t>(bank.kind)]});
+      values_.push_back({path + ".turnaround_cycles", std::int64_t{bank.turnaround_cycles}});
+    }
+    return std::move(values_);
+  }
+
  private:
+  using Value = decltype(BoardValue::value);
+
+  Value value(const Key&, const IntegerKey& integer) { return std::int64_t{integer.field(writable_)}; }
+  Value value(const Key&, const DecimalKey& decimal) { return decimal.field(writable_); }
+  Value value(const Key& key, const WordKey& word) { return value_text(key, word); }
+  Value value(const Key& key, const OtherKey& other) {
+    if (key.path == "name") return board_.name;
+    if (key.path == "allocation.left_lut") return board_.allocation.left_lut.value_or("none");
+    if (key.path == "allocation.right_lut") return board_.allocation.right_lut.value_or("none");
+    if (key.path == "matcher.filter")
+      return board_.matcher.filter ? filter_flow_text(*board_.matcher.filter) : "none";
+    if (key.path == "matcher.lr_tolerance") {
+      if (const auto& tolerance = board_.matcher.lr_tolerance) return std::int64_t{*tolerance};
+      return "off";
+    }
+    return value_text(key, other);
+  }
+
   void write_children(const std::string& path, const std::string& indent) {
     for (const std::string& name : child_keys(path)) {
       const std::string full = below(path, name);
@@ -123,6 +167,7 @@ class BoardWriter {
   const BoardConfig& board_;
   BoardConfig writable_;  // what the accessors of the keys work on
   std::string out_;
+  std::vector<BoardValue> values_;
 };
 
 }  // namespace
@@ -132,5 +177,7 @@ std::string to_yaml(const BoardConfig& board) {
   if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
   return BoardWriter(board).write();
 }
+
+std::vector<BoardValue> values_of(const BoardConfig& board) { return BoardWriter(board).values(); }
 
 }  // namespace stereotlm::platform

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "platform/board_config.h"
@@ -11,8 +13,9 @@ namespace stereotlm::platform {
 
 // One thing wrong with a board.
 struct Diagnostic {
-  std::string place;  // `file:line:column`, `--set path`, or a file or preset as a whole
-  std::string text;   // `full.path = value: rule`, `full.path: missing: rule`, or a rule alone
+  std::string place;             // `file:line:column`, `--set path`, or a file or preset as a whole
+  std::string text;              // `full.path = value: rule`, `full.path: missing: rule`, or a rule alone
+  bool is_between_keys = false;  // another value of another key can make it right
 };
 
 // Everything wrong with a board, in the order of its file, then of the `--set` options. what() has one line
@@ -36,6 +39,17 @@ BoardConfig load_board(const std::string& board, const std::vector<std::string>&
 // is the first bank, the other banks give what differs; a `pci.load` of none is left out. Throws
 // std::invalid_argument if the board has problems().
 std::string to_yaml(const BoardConfig& board);
+
+// One value of a board.
+struct BoardValue {
+  std::string path;  // "image.width", "ssram.banks.bank0.words"
+  std::variant<std::int64_t, double, std::string> value;
+};
+
+// Every value of a sound board by its path, in the order in which boards are written: numbers as numbers; lists,
+// words and filters as to_yaml() writes them in one line. Each bank has all its values; without a load on the PCI
+// bus there are none of its values.
+std::vector<BoardValue> values_of(const BoardConfig& board);
 
 // The boards that are compiled in, `fpl2003` first.
 std::vector<std::string> preset_names();

@@ -10,10 +10,12 @@
 
 namespace stereotlm::platform {
 
-// Something wrong with a board, and where. The text is `path = value: rule`.
+// Something wrong with a board, and where. The text is `path = value: rule`. Of a rule between keys, each may keep
+// its own.
 struct Finding {
   Place place;
   std::string text;
+  bool is_between_keys = false;
 };
 
 // "image" and "width" make "image.width"; below the top, "", the name alone.
@@ -29,7 +31,7 @@ class ValueReader {
   ValueReader(bool report_missing, std::vector<Finding>& findings)
       : report_missing_(report_missing), findings_(findings) {}
 
-  void report(const Place& place, std::string text);
+  void report_between_keys(const Place& place, std::string text);
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
   void report_missing(const Place& place, const std::string& path, const std::string& rule);

@@ -226,9 +226,9 @@ YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   return builder.take_root();
 }
 
-void append_text(const YamlNode& node, std::string& out) {
-  constexpr std::size_t kEnough = 80;  // what follows is cut off anyway
-  if (out.size() > kEnough) return;
+// What is beyond `enough` bytes may be left out.
+void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
+  if (out.size() > enough) return;
   switch (node.kind) {
     case YamlNode::Kind::kNull:
       out += !node.text.empty() ? node.text : node.misuse.empty() ? "(nothing)" : "(anchor or alias)";
@@ -238,19 +238,19 @@ void append_text(const YamlNode& node, std::string& out) {
       break;
     case YamlNode::Kind::kList:
       out += '[';
-      for (std::size_t i = 0; i < node.items.size() && out.size() <= kEnough; ++i) {
+      for (std::size_t i = 0; i < node.items.size() && out.size() <= enough; ++i) {
         if (i > 0) out += ", ";
-        append_text(node.items[i], out);
+        append_text(node.items[i], enough, out);
       }
       out += ']';
       break;
     case YamlNode::Kind::kMap:
       out += '{';
-      for (std::size_t i = 0; i < node.entries.size() && out.size() <= kEnough; ++i) {
+      for (std::size_t i = 0; i < node.entries.size() && out.size() <= enough; ++i) {
         if (i > 0) out += ", ";
-        append_text(node.entries[i].key, out);
+        append_text(node.entries[i].key, enough, out);
         out += ": ";
-        append_text(node.entries[i].value, out);
+        append_text(node.entries[i].value, enough, out);
       }
       out += '}';
       break;
@@ -314,10 +314,16 @@ std::string quoted_text(const std::string& text) {
   return out + '"';
 }
 
+std::string flow_text(const YamlNode& node) {
+  std::string out;
+  append_text(node, out.max_size(), out);
+  return out;
+}
+
 std::string short_text(const YamlNode& node) {
   constexpr std::size_t kLimit = 60;
   std::string out;
-  append_text(node, out);
+  append_text(node, kLimit + 20, out);
   std::replace_if(
       out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
   if (out.size() <= kLimit) return out;

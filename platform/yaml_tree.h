@@ -64,6 +64,9 @@ YamlNode parse_flow_value(const std::string& text, int source);
 // The value in one line for a message: flow style, shortened to about 60 characters.
 std::string short_text(const YamlNode& node);
 
+// The value in one line, flow style, in full.
+std::string flow_text(const YamlNode& node);
+
 bool is_utf8(std::string_view text);
 
 // `text` in double quotes, with YAML's escapes.

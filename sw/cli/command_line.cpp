@@ -100,6 +100,8 @@ Action parse_command_line(int argc, const char* const* argv) {
   add_keys(program, action);
   add_bounds(program, action);
   add_calibrate(program, action);
+  add_sweep(program, action);
+  add_merge(program, action);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   add_unbuilt_commands(program);
   check_first_argument(program, argc, argv);

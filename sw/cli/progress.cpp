@@ -12,14 +12,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kBetweenDrawings{200};
 
-std::string time_text(double seconds) {
-  constexpr double kLongest = 1e9;
-  if (!(seconds < kLongest)) return "years";
-  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
-  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
 std::size_t terminal_columns() {
   constexpr std::size_t kUsual = 80;
   winsize size = {};
@@ -27,6 +19,14 @@ std::size_t terminal_columns() {
 }
 
 }  // namespace
+
+std::string time_text(double seconds) {
+  constexpr double kLongest = 1e9;
+  if (!(seconds < kLongest)) return "years";
+  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
 
 std::string progress_text(const RunState& state, double seconds) {
   const auto frames = static_cast<double>(state.frames);
@@ -49,11 +49,15 @@ ProgressLine::ProgressLine()
       next_(start_ + kBetweenDrawings) {}
 
 void ProgressLine::show(const RunState& state) {
+  show([&state](double seconds) { return progress_text(state, seconds); });
+}
+
+void ProgressLine::show(const std::function<std::string(double seconds)>& line) {
   if (!is_terminal_) return;
   const Time now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + kBetweenDrawings;
-  std::string text = progress_text(state, std::chrono::duration<double>(now - start_).count());
+  std::string text = line(std::chrono::duration<double>(now - start_).count());
   text.resize(std::min(text.size(), terminal_columns() - 1));  // a line that wraps cannot be drawn over
   const std::size_t columns = text.size();
   if (columns < columns_drawn_) text.append(columns_drawn_ - columns, ' ');

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace stereotlm::cli {
@@ -18,6 +19,9 @@ struct RunState {
 // "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
 
+// "0:08", "1:02:03", "years"
+std::string time_text(double seconds);
+
 // The progress line of a run, on standard error if that is a terminal; otherwise nothing. The line is erased
 // at the end.
 class ProgressLine {
@@ -29,6 +33,8 @@ class ProgressLine {
 
   // Draws the line anew, at most a few times a second.
   void show(const RunState& state);
+  // `line` is given the seconds since this was made.
+  void show(const std::function<std::string(double seconds)>& line);
   // Takes it away, until it is shown again.
   void erase();
 

@@ -91,7 +91,7 @@ void add_computer(const platform::ComputerStatistics& computer, Json& document) 
 
 }  // namespace
 
-std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
+Json stats_document(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
   Json document = {{"schema", 1},
                    {"board", statistics.board},
                    {"fidelity", statistics.fidelity},
@@ -113,7 +113,11 @@ std::string stats_json(const platform::Statistics& statistics, const std::option
   if (statistics.computer) add_computer(*statistics.computer, document);
   if (!statistics.failed.empty()) document["failed"] = statistics.failed;
   if (accuracy) document["accuracy"] = to_json(*accuracy);
-  return json_text(document);
+  return document;
+}
+
+std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
+  return json_text(stats_document(statistics, accuracy));
 }
 
 }  // namespace stereotlm::report

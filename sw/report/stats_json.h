@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -8,9 +9,11 @@
 
 namespace stereotlm::report {
 
-// The text of stats.json (contract section 6), its keys in that order; a camera's reasons of dropped frames behind
+// stats.json, and its text (contract section 6), its keys in that order; a camera's reasons of dropped frames behind
 // its other keys. What does not apply is absent:
 // `failed` unless an identity failed, `accuracy` unless it is given, a percentage of nothing.
+nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
+                                      const std::optional<Accuracy>& accuracy);
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
 
 }  // namespace stereotlm::report

@@ -10,7 +10,7 @@
 #include "sw/cli/open_source.h"
 #include "sw/media/encode.h"
 #include "sw/media/synthetic_scene.h"
-#include "tests/unit/sw/report/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::cli {
 namespace {

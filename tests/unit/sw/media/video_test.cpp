@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "tests/unit/sw/report/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::media {
 namespace {

@@ -7,7 +7,7 @@
 #include "sw/report/json_text.h"
 #include "sw/report/run_json.h"
 #include "sw/report/stats_json.h"
-#include "tests/unit/sw/report/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::report {
 namespace {

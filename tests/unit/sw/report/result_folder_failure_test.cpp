@@ -12,7 +12,7 @@
 
 #include "sw/report/result_folder.h"
 #include "tests/support/fork.h"
-#include "tests/unit/sw/report/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 // What happens when the file system refuses.
 namespace stereotlm::report {

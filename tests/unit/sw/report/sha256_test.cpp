@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/sw/report/scratch_folder.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::report {
 namespace {

@@ -1,0 +1,245 @@
+#include "platform/board_draft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "platform/board_keys.h"
+#include "platform/board_reader.h"
+#include "platform/text_file.h"
+
+namespace stereotlm::platform {
+namespace {
+
+[[noreturn]] void fail(std::string place, std::string text) {
+  throw BoardError({{std::move(place), std::move(text)}});
+}
+
+// Puts what `base` has and `own` leaves out into `own`, map by map.
+void merge_into(YamlNode& own, const YamlNode& base, const std::string& path) {
+  constexpr std::array<std::string_view, 2> kTakenWhole = {"ssram.banks", "matcher.filter"};
+  const bool is_whole = std::find(kTakenWhole.begin(), kTakenWhole.end(), path) != kTakenWhole.end();
+  if (!own.is_map() || !base.is_map() || is_whole) return;
+  for (const YamlNode::Entry& entry : base.entries) {
+    if (YamlNode::Entry* mine = own.find(entry.key.text)) {
+      merge_into(mine->value, entry.value, path.empty() ? entry.key.text : path + '.' + entry.key.text);
+    } else {
+      own.entries.push_back(entry);
+    }
+  }
+}
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+    parts.push_back(path.substr(begin, dot - begin));
+    begin = dot + 1;
+  }
+  parts.push_back(path.substr(begin));
+  return parts;
+}
+
+// Puts the value at the path into the tree. Returns the path of what is in the way because it is not a map;
+// empty if nothing is.
+std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
+  YamlNode* at = &tree;
+  YamlNode::Entry* entry = nullptr;
+  std::string passed;
+  for (const std::string& part : parts_of(path)) {
+    if (!at->is_map()) return passed;
+    entry = at->find(part);
+    if (entry == nullptr) {
+      YamlNode key;
+      key.kind = YamlNode::Kind::kScalar;
+      key.text = part;
+      key.place = place;
+      YamlNode map;
+      map.kind = YamlNode::Kind::kMap;
+      map.place = place;
+      at->entries.push_back({std::move(key), std::move(map)});
+      entry = &at->entries.back();
+    }
+    at = &entry->value;
+    passed += (passed.empty() ? "" : ".") + part;
+  }
+  entry->key.place = place;
+  entry->value = std::move(value);
+  return "";
+}
+
+std::string not_a_map(const std::string& path) {
+  return fmt::format("{} is not a map here; set it as a whole", path);
+}
+
+void set_source(YamlNode& node, int source) {
+  node.place.source = source;
+  for (YamlNode& item : node.items) set_source(item, source);
+  for (YamlNode::Entry& entry : node.entries) {
+    set_source(entry.key, source);
+    set_source(entry.value, source);
+  }
+}
+
+}  // namespace
+
+std::string path_problem(const std::string& path) {
+  if (path == "extends") return "extends stands in the board file";
+  std::string schema;
+  for (const std::string& part : parts_of(path)) {
+    const std::vector<std::string> known = child_keys(schema);
+    if (known.empty()) return fmt::format("{} has no keys below it", schema);
+    const bool is_bank = schema == "ssram.banks" && !part.empty();
+    if (!is_bank && std::find(known.begin(), known.end(), part) == known.end()) {
+      return "unknown key; nearest known key: " + nearest_path(path);
+    }
+    schema += (schema.empty() ? "" : ".") + (is_bank ? "NAME" : part);
+  }
+  return "";
+}
+
+BoardDraft::BoardDraft(const std::string& board) {
+  const std::string ending = ".yaml";
+  const bool is_path = board.find('/') != std::string::npos ||
+                       (board.size() >= ending.size() &&
+                        board.compare(board.size() - ending.size(), ending.size(), ending) == 0);
+  std::string text;
+  if (is_path) {
+    board_name_ = board;
+    text = read_text_file(board, "board file");
+  } else {
+    const std::vector<std::string> names = preset_names();
+    if (std::find(names.begin(), names.end(), board) == names.end()) {
+      fail(board.empty() ? "(empty)" : board,
+           fmt::format(
+               "not a preset, and not a path, which has a / or ends in .yaml; nearest: {}; presets: {}",
+               nearest_word(board, names), listed(names)));
+    }
+    board_name_ = "preset " + board;
+    text = preset_text(board);
+  }
+  try {
+    tree_ = parse_yaml(text, Place::kBoard);
+  } catch (const YamlError& error) {
+    fail(text_of(error.place), error.what());
+  }
+  resolve_extends();
+}
+
+// The presets are files of this project, without errors.
+BoardDraft BoardDraft::of_preset(std::string_view name) {
+  BoardDraft draft;
+  draft.tree_ = parse_yaml(std::string(preset_text(name)), Place::kPreset);
+  draft.resolve_extends();
+  return draft;
+}
+
+// Takes `extends` out of the tree and puts in what the preset supplies.
+void BoardDraft::resolve_extends() {
+  const auto is_extends = [](const YamlNode::Entry& entry) {
+    return entry.key.is_scalar() && entry.key.text == "extends";
+  };
+  const auto report = [this](const Place& place, const YamlNode& value, const std::string& rule) {
+    findings_.push_back({place, fmt::format("extends = {}: {}", short_text(value), rule)});
+  };
+  std::optional<YamlNode> base;
+  for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
+    const YamlNode::Entry& entry = tree_.entries[i];
+    if (!is_extends(entry)) continue;
+    if (base || !is_whole_) {
+      report(entry.key.place, entry.value, "repeated key");
+      continue;
+    }
+    if (i > 0) report(entry.key.place, entry.value, "extends must be the first key");
+    const YamlNode& value = entry.value;
+    const std::vector<std::string> names = preset_names();
+    const bool is_known =
+        value.is_scalar() && std::find(names.begin(), names.end(), value.text) != names.end();
+    const std::string& misuse = entry.key.misuse.empty() ? value.misuse : entry.key.misuse;
+    if (!misuse.empty()) {
+      report(value.place, value, misuse);
+    } else if (!is_known) {
+      report(value.place, value,
+             fmt::format("not a preset; nearest: {}; presets: {}",
+                         nearest_word(value.is_scalar() ? value.text : "", names), listed(names)));
+    }
+    if (is_known) base = of_preset(value.text).tree_;
+    is_whole_ = is_known;
+  }
+  tree_.entries.erase(std::remove_if(tree_.entries.begin(), tree_.entries.end(), is_extends),
+                      tree_.entries.end());
+  if (base) merge_into(tree_, *base, "");
+}
+
+void BoardDraft::set(const std::string& assignment) {
+  if (!tree_.is_map()) return;  // as read() says
+  const std::size_t equals = assignment.find('=');
+  const std::string path = assignment.substr(0, equals);
+  const std::string name = "--set " + path;
+  const Place place = next_place();
+  const bool is_repeated = std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) {
+    return !source.has_lines && source.name == name;
+  });
+  sources_.push_back({name, false});
+  const auto report = [&](const std::string& rule) {
+    YamlNode value;
+    value.kind = YamlNode::Kind::kScalar;
+    value.text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
+    findings_.push_back({place, fmt::format("{} = {}: {}", path, short_text(value), rule)});
+  };
+  if (equals == std::string::npos) return report("--set needs path=value");
+  if (const std::string problem = path_problem(path); !problem.empty()) return report(problem);
+  if (is_repeated) return report("the same path was set before");
+  try {
+    const std::string way =
+        put(tree_, path, parse_flow_value(assignment.substr(equals + 1), place.source), place);
+    if (!way.empty()) report(not_a_map(way));
+  } catch (const YamlError& error) {
+    report(error.what());
+  }
+}
+
+void BoardDraft::replace(const std::string& path, YamlNode value, const std::string& file) {
+  if (!tree_.is_map()) return;  // as read() says
+  set_source(value, next_place().source);
+  const Place place = value.place;
+  sources_.push_back({file, true});
+  std::string problem = path_problem(path);
+  std::string text = short_text(value);
+  if (problem.empty()) {
+    const std::string way = put(tree_, path, std::move(value), place);
+    if (!way.empty()) problem = not_a_map(way);
+  }
+  if (!problem.empty()) findings_.push_back({place, fmt::format("{} = {}: {}", path, text, problem)});
+}
+
+BoardConfig BoardDraft::read() const {
+  std::vector<Finding> findings = findings_;
+  BoardConfig config = read_board(tree_, is_whole_, findings);
+  if (findings.empty()) return config;
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.place.source, a.place.line, a.place.column) <
+           std::tie(b.place.source, b.place.line, b.place.column);
+  });
+  std::vector<Diagnostic> diagnostics;
+  for (Finding& finding : findings) {
+    diagnostics.push_back({text_of(finding.place), std::move(finding.text), finding.is_between_keys});
+  }
+  throw BoardError(std::move(diagnostics));
+}
+
+std::string BoardDraft::text_of(const Place& place) const {
+  std::string name = place.source == Place::kBoard ? board_name_ : "preset";
+  if (place.source >= Place::kFirstSet) {
+    const Source& source = sources_[static_cast<std::size_t>(place.source - Place::kFirstSet)];
+    if (!source.has_lines) return source.name;
+    name = source.name;
+  }
+  return fmt::format("{}:{}:{}", name, place.line, place.column);
+}
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/board_config.h"
+#include "platform/board_yaml.h"
+#include "platform/value_reader.h"
+#include "platform/yaml_tree.h"
+
+namespace stereotlm::platform {
+
+// What is wrong with the path of a value that is to be replaced; empty if the schema has it.
+std::string path_problem(const std::string& path);
+
+// A board as a file or preset has it, with all that it extends, before it is read; then with values replaced.
+// It may be copied: of one file a sweep makes many boards.
+class BoardDraft {
+ public:
+  // `board` as for load_board(). Throws BoardError if there is no tree: an unknown preset, a file that cannot be
+  // read, an error of syntax. What else is wrong is said by read().
+  explicit BoardDraft(const std::string& board);
+
+  // `path=value`, as `--set` gives it.
+  void set(const std::string& assignment);
+
+  // Puts the value at that path of the schema, whether there is one or not. Messages call its place
+  // `file:line:column`, as the value has them.
+  void replace(const std::string& path, YamlNode value, const std::string& file);
+
+  // Throws BoardError with everything that is wrong.
+  BoardConfig read() const;
+
+ private:
+  // Where a value comes from.
+  struct Source {
+    std::string name;
+    bool has_lines = false;
+  };
+
+  static BoardDraft of_preset(std::string_view name);
+
+  BoardDraft() = default;
+  void resolve_extends();
+  std::string text_of(const Place& place) const;
+  Place next_place() const { return {Place::kFirstSet + static_cast<int>(sources_.size()), 1, 1}; }
+
+  std::string board_name_;       // of the file or preset, for messages
+  std::vector<Source> sources_;  // of the values that were replaced, by Place::source - Place::kFirstSet
+  YamlNode tree_;
+  bool is_whole_ = true;  // false: the preset that it extends could not be found
+  std::vector<Finding> findings_;
+};
+
+}  // namespace stereotlm::platform

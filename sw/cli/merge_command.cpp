@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sw/cli/add_command.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/streams.h"
+#include "sw/cli/typed_option.h"
+#include "sw/explore/store.h"
+
+namespace stereotlm::cli {
+namespace {
+
+struct MergeOptions {
+  Typed out;
+  TypedList inputs;
+
+  void check_usage() const {
+    Problems problems;
+    if (!out.is_given()) problems.add("OUT: missing: the database to write");
+    if (!inputs.is_given()) problems.add("DB: missing: the databases to merge");
+    problems.check();
+  }
+};
+
+int merge(const MergeOptions& options) {
+  try {
+    explore::merge_stores(options.inputs.text, options.out.text);
+  } catch (const explore::DatabaseError& error) {
+    refuse(error.what());
+  }
+  explore::Database merged(options.out.text, explore::Database::Access::kRead);
+  print(fmt::format("{}: {} points of {} databases\n", options.out.text,
+                    merged.number("SELECT count(*) FROM points"), options.inputs.text.size()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<MergeOptions>();
+  const auto parsed = [options, &action] {
+    options->check_usage();
+    action = [options] { return merge(*options); };
+  };
+  CLI::App& command = add_command(
+      program, "merge", "Put the points of several databases of sweep into one", parsed,
+      "The bytes of OUT depend on nothing but the points: not on the number of databases, nor on who made "
+      "them\n"
+      "in which order. OUT may be one of them. Points that differ in what they hold are an error.");
+  options->out.add_to(command, "OUT", " ", "The database to write");
+  options->inputs.add_to(command, "DB", "...", "Databases of sweep, such as those of its shards");
+}
+
+}  // namespace stereotlm::cli

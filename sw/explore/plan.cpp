@@ -1,0 +1,109 @@
+#include "sw/explore/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "platform/yaml_values.h"
+#include "sw/explore/sample.h"
+#include "sw/report/sha256.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using platform::BoardConfig;
+using platform::BoardValue;
+
+std::string rules_of(const platform::BoardError& error) {
+  std::string text;
+  for (const platform::Diagnostic& diagnostic : error.diagnostics()) {
+    text += (text.empty() ? "" : "; ") + diagnostic.text;
+  }
+  return text;
+}
+
+BoardValue value_of(const std::string& path, const platform::YamlNode& node) {
+  if (const auto integer = platform::integer_of(node)) return {path, *integer};
+  if (const auto decimal = platform::decimal_of(node)) return {path, *decimal};
+  return {path, node.is_scalar() ? node.text : flow_text(node)};
+}
+
+bool is_of_run(const std::string& path) { return path == kSourcePath || path == kFramesPath; }
+
+}  // namespace
+
+std::uint64_t frames_of(const PointRun& run, const BoardConfig& board) {
+  if (run.frames > 0) return run.frames;
+  if (run.camera) return kCameraFrames;
+  const auto& allocation = board.allocation;
+  return std::lcm(std::lcm(allocation.left_image.size(), allocation.right_image.size()),
+                  allocation.disparity.size());
+}
+
+void Plan::apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
+                 platform::BoardDraft& draft, PointRun& run) {
+  if (path == kSourcePath) {
+    run.camera = value.text == "camera";
+  } else if (path == kFramesPath) {
+    run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
+  } else {
+    draft.replace(path, value, file);
+  }
+}
+
+Point Plan::point(std::uint64_t number) const {
+  Point point;
+  point.number = number;
+  point.run = run_;
+  platform::BoardDraft draft = *base_;
+  std::uint64_t rest = sample_ ? ShuffledNumbers(product_, sample_->seed).at(number) : number;
+  std::vector<PlanValue> chosen;
+  for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
+    const auto& place = axis->values[rest % axis->values.size()];
+    rest /= axis->values.size();
+    for (std::size_t i = axis->paths.size(); i-- > 0;) chosen.push_back({axis->paths[i], place[i]});
+  }
+  std::reverse(chosen.begin(), chosen.end());
+  for (const PlanValue& value : chosen) apply(value.path, value.value, path_, draft, point.run);
+  std::string identity;
+  try {
+    point.board = draft.read();
+    point.yaml = to_yaml(*point.board);
+    point.values = values_of(*point.board);
+    point.run.frames = frames_of(point.run, *point.board);
+    identity = point.yaml;
+  } catch (const platform::BoardError& error) {
+    point.reason = rules_of(error);
+    point.yaml = base_yaml_;
+    point.values = values_of(*base_board_);
+    identity = point.yaml;
+    for (const PlanValue& value : chosen) {
+      identity += fmt::format("{}: {}\n", value.path, flow_text(value.value));
+      if (is_of_run(value.path)) continue;
+      BoardValue given = value_of(value.path, value.value);
+      const auto same = std::find_if(point.values.begin(), point.values.end(),
+                                     [&](const BoardValue& known) { return known.path == given.path; });
+      if (same == point.values.end()) {
+        point.values.push_back(std::move(given));
+      } else {
+        *same = std::move(given);
+      }
+    }
+  }
+  const char* const source = point.run.camera ? "camera" : "preloaded";
+  point.values.push_back({kSourcePath, source});
+  point.values.push_back({kFramesPath, static_cast<std::int64_t>(point.run.frames)});
+  identity += fmt::format("run: {{source: {}, frames: {}}}\n", source, point.run.frames);
+  point.hash = report::sha256_hex(identity.data(), identity.size());
+  return point;
+}
+
+std::vector<std::string> Plan::varied() const {
+  std::vector<std::string> paths;
+  for (const Axis& axis : axes_) paths.insert(paths.end(), axis.paths.begin(), axis.paths.end());
+  return paths;
+}
+
+}  // namespace stereotlm::explore

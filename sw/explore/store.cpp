@@ -1,0 +1,322 @@
+#include "sw/explore/store.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+namespace stereotlm::explore {
+namespace {
+
+constexpr int kApplicationId = 0x53544C4D;  // "STLM"
+constexpr int kLayout = 1;
+
+// The columns that every database has, in front.
+constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
+constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
+
+void create_tables(Database& database, const std::vector<std::string>& further_columns) {
+  std::string columns =
+      "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
+      "version TEXT NOT NULL, config TEXT NOT NULL";
+  for (const std::string& name : further_columns) columns += ", " + quoted_name(name);
+  database.execute(
+      fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kLayout));
+  database.execute(fmt::format("CREATE TABLE points({})", columns));
+  database.execute(
+      "CREATE TABLE blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
+      "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID");
+}
+
+void check_layout(Database& database) {
+  if (database.number("PRAGMA application_id") != kApplicationId) {
+    throw DatabaseError(database.path() + ": not a database of stereotlm sweep");
+  }
+  const std::int64_t layout = database.number("PRAGMA user_version");
+  if (layout != kLayout) {
+    throw DatabaseError(fmt::format("{}: its layout is {}, of another version; this version writes {}",
+                                    database.path(), layout, kLayout));
+  }
+}
+
+std::vector<std::string> columns_of(const Database& database) {
+  std::vector<std::string> names;
+  Statement statement(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
+  while (statement.step()) names.push_back(statement.text(0));
+  return names;
+}
+
+std::string insert_sql(const std::vector<std::string>& columns) {
+  std::string names;
+  std::string places;
+  for (const std::string& name : columns) {
+    names += (names.empty() ? "" : ", ") + quoted_name(name);
+    places += places.empty() ? "?" : ", ?";
+  }
+  return fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", names, places);
+}
+
+const std::string kInsertBlame = fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns);
+
+}  // namespace
+
+Store::Store(const std::string& path, const std::string& version)
+    : database_(path, Database::Access::kCreate), version_(version) {
+  create();
+  Statement other(database_, "SELECT version FROM points WHERE version <> ? LIMIT 1");
+  other.bind(1, version);
+  if (other.step()) {
+    throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
+                                    path, other.text(0), version));
+  }
+  read_columns();
+  find_ = std::make_unique<Statement>(database_, "SELECT 1 FROM points WHERE hash = ?");
+  insert_blame_ = std::make_unique<Statement>(database_, kInsertBlame);
+}
+
+// Once, by whoever comes first.
+void Store::create() {
+  if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
+    // Readers do not wait for the one who writes; nothing is lost when the process ends, however it does.
+    database_.execute("PRAGMA journal_mode = WAL");
+    database_.execute("BEGIN IMMEDIATE");
+    if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) create_tables(database_, {});
+    database_.execute("COMMIT");
+  }
+  check_layout(database_);
+  database_.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+}
+
+void Store::read_columns() {
+  const std::vector<std::string> names = columns_of(database_);
+  columns_ = {names.begin(), names.end()};
+}
+
+bool Store::has(const std::string& hash) {
+  find_->bind(1, hash);
+  const bool found = find_->step();
+  find_->reset();
+  return found;
+}
+
+bool Store::add(const StoredPoint& point) {
+  database_.execute("BEGIN IMMEDIATE");
+  try {
+    add_columns(point);
+    Statement& insert = insertion(point);
+    int place = 0;
+    for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
+      insert.bind(++place, text);
+    for (const platform::BoardValue& value : point.values) insert.bind(++place, value);
+    insert.run();
+    const bool is_new = sqlite3_changes(database_.handle()) > 0;
+    for (const StoredBlame& row : point.blame) {
+      if (!is_new) break;
+      place = 0;
+      for (const std::string& text : {point.hash, row.port, row.bank, row.by})
+        insert_blame_->bind(++place, text);
+      insert_blame_->bind(++place, row.cycles);
+      insert_blame_->run();
+    }
+    database_.execute("COMMIT");
+    return is_new;
+  } catch (const DatabaseError&) {
+    sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr,
+                 nullptr);  // SQLite may have done it already
+    throw;
+  }
+}
+
+void Store::add_columns(const StoredPoint& point) {
+  const auto is_known = [this](const platform::BoardValue& value) { return columns_.count(value.path) > 0; };
+  if (std::all_of(point.values.begin(), point.values.end(), is_known)) return;
+  read_columns();  // another process may have added them
+  for (const platform::BoardValue& value : point.values) {
+    if (is_known(value)) continue;
+    database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
+    columns_.insert(value.path);
+  }
+}
+
+Statement& Store::insertion(const StoredPoint& point) {
+  std::string signature;
+  for (const platform::BoardValue& value : point.values) signature += value.path + '\n';
+  std::unique_ptr<Statement>& statement = insertions_[signature];
+  if (!statement) {
+    std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
+    for (const platform::BoardValue& value : point.values) columns.push_back(value.path);
+    statement = std::make_unique<Statement>(database_, insert_sql(columns));
+  }
+  statement->clear_bindings();
+  return *statement;
+}
+
+std::uint64_t Store::size() {
+  return static_cast<std::uint64_t>(database_.number("SELECT count(*) FROM points"));
+}
+
+namespace {
+
+// Numbers inside names count as numbers: bank2 comes before bank10.
+bool is_before(const std::string& a, const std::string& b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      std::size_t i_end = i;
+      std::size_t j_end = j;
+      while (i_end < a.size() && is_digit(a[i_end])) ++i_end;
+      while (j_end < b.size() && is_digit(b[j_end])) ++j_end;
+      if (i_end - i != j_end - j) return i_end - i < j_end - j;
+      const int order = a.compare(i, i_end - i, b, j, j_end - j);
+      if (order != 0) return order < 0;
+      i = i_end;
+      j = j_end;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  return a.size() - i < b.size() - j;
+}
+
+// The points of one file, in the order of their hashes.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : database_(path, Database::Access::kRead) {
+    check_layout(database_);
+    columns_ = columns_of(database_);
+    points_.emplace(database_, "SELECT * FROM points ORDER BY hash");
+    blame_.emplace(database_, fmt::format("SELECT {} FROM blame WHERE hash = ? ORDER BY hash, port, bank, by",
+                                          kBlameColumns));
+    next();
+  }
+
+  const std::string& path() const { return database_.path(); }
+  const std::vector<std::string>& columns() const { return columns_; }
+  bool at_end() const { return !has_point_; }
+  const std::string& hash() const { return hash_; }
+  void next() {
+    has_point_ = points_->step();
+    hash_ = has_point_ ? points_->text(0) : "";
+  }
+  const Statement& point() const { return *points_; }
+  Statement& blame() {
+    blame_->reset();
+    blame_->bind(1, hash_);
+    return *blame_;
+  }
+
+ private:
+  Database database_;
+  std::vector<std::string> columns_;
+  std::optional<Statement> points_;
+  std::optional<Statement> blame_;
+  bool has_point_ = false;
+  std::string hash_;
+};
+
+// Everything that a file says about a point, as one text.
+std::string whole_text(Reader& reader, const std::vector<std::string>& columns) {
+  std::string text;
+  for (const std::string& column : columns) {
+    const auto found = std::find(reader.columns().begin(), reader.columns().end(), column);
+    if (found != reader.columns().end()) {
+      text += reader.point().text(static_cast<int>(found - reader.columns().begin()));
+    }
+    text += '\n';
+  }
+  Statement& blame = reader.blame();
+  while (blame.step()) {
+    for (int column = 1; column < blame.columns(); ++column) text += blame.text(column) + ' ';
+  }
+  blame.reset();
+  return text;
+}
+
+std::vector<std::string> all_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
+  std::set<std::string> names;
+  for (const auto& reader : readers) names.insert(reader->columns().begin(), reader->columns().end());
+  for (const char* first : kFirstColumns) names.erase(first);
+  std::vector<std::string> columns(names.begin(), names.end());
+  std::sort(columns.begin(), columns.end(), is_before);
+  return columns;
+}
+
+// Copies all points, each once.
+void copy_points(std::vector<std::unique_ptr<Reader>>& readers, Database& out,
+                 const std::vector<std::string>& columns) {
+  Statement insert(out, insert_sql(columns));
+  Statement insert_blame(out, kInsertBlame);
+  std::string version;
+  for (;;) {
+    Reader* first = nullptr;
+    for (const auto& reader : readers) {
+      if (!reader->at_end() && (first == nullptr || reader->hash() < first->hash())) first = reader.get();
+    }
+    if (first == nullptr) return;
+    const std::string hash = first->hash();
+    for (const auto& reader : readers) {
+      if (reader.get() == first || reader->at_end() || reader->hash() != hash) continue;
+      if (whole_text(*reader, columns) != whole_text(*first, columns)) {
+        throw DatabaseError(
+            fmt::format("{}: holds another result of point {} than {}", reader->path(), hash, first->path()));
+      }
+      reader->next();
+    }
+    insert.clear_bindings();
+    for (std::size_t i = 0; i < first->columns().size(); ++i) {
+      const auto place = std::find(columns.begin(), columns.end(), first->columns()[i]) - columns.begin();
+      insert.bind_column(static_cast<int>(place) + 1, first->point(), static_cast<int>(i));
+    }
+    insert.run();
+    Statement& blame = first->blame();
+    while (blame.step()) {
+      for (int column = 0; column < blame.columns(); ++column)
+        insert_blame.bind_column(column + 1, blame, column);
+      insert_blame.run();
+    }
+    blame.reset();
+    first->next();
+  }
+}
+
+}  // namespace
+
+void merge_stores(const std::vector<std::string>& inputs, const std::string& out) {
+  const std::string aside = out + ".new";
+  std::error_code ignored;
+  std::filesystem::remove(aside, ignored);
+  try {
+    std::vector<std::unique_ptr<Reader>> readers;
+    for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
+    Database database(aside, Database::Access::kCreate);
+    database.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA locking_mode = EXCLUSIVE");
+    database.execute("BEGIN");
+    std::vector<std::string> columns = all_columns(readers);
+    create_tables(database, columns);
+    columns.insert(columns.begin(), kFirstColumns.begin(), kFirstColumns.end());
+    copy_points(readers, database, columns);
+    database.execute("COMMIT");
+  } catch (...) {
+    std::filesystem::remove(aside, ignored);
+    throw;
+  }
+  for (const char* ending : {"-wal", "-shm"}) std::filesystem::remove(out + ending, ignored);
+  if (std::rename(aside.c_str(), out.c_str()) != 0) {
+    const std::string why = std::strerror(errno);
+    std::filesystem::remove(aside, ignored);
+    throw DatabaseError(fmt::format("{}: cannot be replaced: {}", out, why));
+  }
+}
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "platform/board_yaml.h"
+#include "sw/explore/database.h"
+
+namespace stereotlm::explore {
+
+// Stall cycles of one point, as platform::BlameRow has them.
+struct StoredBlame {
+  std::string port;
+  std::string bank;
+  std::string by;
+  std::int64_t cycles = 0;
+};
+
+// What a database holds of one point.
+struct StoredPoint {
+  std::string hash;
+  std::string status;  // "ok"; "impossible": no such board; "failed": the run has ended with an error
+  std::string reason;  // unless it is ok
+  std::string config;  // the board in full
+  std::vector<platform::BoardValue> values;  // a column each: keys of the board and the run, then figures
+  std::vector<StoredBlame> blame;
+};
+
+// Results of points in an SQLite file: table `points` with a row and table `blame` with further rows for each. A point is
+// there whole or not at all, whatever ends the process. Several processes may add points at the same time. Member
+// functions throw DatabaseError. Not to be used across fork().
+class Store {
+ public:
+  // Opens the file, or makes it. All its points are of one version of the program.
+  Store(const std::string& path, const std::string& version);
+
+  bool has(const std::string& hash);
+  // False if the point is there already.
+  bool add(const StoredPoint& point);
+  std::uint64_t size();
+
+ private:
+  void create();
+  void read_columns();
+  void add_columns(const StoredPoint& point);
+  Statement& insertion(const StoredPoint& point);
+
+  Database database_;
+  std::string version_;
+  std::set<std::string> columns_;
+  std::unique_ptr<Statement> find_;
+  std::unique_ptr<Statement> insert_blame_;
+  std::map<std::string, std::unique_ptr<Statement>> insertions_;  // by their columns
+};
+
+// Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their hashes: its bytes
+// depend on nothing but the points. `out` may be one of the inputs; it is replaced when the new file is whole. Throws
+// DatabaseError, also if two inputs hold different results of one point, or of different versions.
+void merge_stores(const std::vector<std::string>& inputs, const std::string& out);
+
+}  // namespace stereotlm::explore

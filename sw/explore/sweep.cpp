@@ -1,0 +1,180 @@
+#include "sw/explore/sweep.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <deque>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "sw/explore/store.h"
+#include "sw/explore/worker.h"
+
+namespace stereotlm::explore {
+namespace {
+
+constexpr std::uint64_t kMostOfAnOrder = 16;  // points
+constexpr int kLookMs = 100;
+constexpr int kMostDeaths = 3;  // of workers, one after another without a finished point
+
+// A flag in memory that forked processes share.
+class SharedFlag {
+ public:
+  SharedFlag() {
+    void* const page =
+        mmap(nullptr, sizeof(std::atomic<bool>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap");
+    flag_ = new (page) std::atomic<bool>(false);
+  }
+  ~SharedFlag() { munmap(flag_, sizeof *flag_); }
+  SharedFlag(const SharedFlag&) = delete;
+  SharedFlag& operator=(const SharedFlag&) = delete;
+  std::atomic<bool>& operator*() const { return *flag_; }
+
+ private:
+  std::atomic<bool>* flag_;
+};
+
+// A worker that dies while it is written to is seen by what it does not say.
+class IgnoredSigpipe {
+ public:
+  IgnoredSigpipe() : before_(signal(SIGPIPE, SIG_IGN)) {}
+  ~IgnoredSigpipe() { signal(SIGPIPE, before_); }
+  IgnoredSigpipe(const IgnoredSigpipe&) = delete;
+  IgnoredSigpipe& operator=(const IgnoredSigpipe&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+class Sweep {
+ public:
+  Sweep(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options)
+      : plan_(plan), evaluate_(evaluate), options_(options) {
+    const std::uint64_t size = plan.size();
+    counts_.total = size > options.shard ? (size - options.shard - 1) / options.shards + 1 : 0;
+  }
+
+  SweepCounts run(const std::function<bool(const SweepCounts&)>& go_on) {
+    { const Store made(options_.store, options_.version); }  // what is wrong with the file is said once
+    const std::uint64_t jobs = std::min<std::uint64_t>(options_.jobs, counts_.total);
+    for (std::uint64_t job = 0; job < jobs; ++job) start_worker(job);
+    while (is_busy()) {
+      if (!go_on(counts_)) *stop_ = true;
+      wait();
+    }
+    workers_.clear();
+    go_on(counts_);
+    merge_stores({options_.store}, options_.store);
+    return counts_;
+  }
+
+ private:
+  bool is_busy() const {
+    return std::any_of(workers_.begin(), workers_.end(),
+                       [](const auto& worker) { return worker->order().count > 0; });
+  }
+
+  void start_worker(std::size_t place) {
+    if (place >= workers_.size()) workers_.resize(place + 1);
+    workers_[place] = std::make_unique<Worker>(plan_, evaluate_, options_, *stop_);
+    give_order(*workers_[place]);
+  }
+
+  // The next points, if there are any: what a dead worker has left first.
+  void give_order(Worker& worker) {
+    if (*stop_) return;
+    if (!left_.empty()) {
+      worker.send(left_.front());
+      left_.pop_front();
+      return;
+    }
+    const std::uint64_t rest = counts_.total - next_;
+    // Near the end in small pieces, so that all workers end at the same time.
+    const std::uint64_t count =
+        std::min(rest, std::clamp<std::uint64_t>(rest / (4 * workers_.size()), 1, kMostOfAnOrder));
+    if (count == 0) return;
+    worker.send({options_.shard + next_ * options_.shards, options_.shards, count});
+    next_ += count;
+  }
+
+  void wait() {
+    std::vector<pollfd> watched;
+    for (const auto& worker : workers_) watched.push_back({worker->descriptor(), POLLIN, 0});
+    const int ready = poll(watched.data(), watched.size(), kLookMs);
+    if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
+    if (ready <= 0) return;
+    for (std::size_t i = 0; i < watched.size(); ++i) {
+      if (watched[i].revents != 0) receive(i);
+    }
+  }
+
+  void receive(std::size_t place) {
+    Worker& worker = *workers_[place];
+    if (worker.order().count == 0) return;
+    const auto end = worker.receive();
+    if (end) {
+      deaths_ = 0;
+      count(*end);
+      if (worker.order().count == 0) give_order(worker);
+      return;
+    }
+    const WorkOrder order = worker.order();
+    if (++deaths_ == kMostDeaths) {
+      throw std::runtime_error(fmt::format("a worker has ended with {} at point {}, the {}. time in a row",
+                                           worker.death(), order.first, deaths_));
+    }
+    if (order.count > 0) left_.push_back(order);
+    start_worker(place);
+  }
+
+  void count(PointEnd end) {
+    switch (end) {
+      case PointEnd::kExcluded:
+        ++counts_.excluded;
+        break;
+      case PointEnd::kKnown:
+        ++counts_.known;
+        break;
+      case PointEnd::kOk:
+        ++counts_.ok;
+        break;
+      case PointEnd::kImpossible:
+        ++counts_.impossible;
+        break;
+      case PointEnd::kFailed:
+        ++counts_.failed;
+        break;
+      case PointEnd::kNotBegun:
+        break;
+    }
+  }
+
+  const Plan& plan_;
+  const Evaluate& evaluate_;
+  const SweepOptions& options_;
+  IgnoredSigpipe ignored_sigpipe_;
+  SharedFlag stop_;
+  SweepCounts counts_;
+  std::uint64_t next_ = 0;      // of this shard's points, not handed out yet
+  std::deque<WorkOrder> left_;  // of dead workers
+  int deaths_ = 0;
+  std::vector<std::unique_ptr<Worker>> workers_;  // end before what they share
+};
+
+}  // namespace
+
+SweepCounts sweep(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+                  const std::function<bool(const SweepCounts& counts)>& go_on) {
+  return Sweep(plan, evaluate, options).run(go_on);
+}
+
+}  // namespace stereotlm::explore

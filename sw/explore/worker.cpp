@@ -1,0 +1,194 @@
+#include "sw/explore/worker.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "sw/explore/condition.h"
+#include "sw/explore/figures.h"
+#include "sw/explore/store.h"
+
+namespace stereotlm::explore {
+namespace {
+
+[[noreturn]] void throw_errno(const char* what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
+
+// False at the end, or if the other side is gone.
+bool read_all(int from, void* bytes, std::size_t count) {
+  char* next = static_cast<char*>(bytes);
+  while (count > 0) {
+    const ssize_t got = read(from, next, count);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    next += got;
+    count -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+bool write_all(int to, const void* bytes, std::size_t count) {
+  const char* next = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written = write(to, next, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    next += written;
+    count -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+// What a worker tells: the end of a point, or of itself with a text.
+struct Report {
+  PointEnd end = PointEnd::kNotBegun;
+  bool is_failure = false;
+  std::uint32_t text_bytes = 0;
+};
+
+void take_figures(Figures figures, StoredPoint& row) {
+  row.values.insert(row.values.end(), std::make_move_iterator(figures.values.begin()),
+                    std::make_move_iterator(figures.values.end()));
+  row.blame = std::move(figures.blame);
+}
+
+// The work itself, in the process of the worker.
+class PointRunner {
+ public:
+  PointRunner(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options)
+      : plan_(plan),
+        evaluate_(evaluate),
+        conditions_(plan.conditions()),
+        store_(options.store, options.version) {}
+
+  PointEnd run(std::uint64_t number) {
+    const Point point = plan_.point(number);
+    if (!conditions_.hold(point.values)) return PointEnd::kExcluded;
+    if (store_.has(point.hash)) return PointEnd::kKnown;
+    StoredPoint row;
+    row.hash = point.hash;
+    row.config = point.yaml;
+    row.values = point.values;
+    PointEnd end = PointEnd::kOk;
+    if (!point.board) {
+      end = PointEnd::kImpossible;
+      row.status = "impossible";
+      row.reason = point.reason;
+    } else {
+      try {
+        take_figures(evaluate_(point), row);
+        row.status = "ok";
+      } catch (const std::exception& error) {
+        end = PointEnd::kFailed;
+        row.status = "failed";
+        row.reason = error.what();
+      }
+    }
+    return store_.add(row) ? end : PointEnd::kKnown;
+  }
+
+ private:
+  const Plan& plan_;
+  const Evaluate& evaluate_;
+  Conditions conditions_;
+  Store store_;
+};
+
+[[noreturn]] void be_worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+                            const std::atomic<bool>& stop, int from, int to) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // A terminal's Ctrl-C goes to all processes; the one that hands out the work decides what it means.
+  signal(SIGINT, SIG_IGN);
+  signal(SIGTERM, SIG_DFL);
+  Report report;
+  try {
+    PointRunner runner(plan, evaluate, options);
+    WorkOrder order;
+    while (read_all(from, &order, sizeof order)) {
+      for (std::uint64_t i = 0; i < order.count; ++i) {
+        report.end = stop ? PointEnd::kNotBegun : runner.run(order.first + i * order.step);
+        if (!write_all(to, &report, sizeof report)) _exit(1);
+      }
+    }
+    _exit(0);
+  } catch (const std::exception& error) {
+    const std::string text = error.what();
+    report.is_failure = true;
+    report.text_bytes = static_cast<std::uint32_t>(text.size());
+    write_all(to, &report, sizeof report);
+    write_all(to, text.data(), text.size());
+    _exit(1);
+  }
+}
+
+}  // namespace
+
+Worker::Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+               const std::atomic<bool>& stop) {
+  std::array<int, 2> orders{};
+  std::array<int, 2> reports{};
+  if (pipe2(orders.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
+  if (pipe2(reports.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
+  std::fflush(nullptr);  // or both processes would write what is in the buffers
+  pid_ = fork();
+  if (pid_ < 0) throw_errno("fork");
+  if (pid_ == 0) {
+    close(orders[1]);
+    close(reports[0]);
+    be_worker(plan, evaluate, options, stop, orders[0], reports[1]);
+  }
+  close(orders[0]);
+  close(reports[1]);
+  to_ = orders[1];
+  from_ = reports[0];
+}
+
+Worker::~Worker() {
+  close(to_);
+  close(from_);
+  if (pid_ < 0) return;
+  kill(pid_, SIGKILL);
+  while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+void Worker::send(const WorkOrder& order) {
+  order_ = order;
+  write_all(to_, &order, sizeof order);  // if it is dead, receive() says so
+}
+
+std::optional<PointEnd> Worker::receive() {
+  Report report;
+  if (!read_all(from_, &report, sizeof report)) {
+    int status = 0;
+    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    pid_ = -1;
+    death_ = WIFSIGNALED(status)
+                 ? fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
+                 : fmt::format("exit status {}", WEXITSTATUS(status));
+    return std::nullopt;
+  }
+  if (report.is_failure) {
+    std::string text(report.text_bytes, '\0');
+    read_all(from_, text.data(), text.size());
+    throw std::runtime_error(text);
+  }
+  order_.first += order_.step;
+  --order_.count;
+  return report.end;
+}
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sw/explore/sweep.h"
+
+namespace stereotlm::explore {
+
+// Points to do: number first, first + step, ..
+struct WorkOrder {
+  std::uint64_t first = 0;
+  std::uint64_t step = 1;
+  std::uint64_t count = 0;
+};
+
+// How a point has ended.
+enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kNotBegun };
+
+// A process that does points one after another, and tells how each has ended. It ends with this process.
+class Worker {
+ public:
+  // Forks; `stop`, in memory that the processes share, makes it begin no further point. Throws std::system_error.
+  Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+         const std::atomic<bool>& stop);
+  // Ends it if it still works.
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  void send(const WorkOrder& order);
+  // That has not been told of yet; count 0: idle.
+  const WorkOrder& order() const { return order_; }
+
+  int descriptor() const { return from_; }  // readable when there is something to receive()
+  // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with what it could
+  // not go on for.
+  std::optional<PointEnd> receive();
+  std::string death() const { return death_; }
+
+ private:
+  pid_t pid_ = -1;
+  int to_ = -1;
+  int from_ = -1;
+  WorkOrder order_;
+  std::string death_;
+};
+
+}  // namespace stereotlm::explore

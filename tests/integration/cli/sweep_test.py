@@ -1,0 +1,186 @@
+"""sweep and merge: plans, their databases, what is continued."""
+
+import os
+import re
+import signal
+import sqlite3
+import subprocess
+import time
+
+import program
+from interrupt_test import Terminal
+from program import HEIGHT, WIDTH, ProgramTest, run
+
+PLAN = f"""
+board: fpl2003
+run: {{source: preloaded}}
+set: {{image.width: {WIDTH}, image.height: {HEIGHT}, matcher.filter: none}}
+vary:
+  matcher.window: [3, 5, 7]
+  allocation.left_image: [[bank0, bank1], bank6]
+  allocation.right_image: [[bank2, bank3], bank3]
+"""
+POINTS = 12
+IMPOSSIBLE = 6  # the two image lists of different lengths
+
+
+class SweepTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.plan = self.file("plan.yaml", PLAN.encode())
+        self.store = self.folder / "points.db"
+
+    def sweep(self, *more, plan=None, store=None):
+        return run("sweep", plan or self.plan, "--out", store or self.store, *more)
+
+    def query(self, sql, store=None):
+        connection = sqlite3.connect(f"file:{store or self.store}?mode=ro", uri=True)
+        try:
+            return connection.execute(sql).fetchall()
+        finally:
+            connection.close()
+
+
+class Sweep(SweepTest):
+    def test_keeps_what_each_run_says(self):
+        said = self.succeeds(self.sweep())
+        self.assertIn(f"{POINTS} points: {POINTS - IMPOSSIBLE} ok, {IMPOSSIBLE} impossible, 0 failed", said)
+        self.assertIn(f"  {IMPOSSIBLE // 2} impossible: allocation.right_image = [bank3]: must be as long as", said)
+        rows = self.query("SELECT config, cycles, \"banks.bank6.reads\", \"frames_per_second.core\", \"run.frames\", "
+                          "\"bound.core_limited_by\", hash FROM points WHERE status = 'ok'")
+        self.assertEqual(len(rows), POINTS - IMPOSSIBLE)
+        for config, cycles, reads, rate, frames, limited_by, key in rows:
+            board = self.file("board.yaml", config.encode())
+            self.succeeds(run("run", board, "--source", "preloaded", "--timing-only", "--frames", frames, "--out", self.out))
+            stats = self.stats()
+            self.assertEqual(cycles, stats["cycles"])
+            self.assertEqual(reads, [bank["reads"] for bank in stats["banks"] if bank["name"] == "bank6"][0])
+            self.assertEqual(rate, stats["frames_per_second"]["core"])
+            self.assertEqual(limited_by, stats["bound"]["core_limited_by"])
+            blame = self.query(f"SELECT port, bank, by, cycles FROM blame WHERE hash = '{key}'")
+            self.assertEqual(sorted(blame), sorted(tuple(row.values()) for row in stats["blame"]))
+            self.assertEqual((self.out / "config.yaml").read_text(), config)
+        self.assertGreater(self.query("SELECT count(*) FROM blame")[0][0], 0)
+
+    def test_gives_the_same_bytes_for_jobs_and_shards(self):
+        self.succeeds(self.sweep("--jobs", 1))
+        expected = self.store.read_bytes()
+        two = self.folder / "two.db"
+        self.succeeds(self.sweep("--jobs", 2, store=two))
+        self.assertEqual(two.read_bytes(), expected)
+        shards = [self.folder / f"shard{number}.db" for number in range(3)]
+        for number, store in enumerate(shards):
+            said = self.succeeds(self.sweep("--shard", f"{number}/3", store=store))
+            self.assertIn(f"4 points in shard {number}/3: ", said)
+        merged = self.folder / "merged.db"
+        said = self.succeeds(run("merge", merged, *reversed(shards)))
+        self.assertEqual(said, f"{merged}: {POINTS} points of 3 databases\n")
+        self.assertEqual(merged.read_bytes(), expected)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir() if "wal" in path.name), [])
+
+    def test_continues_its_database(self):
+        self.succeeds(self.sweep())
+        expected = self.store.read_bytes()
+        self.assertIn(f"0 ok, 0 impossible, 0 failed, {POINTS} there already", self.succeeds(self.sweep()))
+        self.assertEqual(self.store.read_bytes(), expected)
+        more = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[7, 9]").encode())
+        said = self.succeeds(self.sweep(plan=more))
+        self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already", said)
+        self.assertIn(f"points.db: {POINTS + 4} points", said)
+
+    def test_of_the_whole_computer(self):
+        plan = self.file("computer.yaml", (PLAN.replace("preloaded", "camera, frames: 3").replace("[3, 5, 7]", "[3]")
+                                           + f"where: allocation.left_image = '[bank0, bank1]'\n").encode())
+        self.succeeds(self.sweep(plan=plan))
+        (row,) = self.query("SELECT config, \"frames_per_second.steady\", \"pci.busy_clocks\", \"cameras.left.frames\" "
+                            "FROM points WHERE status = 'ok'")
+        board = self.file("board.yaml", row[0].encode())
+        self.succeeds(run("run", board, "--timing-only", "--frames", 3, "--out", self.out))
+        stats = self.stats()
+        self.assertEqual(row[1:], (stats["frames_per_second"]["steady"], stats["pci"]["busy_clocks"],
+                                   stats["cameras"][0]["frames"]))
+
+
+class Refusals(SweepTest):
+    def test_of_plans_name_place_value_and_rule(self):
+        plan = self.file("wrong.yaml", PLAN.replace("[3, 5, 7]", "[3, 4, 7]").encode())
+        lines = self.refused(self.sweep(plan=plan), f"{plan}:6:23: matcher.window = 4: ")
+        self.assertEqual(lines[-1], f"{plan}: the plan would have {POINTS} points")
+        self.assertFalse(self.store.exists())
+
+    def test_of_options(self):
+        self.refused_in_one_line(self.sweep("--jobs", 0), "--jobs = 0: must be 1..1024")
+        for shard in ("3/3", "1", "x/2", "-1/2", "1/0"):
+            self.refused_in_one_line(self.sweep("--shard", shard), f"--shard = {shard}: must be I/N")
+        self.refused_in_one_line(self.sweep("--launcher", "pbs"), "--launcher = pbs: must be local or slurm")
+        self.refused(run("sweep"), "PLAN: missing", "--out: missing")
+        self.refused(run("merge"), "OUT: missing", "DB: missing")
+
+    def test_of_databases(self):
+        self.refused_in_one_line(self.sweep(store=self.left), f"--out {self.left}: not a database")
+        self.refused_in_one_line(self.sweep(store=self.folder / "none" / "a.db"), "No such file or directory")
+        self.refused_in_one_line(run("merge", self.store, self.left), f"{self.left}: not a database")
+        self.assertEqual(self.left.read_bytes()[:2], b"P5")
+
+
+class Interrupted(SweepTest):
+    def setUp(self):
+        super().setUp()
+        self.many = self.file("many.yaml", PLAN.replace(
+            "matcher.window: [3, 5, 7]", "matcher.disparities: {from: 1, to: 254, step: 1}").encode())
+
+    def start(self, *more):
+        command = [program.PROGRAM, "sweep", str(self.many), "--out", str(self.store), *more]
+        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                start_new_session=True)
+
+    def wait_for_points(self, count):
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            try:
+                if self.query("SELECT count(*) FROM points")[0][0] >= count:
+                    return
+            except sqlite3.OperationalError:
+                pass  # not there yet
+            time.sleep(0.01)
+        self.fail("no points")
+
+    def expected(self):
+        store = self.folder / "whole.db"
+        self.succeeds(self.sweep(plan=self.many, store=store))
+        return store.read_bytes()
+
+    def test_by_the_keyboard_it_says_how_to_go_on(self):
+        process = self.start()
+        self.wait_for_points(3)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: all processes get it
+        out, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertRegex(out, r"1016 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
+        self.assertEqual(errors, "stereotlm: note: interrupted: the same command goes on where this one has ended\n")
+        self.succeeds(self.sweep(plan=self.many))
+        self.assertEqual(self.store.read_bytes(), self.expected())
+
+    def test_when_killed_it_keeps_what_was_done(self):
+        process = self.start("--jobs", "2")
+        self.wait_for_points(20)
+        process.kill()
+        process.communicate(timeout=60)
+        kept = self.query("SELECT count(*) FROM points")[0][0]
+        self.assertGreaterEqual(kept, 20)
+        time.sleep(0.2)
+        self.assertLessEqual(self.query("SELECT count(*) FROM points")[0][0], kept + 2)  # workers end with it
+        said = self.succeeds(self.sweep(plan=self.many))
+        self.assertRegex(said, r", \d+ there already")
+        self.assertEqual(self.store.read_bytes(), self.expected())
+
+    def test_shows_its_progress(self):
+        terminal = Terminal(["sweep", self.many, "--out", self.store])
+        terminal.read_until(re.compile(r"\d+/1016 points   \d+\.\d %   \d+\.\d points/s   \S+ left"))
+        status, out = terminal.finish()
+        self.assertEqual(status, 0)
+        self.assertIn("1016 points: 508 ok, 508 impossible", out)
+
+
+if __name__ == "__main__":
+    program.main()

@@ -1,0 +1,192 @@
+#include "sw/explore/store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using test::message_of;
+using test::read_file;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr const char* kVersion = "1.2.3";
+
+StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
+  return {hash,
+          "ok",
+          "",
+          "name: x\n",
+          {{"image.width", std::int64_t{640}}, {"cycles", cycles}, {"rate", 0.5}},
+          {{"left_pixel", "bank0", "host", 3}}};
+}
+
+class StoreTest : public ::testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  // The rows that a query gives, their columns joined by "|".
+  static std::vector<std::string> rows(const std::string& path, const std::string& sql) {
+    Database database(path, Database::Access::kRead);
+    Statement statement(database, sql);
+    std::vector<std::string> found;
+    while (statement.step()) {
+      std::string row;
+      for (int column = 0; column < statement.columns(); ++column)
+        row += (column > 0 ? "|" : "") + statement.text(column);
+      found.push_back(row);
+    }
+    return found;
+  }
+
+ private:
+  test::ScratchFolder folder_;
+};
+
+TEST_F(StoreTest, KeepsARowForEachPoint) {
+  {
+    Store store(file("a.db"), kVersion);
+    EXPECT_FALSE(store.has("h1"));
+    EXPECT_TRUE(store.add(point("h1")));
+    EXPECT_TRUE(store.has("h1"));
+    EXPECT_EQ(store.size(), 1U);
+  }
+  EXPECT_THAT(rows(file("a.db"),
+                   "SELECT hash, status, reason, version, config, \"image.width\", cycles, rate FROM points"),
+              ElementsAre("h1|ok||1.2.3|name: x\n|640|7|0.5"));
+  EXPECT_THAT(rows(file("a.db"), "SELECT * FROM blame"), ElementsAre("h1|left_pixel|bank0|host|3"));
+}
+
+TEST_F(StoreTest, KeepsTheFirstOfTwoEqualPoints) {
+  Store store(file("a.db"), kVersion);
+  EXPECT_TRUE(store.add(point("h1", 7)));
+  EXPECT_FALSE(store.add(point("h1", 8)));
+  EXPECT_THAT(rows(file("a.db"), "SELECT cycles FROM points"), ElementsAre("7"));
+}
+
+TEST_F(StoreTest, TakesPointsWithOtherFigures) {
+  Store store(file("a.db"), kVersion);
+  store.add(point("h1"));
+  StoredPoint other = point("h2");
+  other.values = {{"frames_per_second.system", 2.5}};
+  store.add(other);
+  store.add(point("h3"));
+  EXPECT_THAT(rows(file("a.db"), "SELECT cycles, \"frames_per_second.system\" FROM points ORDER BY hash"),
+              ElementsAre("7|", "|2.5", "7|"));
+}
+
+TEST_F(StoreTest, MayBeAddedToFromSeveralConnections) {
+  Store one(file("a.db"), kVersion);
+  Store two(file("a.db"), kVersion);
+  one.add(point("h1"));
+  two.add(point("h2"));
+  StoredPoint wide = point("h3");
+  wide.values.push_back({"new", std::int64_t{1}});
+  one.add(wide);
+  wide.hash = "h4";
+  two.add(wide);
+  one.add(point("h5"));
+  EXPECT_TRUE(two.has("h5"));
+  EXPECT_EQ(two.size(), 5U);
+}
+
+TEST_F(StoreTest, IsContinued) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  Store store(file("a.db"), kVersion);
+  EXPECT_TRUE(store.has("h1"));
+  EXPECT_TRUE(store.add(point("h2")));
+}
+
+TEST_F(StoreTest, HoldsPointsOfOneVersion) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  EXPECT_EQ(message_of([&] { Store(file("a.db"), "1.2.4"); }),
+            file("a.db") + ": holds points of version 1.2.3; this is version 1.2.4: give another file");
+}
+
+TEST_F(StoreTest, RefusesFilesThatAreNotItsOwn) {
+  test::write_file(file("text"), std::string(5000, 'x'));
+  EXPECT_EQ(message_of([&] { Store(file("text"), kVersion); }), file("text") + ": not a database");
+  {
+    Database foreign(file("foreign.db"), Database::Access::kCreate);
+    foreign.execute("CREATE TABLE points(x)");
+  }
+  EXPECT_EQ(message_of([&] { Store(file("foreign.db"), kVersion); }),
+            file("foreign.db") + ": not a database of stereotlm sweep");
+  EXPECT_EQ(read_file(file("text")), std::string(5000, 'x'));
+  EXPECT_THAT(message_of([&] { Store(file("none/a.db"), kVersion); }),
+              HasSubstr("No such file or directory"));
+}
+
+TEST_F(StoreTest, KeepsColumnsWhoseNamesAreWordsOfSql) {
+  StoredPoint odd = point("h1");
+  odd.values = {{"select \"from\"", "a'b"}};
+  Store(file("a.db"), kVersion).add(odd);
+  EXPECT_THAT(rows(file("a.db"), "SELECT \"select \"\"from\"\"\" FROM points"), ElementsAre("a'b"));
+}
+
+TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
+  StoredPoint wide = point("h2");
+  wide.values = {{"banks.bank10.reads", std::int64_t{1}}, {"banks.bank2.reads", std::int64_t{2}}};
+  { Store(file("a.db"), kVersion).add(point("h3")); }
+  {
+    Store b(file("b.db"), kVersion);
+    b.add(wide);
+    b.add(point("h1"));
+  }
+  {
+    Store all(file("all.db"), kVersion);
+    for (const StoredPoint& one : {point("h1"), wide, point("h3")}) all.add(one);
+  }
+  merge_stores({file("a.db"), file("b.db")}, file("ab.db"));
+  merge_stores({file("b.db"), file("a.db"), file("b.db")}, file("ba.db"));
+  merge_stores({file("all.db")}, file("all.db"));
+  EXPECT_EQ(read_file(file("ab.db")), read_file(file("ba.db")));
+  EXPECT_EQ(read_file(file("ab.db")), read_file(file("all.db")));
+  EXPECT_THAT(rows(file("ab.db"), "SELECT hash FROM points"), ElementsAre("h1", "h2", "h3"));
+  EXPECT_THAT(rows(file("ab.db"), "SELECT name FROM pragma_table_info('points') WHERE cid > 4"),
+              ElementsAre("banks.bank2.reads", "banks.bank10.reads", "cycles", "image.width", "rate"));
+  EXPECT_THAT(rows(file("ab.db"), "SELECT hash, cycles FROM blame"), ElementsAre("h1|3", "h2|3", "h3|3"));
+  merge_stores({file("ab.db")}, file("again.db"));
+  EXPECT_EQ(read_file(file("again.db")), read_file(file("ab.db")));
+}
+
+TEST_F(StoreTest, IsContinuedAfterItWasMerged) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  merge_stores({file("a.db")}, file("a.db"));
+  Store store(file("a.db"), kVersion);
+  EXPECT_FALSE(store.add(point("h1")));
+  EXPECT_TRUE(store.add(point("h0")));
+  EXPECT_EQ(store.size(), 2U);
+}
+
+TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
+  { Store(file("a.db"), kVersion).add(point("h1", 7)); }
+  { Store(file("b.db"), kVersion).add(point("h1", 8)); }
+  EXPECT_EQ(message_of([&] {
+              merge_stores({file("a.db"), file("b.db")}, file("c.db"));
+            }),
+            file("b.db") + ": holds another result of point h1 than " + file("a.db"));
+  EXPECT_FALSE(std::filesystem::exists(file("c.db")));
+  EXPECT_FALSE(std::filesystem::exists(file("c.db.new")));
+  { Store(file("d.db"), kVersion).add(point("h1", 7)); }
+  StoredPoint blamed = point("h1", 7);
+  blamed.blame.front().cycles = 4;
+  { Store(file("e.db"), kVersion).add(blamed); }
+  EXPECT_THAT(message_of([&] {
+                merge_stores({file("d.db"), file("e.db")}, file("c.db"));
+              }),
+              HasSubstr("another result of point h1"));
+}
+
+TEST_F(StoreTest, MergesOnlyWhatIsThere) {
+  EXPECT_THAT(message_of([&] { merge_stores({file("none.db")}, file("c.db")); }), HasSubstr("none.db: "));
+  EXPECT_FALSE(std::filesystem::exists(file("none.db")));
+}
+
+}  // namespace
+}  // namespace stereotlm::explore

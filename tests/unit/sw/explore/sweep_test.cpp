@@ -1,0 +1,214 @@
+#include "sw/explore/sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sw/explore/store.h"
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using test::message_of;
+using test::read_file;
+using ::testing::HasSubstr;
+
+// 60 points of which six are impossible and 15 are left out; the evaluation is made up.
+const char* const kPlan =
+    "board: fpl2003\n"
+    "vary:\n"
+    "  matcher.window: [3, 5, 7, 9, 11]\n"
+    "  capture.fifo_words: [16, 64, 128]\n"
+    "  matcher.disparities: [10, 20, 30, 40]\n"
+    "where: matcher.disparities < 40\n";
+constexpr std::uint64_t kImpossible = 15;
+
+Figures evaluate(const Point& point) {
+  if (point.board->matcher.window == 11) throw std::runtime_error("a window that fails");
+  return {{{"cycles", std::int64_t{point.board->matcher.window * point.board->matcher.disparities}}},
+          {{"left_pixel", "bank0", "host", point.board->matcher.window}}};
+}
+
+bool always(const SweepCounts& /*counts*/) { return true; }
+
+class SweepTest : public ::testing::Test {
+ protected:
+  SweepTest() { test::write_file(file("plan.yaml"), kPlan); }
+
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  Plan plan() const { return Plan::load(file("plan.yaml")); }
+  SweepOptions options(const std::string& store, unsigned jobs = 1) const {
+    SweepOptions options;
+    options.store = file(store);
+    options.version = "1";
+    options.jobs = jobs;
+    return options;
+  }
+  // All points by one worker, without a break.
+  std::string reference() const {
+    sweep(plan(), evaluate, options("reference.db"), always);
+    return read_file(file("reference.db"));
+  }
+
+ private:
+  test::ScratchFolder folder_;
+};
+
+TEST_F(SweepTest, EndsEachPointInItsOwnWay) {
+  const SweepCounts counts = sweep(plan(), evaluate, options("a.db"), always);
+  EXPECT_EQ(counts.total, 60U);
+  EXPECT_EQ(counts.excluded, 15U);
+  EXPECT_EQ(counts.impossible, kImpossible);
+  EXPECT_EQ(counts.failed, 6U);
+  EXPECT_EQ(counts.ok, 24U);
+  EXPECT_EQ(counts.done(), counts.total);
+  Database database(file("a.db"), Database::Access::kRead);
+  EXPECT_EQ(database.number("SELECT count(*) FROM points"), 45);
+  EXPECT_EQ(database.number(
+                "SELECT count(*) FROM points WHERE status = 'failed' AND reason = 'a window that fails' "
+                "AND \"matcher.window\" = 11"),
+            6);
+  EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE status = 'impossible' AND reason = "
+                            "'capture.fifo_trigger_words = 32: 1..fifo_words, which is 16'"),
+            15);
+  EXPECT_EQ(database.number("SELECT sum(cycles) FROM points"), (3 + 5 + 7 + 9) * (10 + 20 + 30) * 2);
+  EXPECT_EQ(database.number("SELECT sum(cycles) FROM blame"), (3 + 5 + 7 + 9) * 3 * 2);
+}
+
+TEST_F(SweepTest, GivesTheSameBytesForAnyNumberOfJobs) {
+  const std::string expected = reference();
+  for (const unsigned jobs : {2U, 3U, 200U}) {
+    const std::string store = std::to_string(jobs) + ".db";
+    const SweepCounts counts = sweep(plan(), evaluate, options(store, jobs), always);
+    EXPECT_EQ(counts.ok, 24U);
+    EXPECT_EQ(read_file(file(store)), expected) << jobs;
+  }
+}
+
+TEST_F(SweepTest, GivesTheSameBytesInShardsThatAreMerged) {
+  const std::string expected = reference();
+  for (const std::uint64_t shards : {2U, 7U, 61U}) {
+    std::vector<std::string> stores;
+    std::uint64_t points = 0;
+    for (std::uint64_t shard = shards; shard-- > 0;) {
+      SweepOptions part = options("shard.db");
+      part.store = file("shard" + std::to_string(shards) + "_" + std::to_string(shard) + ".db");
+      part.shard = shard;
+      part.shards = shards;
+      const SweepCounts counts = sweep(plan(), evaluate, part, always);
+      EXPECT_EQ(counts.done(), counts.total);
+      points += counts.total;
+      stores.push_back(part.store);
+    }
+    EXPECT_EQ(points, 60U);
+    merge_stores(stores, file("merged.db"));
+    EXPECT_EQ(read_file(file("merged.db")), expected) << shards;
+  }
+}
+
+TEST_F(SweepTest, GoesOnWhereItWasStopped) {
+  const std::string expected = reference();
+  std::uint64_t restarts = 0;
+  SweepCounts counts;
+  do {
+    const std::uint64_t known = counts.known + counts.ok + counts.failed + counts.impossible;
+    counts = sweep(plan(), evaluate, options("a.db", 2),
+                   [&](const SweepCounts& now) { return now.done() < known + now.excluded + 5; });
+    ASSERT_LT(++restarts, 60U);
+  } while (counts.done() < counts.total);
+  EXPECT_GT(restarts, 1U);
+  EXPECT_EQ(read_file(file("a.db")), expected);
+}
+
+TEST_F(SweepTest, DoesNotRunAPointThatIsThere) {
+  sweep(plan(), evaluate, options("a.db"), always);
+  const auto never = [](const Point& /*point*/) -> Figures { std::abort(); };
+  const SweepCounts counts = sweep(plan(), never, options("a.db"), always);
+  EXPECT_EQ(counts.known, 45U);
+  EXPECT_EQ(counts.ran(), 0U);
+  EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+// Where a process ends that does the points until then, by itself or all of them at once.
+TEST_F(SweepTest, LosesNothingButThePointsUnderWayWhenItIsKilled) {
+  const std::string expected = reference();
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const auto slow = [](const Point& point) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return evaluate(point);
+      };
+      sweep(plan(), slow, options("a.db", 2), always);
+      _exit(0);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+  std::uint64_t before = 0;
+  if (std::filesystem::exists(file("a.db"))) before = Store(file("a.db"), "1").size();
+  const SweepCounts counts = sweep(plan(), evaluate, options("a.db", 2), always);
+  EXPECT_GE(counts.known, before);
+  EXPECT_EQ(read_file(file("a.db")), expected);
+}
+
+TEST_F(SweepTest, ReplacesAWorkerThatDies) {
+  const std::string once = file("died");
+  const auto dies_once = [&once](const Point& point) {
+    if (!std::filesystem::exists(once) && point.board->matcher.window == 7) {
+      test::write_file(once, "");
+      raise(SIGKILL);
+    }
+    return evaluate(point);
+  };
+  const std::string expected = reference();
+  const SweepCounts counts = sweep(plan(), dies_once, options("a.db", 2), always);
+  EXPECT_TRUE(std::filesystem::exists(once));
+  EXPECT_EQ(counts.ok, 24U);
+  EXPECT_EQ(read_file(file("a.db")), expected);
+}
+
+TEST_F(SweepTest, GivesUpWhereWorkersDieAgainAndAgain) {
+  const auto dies = [](const Point& point) -> Figures {
+    if (point.board->matcher.window == 9) raise(SIGKILL);
+    return evaluate(point);
+  };
+  const std::string message = message_of([&] { sweep(plan(), dies, options("a.db"), always); });
+  EXPECT_THAT(message, HasSubstr("a worker has ended with signal 9 (Killed) at point "));
+  Database database(file("a.db"), Database::Access::kRead);
+  EXPECT_GE(database.number("SELECT count(*) FROM points WHERE status = 'ok'"), 18)
+      << "what was done is kept";
+  sweep(plan(), evaluate, options("a.db"), always);
+  EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, SaysWhyItsStoreCannotBeUsed) {
+  test::write_file(file("a.db"), std::string(5000, 'x'));
+  EXPECT_THAT(message_of([&] { sweep(plan(), evaluate, options("a.db"), always); }),
+              HasSubstr("a.db: not a database"));
+}
+
+TEST_F(SweepTest, TellsOfItsProgress) {
+  std::vector<std::uint64_t> done;
+  sweep(plan(), evaluate, options("a.db"), [&](const SweepCounts& counts) {
+    done.push_back(counts.done());
+    EXPECT_EQ(counts.total, 60U);
+    return true;
+  });
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_EQ(done.back(), 60U);
+}
+
+}  // namespace
+}  // namespace stereotlm::explore
