@@ -14,16 +14,26 @@ SlotPattern::SlotPattern(const FrameGeometry& geometry)
       invalid_before_strip_(static_cast<std::size_t>(geometry.strips)),
       next_change_(static_cast<std::size_t>(geometry.strips)) {
   for (int row = 0; row < geometry.height; ++row) {
-    std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
-    std::fill_n(bits, words_, ~std::uint64_t{0});
-    if (geometry.width % 64 != 0) bits[words_ - 1] = (std::uint64_t{1} << geometry.width % 64) - 1;
+    set_all(valid_.data() + static_cast<std::size_t>(row) * words_);
   }
   find_changes();
+}
+
+void SlotPattern::set_all(std::uint64_t* row_bits) const {
+  std::fill_n(row_bits, words_, ~std::uint64_t{0});
+  if (geometry_.width % 64 != 0) row_bits[words_ - 1] = (std::uint64_t{1} << geometry_.width % 64) - 1;
 }
 
 void SlotPattern::set_entries(const std::uint32_t* entries) {
   for (int row = 0; row < geometry_.height; ++row) {
     std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
+    std::uint32_t common = ~std::uint32_t{0};
+    for (int column = 0; column < geometry_.width; ++column) common &= entries[column];
+    if (kernels::entry_is_valid(common)) {
+      set_all(bits);
+      entries += geometry_.width;
+      continue;
+    }
     for (std::size_t word = 0; word < words_; ++word) {
       const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
       std::uint64_t found = 0;

@@ -45,6 +45,7 @@ class SlotPattern {
     int row;
   };
   Place place_of(std::uint64_t slot) const;
+  void set_all(std::uint64_t* row_bits) const;
   void find_changes();
   bool strip_begins_alike(int strip) const;
 

@@ -4,7 +4,7 @@
 
 #include "models/fpga/frame_counts.h"
 #include "models/fpga/stereo_core.h"
-#include "models/kernels/words.h"
+#include "models/kernels/rectification_table.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -22,17 +22,6 @@ struct Range {
   std::uint64_t end;
   bool overlaps(const Range& other) const { return first < other.end && other.first < end; }
 };
-
-bool entries_lie_inside(const std::uint32_t* entries, int width, int height) {
-  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  bool inside = true;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t entry = entries[i];
-    inside &= !kernels::entry_is_valid(entry) ||
-              (kernels::entry_column(entry) < width && kernels::entry_row(entry) < height);
-  }
-  return inside;
-}
 
 }  // namespace
 
@@ -71,7 +60,7 @@ const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, std::u
   const std::uint64_t first = registers::base_address(base);
   const std::uint64_t bytes = control().geometry().result_words * 16;
   if (crossbar_.may_have_changed(port, first, first + bytes)) {
-    is_sound = entries_lie_inside(entries, config_.core.width, config_.core.height);
+    is_sound = kernels::entries_point_inside(entries, bytes / 4, config_.core.width, config_.core.height);
     if (is_sound) pattern.set_entries(entries);
   }
   return is_sound ? entries : nullptr;

@@ -34,6 +34,19 @@ RectificationTable identity_table(int width, int height) {
   return table;
 }
 
+// Without branches, so that compilers use vectors.
+bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int width, int height) {
+  std::uint32_t outside = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t entry = entries[i];
+    // Negative where the position is beyond the last column or row.
+    const auto columns_left = static_cast<std::uint32_t>(width - 1 - entry_column(entry));
+    const auto rows_left = static_cast<std::uint32_t>(height - 1 - entry_row(entry));
+    outside |= (columns_left | rows_left) & entry;
+  }
+  return (outside & kEntryValid) == 0;
+}
+
 std::vector<std::string> problems(const RectificationTable& table) {
   if (table.width < 1 || table.width > 2048 || table.height < 1 || table.height > 2048) {
     return {"table size = " + std::to_string(table.width) + " x " + std::to_string(table.height) +
@@ -43,6 +56,11 @@ std::vector<std::string> problems(const RectificationTable& table) {
     return {"table entries = " + std::to_string(table.entries.size()) +
             ": must be width * height = " + std::to_string(pixel_count(table.width, table.height))};
   }
+  std::uint32_t bits = 0;
+  for (const std::uint32_t entry : table.entries) bits |= entry;
+  const bool is_sound =
+      entries_point_inside(table.entries.data(), table.entries.size(), table.width, table.height);
+  if (is_sound && (bits & kEntryUnusedBits) == 0) return {};
   std::vector<std::string> found;
   for (std::size_t index = 0; index < table.entries.size() && found.size() < kMostProblems; ++index) {
     const std::uint32_t entry = table.entries[index];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct RectificationTable {
 
 // Every pixel is its own source: the board without calibration.
 RectificationTable identity_table(int width, int height);
+
+// Whether all valid entries point inside an image of that size.
+bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int width, int height);
 
 // Every broken rule, as `entry (column, row) = 0x...: rule`, at most the first ten; empty if the table can be
 // loaded.

@@ -28,8 +28,8 @@ constexpr unsigned kMostJobs = 1024;
 
 constexpr const char* kFooter =
     "A plan is a YAML file, such as\n"
-    "  board: fpl2003                                       # a preset or a board file; without its tables'\n"
-    "  run: {source: preloaded}                             # contents: the identity. Or camera, and frames\n"
+    "  board: fpl2003                                       # a preset or a board file; its tables\n"
+    "  run: {source: preloaded}                             # are the identity. Or camera; and frames\n"
     "  set: {matcher.filter: none}                          # of every point\n"
     "  vary:                                                # all combinations of these\n"
     "    matcher.window: [5, 7, 9]\n"
@@ -38,11 +38,9 @@ constexpr const char* kFooter =
     "    - {image.width: [320, 640], image.height: [240, 480]}\n"
     "  where: [matcher.window * matcher.disparities <= 800] # SQL over keys: leaves the others out\n"
     "  sample: {points: 20, seed: 1}                        # so many of them, drawn before `where`\n"
-    "(see stereotlm keys). Each point is a row of table `points` of DB, an SQLite database: its status and "
-    "the\n"
-    "reason if it is not ok, the board in full, and a column for each key and for each figure of "
-    "stats.json;\n"
-    "stalls by port, bank and cause are in table `blame`. For instance\n"
+    "(see stereotlm keys). Each point is a row of table `points` of DB, an SQLite database: its status,\n"
+    "the reason if it is not ok, the board in full, and a column for each key and for each figure of\n"
+    "stats.json; stalls by port, bank and cause are in table `blame`. For instance\n"
     "  sqlite3 -box DB 'SELECT \"matcher.window\", \"frames_per_second.core\" FROM points'\n"
     "Points that DB holds already are not run again: after an interruption, give the same command.";
 

@@ -29,7 +29,7 @@ RESULT_FILES = ["config.yaml", "disparity.pfm", "disparity.png", "disparity_colo
 def run(*arguments, **options):
     """The finished process, with text output."""
     command = [PROGRAM] + [str(argument) for argument in arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, **options)
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
 
 
 def pgm(width, height, pixels):
