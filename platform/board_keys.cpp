@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <type_traits>
@@ -211,7 +213,39 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 // What the paths below a path begin with.
-std::string prefix_of(std::string_view path) { return path.empty() ? "" : std::string(path) + '.'; }
+
+struct Names {
+  std::vector<std::string> all;
+  std::vector<std::string> required;
+};
+
+// The names directly below each path, found once: boards are read by the thousand.
+const Names& names_below(std::string_view path) {
+  static const std::map<std::string, Names, std::less<>> kNames = [] {
+    std::map<std::string, Names, std::less<>> found;
+    const auto add = [&found](const std::string& full, bool is_required) {
+      const std::size_t dot = full.rfind('.');
+      Names& names = found[dot == std::string::npos ? "" : full.substr(0, dot)];
+      const std::string name = last_part(full);
+      if (!names.all.empty() && names.all.back() == name) return;
+      names.all.push_back(name);
+      if (is_required) names.required.push_back(name);
+    };
+    for (const Key& key : board_keys()) {
+      for (std::size_t dot = key.path.find('.'); dot != std::string::npos;
+           dot = key.path.find('.', dot + 1)) {
+        const std::string section = key.path.substr(0, dot);
+        if (found.count(section) == 0) add(section, true);
+        found[section];
+      }
+      add(key.path, !key.is_optional);
+    }
+    return found;
+  }();
+  static const Names kNone;
+  const auto found = kNames.find(path);
+  return found == kNames.end() ? kNone : found->second;
+}
 
 }  // namespace
 
@@ -227,26 +261,9 @@ const Key& board_key(std::string_view path) {
   throw std::out_of_range(fmt::format("{}: not a key of a board", path));
 }
 
-std::vector<std::string> child_keys(std::string_view path) {
-  const std::string prefix = prefix_of(path);
-  std::vector<std::string> children;
-  for (const Key& key : board_keys()) {
-    if (key.path.compare(0, prefix.size(), prefix) != 0) continue;
-    std::string child = key.path.substr(prefix.size(), key.path.find('.', prefix.size()) - prefix.size());
-    if (children.empty() || children.back() != child) children.push_back(std::move(child));
-  }
-  return children;
-}
+const std::vector<std::string>& child_keys(std::string_view path) { return names_below(path).all; }
 
-std::vector<std::string> required_keys(std::string_view path) {
-  std::vector<std::string> names = child_keys(path);
-  for (const Key& key : board_keys()) {
-    const std::string name = last_part(key.path);
-    if (!key.is_optional || key.path != prefix_of(path) + name) continue;
-    names.erase(std::remove(names.begin(), names.end(), name), names.end());
-  }
-  return names;
-}
+const std::vector<std::string>& required_keys(std::string_view path) { return names_below(path).required; }
 
 std::string rule_text(std::string_view path) {
   for (const Key& key : board_keys()) {

@@ -53,10 +53,10 @@ const std::vector<Key>& board_keys();
 const Key& board_key(std::string_view path);  // throws std::out_of_range
 
 // The names of the keys directly below a path ("" is the top), in order; empty below a single value.
-std::vector<std::string> child_keys(std::string_view path);
+const std::vector<std::string>& child_keys(std::string_view path);
 
 // Those of child_keys() that are not optional.
-std::vector<std::string> required_keys(std::string_view path);
+const std::vector<std::string>& required_keys(std::string_view path);
 
 // The rule of a key, or for a map what it holds: "a map of width, height".
 std::string rule_text(std::string_view path);

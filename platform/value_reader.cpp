@@ -59,11 +59,10 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
   Entries entries;
   for (const YamlNode::Entry& entry : node.entries) {
     const std::string full = below(path, entry.key.is_scalar() ? entry.key.text : short_text(entry.key));
-    const std::string value = short_text(entry.value);
-    if (!entry.key.misuse.empty()) report(entry.key.place, full, value, entry.key.misuse);
+    if (!entry.key.misuse.empty()) report(entry.key.place, full, short_text(entry.value), entry.key.misuse);
     if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
       const bool is_bank = path == "ssram.banks";
-      report(entry.key.place, full, value,
+      report(entry.key.place, full, short_text(entry.value),
              is_bank ? kBankNameRule : "unknown key; nearest known key: " + nearest_path(full));
     } else if (const auto [first, is_new] = entries.emplace(entry.key.text, &entry); !is_new) {
       report_repeated(entry, *first->second, full);
