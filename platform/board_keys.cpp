@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "models/area/device.h"
 #include "models/kernels/stereo.h"
 #include "models/pci/pci_config.h"
 #include "platform/yaml_tree.h"
@@ -73,11 +74,16 @@ std::vector<std::string> names(const std::array<const char*, kSize>& list) {
 }
 
 Key device() {
-  const std::vector<std::string> known = {"xc2v6000"};
-  return {"fpga.device", "the FPGA, for its resources", "",
-          WordKey{known, [](const BoardConfig& board) { return board.fpga.device == "xc2v6000" ? 0 : -1; },
-                  [](BoardConfig& board, int) { board.fpga.device = "xc2v6000"; }},
-          listed(known)};
+  std::vector<std::string> known;
+  for (const area::Device& one : area::kDevices) known.emplace_back(one.name);
+  const auto get = [](const BoardConfig& board) {
+    const area::Device* found = area::find_device(board.fpga.device);
+    return found == nullptr ? -1 : static_cast<int>(found - area::kDevices.data());
+  };
+  const auto set = [](BoardConfig& board, int index) {
+    board.fpga.device = area::kDevices[static_cast<std::size_t>(index)].name;
+  };
+  return {"fpga.device", "the FPGA, for its resources", "", WordKey{known, get, set}, listed(known)};
 }
 
 std::vector<Key> make_keys() {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "models/memory/memory_config.h"
+#include "platform/area.h"
 #include "platform/audit.h"
 #include "platform/bounds.h"
 
@@ -138,6 +139,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
     statistics.ports.push_back(port_statistics(static_cast<Port>(port), counters.ports[port]));
   }
   statistics.blame = blame_rows(config, counters);
+  statistics.area = area_of(config);
 
   Audit audit;
   audit_ports(counters, statistics.cycles, audit);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "models/area/area.h"
+
 namespace stereotlm::platform {
 
 // The figures of one run, as `stats.json` lists them (contract section 6). Counters of banks and ports are sums
@@ -103,6 +105,7 @@ struct Statistics {
   std::vector<PortStatistics> ports;  // in the order of memory::Port
   std::vector<BlameRow> blame;        // sorted by port, bank, by (turnaround last), without zero rows
   std::optional<ComputerStatistics> computer;
+  area::Area area;                  // of the FPGA
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a sound run
 };
 

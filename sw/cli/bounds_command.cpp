@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "platform/area.h"
 #include "platform/board_rules.h"
 #include "platform/bounds.h"
 #include "platform/tables.h"
@@ -144,6 +145,25 @@ std::string lines_of(const Group& group, double clock_mhz) {
   return text;
 }
 
+std::string area_lines(const BoardConfig& board) {
+  constexpr const char* row = "  {:<21} {:>6} {:>10} {:>11} {:>11} {:>12}\n";
+  const area::Device& device = platform::device_of(board);
+  const std::vector<area::Item> items = platform::area_items(board);
+  const area::Area area = area::total(items, device);
+  std::string text = fmt::format("area of {}\n", device.name);
+  text += fmt::format(row, "parts", "count", "LUTs", "flip-flops", "block RAMs", "multipliers");
+  for (const area::Item& item : items) {
+    text += fmt::format(row, item.name, item.count, item.all.luts, item.all.flip_flops, item.all.block_rams,
+                        item.all.multipliers);
+  }
+  text += fmt::format(row, "all", "", area.luts, area.flip_flops, area.block_rams, area.multipliers);
+  text += fmt::format(
+      "area of the core: {} of {} slices ({:.2f} %), {} of {} block RAMs, {} of {} multipliers{}\n",
+      area.slices, device.slices, area.slices_percent, area.block_rams, device.block_rams, area.multipliers,
+      device.multipliers, area.fits() ? "" : ": does not fit");
+  return text;
+}
+
 int bounds(const BoardOptions& options) {
   Problems problems;
   const auto board = options.load(problems);
@@ -170,7 +190,7 @@ int bounds(const BoardOptions& options) {
       fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", bound.core, bound.core_limited_by);
   text += fmt::format("bound of the system: {:.3f} frames/s, limited by {}\n", *bound.system,
                       bound.system_limited_by);
-  print(text);
+  print(text + area_lines(*board));
   return kDone;
 }
 
@@ -184,11 +204,11 @@ void add_bounds(CLI::App& program, Action& action) {
   };
   options->add_to(add_command(
       program, "bounds",
-      "Say what limits the frame rate: ports, banks, matcher, and cameras and buses around them", parsed,
+      "Say what limits the frame rate: ports, banks, matcher, cameras, buses; and the area", parsed,
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
       "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera\n"
-      "as long as no pixel is dropped.\n"
+      "as long as no pixel is dropped. Last an estimate of what the core takes of its FPGA.\n"
       "Tables, where the board has them, are the identity, or those of --calibration."));
 }
 

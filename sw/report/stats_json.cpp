@@ -59,6 +59,17 @@ Json to_json(const platform::Percentiles& values) {
           {"max", values.max}};
 }
 
+Json to_json(const area::Area& area) {
+  return {{"slices", area.slices},
+          {"slices_percent", area.slices_percent},
+          {"luts", area.luts},
+          {"flip_flops", area.flip_flops},
+          {"block_rams", area.block_rams},
+          {"block_rams_percent", area.block_rams_percent},
+          {"multipliers", area.multipliers},
+          {"multipliers_percent", area.multipliers_percent}};
+}
+
 Json to_json(const Accuracy& accuracy) {
   Json result = Json::object();
   const auto add = [&result](const char* key, const std::optional<double>& percent) {
@@ -111,6 +122,7 @@ Json stats_document(const platform::Statistics& statistics, const std::optional<
   document["ports"] = rows(statistics.ports);
   document["blame"] = rows(statistics.blame);
   if (statistics.computer) add_computer(*statistics.computer, document);
+  document["area"] = to_json(statistics.area);
   if (!statistics.failed.empty()) document["failed"] = statistics.failed;
   if (accuracy) document["accuracy"] = to_json(*accuracy);
   return document;

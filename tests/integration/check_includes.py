@@ -23,14 +23,16 @@ HEADER_SUFFIXES = {".h", ".hpp"}
 
 SYSTEMC = re.compile(r"(systemc|systemc\.h|tlm|tlm\.h|(sysc|tlm_core|tlm_utils)/.*)$")
 OPENCV = re.compile(r"opencv(2|4)?(/.*|\.hpp)$")
+EIGEN = re.compile(r"(unsupported/)?Eigen/.*$")
 FILES_OR_YAML = re.compile(r"(fstream|filesystem|(yaml-cpp|nlohmann)/.*)$")
 
 # Files -> headers from outside that they may not reach, directly or through the project's own headers.
 FREE_OF = [
-    (re.compile(r"models/kernels/"), SYSTEMC, "SystemC"),
+    (re.compile(r"models/(kernels|area)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/.*(_config|register_map|registers)\.h$"), SYSTEMC, "SystemC"),
     (re.compile(r"(sw/explore|sw/driver|calib)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
+    (re.compile(r"(models|platform)/"), EIGEN, "Eigen"),
     (re.compile(r"models/"), FILES_OR_YAML, "YAML or files"),
 ]
 

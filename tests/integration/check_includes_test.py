@@ -99,6 +99,7 @@ class CheckIncludes(unittest.TestCase):
 
     def test_finds_systemc_wherever_it_may_not_be(self):
         for path in (
+            "models/area/a.h",
             "models/pci/pci_config.h",
             "models/fpga/register_map.h",
             "models/fpga/core_registers.h",
@@ -117,6 +118,12 @@ class CheckIncludes(unittest.TestCase):
         for path in ("models/a.cpp", "platform/a.cpp"):
             with self.subTest(path):
                 self.expect_only(path, "#include <opencv2/imgproc.hpp>\n", "may not include OpenCV")
+                (self.root / path).unlink()
+
+    def test_finds_eigen_in_models_and_platform(self):
+        for path in ("models/a.cpp", "platform/a.cpp"):
+            with self.subTest(path):
+                self.expect_only(path, "#include <Eigen/Core>\n", "may not include Eigen")
                 (self.root / path).unlink()
 
     def test_finds_yaml_and_files_in_models(self):

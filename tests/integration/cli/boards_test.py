@@ -98,9 +98,15 @@ class Keys(ProgramTest):
 
 
 class Bounds(ProgramTest):
+    def parts(self, *arguments):
+        """The lines about the frame rate, and those about the FPGA."""
+        lines = self.succeeds(run("bounds", *arguments)).splitlines()
+        at = lines.index("area of xc2v6000")
+        return lines[:at], lines[at:]
+
     def groups(self, *arguments):
         """For each group of frames the line that heads it and its resources with their numbers; the core's bound."""
-        lines = self.succeeds(run("bounds", *arguments)).splitlines()
+        lines, _ = self.parts(*arguments)
         groups = []
         for line in lines[: lines.index("around the board")]:
             if line.startswith("frame"):
@@ -112,7 +118,7 @@ class Bounds(ProgramTest):
 
     def around_the_board(self, *arguments):
         """What each part of the computer allows, and the system's bound."""
-        lines = self.succeeds(run("bounds", *arguments)).splitlines()
+        lines, _ = self.parts(*arguments)
         parts = [line.split() for line in lines[lines.index("around the board") + 2 : -2]]
         return {name: float(rate) for name, rate in parts}, lines[-1]
 
@@ -174,6 +180,25 @@ class Bounds(ProgramTest):
         for key, part in (("pci.clock_mhz=1", "pci"), ("bridge.local_clock_mhz=1", "bridge")):
             parts, last = self.around_the_board("fpl2003", *fast, "--set", key)
             self.assertEqual(last, f"bound of the system: {parts[part]:.3f} frames/s, limited by {part}")
+
+    def test_lists_what_the_core_takes_of_its_fpga(self):
+        _, (_, head, *items, whole, last) = self.parts("fpl2003")
+        self.assertEqual(head.split(), "parts count LUTs flip-flops block RAMs multipliers".split())
+        numbers = [list(map(int, line.split()[-4:])) for line in items]
+        self.assertEqual(whole.split(), ["all", *(str(sum(column)) for column in zip(*numbers))])
+        windows = next(line.split() for line in items if "window modules" in line)
+        self.assertEqual(windows[2:], ["80", "2960", "1120", "0", "0"])
+        self.assertEqual(
+            last,
+            "area of the core: 7420 of 33792 slices (21.96 %), 17 of 144 block RAMs, 22 of 144 multipliers",
+        )
+        for line in (head, *items, whole, last):
+            self.assertLessEqual(len(line), 100)
+
+    def test_says_that_a_core_does_not_fit(self):
+        large = ["--set", "matcher.fetch=line_buffer", "--set", "matcher.disparities=254"]
+        _, lines = self.parts("fpl2003", *large)
+        self.assertRegex(lines[-1], r"^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), .*: does not fit$")
 
     def test_refuses_wrong_boards(self):
         self.refused_in_one_line(run("bounds", "fpl2003", "--set", "image.width=3"), "image.width = 3")

@@ -46,6 +46,18 @@ class ResultFiles(ProgramTest):
         self.assertNotIn("failed", stats)
         self.assertNotIn("accuracy", stats)
 
+    def test_area_is_that_of_the_board(self):
+        self.succeeds(self.run_small("--out", self.out))
+        area = self.stats()["area"]
+        self.assertEqual(
+            list(area),
+            "slices slices_percent luts flip_flops block_rams block_rams_percent multipliers multipliers_percent".split(),
+        )
+        self.assertEqual(area["slices_percent"], 100 * area["slices"] / 33792)
+        bounds = self.succeeds(run("bounds", "fpl2003", *SMALL)).splitlines()[-1]
+        self.assertTrue(bounds.startswith(f"area of the core: {area['slices']} of 33792 slices"), bounds)
+        self.assertIn(f", {area['block_rams']} of 144 block RAMs, ", bounds)
+
     def test_frames_take_the_banks_of_a_list_in_turn(self):
         self.succeeds(self.run_small("--out", self.out, "--frames", "3"))
         banks = {bank["name"]: bank for bank in self.stats()["banks"]}

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "platform/area.h"
 #include "platform/bounds.h"
 #include "tests/unit/platform/preloaded_run.h"
 
@@ -123,6 +124,15 @@ TEST(CollectStatistics, BlamesStallsInTheOrderOfPortBankAndBy) {
     EXPECT_EQ(bank.busy_cycles + bank.turnaround_cycles + bank.idle_cycles, statistics.cycles);
     EXPECT_EQ(bank.turnaround_cycles > 0, bank.name == "bank0" || bank.name == "bank1") << bank.name;
   }
+}
+
+TEST(CollectStatistics, HasTheAreaOfTheBoard) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 1);
+  const Statistics statistics = run.finish();
+  EXPECT_GT(statistics.area.slices, 0);
+  EXPECT_EQ(statistics.area.slices, area_of(board).slices);
+  EXPECT_EQ(statistics.area.block_rams, area_of(board).block_rams);
 }
 
 TEST(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {

@@ -61,8 +61,14 @@ platform::Statistics small_run() {
   statistics.banks = {{"bank0", 1500, 20, 1520, 7, 473, 3, 0.76, 121.6}};
   statistics.ports = {{"left_lut", 1, 2, 3, 4, 5, 6}, {"host", 0, 0, 0, 2000, 0, 0}};
   statistics.blame = {{"left_lut", "bank0", "left_pixel", 40}};
+  statistics.area = {12'000, 7462, 22.5, 11'900, 5300, 18, 12.5, 36, 25};
   return statistics;
 }
+
+// The line of small_run().
+constexpr const char* kArea =
+    R"(  "area": {"slices": 7462, "slices_percent": 22.5, "luts": 11900, "flip_flops": 5300, "block_rams": 18, )"
+    R"("block_rams_percent": 12.5, "multipliers": 36, "multipliers_percent": 25})";
 
 TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
   EXPECT_EQ(stats_json(small_run(), Accuracy{4.25, 2, 81.5}),
@@ -88,6 +94,8 @@ TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
   "blame": [
     {"port": "left_lut", "bank": "bank0", "by": "left_pixel", "cycles": 40}
   ],
+)" + std::string(kArea) +
+                R"(,
   "accuracy": {"bad_1_percent": 4.25, "bad_2_percent": 2, "answered_percent": 81.5}
 }
 )");
@@ -130,16 +138,15 @@ TEST(StatsJson, HasTheKeysOfAComputer) {
   ],
   "latency_ms": {
     "capture_to_host": {"min": 77.5, "p50": 80, "p95": 90.25, "p99": 99, "max": 100}
-  }
-}
-)"));
+  },
+)" + std::string(kArea) + "\n}\n"));
 }
 
 TEST(StatsJson, LeavesOutWhatDoesNotApply) {
   platform::Statistics statistics = small_run();
   statistics.blame.clear();
   const std::string text = stats_json(statistics, std::nullopt);
-  EXPECT_THAT(text, HasSubstr("  \"blame\": []\n}\n"));
+  EXPECT_THAT(text, HasSubstr("  \"blame\": [],\n" + std::string(kArea) + "\n}\n"));
   EXPECT_THAT(text, Not(HasSubstr("failed")));
   EXPECT_THAT(text, Not(HasSubstr("accuracy")));
 }

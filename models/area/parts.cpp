@@ -1,0 +1,67 @@
+#include "models/area/parts.h"
+
+#include <algorithm>
+#include <array>
+
+namespace stereotlm::area {
+namespace {
+
+struct Shape {
+  int words;
+  int bits;
+};
+constexpr std::array<Shape, 6> kBlockRamShapes = {
+    {{512, 36}, {1024, 18}, {2048, 9}, {4096, 4}, {8192, 2}, {16384, 1}}};
+constexpr int kSrlLength = 16;
+
+constexpr std::int64_t ceil_of(std::int64_t part, std::int64_t whole) { return (part + whole - 1) / whole; }
+
+}  // namespace
+
+Resources& Resources::operator+=(const Resources& other) {
+  luts += other.luts;
+  flip_flops += other.flip_flops;
+  block_rams += other.block_rams;
+  multipliers += other.multipliers;
+  return *this;
+}
+
+Resources operator+(Resources one, const Resources& other) { return one += other; }
+
+Resources operator*(std::int64_t count, const Resources& each) {
+  return {count * each.luts, count * each.flip_flops, count * each.block_rams, count * each.multipliers};
+}
+
+int bits_of(std::int64_t largest) {
+  int bits = 0;
+  for (; largest > 0; largest /= 2) ++bits;
+  return bits;
+}
+
+int bits_of(Range range) {
+  if (range.low >= 0) return bits_of(range.high);
+  if (range.high <= 0) return bits_of(-range.low);
+  return 1 + std::max(bits_of(range.high), bits_of(-range.low - 1));
+}
+
+Resources adder(int bits) { return {bits}; }
+
+Resources comparator(int bits) { return {bits + 1}; }
+
+Resources selector(int bits) { return {bits}; }
+
+Resources absolute_difference(int bits) { return comparator(bits) + selector(bits); }
+
+Resources registers(int bits) { return {0, bits}; }
+
+Resources shift_register(int length, int bits) {
+  return length == 1 ? registers(bits) : Resources{ceil_of(length, kSrlLength) * bits};
+}
+
+Resources memory(int words, int bits) {
+  const auto deep_enough = std::find_if(kBlockRamShapes.begin(), kBlockRamShapes.end() - 1,
+                                        [words](const Shape& shape) { return words <= shape.words; });
+  return {0, 0, ceil_of(words, deep_enough->words) * ceil_of(bits, deep_enough->bits), 0};
+}
+
+}  // namespace stereotlm::area

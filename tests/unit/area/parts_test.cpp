@@ -1,0 +1,72 @@
+#include "models/area/parts.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/area/resources.h"
+
+namespace stereotlm::area {
+namespace {
+
+TEST(BitsOf, GrowAtEachPowerOfTwo) {
+  EXPECT_EQ(bits_of(0), 0);
+  EXPECT_EQ(bits_of(1), 1);
+  EXPECT_EQ(bits_of(255), 8);
+  EXPECT_EQ(bits_of(256), 9);
+  EXPECT_EQ(bits_of((std::int64_t{1} << 40) - 1), 40);
+  EXPECT_EQ(bits_of(std::int64_t{1} << 40), 41);
+}
+
+TEST(BitsOf, ARangeOfBothSignsHaveASignBit) {
+  EXPECT_EQ(bits_of(Range{-1, 0}), 1);  // a magnitude
+  EXPECT_EQ(bits_of(Range{-256, 0}), 9);
+  EXPECT_EQ(bits_of(Range{-1, 1}), 2);
+  EXPECT_EQ(bits_of(Range{-128, 127}), 8);
+  EXPECT_EQ(bits_of(Range{-129, 127}), 9);
+  EXPECT_EQ(bits_of(Range{-128, 128}), 9);
+  EXPECT_EQ(bits_of(Range{0, 127}), 7);
+  EXPECT_EQ(bits_of(Range{0, 0}), 0);
+}
+
+TEST(Parts, TakeALutABit) {
+  EXPECT_EQ(adder(12), (Resources{12}));
+  EXPECT_EQ(selector(12), (Resources{12}));
+  EXPECT_EQ(comparator(12), (Resources{13}));
+  EXPECT_EQ(absolute_difference(8), (Resources{9 + 8}));
+  EXPECT_EQ(registers(12), (Resources{0, 12}));
+}
+
+TEST(ShiftRegister, IsAnSrl16UpToALengthOf16) {
+  EXPECT_EQ(shift_register(0, 9), (Resources{}));
+  EXPECT_EQ(shift_register(1, 9), (Resources{0, 9}));
+  EXPECT_EQ(shift_register(2, 9), (Resources{9}));
+  EXPECT_EQ(shift_register(16, 9), (Resources{9}));
+  EXPECT_EQ(shift_register(17, 9), (Resources{18}));
+  EXPECT_EQ(shift_register(64, 9), (Resources{36}));
+  EXPECT_EQ(shift_register(65, 9), (Resources{45}));
+}
+
+TEST(Memory, IsMadeOfBlockRamsThatAreDeepEnough) {
+  struct Case {
+    int words;
+    int bits;
+    std::int64_t block_rams;
+  };
+  const Case cases[] = {
+      {512, 36, 1}, {513, 36, 2},  {512, 37, 2},  {1024, 18, 1}, {1025, 18, 2},  {1024, 19, 2},
+      {2048, 9, 1}, {2049, 9, 3},  {2048, 10, 2}, {4096, 4, 1},  {4097, 4, 2},   {8192, 2, 1},
+      {8193, 2, 2}, {16384, 1, 1}, {16385, 1, 2}, {640, 54, 3},  {1028, 54, 6},  {1, 1, 1},
+      {1, 36, 1},   {1, 0, 0},     {640, 94, 6},  {512, 94, 3},  {2048, 97, 11},
+  };
+  for (const Case& one : cases) {
+    EXPECT_EQ(memory(one.words, one.bits), (Resources{0, 0, one.block_rams, 0}))
+        << one.words << " x " << one.bits;
+  }
+}
+
+TEST(Resources, AddAndMultiplyKindByKind) {
+  EXPECT_EQ((Resources{1, 2, 3, 4} + Resources{10, 20, 30, 40}), (Resources{11, 22, 33, 44}));
+  EXPECT_EQ((3 * Resources{1, 2, 3, 4}), (Resources{3, 6, 9, 12}));
+}
+
+}  // namespace
+}  // namespace stereotlm::area
