@@ -35,8 +35,8 @@ class Arbitration {
   }
   // Whether whatever this port requests is granted at once, as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
-  // So many of the cycles granted to a port that is alone held no request, as it turns out; before a route changes or
-  // counting ends.
+  // So many of the cycles granted to a port that is alone held no request, as it turns out. To be told before a route
+  // changes or counting ends: then what is left of them moves the bank's place in the round robin.
   void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
 
   // One request of a port for a bank that no port is routed to, in the given direction, and what comes of it; it is
@@ -62,12 +62,13 @@ class Arbitration {
   // same as at begin_period().
   void repeat(std::uint64_t period_cycles, std::uint64_t times);
 
-  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
-  // counting has ended; their uncounted_accesses() always.
+  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when counting
+  // has ended; their uncounted_accesses() always. Until then the grants of a port that is alone may be taken back.
+  // Asking for the arbiters changes nothing.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const std::vector<BankArbiter>& arbiters() const {
-    settle();
+    count_alone();
     return arbiters_;
   }
 
@@ -85,7 +86,8 @@ class Arbitration {
 
   bool is_routed(std::size_t port) const { return (routed_ >> port & 1U) != 0; }
   void share_banks();
-  void settle() const;
+  void count_alone() const;
+  void settle();
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
   mutable std::vector<BankArbiter> arbiters_;
@@ -97,8 +99,9 @@ class Arbitration {
   PortMask alone_ = 0;
   using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
   mutable AloneCycles alone_cycles_{};
-  AloneCycles alone_before_period_{};
+  mutable AloneCycles alone_before_period_{};                   // only the difference to alone_cycles_ counts
   mutable std::array<std::uint64_t, kPortCount> taken_back_{};  // of the alone_cycles_
+  mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those taken back
   std::array<SharedBank, kPortCount> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;

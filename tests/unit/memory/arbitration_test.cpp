@@ -194,6 +194,41 @@ INSTANTIATE_TEST_SUITE_P(Arbitration, ArbitrationPeriods, testing::Bool(), [](co
   return std::string(suite.param ? "Counted" : "NotCounted");
 });
 
+TEST(Arbitration, RepeatsAPeriodInWhichSomebodyAsksForTheArbiters) {
+  Arbitration arbitration(ArbiterConfig{}, banks());
+  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.begin_counting(0);
+  for (std::uint64_t cycle = 0; cycle < 3; ++cycle) arbitration.arbitrate(cycle, kLeft);
+  arbitration.begin_period();
+  arbitration.arbitrate(3, kLeft);
+  EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 4U);
+  arbitration.arbitrate(4, kLeft);
+  arbitration.arbitrate(5, kNone);
+  arbitration.repeat(3, 5);
+  arbitration.end_counting(21);
+  EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 3U + 6 * 2);
+  EXPECT_EQ(arbitration.arbiters()[0].stats().idle_cycles, 6U);
+}
+
+// Round robin: left_pixel is before right_pixel, unless it was the last that was granted.
+PortMask granted_after_being_alone(std::uint64_t grants, std::uint64_t taken_back) {
+  Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());
+  arbitration.route(Port::kLeftPixel, 0, false);
+  for (std::uint64_t cycle = 0; cycle < grants; ++cycle) arbitration.arbitrate(cycle, kLeft);
+  EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants);
+  arbitration.take_back(Port::kLeftPixel, taken_back);
+  EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants - taken_back);
+  arbitration.route(Port::kRightPixel, 0, false);
+  return arbitration.arbitrate(grants, both(kLeft, kRight));
+}
+
+TEST(Arbitration, MovesNoPlaceForGrantsThatAreTakenBackAfterSomebodyAsked) {
+  EXPECT_EQ(granted_after_being_alone(0, 0), kLeft);
+  EXPECT_EQ(granted_after_being_alone(5, 5), kLeft);
+  EXPECT_EQ(granted_after_being_alone(5, 4), kRight);
+  EXPECT_EQ(granted_after_being_alone(1, 0), kRight);
+}
+
 TEST(Arbitration, HasAStateOnlyWherePortsMeetOrTheBankTurnsRound) {
   Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());
   const Arbitration::State none{};

@@ -210,15 +210,17 @@ TEST(BankArbiter, CountsGrantsToAPortAloneWhereverTheyLay) {
   BankArbiter arbiter(config, 0);
   const PortMask left = mask_of(Port::kLeftPixel);
   const PortMask result = mask_of(Port::kResult);
-  arbiter.grant_alone(left, false, 7);
+  arbiter.count_alone(left, false, 7);
   EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
   arbiter.begin_counting(10);
-  arbiter.grant_alone(left, false, 4);
-  arbiter.grant_alone(result, true, 1);
-  arbiter.grant_alone(left, false, 0);
+  arbiter.count_alone(left, false, 4);
+  arbiter.count_alone(result, true, 1);
+  arbiter.count_alone(left, false, 0);
+  arbiter.move_place_behind(left);
+  arbiter.move_place_behind(result);
   // The place is behind the result port, the last that was granted.
   EXPECT_EQ(arbiter.arbitrate(17, static_cast<PortMask>(left | result), result), left);
-  arbiter.grant_alone(left, false, 2);
+  arbiter.count_alone(left, false, 2);
   arbiter.end_counting(30);
   const ArbiterStats stats = arbiter.stats();
   EXPECT_EQ(stats.reads, 7U);
