@@ -21,7 +21,6 @@ class Arbitration {
   // The port has nothing to request any more.
   void unroute(Port port);
   std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
-  bool writes(Port port) const { return routes_[index_of(port)].write; }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
@@ -55,9 +54,8 @@ class Arbitration {
   // are 0.
   using State = std::array<std::uint32_t, kPortCount>;
   State state(std::uint64_t cycle) const;
-  // From here on a period is recorded, until end_period(), repeat() or a change of routes.
+  // From here on a period is recorded, until repeat() or a change of routes.
   void begin_period();
-  void end_period() { recording_ = false; }
   // What has happened since begin_period(), in `period_cycles` cycles, happens `times` times again; the state is the
   // same as at begin_period().
   void repeat(std::uint64_t period_cycles, std::uint64_t times);

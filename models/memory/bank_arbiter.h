@@ -62,13 +62,6 @@ class BankArbiter {
       uncounted_accesses_ += cycles;
     }
   }
-  // Both at once. Returns the port that is granted.
-  PortMask arbitrate(std::uint64_t cycle, PortMask requests, PortMask writes) {
-    const Outcome outcome = decide(cycle, requests, writes);
-    count(cycle, outcome);
-    return granted_in(outcome);
-  }
-
   // Counts `cycles` cycles since the last call, in each of which this port alone asked and was granted, for a bank that
   // needs no turnaround ..
   void count_alone(PortMask port, bool write, std::uint64_t cycles);

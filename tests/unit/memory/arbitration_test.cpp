@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/random_board.h"
+#include "tests/unit/memory/step_arbiter.h"
 
 namespace stereotlm::memory {
 namespace {
@@ -76,7 +77,7 @@ class PlainArbitration {
         asking = static_cast<PortMask>(asking | 1U << port);
         if (routes[port].second) writes = static_cast<PortMask>(writes | 1U << port);
       }
-      if (asking != 0) granted = both(granted, arbiters[bank].arbitrate(cycle, asking, writes));
+      if (asking != 0) granted = both(granted, memory::arbitrate(arbiters[bank], cycle, asking, writes));
     }
     return granted;
   }
