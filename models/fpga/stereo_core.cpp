@@ -162,8 +162,8 @@ void StereoCore::start_frame(const FrameStart& start) {
   lr_check_.start_frame();
   result_packer_.start_frame();
   errors_before_ = access_errors();
-  frame_ = start;
-  whole_ = config_.fidelity != Fidelity::kCycle && read_frame(start);
+  buffers_ = buffers_of(start);
+  whole_ = config_.fidelity != Fidelity::kCycle && read_frame();
   if (whole_) {
     timing_.start_frame(latencies, left_pattern_, right_pattern_);
   } else {

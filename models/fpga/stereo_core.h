@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,6 +30,7 @@
 #include "models/kernels/stereo_pipeline.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
+#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
@@ -117,10 +119,12 @@ class StereoCore : public sc_core::sc_module {
   bool has_bank(std::uint32_t base) const;
   int latency_of(std::uint32_t base) const;
 
-  bool read_frame(const FrameStart& start);
-  const std::uint32_t* read_table(LutReader& reader, memory::Port port, std::uint32_t base,
-                                  SlotPattern& pattern, bool& is_sound);
-  bool buffers_are_apart(const FrameStart& start) const;
+  using Buffers = std::array<AddressRange, memory::kPortCount>;  // [port that works on it]; of others empty
+  Buffers buffers_of(const FrameStart& start) const;
+  const AddressRange& buffer_of(memory::Port port) const { return buffers_[memory::index_of(port)]; }
+  bool read_frame();
+  const std::uint32_t* read_table(LutReader& reader, memory::Port port, SlotPattern& pattern, bool& is_sound);
+  bool buffers_are_apart() const;
   void write_frame();
   void count_frame(std::uint64_t answered);
   void check_burst(const HostRoute& route) const;
@@ -190,7 +194,7 @@ class StereoCore : public sc_core::sc_module {
   SlotPattern right_pattern_{FrameGeometry(config_.core)};
   bool left_table_is_sound_ = true;
   bool right_table_is_sound_ = true;
-  FrameStart frame_;  // that runs
+  Buffers buffers_;  // of the frame that runs
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
   std::vector<std::uint8_t> disparities_;  // of the frame that runs
   // Words of the local bus in a bank that the running frame does not use, until it is known which of them count.

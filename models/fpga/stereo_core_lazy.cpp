@@ -17,12 +17,6 @@ constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
 constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // stepped for a burst, likewise
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
 
-struct Range {
-  std::uint64_t first;
-  std::uint64_t end;
-  bool overlaps(const Range& other) const { return first < other.end && other.first < end; }
-};
-
 bool entries_lie_inside(const std::uint32_t* entries, int width, int height) {
   const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   bool inside = true;
@@ -38,18 +32,33 @@ bool entries_lie_inside(const std::uint32_t* entries, int width, int height) {
 
 // The data.
 
+StereoCore::Buffers StereoCore::buffers_of(const FrameStart& start) const {
+  const std::uint64_t picture_bytes = control().geometry().result_words * 4;
+  const std::uint64_t table_bytes = picture_bytes * 4;
+  Buffers buffers{};
+  const auto set = [&buffers](Port port, std::uint32_t base, std::uint64_t bytes) {
+    const std::uint64_t first = registers::base_address(base);
+    buffers[memory::index_of(port)] = {first, first + bytes};
+  };
+  if (left_lut_) set(Port::kLeftLut, start.left_lut, table_bytes);
+  if (right_lut_) set(Port::kRightLut, start.right_lut, table_bytes);
+  set(Port::kLeftPixel, start.left_image, picture_bytes);
+  set(Port::kRightPixel, start.right_image, picture_bytes);
+  set(Port::kResult, start.disparity, picture_bytes);
+  return buffers;
+}
+
 // Reads all that the frame works on, and works on it. False if that is not possible at once.
-bool StereoCore::read_frame(const FrameStart& start) {
-  if (!buffers_are_apart(start)) return false;
+bool StereoCore::read_frame() {
+  if (!buffers_are_apart()) return false;
   const std::uint32_t* left_table = nullptr;
   const std::uint32_t* right_table = nullptr;
   if (left_lut_) {
-    left_table = read_table(*left_lut_, Port::kLeftLut, start.left_lut, left_pattern_, left_table_is_sound_);
+    left_table = read_table(*left_lut_, Port::kLeftLut, left_pattern_, left_table_is_sound_);
     if (left_table == nullptr) return false;
   }
   if (right_lut_) {
-    right_table =
-        read_table(*right_lut_, Port::kRightLut, start.right_lut, right_pattern_, right_table_is_sound_);
+    right_table = read_table(*right_lut_, Port::kRightLut, right_pattern_, right_table_is_sound_);
     if (right_table == nullptr) return false;
   }
   const std::uint8_t* const left = left_pixel_.image(config_.core.height);
@@ -64,13 +73,12 @@ bool StereoCore::read_frame(const FrameStart& start) {
 }
 
 // Null if it cannot be read directly, or points outside the image.
-const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, std::uint32_t base,
-                                            SlotPattern& pattern, bool& is_sound) {
+const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, SlotPattern& pattern,
+                                            bool& is_sound) {
   const std::uint32_t* const entries = reader.table(config_.core.height);
   if (entries == nullptr) return nullptr;
-  const std::uint64_t first = registers::base_address(base);
-  const std::uint64_t bytes = control().geometry().result_words * 16;
-  if (crossbar_.may_have_changed(port, first, first + bytes)) {
+  const AddressRange& table = buffer_of(port);
+  if (crossbar_.may_have_changed(port, table.first, table.end)) {
     is_sound = entries_lie_inside(entries, config_.core.width, config_.core.height);
     if (is_sound) pattern.set_entries(entries);
   }
@@ -78,17 +86,11 @@ const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, std::u
 }
 
 // Whether the disparities go where nothing is read from.
-bool StereoCore::buffers_are_apart(const FrameStart& start) const {
-  const std::uint64_t bytes = control().geometry().result_words * 4;
-  const auto range = [](std::uint32_t base, std::uint64_t size) {
-    const std::uint64_t first = registers::base_address(base);
-    return Range{first, first + size};
-  };
-  const Range disparity = range(start.disparity, bytes);
-  return !disparity.overlaps(range(start.left_image, bytes)) &&
-         !disparity.overlaps(range(start.right_image, bytes)) &&
-         !(left_lut_ && disparity.overlaps(range(start.left_lut, 4 * bytes))) &&
-         !(right_lut_ && disparity.overlaps(range(start.right_lut, 4 * bytes)));
+bool StereoCore::buffers_are_apart() const {
+  const AddressRange& disparity = buffer_of(Port::kResult);
+  return std::count_if(buffers_.begin(), buffers_.end(), [&disparity](const AddressRange& buffer) {
+           return buffer.overlaps(disparity);
+         }) == 1;  // itself
 }
 
 // With the last write.
@@ -105,7 +107,7 @@ void StereoCore::write_frame() {
       return;
     }
     std::copy(disparities_.begin(), disparities_.end(), buffer);
-    crossbar_.changes(registers::base_address(frame_.disparity), words * 4);
+    crossbar_.changes(buffer_of(Port::kResult).first, words * 4);
     answered = static_cast<std::uint64_t>(
         std::count_if(disparities_.begin(), disparities_.end(),
                       [](std::uint8_t d) { return d != kernels::kInvalidDisparity; }));
@@ -141,16 +143,11 @@ void StereoCore::count_frame(std::uint64_t answered) {
 
 // A burst that would notice that the data is not moved word by word.
 void StereoCore::check_burst(const HostRoute& route) const {
-  const std::uint64_t bytes = control().geometry().result_words * 4;
-  const Range burst{route.first, route.end};
-  const auto touches = [&burst](std::uint32_t base, std::uint64_t size) {
-    const std::uint64_t first = registers::base_address(base);
-    return burst.overlaps({first, first + size});
-  };
-  const bool reads = touches(frame_.left_image, bytes) || touches(frame_.right_image, bytes) ||
-                     (left_lut_ && touches(frame_.left_lut, 4 * bytes)) ||
-                     (right_lut_ && touches(frame_.right_lut, 4 * bytes));
-  if (!(route.write && reads) && !touches(frame_.disparity, bytes)) return;
+  const AddressRange burst{route.first, route.end};
+  const bool notices = std::any_of(buffers_.begin(), buffers_.end(), [&](const AddressRange& buffer) {
+    return buffer.overlaps(burst) && (route.write || &buffer == &buffer_of(Port::kResult));
+  });
+  if (!notices) return;
   SC_REPORT_ERROR(
       "/stereotlm/core",
       (std::string(name()) + ": a burst of the local bus from " + std::to_string(route.first) + " on " +
