@@ -168,6 +168,7 @@ void StereoCore::start_frame(const FrameStart& start) {
     timing_.start_frame(latencies, left_pattern_, right_pattern_);
   } else {
     timing_.start_frame(latencies);
+    ++stepped_frames_;
   }
 
   // Cycle 0 is the first that begins at or after the strobe.

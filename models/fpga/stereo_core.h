@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -36,9 +37,9 @@ namespace stereotlm::fpga {
 
 // How the core works on a frame; the results and times are the same.
 enum class Fidelity : std::uint8_t {
-  kCycle,   // cycle by cycle, every access a transaction
-  kFast,    // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
-  kTiming,  // as kFast, but no pictures are read and no disparities written
+  kCycle,  // cycle by cycle, every access a transaction
+  kFast,   // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
+  kTiming,  // as kFast, but without pictures read and disparities written, unless the frame is done cycle by cycle
 };
 
 struct StereoCoreConfig {
@@ -61,8 +62,8 @@ struct StereoCoreConfig {
 // a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the
 // start strobe, and the disparities appear with the last write; a burst of the local bus that would notice (it
 // writes what the frame reads, or touches its disparities) is reported with SC_REPORT_ERROR (type
-// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap or whose tables point
-// outside the image is done cycle by cycle.
+// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap, whose tables point outside
+// the image, or that begins within such a burst is done cycle by cycle.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
 // ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
@@ -84,6 +85,8 @@ class StereoCore : public sc_core::sc_module {
   const memory::Crossbar& crossbar() const { return crossbar_; }
   // frame_cycles of every finished frame.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  // Frames that were started and are done cycle by cycle, at whatever fidelity.
+  std::uint64_t stepped_frames() const { return stepped_frames_; }
   // What each port does: who asks for which bank, and to whom it lost it most often so far.
   std::string waits() const;
   // Brings control() up to the present, for whoever watches a frame.
@@ -127,6 +130,7 @@ class StereoCore : public sc_core::sc_module {
   bool buffers_are_apart() const;
   void write_frame();
   void count_frame(std::uint64_t answered);
+  std::optional<memory::Port> noticed_by(const HostRoute& route) const;
   void check_burst(const HostRoute& route) const;
 
   void run();
@@ -188,7 +192,8 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t host_read_latency_ = 2;  // cycles, of its bank
 
   // The other fidelities.
-  bool whole_ = false;         // the frame's data is worked on at once
+  bool whole_ = false;  // the frame's data is worked on at once
+  std::uint64_t stepped_frames_ = 0;
   std::uint64_t look_ps_ = 0;  // not before then has the frame that runs been done
   SlotPattern left_pattern_{FrameGeometry(config_.core)};
   SlotPattern right_pattern_{FrameGeometry(config_.core)};

@@ -50,7 +50,7 @@ StereoCore::Buffers StereoCore::buffers_of(const FrameStart& start) const {
 
 // Reads all that the frame works on, and works on it. False if that is not possible at once.
 bool StereoCore::read_frame() {
-  if (!buffers_are_apart()) return false;
+  if (!buffers_are_apart() || (host_route_.bank && noticed_by(host_route_))) return false;
   const std::uint32_t* left_table = nullptr;
   const std::uint32_t* right_table = nullptr;
   if (left_lut_) {
@@ -141,13 +141,20 @@ void StereoCore::count_frame(std::uint64_t answered) {
   crossbar_.count_direct(Port::kResult, counts.packed.words);
 }
 
-// A burst that would notice that the data is not moved word by word.
+// What a burst touches of the frame, where it would notice that the data is not moved word by word: the port that works
+// on that buffer.
+std::optional<Port> StereoCore::noticed_by(const HostRoute& route) const {
+  // The words that it has already moved are in place.
+  const AddressRange words{route.end - 4 * local_bus_.words_left(), route.end};
+  for (std::size_t port = 0; port < buffers_.size(); ++port) {
+    const bool is_exclusive = route.write || port == memory::index_of(Port::kResult);
+    if (is_exclusive && buffers_[port].overlaps(words)) return static_cast<Port>(port);
+  }
+  return std::nullopt;
+}
+
 void StereoCore::check_burst(const HostRoute& route) const {
-  const AddressRange burst{route.first, route.end};
-  const bool notices = std::any_of(buffers_.begin(), buffers_.end(), [&](const AddressRange& buffer) {
-    return buffer.overlaps(burst) && (route.write || &buffer == &buffer_of(Port::kResult));
-  });
-  if (!notices) return;
+  if (!noticed_by(route)) return;
   SC_REPORT_ERROR(
       "/stereotlm/core",
       (std::string(name()) + ": a burst of the local bus from " + std::to_string(route.first) + " on " +

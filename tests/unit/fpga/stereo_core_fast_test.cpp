@@ -74,6 +74,7 @@ class StereoCoreFast : public StereoCoreBench {
       direct += core->crossbar().direct_accesses(bank);
     }
     EXPECT_NE(transported == 0, direct == 0) << transported << ", " << direct;
+    EXPECT_EQ(core->stepped_frames(), direct == 0 ? core->frame_cycles().size() : 0);
     return direct == 0;
   }
   Words result_words() { return memory.debug_read(crossbar_address(kResult, 0), kImageWords); }
@@ -138,6 +139,7 @@ TEST_F(StereoCoreFast, WorksAtOnceAgainOnTheNextFrameThatCanBe) {
   start();
   finish();
   EXPECT_EQ(banks[kRight]->stats().reads, transported);
+  EXPECT_EQ(core->stepped_frames(), 1U);
   EXPECT_EQ(core->frame_cycles().back(), frame_cycles_alone(4));
 }
 
@@ -318,6 +320,31 @@ class WholeBoard : public StereoCoreBench {
       memory.debug_write(crossbar_address(kLeftTable, place), {entry});
     start();
     finish();
+    return figures();
+  }
+  // The same of a frame that begins in the middle of a burst of 20 words, of which six have been granted; the frame is
+  // to be done cycle by cycle or not.
+  std::string run_within_burst(tlm::tlm_command command, std::uint32_t bank, std::uint32_t word,
+                               bool stepped) {
+    build(small_board());
+    at(edge(0), [this, command, bank, word] {
+      memory.access(command, crossbar_address(bank, word), Words(20, 0x1234'5678));
+    });
+    at(edge(9), [this] { start(); });
+    finish();
+    const bool as_expected = core->stepped_frames() == (stepped || fidelity_ == Fidelity::kCycle ? 1 : 0);
+    return figures() + (as_expected ? "" : "in the other way, ") +
+           testing::PrintToString(memory.answers.at(0).words);
+  }
+
+  static constexpr std::uint32_t kLeftImage = kLeft;
+  static constexpr std::uint32_t kRightImage = kRight;
+  static constexpr std::uint32_t kTable = kLeftTable;
+  static constexpr std::uint32_t kDisparity = kResult;
+
+ protected:
+  Fidelity fidelity() const override { return fidelity_; }
+  std::string figures() {
     std::string text = CoreFigures(*core).text();
     for (std::uint32_t bank = 0; bank < kBankCount; ++bank) {
       text += "accesses " + std::to_string(accesses(static_cast<Bank>(bank))) + ", words " +
@@ -326,12 +353,6 @@ class WholeBoard : public StereoCoreBench {
     return text;
   }
 
-  static constexpr std::uint32_t kLeftImage = kLeft;
-  static constexpr std::uint32_t kRightImage = kRight;
-  static constexpr std::uint32_t kTable = kLeftTable;
-
- protected:
-  Fidelity fidelity() const override { return fidelity_; }
   void bind_bank(InitiatorSocket& from, TargetSocket& to, const std::string& link) override {
     if (has_direct_access_) {
       binder.bind(from, to, link);
@@ -360,6 +381,34 @@ void expect_the_same(const std::vector<std::pair<std::uint64_t, std::uint32_t>>&
   }
   EXPECT_THAT(texts[0], testing::StartsWith("frame_cycles: "));
   EXPECT_EQ(texts[0], texts[1]);
+}
+
+void expect_the_same_within_burst(tlm::tlm_command command, std::uint32_t bank, std::uint32_t word,
+                                  bool stepped) {
+  std::vector<std::string> texts;
+  for (const Fidelity fidelity : {Fidelity::kCycle, Fidelity::kFast}) {
+    texts.push_back(test::run_in_child([&] {
+                      return WholeBoard(fidelity, true).run_within_burst(command, bank, word, stepped);
+                    }).text);
+  }
+  EXPECT_THAT(texts[0], testing::StartsWith("frame_cycles: "));
+  EXPECT_THAT(texts[0], testing::Not(testing::HasSubstr("other way")));
+  EXPECT_EQ(texts[0], texts[1]);
+}
+
+TEST(StereoCoreSlowFrame, BegunWithinABurstThatWouldNoticeGivesTheSame) {
+  expect_the_same_within_burst(TLM_WRITE_COMMAND, WholeBoard::kLeftImage, 0, true);
+  expect_the_same_within_burst(TLM_WRITE_COMMAND, WholeBoard::kRightImage, 5, true);
+  expect_the_same_within_burst(TLM_WRITE_COMMAND, WholeBoard::kTable, 41, true);
+  expect_the_same_within_burst(TLM_WRITE_COMMAND, WholeBoard::kDisparity, 0, true);
+  expect_the_same_within_burst(TLM_READ_COMMAND, WholeBoard::kDisparity, 0, true);
+}
+
+TEST(StereoCoreBurstBefore, IsNotNoticedWhereItHasOnlyWordsOfOthersToGo) {
+  expect_the_same_within_burst(TLM_WRITE_COMMAND, WholeBoard::kLeftImage, 6, false);
+  expect_the_same_within_burst(TLM_READ_COMMAND, WholeBoard::kDisparity, 6, false);
+  expect_the_same_within_burst(TLM_READ_COMMAND, WholeBoard::kLeftImage, 0, false);
+  expect_the_same_within_burst(TLM_READ_COMMAND, WholeBoard::kTable, 0, false);
 }
 
 TEST(StereoCoreSlowFrame, OverlappingAnImageGivesTheSame) {
