@@ -163,6 +163,7 @@ void StereoCore::start_frame(const FrameStart& start) {
   result_packer_.start_frame();
   errors_before_ = access_errors();
   buffers_ = buffers_of(start);
+  failed_ = false;
   whole_ = config_.fidelity != Fidelity::kCycle && read_frame();
   if (whole_) {
     timing_.start_frame(latencies, left_pattern_, right_pattern_);
@@ -370,7 +371,7 @@ bool StereoCore::access_host(std::uint64_t cycle, const sc_core::sc_time& at) {
 void StereoCore::end_frame() {
   state_ = State::kIdle;
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
-  register_file_.finish_frame(frame_cycles_.back(), access_errors() != errors_before_);
+  register_file_.finish_frame(frame_cycles_.back(), failed_ || access_errors() != errors_before_);
 }
 
 std::uint64_t StereoCore::access_errors() const {

@@ -63,7 +63,8 @@ struct StereoCoreConfig {
 // start strobe, and the disparities appear with the last write; a burst of the local bus that would notice (it
 // writes what the frame reads, or touches its disparities) is reported with SC_REPORT_ERROR (type
 // /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap, whose tables point outside
-// the image, or that begins within such a burst is done cycle by cycle.
+// the image, or that begins within such a burst is done cycle by cycle. Where errors are not thrown a frame that met
+// one ends with the error flag of register_map.h.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
 // ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
@@ -131,7 +132,8 @@ class StereoCore : public sc_core::sc_module {
   void write_frame();
   void count_frame(std::uint64_t answered);
   std::optional<memory::Port> noticed_by(const HostRoute& route) const;
-  void check_burst(const HostRoute& route) const;
+  void check_burst(const HostRoute& route);
+  void fail(const std::string& text);
 
   void run();
   bool is_lazy() const;
@@ -192,7 +194,8 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t host_read_latency_ = 2;  // cycles, of its bank
 
   // The other fidelities.
-  bool whole_ = false;  // the frame's data is worked on at once
+  bool whole_ = false;   // the frame's data is worked on at once
+  bool failed_ = false;  // it is not what it would be cycle by cycle
   std::uint64_t stepped_frames_ = 0;
   std::uint64_t look_ps_ = 0;  // not before then has the frame that runs been done
   SlotPattern left_pattern_{FrameGeometry(config_.core)};

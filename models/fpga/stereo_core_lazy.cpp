@@ -1,5 +1,6 @@
 // StereoCore at the fidelities that do not go cycle by cycle.
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "models/fpga/frame_counts.h"
@@ -15,6 +16,9 @@ using memory::PortMask;
 // Cycles that it runs at most before it looks whether the frame goes on at all.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
 constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // stepped for a burst, likewise
+// [port that works on it]
+constexpr std::array<const char*, memory::kPortCount> kBufferNames = {
+    "left_lut", "right_lut", "left_image", "right_image", "disparity", ""};
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
 
 bool entries_lie_inside(const std::uint32_t* entries, int width, int height) {
@@ -100,14 +104,11 @@ void StereoCore::write_frame() {
   if (config_.fidelity != Fidelity::kTiming) {
     std::uint8_t* const buffer = result_writer_.buffer(words);
     if (buffer == nullptr) {
-      SC_REPORT_ERROR("/stereotlm/core",
-                      (std::string(name()) + ": direct access to the disparities was taken back "
-                                             "within a frame")
-                          .c_str());
-      return;
+      fail("direct access to the disparities was taken back within a frame");
+    } else {
+      std::copy(disparities_.begin(), disparities_.end(), buffer);
+      crossbar_.changes(buffer_of(Port::kResult).first, words * 4);
     }
-    std::copy(disparities_.begin(), disparities_.end(), buffer);
-    crossbar_.changes(buffer_of(Port::kResult).first, words * 4);
     answered = static_cast<std::uint64_t>(
         std::count_if(disparities_.begin(), disparities_.end(),
                       [](std::uint8_t d) { return d != kernels::kInvalidDisparity; }));
@@ -153,13 +154,22 @@ std::optional<Port> StereoCore::noticed_by(const HostRoute& route) const {
   return std::nullopt;
 }
 
-void StereoCore::check_burst(const HostRoute& route) const {
-  if (!noticed_by(route)) return;
-  SC_REPORT_ERROR(
-      "/stereotlm/core",
-      (std::string(name()) + ": a burst of the local bus from " + std::to_string(route.first) + " on " +
-       (route.write ? "writes" : "reads") + " a buffer of the running frame: needs fidelity cycle")
-          .c_str());
+void StereoCore::check_burst(const HostRoute& route) {
+  const std::optional<Port> noticed = noticed_by(route);
+  if (!noticed) return;
+  const auto word = [](std::uint64_t address) {
+    return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
+  };
+  fail("a burst of the local bus " + std::string(route.write ? "writes" : "reads") + " words " +
+       word(route.first) + ".." + word(route.end - 4) + " of bank number " + std::to_string(*route.bank) +
+       ", where the running frame has its " + kBufferNames[memory::index_of(*noticed)] +
+       ": needs fidelity cycle");
+}
+
+// The frame that runs is not what it would be cycle by cycle. Where reports are not thrown it ends with the error flag.
+void StereoCore::fail(const std::string& text) {
+  failed_ = true;
+  SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + text).c_str());
 }
 
 // The time.
