@@ -164,6 +164,7 @@ void StereoCore::start_frame(const FrameStart& start) {
   errors_before_ = access_errors();
   buffers_ = buffers_of(start);
   failed_ = false;
+  writes_before_ = control().result().cycles().granted();
   whole_ = config_.fidelity != Fidelity::kCycle && read_frame();
   if (whole_) {
     timing_.start_frame(latencies, left_pattern_, right_pattern_);

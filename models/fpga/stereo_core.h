@@ -39,7 +39,7 @@ namespace stereotlm::fpga {
 enum class Fidelity : std::uint8_t {
   kCycle,  // cycle by cycle, every access a transaction
   kFast,   // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
-  kTiming,  // as kFast, but without pictures read and disparities written, unless the frame is done cycle by cycle
+  kTiming,  // as kFast, but without pictures read and disparities written; a frame done cycle by cycle has both
 };
 
 struct StereoCoreConfig {
@@ -62,9 +62,9 @@ struct StereoCoreConfig {
 // a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the
 // start strobe, and the disparities appear with the last write; a burst of the local bus that would notice (it
 // writes what the frame reads, or touches its disparities) is reported with SC_REPORT_ERROR (type
-// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap, whose tables point outside
-// the image, or that begins within such a burst is done cycle by cycle. Where errors are not thrown a frame that met
-// one ends with the error flag of register_map.h.
+// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap, whose tables point
+// outside the image, or that begins within such a burst is done cycle by cycle. Where errors are not thrown a
+// frame that met one ends with the error flag of register_map.h.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
 // ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
@@ -197,7 +197,8 @@ class StereoCore : public sc_core::sc_module {
   bool whole_ = false;   // the frame's data is worked on at once
   bool failed_ = false;  // it is not what it would be cycle by cycle
   std::uint64_t stepped_frames_ = 0;
-  std::uint64_t look_ps_ = 0;  // not before then has the frame that runs been done
+  std::uint64_t writes_before_ = 0;  // granted to the result port before it
+  std::uint64_t look_ps_ = 0;        // not before then has the frame that runs been done
   SlotPattern left_pattern_{FrameGeometry(config_.core)};
   SlotPattern right_pattern_{FrameGeometry(config_.core)};
   bool left_table_is_sound_ = true;

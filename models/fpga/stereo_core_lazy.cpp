@@ -117,7 +117,7 @@ void StereoCore::write_frame() {
 }
 
 void StereoCore::count_frame(std::uint64_t answered) {
-  const FrameCounts counts(config_.core, left_pattern_, right_pattern_, answered);
+  const FrameCounts counts(config_.core, left_pattern_, right_pattern_, control(), answered);
   sequencer_.count(Side::kLeft, counts.left.slots);
   sequencer_.count(Side::kRight, counts.right.slots);
   if (left_lut_) left_lut_->count(counts.left.table);
@@ -133,17 +133,17 @@ void StereoCore::count_frame(std::uint64_t answered) {
   select_min_tree_.count(counts.tree);
   if (config_.fidelity != Fidelity::kTiming) lr_check_.count(counts.check);
   result_packer_.count(counts.packed);
-  result_writer_.count(
-      {counts.packed.words, static_cast<std::uint64_t>(control().result().most_queued()), 0});
+  result_writer_.count({control().result().cycles().granted() - writes_before_,
+                        static_cast<std::uint64_t>(control().result().most_queued()), 0});
   crossbar_.count_direct(Port::kLeftLut, counts.left.table.reads);
   crossbar_.count_direct(Port::kRightLut, counts.right.table.reads);
   crossbar_.count_direct(Port::kLeftPixel, counts.left.image.reads);
   crossbar_.count_direct(Port::kRightPixel, counts.right.image.reads);
-  crossbar_.count_direct(Port::kResult, counts.packed.words);
+  crossbar_.count_direct(Port::kResult, control().geometry().result_words);
 }
 
-// What a burst touches of the frame, where it would notice that the data is not moved word by word: the port that works
-// on that buffer.
+// What a burst touches of the frame, where it would notice that the data is not moved word by word: the port
+// that works on that buffer.
 std::optional<Port> StereoCore::noticed_by(const HostRoute& route) const {
   // The words that it has already moved are in place.
   const AddressRange words{route.end - 4 * local_bus_.words_left(), route.end};
@@ -166,7 +166,8 @@ void StereoCore::check_burst(const HostRoute& route) {
        ": needs fidelity cycle");
 }
 
-// The frame that runs is not what it would be cycle by cycle. Where reports are not thrown it ends with the error flag.
+// The frame that runs is not what it would be cycle by cycle. Where reports are not thrown it ends with the
+// error flag.
 void StereoCore::fail(const std::string& text) {
   failed_ = true;
   SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + text).c_str());

@@ -34,8 +34,8 @@ class Arbitration {
   }
   // Whether whatever this port requests is granted at once, as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
-  // So many of the cycles granted to a port that is alone held no request, as it turns out. To be told before a route
-  // changes or counting ends: then what is left of them moves the bank's place in the round robin.
+  // So many of the cycles granted to a port that is alone held no request, as it turns out. To be told before
+  // a route changes or counting ends: then what is left of them moves the bank's place in the round robin.
   void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
 
   // One request of a port for a bank that no port is routed to, in the given direction, and what comes of it; it is
@@ -60,9 +60,9 @@ class Arbitration {
   // same as at begin_period().
   void repeat(std::uint64_t period_cycles, std::uint64_t times);
 
-  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when counting
-  // has ended; their uncounted_accesses() always. Until then the grants of a port that is alone may be taken back.
-  // Asking for the arbiters changes nothing.
+  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
+  // counting has ended; their uncounted_accesses() always. Until then the grants of a port that is alone may
+  // be taken back. Asking for the arbiters changes nothing.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const std::vector<BankArbiter>& arbiters() const {

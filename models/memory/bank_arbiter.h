@@ -62,8 +62,8 @@ class BankArbiter {
       uncounted_accesses_ += cycles;
     }
   }
-  // Counts `cycles` cycles since the last call, in each of which this port alone asked and was granted, for a bank that
-  // needs no turnaround ..
+  // Counts `cycles` cycles since the last call, in each of which this port alone asked and was granted, for a
+  // bank that needs no turnaround ..
   void count_alone(PortMask port, bool write, std::uint64_t cycles);
   // .. and, where these are at least one, what they do to the round-robin place.
   void move_place_behind(PortMask port) { place_ = winners_[place_ * kMasks + port].next_place; }

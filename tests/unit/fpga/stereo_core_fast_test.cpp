@@ -381,8 +381,8 @@ class WholeBoard : public StereoCoreBench {
     finish();
     return figures();
   }
-  // The same of a frame that begins in the middle of a burst of 20 words, of which six have been granted; the frame is
-  // to be done cycle by cycle or not.
+  // The same of a frame that begins in the middle of a burst of 20 words, of which six have been granted; the
+  // frame is to be done cycle by cycle or not.
   std::string run_within_burst(tlm::tlm_command command, std::uint32_t bank, std::uint32_t word,
                                bool stepped) {
     build(small_board());
