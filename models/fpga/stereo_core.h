@@ -39,7 +39,7 @@ namespace stereotlm::fpga {
 enum class Fidelity : std::uint8_t {
   kCycle,  // cycle by cycle, every access a transaction
   kFast,   // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
-  kTiming,  // as kFast, but without pictures read and disparities written; a frame done cycle by cycle has both
+  kTiming,  // as kFast, but without pictures and disparities, unless it is done cycle by cycle
 };
 
 struct StereoCoreConfig {
