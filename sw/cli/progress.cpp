@@ -43,17 +43,34 @@ std::string progress_text(const RunState& state, double seconds) {
                      time_text((frames - position) * frame_cycles / rate));
 }
 
+std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
+  return fmt::format("verifying: {}/{} frames", frames_compared, frames);
+}
+
 ProgressLine::ProgressLine()
     : is_terminal_(isatty(STDERR_FILENO) != 0),
       start_(std::chrono::steady_clock::now()),
       next_(start_ + kBetweenDrawings) {}
 
 void ProgressLine::show(const RunState& state) {
-  if (!is_terminal_) return;
+  if (!is_due()) return;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+  draw(progress_text(state, seconds.count()));
+}
+
+void ProgressLine::show_verification(std::uint64_t frames_compared, std::uint64_t frames) {
+  if (is_due()) draw(verification_text(frames_compared, frames));
+}
+
+bool ProgressLine::is_due() {
+  if (!is_terminal_) return false;
   const Time now = std::chrono::steady_clock::now();
-  if (now < next_) return;
+  if (now < next_) return false;
   next_ = now + kBetweenDrawings;
-  std::string text = progress_text(state, std::chrono::duration<double>(now - start_).count());
+  return true;
+}
+
+void ProgressLine::draw(std::string text) {
   text.resize(std::min(text.size(), terminal_columns() - 1));  // a line that wraps cannot be drawn over
   const std::size_t columns = text.size();
   if (columns < columns_drawn_) text.append(columns_drawn_ - columns, ' ');

@@ -18,8 +18,10 @@ struct RunState {
 // "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
 
-// The progress line of a run, on standard error if that is a terminal; otherwise nothing. The line is erased
-// at the end.
+// "verifying: 1/5 frames": how far the comparison with the other run is.
+std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames);
+
+// A progress line, on standard error if that is a terminal; otherwise nothing. The line is erased at the end.
 class ProgressLine {
  public:
   ProgressLine();
@@ -27,13 +29,18 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Draws the line anew, at most a few times a second.
+  // Draws the line anew, at most a few times a second: of a run ..
   void show(const RunState& state);
+  // .. or of the comparison behind it.
+  void show_verification(std::uint64_t frames_compared, std::uint64_t frames);
   // Takes it away, until it is shown again.
   void erase();
 
  private:
   using Time = std::chrono::steady_clock::time_point;
+
+  bool is_due();
+  void draw(std::string text);
 
   bool is_terminal_;
   Time start_;
