@@ -14,10 +14,10 @@ FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const SlotPattern& 
   const std::uint64_t inside = geometry.slots - pattern.empty_slots();
   if (has_table) {
     lane.table.reads = inside;
-    lane.table.invalid_entries = inside - pattern.valid_entries();
+    lane.table.invalid_entries = inside - pattern.pixel_accesses();
     lane.table.empty_slots = pattern.empty_slots();
   }
-  lane.image.reads = has_table ? pattern.valid_entries() : inside;
+  lane.image.reads = has_table ? pattern.pixel_accesses() : inside;
   lane.image.passed_slots = geometry.slots - lane.image.reads;
   return lane;
 }
