@@ -37,9 +37,9 @@ namespace stereotlm::fpga {
 
 // How the core works on a frame; the results and times are the same.
 enum class Fidelity : std::uint8_t {
-  kCycle,  // cycle by cycle, every access a transaction
-  kFast,   // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
-  kTiming,  // as kFast, but without pictures and disparities, unless it is done cycle by cycle
+  kCycle,   // cycle by cycle, every access a transaction
+  kFast,    // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
+  kTiming,  // as kFast, but without pictures and disparities; a frame done cycle by cycle has both
 };
 
 struct StereoCoreConfig {
@@ -60,14 +60,16 @@ struct StereoCoreConfig {
 //
 // At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for
 // a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the
-// start strobe, and the disparities appear with the last write; a burst of the local bus that would notice (it
-// writes what the frame reads, or touches its disparities) is reported with SC_REPORT_ERROR (type
-// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap, whose tables point
-// outside the image, or that begins within such a burst is done cycle by cycle. Where errors are not thrown a
-// frame that met one ends with the error flag of register_map.h.
+// start strobe, and the disparities appear with the last write, or before: as far ahead of it as nothing is
+// pending that could notice; a burst of the local bus that would notice (it writes what the frame reads, or
+// touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose memory
+// cannot be had directly, whose buffers overlap, whose tables point outside the image, or that begins within
+// such a burst is done cycle by cycle. Where errors are not thrown a frame that met one ends with the error
+// flag of register_map.h.
 //
-// A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
-// ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
+// A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most at
+// Fidelity::kCycle, else 2^22) would run for ever: a port that the arbiters always pass over. That is
+// reported with SC_REPORT_ERROR (type /stereotlm/core).
 class StereoCore : public sc_core::sc_module {
  public:
   // register_map.h, without the local bus and its time; may stay unbound.
@@ -90,7 +92,12 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t stepped_frames() const { return stepped_frames_; }
   // What each port does: who asks for which bank, and to whom it lost it most often so far.
   std::string waits() const;
-  // Brings control() up to the present, for whoever watches a frame.
+  // Brings control() up to the present, for whoever watches a frame. What the lanes have taken and consumed,
+  // the results written, and the cycles of LUT and result ports are then those of the present, as are the
+  // sums of all ports' states. But where a pixel port is alone on its bank, its cycles granted and passed are
+  // told apart only when a burst comes for a bank of the frame, and at its end: until then all of them count
+  // as granted, also in the arbiters' reads, and waits() takes a slot that it passes for one that asks. So do
+  // words of a burst for a bank of its own count as idle cycles of the host port.
   void catch_up();
 
   // The stages, for their statistics. A LUT reader or row buffer that the configuration does not need is

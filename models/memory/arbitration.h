@@ -38,8 +38,8 @@ class Arbitration {
   // a route changes or counting ends: then what is left of them moves the bank's place in the round robin.
   void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
 
-  // One request of a port for a bank that no port is routed to, in the given direction, and what comes of it; it is
-  // counted later, by count_unrouted().
+  // One request of a port for a bank of which no routed port asks anything, in the given direction, and what
+  // comes of it; it is counted later, by count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
   void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
                       std::uint64_t cycles) {

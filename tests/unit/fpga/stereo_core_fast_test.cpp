@@ -325,16 +325,20 @@ class StereoCoreCatchUp : public StereoCoreFidelities {};
 TEST_P(StereoCoreCatchUp, ShowsTheSlotsOfThePresent) {
   build(small_board());
   at(edge(0), [this] { start(); });
+  memory.debug_write(crossbar_address(kLeftTable, 8), Words(4));  // entries that are not valid
   std::vector<std::uint64_t> consumed;
+  std::vector<std::uint64_t> handled;
   for (const std::uint64_t cycle : {3U, 4U, 5U, 30U, 90U}) {
-    at(edge(cycle) + sc_core::sc_time::from_value(2), [this, &consumed] {
+    at(edge(cycle) + sc_core::sc_time::from_value(2), [this, &consumed, &handled] {
       core->catch_up();
       consumed.push_back(core->control().left().consumed());
+      handled.push_back(port(Port::kLeftPixel).granted() + port(Port::kLeftPixel).passed());
     });
   }
   finish();
   // With tables the matcher consumes from cycle 4 on, a slot a cycle; cycle 4 itself has begun.
   EXPECT_EQ(consumed, (std::vector<std::uint64_t>{0, 1, 2, 27, 87}));
+  EXPECT_EQ(handled, (std::vector<std::uint64_t>{2, 3, 4, 29, 89}));
   EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
 }
 
