@@ -15,6 +15,7 @@ struct AddressRange {
   std::uint64_t end = 0;  // the first behind it
 
   bool contains(std::uint64_t address) const { return first <= address && address < end; }
+  bool overlaps(const AddressRange& other) const { return first < other.end && other.first < end; }
 };
 
 // How many words went to each of some ranges, which do not overlap, and to none of them. Plain C++.

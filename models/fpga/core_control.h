@@ -44,6 +44,10 @@ class MatchControl {
     return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U;
   }
   std::uint64_t columns() const { return columns_; }
+  // Of results that have left in this frame.
+  std::uint64_t words() const {
+    return columns_ > geometry_.result_delay_columns ? (columns_ - geometry_.result_delay_columns) / 4 : 0;
+  }
   // Between two columns: so many more can be consumed, as far as this side knows, before the state changes.
   std::uint64_t columns_alike() const {
     const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);

@@ -27,7 +27,7 @@ void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern&
   start_frame(latencies);
   // Where no entry is valid the port is never granted, and the bank's round-robin place stays.
   const auto looks = [this](memory::Port port, const SlotPattern& pattern) {
-    return !arbitration_.is_alone(port) || pattern.valid_entries() == 0;
+    return !arbitration_.is_alone(port) || pattern.pixel_accesses() == 0;
   };
   left_ = {&left, looks(memory::Port::kLeftPixel, left)};
   right_ = {&right, looks(memory::Port::kRightPixel, right)};
@@ -50,7 +50,7 @@ void CoreTiming::look_at_entries(Side& side, memory::Port port, LaneControl& lan
   const std::uint64_t passed = side.pattern->invalid_before(lane.handled());
   std::uint64_t marks = 0;
   for (std::uint64_t slot = lane.handled(); slot < lane.taken(); ++slot)
-    marks |= std::uint64_t{side.pattern->is_valid(slot)} << (slot - lane.handled());
+    marks |= std::uint64_t{side.pattern->needs_pixel(slot)} << (slot - lane.handled());
   lane.correct_passes(passed, marks);
   arbitration_.take_back(port, passed);
 }

@@ -7,16 +7,17 @@
 namespace stereotlm::fpga {
 namespace {
 
-FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const SlotPattern& pattern, bool has_table) {
+FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const SlotPattern& pattern, bool has_table,
+                              const LaneControl& control) {
   FrameCounts::Lane lane;
-  lane.slots = {geometry.slots, pattern.empty_slots()};
+  lane.slots = {control.taken(), pattern.empty_slots()};
   const std::uint64_t inside = geometry.slots - pattern.empty_slots();
   if (has_table) {
     lane.table.reads = inside;
-    lane.table.invalid_entries = inside - pattern.valid_entries();
+    lane.table.invalid_entries = inside - pattern.pixel_accesses();
     lane.table.empty_slots = pattern.empty_slots();
   }
-  lane.image.reads = has_table ? pattern.valid_entries() : inside;
+  lane.image.reads = has_table ? pattern.pixel_accesses() : inside;
   lane.image.passed_slots = geometry.slots - lane.image.reads;
   return lane;
 }
@@ -24,10 +25,11 @@ FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const SlotPattern& 
 }  // namespace
 
 FrameCounts::FrameCounts(const CoreConfig& config, const SlotPattern& left_pattern,
-                         const SlotPattern& right_pattern, std::uint64_t answered) {
+                         const SlotPattern& right_pattern, const CoreControl& control,
+                         std::uint64_t answered) {
   const FrameGeometry geometry(config);
-  left = lane_counts(geometry, left_pattern, config.left_table);
-  right = lane_counts(geometry, right_pattern, config.right_table);
+  left = lane_counts(geometry, left_pattern, config.left_table, control.left());
+  right = lane_counts(geometry, right_pattern, config.right_table, control.right());
   filter.pixels = geometry.slots + geometry.drain_cycles;
   // Also the first ones, of which the filter makes nothing yet; their windows stay in the array.
   filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column);
@@ -51,7 +53,7 @@ FrameCounts::FrameCounts(const CoreConfig& config, const SlotPattern& left_patte
   tree.matches = matches;
   const std::uint64_t pixels = geometry.result_words * 4;
   check = {answered, pixels - answered};
-  packed.words = geometry.result_words;
+  packed.words = control.match().words();
 }
 
 }  // namespace stereotlm::fpga

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "models/fpga/core_config.h"
+#include "models/fpga/core_control.h"
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
@@ -19,11 +20,13 @@
 namespace stereotlm::fpga {
 
 // What the stages count in one frame, whenever it runs through them: nothing of it depends on the timing but the
-// queue's longest. Known without the frame's cycles from the geometry, the pattern of the slots, and the answers.
+// queue's longest. The slots issued and the words packed are those that the control has come to, so that an
+// audit can hold them against the geometry; the rest is known without the frame's cycles from the geometry,
+// the pattern of the slots, and the answers.
 struct FrameCounts {
-  // Of a frame in which `answered` pixels have a disparity.
+  // Of a frame that `control` has run, in which `answered` pixels have a disparity.
   FrameCounts(const CoreConfig& config, const SlotPattern& left, const SlotPattern& right,
-              std::uint64_t answered);
+              const CoreControl& control, std::uint64_t answered);
 
   struct Lane {
     Sequencer::Stats slots;

@@ -19,7 +19,8 @@
 //
 // The core takes the bases at the start strobe. A strobe while it is busy, or with a base in a bank that the
 // board does not have, is ignored and raises error, which stays until it is acknowledged; so does an access
-// of the running frame that memory refused. A write may acknowledge and start at once.
+// of the running frame that memory refused, or that this model cannot make as it should. A write may
+// acknowledge and start at once.
 namespace stereotlm::fpga::registers {
 
 inline constexpr std::uint64_t kControl = 0x00;

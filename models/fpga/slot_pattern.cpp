@@ -47,37 +47,48 @@ void SlotPattern::set_entries(const std::uint32_t* entries) {
 
 void SlotPattern::find_changes() {
   empty_slots_ = 0;
-  valid_entries_ = 0;
-  std::vector<std::uint64_t> valid_in_row(static_cast<std::size_t>(geometry_.height));
+  pixel_accesses_ = 0;
+  const std::vector<std::uint64_t> valid = valid_in_rows();
+  for (int strip = 0; strip < geometry_.strips; ++strip) find_changes_of_strip(strip, valid);
+  find_strips_with_changes();
+}
+
+std::vector<std::uint64_t> SlotPattern::valid_in_rows() const {
+  std::vector<std::uint64_t> valid(static_cast<std::size_t>(geometry_.height));
   for (int row = 0; row < geometry_.height; ++row) {
     for (std::size_t word = 0; word < words_; ++word)
-      valid_in_row[static_cast<std::size_t>(row)] +=
+      valid[static_cast<std::size_t>(row)] +=
           static_cast<std::uint64_t>(__builtin_popcountll(valid_row(row)[word]));
   }
-  std::uint64_t invalid = 0;
-  for (int strip = 0; strip < geometry_.strips; ++strip) {
-    std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
-    std::fill_n(changes, words_, std::uint64_t{0});
-    invalid_before_strip_[static_cast<std::size_t>(strip)] = invalid;
-    for (int k = 0; k < geometry_.slots_per_column; ++k) {
-      const int row = geometry_.first_row + strip + k;
-      if (!inside(row)) {
-        empty_slots_ += geometry_.columns_per_strip();
-        continue;
-      }
-      const std::uint64_t valid = valid_in_row[static_cast<std::size_t>(row)];
-      valid_entries_ += valid;
-      invalid += geometry_.columns_per_strip() - valid;
-      const std::uint64_t* const bits = valid_row(row);
-      std::uint64_t before = bits[0] & 1U;  // the first column has none before it
-      for (std::size_t word = 0; word < words_; ++word) {
-        changes[word] |= bits[word] ^ (bits[word] << 1U | before);
-        before = bits[word] >> 63U;
-      }
+  return valid;
+}
+
+// Those before it have been counted.
+void SlotPattern::find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows) {
+  std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
+  std::fill_n(changes, words_, std::uint64_t{0});
+  const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
+                                     static_cast<std::uint64_t>(geometry_.slots_per_column);
+  invalid_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
+  for (int k = 0; k < geometry_.slots_per_column; ++k) {
+    const int row = geometry_.first_row + strip + k;
+    if (!inside(row)) {
+      empty_slots_ += geometry_.columns_per_strip();
+      continue;
     }
-    if (geometry_.width % 64 != 0) changes[words_ - 1] &= (std::uint64_t{1} << geometry_.width % 64) - 1;
-    if (strip > 0 && !strip_begins_alike(strip)) changes[0] |= 1U;
+    pixel_accesses_ += valid_in_rows[static_cast<std::size_t>(row)];
+    const std::uint64_t* const bits = valid_row(row);
+    std::uint64_t before = bits[0] & 1U;  // the first column has none before it
+    for (std::size_t word = 0; word < words_; ++word) {
+      changes[word] |= bits[word] ^ (bits[word] << 1U | before);
+      before = bits[word] >> 63U;
+    }
   }
+  if (geometry_.width % 64 != 0) changes[words_ - 1] &= (std::uint64_t{1} << geometry_.width % 64) - 1;
+  if (strip > 0 && !strip_begins_alike(strip)) changes[0] |= 1U;
+}
+
+void SlotPattern::find_strips_with_changes() {
   auto next = static_cast<std::uint32_t>(geometry_.strips);
   for (int strip = geometry_.strips - 1; strip >= 0; --strip) {
     const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(words_) * strip;
@@ -103,7 +114,7 @@ std::uint64_t SlotPattern::invalid_before(std::uint64_t slots) const {
   const std::uint64_t slots_per_strip = geometry_.columns_per_strip() * slots_per_column;
   const std::uint64_t strip = slots / slots_per_strip;
   if (strip == static_cast<std::uint64_t>(geometry_.strips))
-    return geometry_.slots - empty_slots_ - valid_entries_;
+    return geometry_.slots - empty_slots_ - pixel_accesses_;
   std::uint64_t invalid = invalid_before_strip_[strip];
   for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot) {
     const Place place = place_of(slot);
@@ -112,7 +123,7 @@ std::uint64_t SlotPattern::invalid_before(std::uint64_t slots) const {
   return invalid;
 }
 
-bool SlotPattern::is_valid(std::uint64_t slot) const {
+bool SlotPattern::needs_pixel(std::uint64_t slot) const {
   const Place place = place_of(slot);
   return inside(place.row) && entry_valid(place.column, place.row);
 }

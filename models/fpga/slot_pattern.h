@@ -29,11 +29,11 @@ class SlotPattern {
   // Of the first `slots` slots of a frame those whose entries are read and not valid.
   std::uint64_t invalid_before(std::uint64_t slots) const;
   // Whether this slot makes an access for its pixel.
-  bool is_valid(std::uint64_t slot) const;
+  bool needs_pixel(std::uint64_t slot) const;
 
   // Slots of a frame.
   std::uint64_t empty_slots() const { return empty_slots_; }
-  std::uint64_t valid_entries() const { return valid_entries_; }  // of those that are not empty
+  std::uint64_t pixel_accesses() const { return pixel_accesses_; }  // slots that make one
 
  private:
   const std::uint64_t* valid_row(int row) const {
@@ -47,6 +47,9 @@ class SlotPattern {
   Place place_of(std::uint64_t slot) const;
   void set_all(std::uint64_t* row_bits) const;
   void find_changes();
+  std::vector<std::uint64_t> valid_in_rows() const;
+  void find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows);
+  void find_strips_with_changes();
   bool strip_begins_alike(int strip) const;
 
   FrameGeometry geometry_;
@@ -57,7 +60,7 @@ class SlotPattern {
   std::vector<std::uint32_t>
       next_change_;  // [strip]: the first strip from it on with a change, or the number of strips
   std::uint64_t empty_slots_ = 0;
-  std::uint64_t valid_entries_ = 0;
+  std::uint64_t pixel_accesses_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -162,12 +162,15 @@ void StereoCore::start_frame(const FrameStart& start) {
   lr_check_.start_frame();
   result_packer_.start_frame();
   errors_before_ = access_errors();
-  frame_ = start;
-  whole_ = config_.fidelity != Fidelity::kCycle && read_frame(start);
+  buffers_ = buffers_of(start);
+  failed_ = false;
+  writes_before_ = control().result().cycles().granted();
+  whole_ = config_.fidelity != Fidelity::kCycle && read_frame();
   if (whole_) {
     timing_.start_frame(latencies, left_pattern_, right_pattern_);
   } else {
     timing_.start_frame(latencies);
+    ++stepped_frames_;
   }
 
   // Cycle 0 is the first that begins at or after the strobe.
@@ -369,7 +372,7 @@ bool StereoCore::access_host(std::uint64_t cycle, const sc_core::sc_time& at) {
 void StereoCore::end_frame() {
   state_ = State::kIdle;
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
-  register_file_.finish_frame(frame_cycles_.back(), access_errors() != errors_before_);
+  register_file_.finish_frame(frame_cycles_.back(), failed_ || access_errors() != errors_before_);
 }
 
 std::uint64_t StereoCore::access_errors() const {

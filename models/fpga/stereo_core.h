@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -29,6 +31,7 @@
 #include "models/kernels/stereo_pipeline.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
+#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
@@ -36,7 +39,7 @@ namespace stereotlm::fpga {
 enum class Fidelity : std::uint8_t {
   kCycle,   // cycle by cycle, every access a transaction
   kFast,    // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
-  kTiming,  // as kFast, but no pictures are read and no disparities written
+  kTiming,  // as kFast, but without pictures and disparities; a frame done cycle by cycle has both
 };
 
 struct StereoCoreConfig {
@@ -57,13 +60,16 @@ struct StereoCoreConfig {
 //
 // At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for
 // a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the
-// start strobe, and the disparities appear with the last write; a burst of the local bus that would notice (it
-// writes what the frame reads, or touches its disparities) is reported with SC_REPORT_ERROR (type
-// /stereotlm/core). A frame whose memory cannot be had directly, whose buffers overlap or whose tables point
-// outside the image is done cycle by cycle.
+// start strobe, and the disparities appear with the last write, or before: as far ahead of it as nothing is
+// pending that could notice; a burst of the local bus that would notice (it writes what the frame reads, or
+// touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose memory
+// cannot be had directly, whose buffers overlap, whose tables point outside the image, or that begins within
+// such a burst is done cycle by cycle. Where errors are not thrown a frame that met one ends with the error
+// flag of register_map.h.
 //
-// A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most) would run for
-// ever: a port that the arbiters always pass over. That is reported with SC_REPORT_ERROR (type /stereotlm/core).
+// A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most at
+// Fidelity::kCycle, else 2^22) would run for ever: a port that the arbiters always pass over. That is
+// reported with SC_REPORT_ERROR (type /stereotlm/core).
 class StereoCore : public sc_core::sc_module {
  public:
   // register_map.h, without the local bus and its time; may stay unbound.
@@ -82,9 +88,16 @@ class StereoCore : public sc_core::sc_module {
   const memory::Crossbar& crossbar() const { return crossbar_; }
   // frame_cycles of every finished frame.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  // Frames that were started and are done cycle by cycle, at whatever fidelity.
+  std::uint64_t stepped_frames() const { return stepped_frames_; }
   // What each port does: who asks for which bank, and to whom it lost it most often so far.
   std::string waits() const;
-  // Brings control() up to the present, for whoever watches a frame.
+  // Brings control() up to the present, for whoever watches a frame. What the lanes have taken and consumed,
+  // the results written, and the cycles of LUT and result ports are then those of the present, as are the
+  // sums of all ports' states. But where a pixel port is alone on its bank, its cycles granted and passed are
+  // told apart only when a burst comes for a bank of the frame, and at its end: until then all of them count
+  // as granted, also in the arbiters' reads, and waits() takes a slot that it passes for one that asks. So do
+  // words of a burst for a bank of its own count as idle cycles of the host port.
   void catch_up();
 
   // The stages, for their statistics. A LUT reader or row buffer that the configuration does not need is
@@ -117,13 +130,17 @@ class StereoCore : public sc_core::sc_module {
   bool has_bank(std::uint32_t base) const;
   int latency_of(std::uint32_t base) const;
 
-  bool read_frame(const FrameStart& start);
-  const std::uint32_t* read_table(LutReader& reader, memory::Port port, std::uint32_t base,
-                                  SlotPattern& pattern, bool& is_sound);
-  bool buffers_are_apart(const FrameStart& start) const;
+  using Buffers = std::array<AddressRange, memory::kPortCount>;  // [port that works on it]; of others empty
+  Buffers buffers_of(const FrameStart& start) const;
+  const AddressRange& buffer_of(memory::Port port) const { return buffers_[memory::index_of(port)]; }
+  bool read_frame();
+  const std::uint32_t* read_table(LutReader& reader, memory::Port port, SlotPattern& pattern, bool& is_sound);
+  bool buffers_are_apart() const;
   void write_frame();
   void count_frame(std::uint64_t answered);
-  void check_burst(const HostRoute& route) const;
+  std::optional<memory::Port> noticed_by(const HostRoute& route) const;
+  void check_burst(const HostRoute& route);
+  void fail(const std::string& text);
 
   void run();
   bool is_lazy() const;
@@ -184,13 +201,16 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t host_read_latency_ = 2;  // cycles, of its bank
 
   // The other fidelities.
-  bool whole_ = false;         // the frame's data is worked on at once
-  std::uint64_t look_ps_ = 0;  // not before then has the frame that runs been done
+  bool whole_ = false;   // the frame's data is worked on at once
+  bool failed_ = false;  // it is not what it would be cycle by cycle
+  std::uint64_t stepped_frames_ = 0;
+  std::uint64_t writes_before_ = 0;  // granted to the result port before it
+  std::uint64_t look_ps_ = 0;        // not before then has the frame that runs been done
   SlotPattern left_pattern_{FrameGeometry(config_.core)};
   SlotPattern right_pattern_{FrameGeometry(config_.core)};
   bool left_table_is_sound_ = true;
   bool right_table_is_sound_ = true;
-  FrameStart frame_;  // that runs
+  Buffers buffers_;  // of the frame that runs
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
   std::vector<std::uint8_t> disparities_;  // of the frame that runs
   // Words of the local bus in a bank that the running frame does not use, until it is known which of them count.

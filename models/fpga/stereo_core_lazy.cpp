@@ -1,5 +1,6 @@
 // StereoCore at the fidelities that do not go cycle by cycle.
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "models/fpga/frame_counts.h"
@@ -15,30 +16,43 @@ using memory::PortMask;
 // Cycles that it runs at most before it looks whether the frame goes on at all.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
 constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // stepped for a burst, likewise
+// [port that works on it]
+constexpr std::array<const char*, memory::kPortCount> kBufferNames = {
+    "left_lut", "right_lut", "left_image", "right_image", "disparity", ""};
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
 
-struct Range {
-  std::uint64_t first;
-  std::uint64_t end;
-  bool overlaps(const Range& other) const { return first < other.end && other.first < end; }
-};
 
 }  // namespace
 
 // The data.
 
+StereoCore::Buffers StereoCore::buffers_of(const FrameStart& start) const {
+  const std::uint64_t picture_bytes = control().geometry().result_words * 4;
+  const std::uint64_t table_bytes = picture_bytes * 4;
+  Buffers buffers{};
+  const auto set = [&buffers](Port port, std::uint32_t base, std::uint64_t bytes) {
+    const std::uint64_t first = registers::base_address(base);
+    buffers[memory::index_of(port)] = {first, first + bytes};
+  };
+  if (left_lut_) set(Port::kLeftLut, start.left_lut, table_bytes);
+  if (right_lut_) set(Port::kRightLut, start.right_lut, table_bytes);
+  set(Port::kLeftPixel, start.left_image, picture_bytes);
+  set(Port::kRightPixel, start.right_image, picture_bytes);
+  set(Port::kResult, start.disparity, picture_bytes);
+  return buffers;
+}
+
 // Reads all that the frame works on, and works on it. False if that is not possible at once.
-bool StereoCore::read_frame(const FrameStart& start) {
-  if (!buffers_are_apart(start)) return false;
+bool StereoCore::read_frame() {
+  if (!buffers_are_apart() || (host_route_.bank && noticed_by(host_route_))) return false;
   const std::uint32_t* left_table = nullptr;
   const std::uint32_t* right_table = nullptr;
   if (left_lut_) {
-    left_table = read_table(*left_lut_, Port::kLeftLut, start.left_lut, left_pattern_, left_table_is_sound_);
+    left_table = read_table(*left_lut_, Port::kLeftLut, left_pattern_, left_table_is_sound_);
     if (left_table == nullptr) return false;
   }
   if (right_lut_) {
-    right_table =
-        read_table(*right_lut_, Port::kRightLut, start.right_lut, right_pattern_, right_table_is_sound_);
+    right_table = read_table(*right_lut_, Port::kRightLut, right_pattern_, right_table_is_sound_);
     if (right_table == nullptr) return false;
   }
   const std::uint8_t* const left = left_pixel_.image(config_.core.height);
@@ -53,31 +67,25 @@ bool StereoCore::read_frame(const FrameStart& start) {
 }
 
 // Null if it cannot be read directly, or points outside the image.
-const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, std::uint32_t base,
-                                            SlotPattern& pattern, bool& is_sound) {
+const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, SlotPattern& pattern,
+                                            bool& is_sound) {
   const std::uint32_t* const entries = reader.table(config_.core.height);
   if (entries == nullptr) return nullptr;
-  const std::uint64_t first = registers::base_address(base);
-  const std::uint64_t bytes = control().geometry().result_words * 16;
-  if (crossbar_.may_have_changed(port, first, first + bytes)) {
-    is_sound = kernels::entries_point_inside(entries, bytes / 4, config_.core.width, config_.core.height);
+  const AddressRange& table = buffer_of(port);
+  if (crossbar_.may_have_changed(port, table.first, table.end)) {
+    is_sound = kernels::entries_point_inside(entries, (table.end - table.first) / 4, config_.core.width,
+                                             config_.core.height);
     if (is_sound) pattern.set_entries(entries);
   }
   return is_sound ? entries : nullptr;
 }
 
 // Whether the disparities go where nothing is read from.
-bool StereoCore::buffers_are_apart(const FrameStart& start) const {
-  const std::uint64_t bytes = control().geometry().result_words * 4;
-  const auto range = [](std::uint32_t base, std::uint64_t size) {
-    const std::uint64_t first = registers::base_address(base);
-    return Range{first, first + size};
-  };
-  const Range disparity = range(start.disparity, bytes);
-  return !disparity.overlaps(range(start.left_image, bytes)) &&
-         !disparity.overlaps(range(start.right_image, bytes)) &&
-         !(left_lut_ && disparity.overlaps(range(start.left_lut, 4 * bytes))) &&
-         !(right_lut_ && disparity.overlaps(range(start.right_lut, 4 * bytes)));
+bool StereoCore::buffers_are_apart() const {
+  const AddressRange& disparity = buffer_of(Port::kResult);
+  return std::count_if(buffers_.begin(), buffers_.end(), [&disparity](const AddressRange& buffer) {
+           return buffer.overlaps(disparity);
+         }) == 1;  // itself
 }
 
 // With the last write.
@@ -87,14 +95,11 @@ void StereoCore::write_frame() {
   if (config_.fidelity != Fidelity::kTiming) {
     std::uint8_t* const buffer = result_writer_.buffer(words);
     if (buffer == nullptr) {
-      SC_REPORT_ERROR("/stereotlm/core",
-                      (std::string(name()) + ": direct access to the disparities was taken back "
-                                             "within a frame")
-                          .c_str());
-      return;
+      fail("direct access to the disparities was taken back within a frame");
+    } else {
+      std::copy(disparities_.begin(), disparities_.end(), buffer);
+      crossbar_.changes(buffer_of(Port::kResult).first, words * 4);
     }
-    std::copy(disparities_.begin(), disparities_.end(), buffer);
-    crossbar_.changes(registers::base_address(frame_.disparity), words * 4);
     answered = static_cast<std::uint64_t>(
         std::count_if(disparities_.begin(), disparities_.end(),
                       [](std::uint8_t d) { return d != kernels::kInvalidDisparity; }));
@@ -103,7 +108,7 @@ void StereoCore::write_frame() {
 }
 
 void StereoCore::count_frame(std::uint64_t answered) {
-  const FrameCounts counts(config_.core, left_pattern_, right_pattern_, answered);
+  const FrameCounts counts(config_.core, left_pattern_, right_pattern_, control(), answered);
   sequencer_.count(Side::kLeft, counts.left.slots);
   sequencer_.count(Side::kRight, counts.right.slots);
   if (left_lut_) left_lut_->count(counts.left.table);
@@ -119,32 +124,44 @@ void StereoCore::count_frame(std::uint64_t answered) {
   select_min_tree_.count(counts.tree);
   if (config_.fidelity != Fidelity::kTiming) lr_check_.count(counts.check);
   result_packer_.count(counts.packed);
-  result_writer_.count(
-      {counts.packed.words, static_cast<std::uint64_t>(control().result().most_queued()), 0});
+  result_writer_.count({control().result().cycles().granted() - writes_before_,
+                        static_cast<std::uint64_t>(control().result().most_queued()), 0});
   crossbar_.count_direct(Port::kLeftLut, counts.left.table.reads);
   crossbar_.count_direct(Port::kRightLut, counts.right.table.reads);
   crossbar_.count_direct(Port::kLeftPixel, counts.left.image.reads);
   crossbar_.count_direct(Port::kRightPixel, counts.right.image.reads);
-  crossbar_.count_direct(Port::kResult, counts.packed.words);
+  crossbar_.count_direct(Port::kResult, control().geometry().result_words);
 }
 
-// A burst that would notice that the data is not moved word by word.
-void StereoCore::check_burst(const HostRoute& route) const {
-  const std::uint64_t bytes = control().geometry().result_words * 4;
-  const Range burst{route.first, route.end};
-  const auto touches = [&burst](std::uint32_t base, std::uint64_t size) {
-    const std::uint64_t first = registers::base_address(base);
-    return burst.overlaps({first, first + size});
+// What a burst touches of the frame, where it would notice that the data is not moved word by word: the port
+// that works on that buffer.
+std::optional<Port> StereoCore::noticed_by(const HostRoute& route) const {
+  // The words that it has already moved are in place.
+  const AddressRange words{route.end - 4 * local_bus_.words_left(), route.end};
+  for (std::size_t port = 0; port < buffers_.size(); ++port) {
+    const bool is_exclusive = route.write || port == memory::index_of(Port::kResult);
+    if (is_exclusive && buffers_[port].overlaps(words)) return static_cast<Port>(port);
+  }
+  return std::nullopt;
+}
+
+void StereoCore::check_burst(const HostRoute& route) {
+  const std::optional<Port> noticed = noticed_by(route);
+  if (!noticed) return;
+  const auto word = [](std::uint64_t address) {
+    return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
   };
-  const bool reads = touches(frame_.left_image, bytes) || touches(frame_.right_image, bytes) ||
-                     (left_lut_ && touches(frame_.left_lut, 4 * bytes)) ||
-                     (right_lut_ && touches(frame_.right_lut, 4 * bytes));
-  if (!(route.write && reads) && !touches(frame_.disparity, bytes)) return;
-  SC_REPORT_ERROR(
-      "/stereotlm/core",
-      (std::string(name()) + ": a burst of the local bus from " + std::to_string(route.first) + " on " +
-       (route.write ? "writes" : "reads") + " a buffer of the running frame: needs fidelity cycle")
-          .c_str());
+  fail("a burst of the local bus " + std::string(route.write ? "writes" : "reads") + " words " +
+       word(route.first) + ".." + word(route.end - 4) + " of bank number " + std::to_string(*route.bank) +
+       ", where the running frame has its " + kBufferNames[memory::index_of(*noticed)] +
+       ": needs fidelity cycle");
+}
+
+// The frame that runs is not what it would be cycle by cycle. Where reports are not thrown it ends with the
+// error flag.
+void StereoCore::fail(const std::string& text) {
+  failed_ = true;
+  SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + text).c_str());
 }
 
 // The time.

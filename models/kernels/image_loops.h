@@ -30,7 +30,8 @@ struct MatchPlan {
   int first_outside = 0;    // from this position on the left window of some lane is not in the image
 };
 
-// Sums of up to 15 * 15 differences with two bits for the disparity do not fit into 16 bits from here on.
+// The largest window whose sums fit into 16 bits with two bits for the disparity behind them: 7 * 7 * 255 * 4
+// does, 9 * 9 * 255 * 4 does not. (Without these bits all up to 15 * 15 * 255 do.)
 inline constexpr int kLastNarrowWindow = 7;
 
 // Vectors, one per position, at multiples of kMostImageVectorBytes.

@@ -66,20 +66,33 @@ void Arbitration::share_banks() {
   }
 }
 
-// Tells the arbiters what was granted without them.
-void Arbitration::settle() const {
+// Tells the arbiters how much was granted without them.
+void Arbitration::count_alone() const {
   std::array<std::uint64_t, kPortCount> cycles{};
   for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
     if (alone_cycles_[ports_alone] == 0) continue;
     for (std::size_t port = 0; port < kPortCount; ++port)
       cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
   }
+  for (std::size_t ports = 0; ports < alone_cycles_.size(); ++ports)
+    alone_before_period_[ports] -= alone_cycles_[ports];
   alone_cycles_ = {};
   for (std::size_t port = 0; port < kPortCount; ++port) {
-    arbiters_[routes_[port].bank].grant_alone(static_cast<PortMask>(1U << port), routes_[port].write,
-                                              cycles[port] - taken_back_[port]);
+    const std::uint64_t grants = cycles[port] - taken_back_[port];
+    arbiters_[routes_[port].bank].count_alone(mask_of(static_cast<Port>(port)), routes_[port].write, grants);
+    alone_grants_[port] += grants;
   }
   taken_back_ = {};
+}
+
+// The same, and all that has been granted without them is known: nothing will be taken back any more.
+void Arbitration::settle() {
+  count_alone();
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    if (alone_grants_[port] == 0) continue;
+    arbiters_[routes_[port].bank].move_place_behind(mask_of(static_cast<Port>(port)));
+  }
+  alone_grants_ = {};
 }
 
 // The rest of arbitrate(): requests of ports that are not alone on their banks.

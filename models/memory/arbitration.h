@@ -21,7 +21,6 @@ class Arbitration {
   // The port has nothing to request any more.
   void unroute(Port port);
   std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
-  bool writes(Port port) const { return routes_[index_of(port)].write; }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
@@ -35,12 +34,12 @@ class Arbitration {
   }
   // Whether whatever this port requests is granted at once, as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
-  // So many of the cycles granted to a port that is alone held no request, as it turns out; before a route changes or
-  // counting ends.
+  // So many of the cycles granted to a port that is alone held no request, as it turns out. To be told before
+  // a route changes or counting ends: then what is left of them moves the bank's place in the round robin.
   void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
 
-  // One request of a port for a bank that no port is routed to, in the given direction, and what comes of it; it is
-  // counted later, by count_unrouted().
+  // One request of a port for a bank of which no routed port asks anything, in the given direction, and what
+  // comes of it; it is counted later, by count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
   void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
                       std::uint64_t cycles) {
@@ -55,19 +54,19 @@ class Arbitration {
   // are 0.
   using State = std::array<std::uint32_t, kPortCount>;
   State state(std::uint64_t cycle) const;
-  // From here on a period is recorded, until end_period(), repeat() or a change of routes.
+  // From here on a period is recorded, until repeat() or a change of routes.
   void begin_period();
-  void end_period() { recording_ = false; }
   // What has happened since begin_period(), in `period_cycles` cycles, happens `times` times again; the state is the
   // same as at begin_period().
   void repeat(std::uint64_t period_cycles, std::uint64_t times);
 
   // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
-  // counting has ended; their uncounted_accesses() always.
+  // counting has ended; their uncounted_accesses() always. Until then the grants of a port that is alone may
+  // be taken back. Asking for the arbiters changes nothing.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const std::vector<BankArbiter>& arbiters() const {
-    settle();
+    count_alone();
     return arbiters_;
   }
 
@@ -85,7 +84,8 @@ class Arbitration {
 
   bool is_routed(std::size_t port) const { return (routed_ >> port & 1U) != 0; }
   void share_banks();
-  void settle() const;
+  void count_alone() const;
+  void settle();
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
   mutable std::vector<BankArbiter> arbiters_;
@@ -97,8 +97,9 @@ class Arbitration {
   PortMask alone_ = 0;
   using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
   mutable AloneCycles alone_cycles_{};
-  AloneCycles alone_before_period_{};
+  mutable AloneCycles alone_before_period_{};                   // only the difference to alone_cycles_ counts
   mutable std::array<std::uint64_t, kPortCount> taken_back_{};  // of the alone_cycles_
+  mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those taken back
   std::array<SharedBank, kPortCount> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;

@@ -27,7 +27,7 @@ BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
   }
 }
 
-void BankArbiter::grant_alone(PortMask port, bool write, std::uint64_t cycles) {
+void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
   if (cycles == 0) return;
   const std::size_t situation = place_ * kMasks + port;
   if (counting_) {
@@ -37,7 +37,6 @@ void BankArbiter::grant_alone(PortMask port, bool write, std::uint64_t cycles) {
   } else {
     uncounted_accesses_ += cycles;
   }
-  place_ = winners_[situation].next_place;
 }
 
 void BankArbiter::repeat(std::uint64_t period_cycles, const std::vector<Outcome>& outcomes,

@@ -62,16 +62,11 @@ class BankArbiter {
       uncounted_accesses_ += cycles;
     }
   }
-  // Both at once. Returns the port that is granted.
-  PortMask arbitrate(std::uint64_t cycle, PortMask requests, PortMask writes) {
-    const Outcome outcome = decide(cycle, requests, writes);
-    count(cycle, outcome);
-    return granted_in(outcome);
-  }
-
-  // The same for `cycles` cycles since the last call, in each of which this port alone asked: for a bank that
-  // needs no turnaround.
-  void grant_alone(PortMask port, bool write, std::uint64_t cycles);
+  // Counts `cycles` cycles since the last call, in each of which this port alone asked and was granted, for a
+  // bank that needs no turnaround ..
+  void count_alone(PortMask port, bool write, std::uint64_t cycles);
+  // .. and, where these are at least one, what they do to the round-robin place.
+  void move_place_behind(PortMask port) { place_ = winners_[place_ * kMasks + port].next_place; }
 
   // All that the decisions from `cycle` on depend on.
   std::uint32_t state(std::uint64_t cycle) const {

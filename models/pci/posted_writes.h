@@ -7,7 +7,8 @@
 namespace stereotlm::pci {
 
 // The words of posted writes that wait in the bridge for the local bus, in order, each with its address there. A burst
-// keeps its places until it has been sent. Plain C++; it allocates nothing once built.
+// keeps its places until it has been sent. Plain C++; once built it allocates nothing but what waiting()
+// returns.
 class PostedWrites {
  public:
   // The first words that wait, as far as their addresses follow each other in one bank.

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,16 @@ class Problems {
   // Not a problem, but of use to whoever has it.
   void add_note(const std::string& text) { lines_.push_back("stereotlm: note: " + text); }
   bool empty() const { return lines_.empty(); }
+  // Without the name of the program, separated by semicolons.
+  std::string in_one_line() const {
+    constexpr std::string_view kPrefix = "stereotlm: error: ";
+    std::string text;
+    for (const std::string& line : lines_) {
+      if (!text.empty()) text += "; ";
+      text += line.compare(0, kPrefix.size(), kPrefix) == 0 ? line.substr(kPrefix.size()) : line;
+    }
+    return text;
+  }
 
   // Throws Refused if there is any.
   void check() const {

@@ -43,6 +43,10 @@ std::string progress_text(const RunState& state, double seconds) {
                      time_text((frames - position) * frame_cycles / rate));
 }
 
+std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
+  return fmt::format("verifying: {}/{} frames", frames_compared, frames);
+}
+
 ProgressLine::ProgressLine()
     : is_terminal_(isatty(STDERR_FILENO) != 0),
       start_(std::chrono::steady_clock::now()),

@@ -22,8 +22,10 @@ std::string progress_text(const RunState& state, double seconds);
 // "0:08", "1:02:03", "years"
 std::string time_text(double seconds);
 
-// The progress line of a run, on standard error if that is a terminal; otherwise nothing. The line is erased
-// at the end.
+// "verifying: 1/5 frames": how far the comparison with the other run is.
+std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames);
+
+// A progress line, on standard error if that is a terminal; otherwise nothing. The line is erased at the end.
 class ProgressLine {
  public:
   ProgressLine();

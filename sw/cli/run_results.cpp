@@ -28,8 +28,10 @@ void add_pictures(const RunInput& input, const simulation::Result& last, report:
   folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
 }
 
-void write_files(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last,
-                 const std::optional<report::Accuracy>& accuracy) {
+void write_files(RunInput& input, platform::Statistics statistics, const simulation::Result& last,
+                 const std::optional<report::Accuracy>& accuracy,
+                 const std::vector<std::string>& differences) {
+  statistics.failed.insert(statistics.failed.end(), differences.begin(), differences.end());
   report::ResultFolder& folder = *input.folder;
   if (!input.timing_only) add_pictures(input, last, folder);
   folder.add("stats.json", report::stats_json(statistics, accuracy));
@@ -67,16 +69,23 @@ void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done)
   input.described.truth.reset();
 }
 
-bool deliver(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last) {
+void leave_out_verify(RunInput& input) {
+  say("note", "--verify: interrupted: nothing is compared");
+  input.described.verify = false;
+}
+
+bool deliver(RunInput& input, const platform::Statistics& statistics, const simulation::Result& last,
+             const std::vector<std::string>& differences) {
   std::optional<report::Accuracy> accuracy;
   if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
-  if (input.folder) write_files(input, statistics, last, accuracy);
+  if (input.folder) write_files(input, statistics, last, accuracy, differences);
   for (const std::string& identity : statistics.failed) say("error", "identity does not hold: " + identity);
   const platform::BoardConfig& board = input.board;
   print(report::console_table(statistics,
                               {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
                               accuracy_to_show(input, last, accuracy)));
-  return statistics.failed.empty();
+  for (const std::string& difference : differences) say("error", difference);
+  return statistics.failed.empty() && differences.empty();
 }
 
 }  // namespace stereotlm::cli

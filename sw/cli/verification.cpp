@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <functional>
 #include <stdexcept>
 #include <string_view>
 
 #include "models/binder.h"
+#include "sw/cli/interrupt.h"
 #include "sw/cli/open_source.h"
-#include "sw/cli/progress.h"
 #include "sw/cli/run_mode.h"
-#include "sw/cli/streams.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
 
@@ -18,6 +18,9 @@ namespace stereotlm::cli {
 namespace {
 
 constexpr std::size_t kMostLines = 10;
+constexpr std::chrono::milliseconds kBetweenLooks{100};
+
+struct Interrupted {};
 
 // The result of a frame, short enough to be kept for all of them.
 std::string line_of(const simulation::Result& result, bool with_pixels) {
@@ -43,7 +46,8 @@ std::unique_ptr<PairSource> open_pairs(const RunInput& input, const RunOptions& 
   Problems problems;
   report::RunOptions described;
   OpenedSource source = open_source(options.pictures, &input.board, described, problems);
-  if (!problems.empty()) throw std::runtime_error("the pictures cannot be read any more");
+  if (!problems.empty())
+    throw std::runtime_error("the pictures cannot be read any more: " + problems.in_one_line());
   return std::move(source.pairs);
 }
 
@@ -72,36 +76,42 @@ void Verification::add(const simulation::Result& result) {
   results_.push_back(line_of(result, !input_.timing_only));
 }
 
-bool Verification::finish(const platform::Statistics& statistics) {
+// While it waits it looks for interrupts.
+std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
+  do {
+    if (interrupted()) throw Interrupted();
+    progress.show([&](double) { return verification_text(frames_compared, results_.size()); });
+  } while (!other_->has_news(kBetweenLooks));
+  return other_->next();
+}
+
+Verification::Outcome Verification::compare(const platform::Statistics& statistics) {
   const std::string ours = input_.fast ? "fast" : "cycle";
   const std::string other = name_of_other(input_);
   std::vector<std::string> lines;
   ProgressLine progress;
   try {
     for (std::size_t frame = 0; frame < results_.size(); ++frame) {
-      const std::string theirs = other_->next().value_or("nothing");
+      const std::string theirs = next_of_other(progress, frame).value_or("nothing");
       if (theirs != results_[frame])
         lines.push_back(fmt::format("frame {}: {}: {}; {}: {}", frame, ours, results_[frame], other, theirs));
-      progress.show({results_.size(), frame + 1, 0, 0, 1});
     }
+    const std::string theirs = next_of_other(progress, results_.size()).value_or("{}");
     for (const std::string& difference :
-         report::stats_differences(stats_text(statistics), other_->next().value_or("{}"), ours, other))
+         report::stats_differences(stats_text(statistics), theirs, ours, other))
       lines.push_back("stats.json: " + difference);
+  } catch (const Interrupted&) {
+    return {true, {}};
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("--verify: the run at fidelity {}: {}", other, error.what()));
+    return {false, {fmt::format("--verify: the run at fidelity {}: {}", other, error.what())}};
   }
-  progress.erase();
-  if (lines.empty()) {
-    say("note", fmt::format("verified: fast and cycle agree in every {} of {} frame{}",
-                            input_.timing_only ? "figure and time" : "figure, time and pixel",
-                            results_.size(), results_.size() == 1 ? "" : "s"));
-    return true;
-  }
+  Outcome outcome;
   for (std::size_t i = 0; i < lines.size() && i < kMostLines; ++i)
-    say("error", "the fidelities differ: " + lines[i]);
-  if (lines.size() > kMostLines)
-    say("error", fmt::format("the fidelities differ: {} more lines", lines.size() - kMostLines));
-  return false;
+    outcome.failed.push_back("the fidelities differ: " + lines[i]);
+  if (lines.size() > kMostLines) {
+    outcome.failed.push_back(fmt::format("the fidelities differ: {} more lines", lines.size() - kMostLines));
+  }
+  return outcome;
 }
 
 }  // namespace stereotlm::cli

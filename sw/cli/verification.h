@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/statistics.h"
+#include "sw/cli/progress.h"
 #include "sw/cli/run_input.h"
 #include "sw/simulation/child.h"
 #include "sw/simulation/simulation.h"
@@ -20,10 +22,18 @@ class Verification {
 
   // A result of this process's run, in turn.
   void add(const simulation::Result& result);
-  // Waits for the other run, and says on standard error what is not the same. True if everything is.
-  bool finish(const platform::Statistics& statistics);
+
+  struct Outcome {
+    bool interrupted = false;  // nothing is compared
+    std::vector<std::string>
+        failed;  // what is not the same, or became of the other run; empty: all is the same
+  };
+  // Waits for the other run, until the first interrupt, and compares.
+  Outcome compare(const platform::Statistics& statistics);
 
  private:
+  std::optional<std::string> next_of_other(ProgressLine& progress, std::size_t frames_compared);
+
   const RunInput& input_;
   std::vector<std::string> results_;  // one line each, in the order of the frames
   std::unique_ptr<simulation::Child> other_;

@@ -30,7 +30,7 @@ struct RunOptions {
   std::string source;    // "preloaded"
   std::string fidelity;  // "fast"
   bool timing_only = false;
-  bool verify = false;
+  bool verify = false;  // false too where the comparison was interrupted
   std::uint64_t frames = 1;
   std::optional<InputFile> left;
   std::optional<InputFile> right;

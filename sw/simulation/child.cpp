@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -105,6 +106,14 @@ Child::~Child() {
   kill(pid_, SIGKILL);
   while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }
+}
+
+bool Child::has_news(std::chrono::milliseconds wait) {
+  pollfd messages = {messages_, POLLIN, 0};
+  const int ready =
+      poll(&messages, 1, static_cast<int>(wait.count()));  // a signal ends it, whatever its flags
+  if (ready < 0 && errno != EINTR) throw_errno("poll");
+  return ready > 0;
 }
 
 std::optional<std::string> Child::next() {

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -14,14 +15,18 @@ class Child {
  public:
   using Tell = std::function<void(const std::string& message)>;
 
-  // Forks. The child has a copy of everything (threads and open files apart), does the work, and leaves without running
-  // destructors of static objects. It ends with this process. Throws std::system_error if there can be no child.
+  // Forks. The child has a copy of everything but the threads (open files are the same, with their
+  // positions), does the work, and leaves without running destructors of static objects. It ends with this
+  // process. Throws std::system_error if there can be no child.
   explicit Child(const std::function<void(const Tell& tell)>& work);
   // Ends it if it still works.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
+  // Waits for as long at most, or until a signal has been caught, and tells whether next() has something to
+  // say.
+  bool has_news(std::chrono::milliseconds wait);
   // Waits for the next message; nothing once the work is done. Throws std::runtime_error that says how the child has
   // failed: what it threw, or the signal that ended it.
   std::optional<std::string> next();

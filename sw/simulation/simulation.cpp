@@ -10,7 +10,8 @@
 namespace stereotlm::simulation {
 namespace {
 
-// FPGA cycles that take some ten ms, whatever else the board has to do.
+// FPGA cycles of one advance(): some ms of wall time, and at fast what the pixels of a frame take that begins
+// in them.
 constexpr double kSliceCycles = 40'000;
 constexpr double kFastSliceCycles = 2'000'000;
 

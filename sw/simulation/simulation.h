@@ -27,9 +27,10 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Simulates for a while, some ten ms of wall time, and returns the results that have come in them, in order. Throws
-  // sc_core::sc_report if a model reports an error, what the source throws, and std::runtime_error if nothing is left to
-  // happen, or nothing goes on, before the last frame is finished.
+  // Simulates for a while, some ms of wall time and at fast as long as the pixels of a frame take, and
+  // returns the results that have come in them, in order. Throws sc_core::sc_report if a model reports an
+  // error, what the source throws, and std::runtime_error if nothing is left to happen, or nothing goes on,
+  // before the last frame is finished.
   std::vector<Result> advance();
 
   // To be finished as soon as the results are those of a whole run of fewer frames: of those that are done, and of

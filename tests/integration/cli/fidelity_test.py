@@ -2,14 +2,18 @@
 
 import json
 import os
+import re
 import signal
 import time
 
 import program
 from avi import avi
-from interrupt_test import PROGRESS, Terminal
+from interrupt_test import PROGRESS, Terminal, shown
 from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, noise, pgm, run
 
+# Some seconds a frame, cycle by cycle.
+SLOW = ["--timing-only", "--set", "image.width=2048", "--set", "image.height=2048"]
+SLOW += ["--set", "matcher.window=31", "--set", "ssram.default.words=4194304"]
 CAMERA = ["--source", "camera", *CAMERA_RATES]
 SOURCES = {"preloaded": PRELOADED, "camera": CAMERA}
 BOARDS = {
@@ -131,9 +135,12 @@ class Verify(FidelityTest):
         """A run with --verify at a terminal that has begun, and the process of its second run."""
         terminal = Terminal(self.run_arguments("--verify", *options, "--out", self.out))
         terminal.read_until(PROGRESS)
+        return terminal, self.child_of(terminal)
+
+    def child_of(self, terminal):
         with open(f"/proc/{terminal.process.pid}/task/{terminal.process.pid}/children") as children:
             (child,) = (int(number) for number in children.read().split())
-        return terminal, child
+        return child
 
     def gone(self, child):
         """Whether the process ends soon."""
@@ -154,6 +161,36 @@ class Verify(FidelityTest):
         self.assertIn("note: --verify: interrupted: nothing is compared", terminal.text)
         self.assertNotIn("verified", terminal.text)
         self.assertGreater(self.stats()["frames"], 0)
+        self.assertNotIn("verify", json.loads((self.out / "run.json").read_text()))
+        self.assertTrue(self.gone(child))
+
+    def test_shows_how_far_the_comparison_is(self):
+        frames = ["--timing-only", "--frames", "12"]
+        terminal = Terminal(["run", "fpl2003", *PRELOADED, *frames, "--verify"])
+        terminal.read_until(re.compile(r"verifying: [1-9]\d*/12 frames"))
+        status, out = terminal.finish()
+        self.assertEqual(status, 0, terminal.text)
+        self.assertIn("12 frames", out)
+        text = "stereotlm: note: verified: fast and cycle agree in every figure and time of 12 frames"
+        self.assertEqual(shown(terminal.text), [text, ""])
+        self.assertNotIn("nan", terminal.text)
+
+    def start_comparison(self):
+        """A run at a terminal that waits for its second run, which takes long, and that one's process."""
+        terminal = Terminal(["run", "fpl2003", *PRELOADED, *SLOW, "--verify", "--frames", "2", "--out", self.out])
+        terminal.read_until(re.compile("verifying: 0/2 frames"))
+        return terminal, self.child_of(terminal)
+
+    def test_that_is_interrupted_compares_nothing(self):
+        terminal, child = self.start_comparison()
+        terminal.process.send_signal(signal.SIGINT)
+        status, out = terminal.finish()
+        self.assertEqual(status, 130)
+        self.assertIn("2 frames", out)
+        self.assertEqual(shown(terminal.text), ["stereotlm: note: --verify: interrupted: nothing is compared", ""])
+        self.assertEqual(self.stats()["frames"], 2)
+        self.assertNotIn("failed", self.stats())
+        self.assertNotIn("verify", json.loads((self.out / "run.json").read_text()))
         self.assertTrue(self.gone(child))
 
     def test_of_a_run_that_is_killed_leaves_no_process(self):
@@ -167,7 +204,10 @@ class Verify(FidelityTest):
         os.kill(child, signal.SIGKILL)
         status, _ = terminal.finish()
         self.assertEqual(status, 1)
-        self.assertIn("error: --verify: the run at fidelity fast: the process was ended by signal 9", terminal.text)
+        text = "--verify: the run at fidelity fast: the process was ended by signal 9 (Killed)"
+        self.assertIn(f"error: {text}\n", terminal.text.replace("\r\n", "\n"))
+        self.assertEqual(self.stats()["failed"], [text])
+        self.assertIs(json.loads((self.out / "run.json").read_text())["verify"], True)
 
 
 if __name__ == "__main__":

@@ -26,6 +26,11 @@ TEST(ProgressText, EndsAtTheLastFrame) {
   EXPECT_EQ(progress_text(state, 1), "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
 }
 
+TEST(VerificationText, CountsTheFramesCompared) {
+  EXPECT_EQ(verification_text(0, 5), "verifying: 0/5 frames");
+  EXPECT_EQ(verification_text(1, 5), "verifying: 1/5 frames");
+}
+
 TEST(ProgressText, WritesLongTimes) {
   const auto left = [](std::uint64_t frames) {
     const std::string text = progress_text({frames, 1, 1'000'000, 1'000'000, 1}, 1);

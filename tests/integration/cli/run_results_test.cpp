@@ -20,7 +20,8 @@ struct Delivery {
   std::string err;
 };
 
-Delivery delivery_of(const std::vector<std::string>& failed) {
+Delivery delivery_of(const std::vector<std::string>& failed,
+                     const std::vector<std::string>& differences = {}) {
   RunInput input;
   input.board = platform::load_board("fpl2003");
   platform::Statistics statistics;
@@ -29,7 +30,7 @@ Delivery delivery_of(const std::vector<std::string>& failed) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Delivery delivery;
-  delivery.all_hold = deliver(input, statistics, {0, kernels::GrayImage(4, 1)});
+  delivery.all_hold = deliver(input, statistics, {0, kernels::GrayImage(4, 1)}, differences);
   delivery.out = ::testing::internal::GetCapturedStdout();
   delivery.err = ::testing::internal::GetCapturedStderr();
   return delivery;
@@ -49,6 +50,15 @@ TEST(Deliver, SaysEachIdentityThatDoesNotHold) {
             "stereotlm: error: identity does not hold: grants = 3: accesses = 4\n"
             "stereotlm: error: identity does not hold: stalls = 5: blames = 6\n");
   EXPECT_THAT(delivery.out, HasSubstr("worst stall")) << "the table is printed nevertheless";
+}
+
+TEST(Deliver, SaysEachDifferenceOfTheFidelities) {
+  const Delivery delivery = delivery_of({"grants = 3: accesses = 4"}, {"the fidelities differ: frame 0"});
+  EXPECT_FALSE(delivery.all_hold);
+  EXPECT_EQ(delivery.err,
+            "stereotlm: error: identity does not hold: grants = 3: accesses = 4\n"
+            "stereotlm: error: the fidelities differ: frame 0\n");
+  EXPECT_FALSE(delivery_of({}, {"the fidelities differ: frame 0"}).all_hold);
 }
 
 class EmptyPairs : public PairSource {

@@ -28,14 +28,16 @@ class VerificationTest : public testing::Test {
     input.frames = 2;
     options.timing_only = true;
   }
-  // What it says of this run, which did not take place.
-  std::string said_of(const std::vector<simulation::Result>& results,
-                      const platform::Statistics& statistics) {
+  // What fails of this run, which did not take place: one line each.
+  std::string failed_of(const std::vector<simulation::Result>& results,
+                        const platform::Statistics& statistics) {
     Verification verification(input, options);
     for (const simulation::Result& result : results) verification.add(result);
-    testing::internal::CaptureStderr();
-    EXPECT_FALSE(verification.finish(statistics));
-    return testing::internal::GetCapturedStderr();
+    const Verification::Outcome outcome = verification.compare(statistics);
+    EXPECT_FALSE(outcome.interrupted);
+    std::string text;
+    for (const std::string& line : outcome.failed) text += line + '\n';
+    return text;
   }
 
   RunInput input;
@@ -46,7 +48,7 @@ TEST_F(VerificationTest, NamesTheFramesAndFiguresThatDiffer) {
   platform::Statistics statistics;
   statistics.frames = 2;
   statistics.area = platform::area_of(input.board);  // known without a run
-  const std::string said = said_of({{0, {}, 123}, {1, {}, 456}}, statistics);
+  const std::string said = failed_of({{0, {}, 123}, {1, {}, 456}}, statistics);
   EXPECT_THAT(said,
               ContainsRegex("the fidelities differ: frame 0: fast: camera frame 0, done at 123 ps; cycle: "
                             "camera frame 0, done at [0-9]+ ps"));
@@ -56,6 +58,15 @@ TEST_F(VerificationTest, NamesTheFramesAndFiguresThatDiffer) {
   EXPECT_THAT(said, ContainsRegex("the fidelities differ: [0-9]+ more lines"));
   EXPECT_THAT(said, Not(HasSubstr("/fidelity")));
   EXPECT_THAT(said, Not(HasSubstr("/area")));
+}
+
+TEST_F(VerificationTest, NamesThePicturesThatCannotBeReadAnyMoreAndWhy) {
+  options.pictures.pair = {"/nowhere/left.png", "/nowhere/right.png"};
+  const std::string rule = "a picture must be a readable regular file";
+  EXPECT_EQ(failed_of({{0, {}, 123}}, {}),
+            "--verify: the run at fidelity cycle: the pictures cannot be read any more: --left "
+            "'/nowhere/left.png': no such file: " +
+                rule + "; --right '/nowhere/right.png': no such file: " + rule + "\n");
 }
 
 }  // namespace

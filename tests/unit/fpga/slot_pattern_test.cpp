@@ -85,7 +85,7 @@ TEST(SlotPattern, CountsTheSlotsOfAFrame) {
   for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
     const auto columns = columns_of(config, entries);
     ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
-    ASSERT_EQ(pattern.valid_entries(), count(columns, Access::kTableAndImage));
+    ASSERT_EQ(pattern.pixel_accesses(), count(columns, Access::kTableAndImage));
   });
 }
 
@@ -96,7 +96,7 @@ TEST(SlotPattern, BeginsWithEveryEntryValid) {
     const SlotPattern fresh{FrameGeometry(config)};
     SlotPattern all_valid{FrameGeometry(config)};
     all_valid.set_entries(kernels::identity_table(config.width, config.height).entries.data());
-    ASSERT_EQ(fresh.valid_entries(), all_valid.valid_entries());
+    ASSERT_EQ(fresh.pixel_accesses(), all_valid.pixel_accesses());
     ASSERT_EQ(fresh.empty_slots(), all_valid.empty_slots());
     ASSERT_EQ(fresh.alike_until(0), all_valid.alike_until(0));
     ASSERT_TRUE(fresh.entry_valid(config.width - 1, config.height - 1));

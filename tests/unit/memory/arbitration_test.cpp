@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/random_board.h"
+#include "tests/unit/memory/step_arbiter.h"
 
 namespace stereotlm::memory {
 namespace {
@@ -76,7 +77,7 @@ class PlainArbitration {
         asking = static_cast<PortMask>(asking | 1U << port);
         if (routes[port].second) writes = static_cast<PortMask>(writes | 1U << port);
       }
-      if (asking != 0) granted = both(granted, arbiters[bank].arbitrate(cycle, asking, writes));
+      if (asking != 0) granted = both(granted, memory::arbitrate(arbiters[bank], cycle, asking, writes));
     }
     return granted;
   }
@@ -193,6 +194,41 @@ TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
 INSTANTIATE_TEST_SUITE_P(Arbitration, ArbitrationPeriods, testing::Bool(), [](const auto& suite) {
   return std::string(suite.param ? "Counted" : "NotCounted");
 });
+
+TEST(Arbitration, RepeatsAPeriodInWhichSomebodyAsksForTheArbiters) {
+  Arbitration arbitration(ArbiterConfig{}, banks());
+  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.begin_counting(0);
+  for (std::uint64_t cycle = 0; cycle < 3; ++cycle) arbitration.arbitrate(cycle, kLeft);
+  arbitration.begin_period();
+  arbitration.arbitrate(3, kLeft);
+  EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 4U);
+  arbitration.arbitrate(4, kLeft);
+  arbitration.arbitrate(5, kNone);
+  arbitration.repeat(3, 5);
+  arbitration.end_counting(21);
+  EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 3U + 6 * 2);
+  EXPECT_EQ(arbitration.arbiters()[0].stats().idle_cycles, 6U);
+}
+
+// Round robin: left_pixel is before right_pixel, unless it was the last that was granted.
+PortMask granted_after_being_alone(std::uint64_t grants, std::uint64_t taken_back) {
+  Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());
+  arbitration.route(Port::kLeftPixel, 0, false);
+  for (std::uint64_t cycle = 0; cycle < grants; ++cycle) arbitration.arbitrate(cycle, kLeft);
+  EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants);
+  arbitration.take_back(Port::kLeftPixel, taken_back);
+  EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants - taken_back);
+  arbitration.route(Port::kRightPixel, 0, false);
+  return arbitration.arbitrate(grants, both(kLeft, kRight));
+}
+
+TEST(Arbitration, MovesNoPlaceForGrantsThatAreTakenBackAfterSomebodyAsked) {
+  EXPECT_EQ(granted_after_being_alone(0, 0), kLeft);
+  EXPECT_EQ(granted_after_being_alone(5, 5), kLeft);
+  EXPECT_EQ(granted_after_being_alone(5, 4), kRight);
+  EXPECT_EQ(granted_after_being_alone(1, 0), kRight);
+}
 
 TEST(Arbitration, HasAStateOnlyWherePortsMeetOrTheBankTurnsRound) {
   Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());

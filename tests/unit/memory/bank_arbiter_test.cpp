@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/memory/step_arbiter.h"
+
 namespace stereotlm::memory {
 namespace {
 
@@ -38,16 +40,16 @@ TEST(BankArbiter, GrantsTheFirstOfTheListForEverySetOfRequests) {
   uint64_t cycle = 0;
   for (PortMask requests = 1; requests <= kAll; ++requests) {
     const Port winner = config.priority[first_asking(config, 0, requests)];
-    EXPECT_EQ(arbiter.arbitrate(cycle++, requests, kNone), mask_of(winner)) << int{requests};
-    EXPECT_EQ(arbiter.arbitrate(cycle++, requests, requests), mask_of(winner)) << int{requests};
+    EXPECT_EQ(arbitrate(arbiter, cycle++, requests, kNone), mask_of(winner)) << int{requests};
+    EXPECT_EQ(arbitrate(arbiter, cycle++, requests, requests), mask_of(winner)) << int{requests};
   }
 }
 
 TEST(BankArbiter, PutsTheHostFirstByDefault) {
   BankArbiter arbiter(ArbiterConfig{}, 0);
-  EXPECT_EQ(arbiter.arbitrate(0, kAll, kNone), mask_of(Port::kHost));
-  EXPECT_EQ(arbiter.arbitrate(1, kAll & ~mask_of(Port::kHost), kNone), mask_of(Port::kResult));
-  EXPECT_EQ(arbiter.arbitrate(2, ports({Port::kRightLut, Port::kLeftLut}), kNone), mask_of(Port::kLeftLut));
+  EXPECT_EQ(arbitrate(arbiter, 0, kAll, kNone), mask_of(Port::kHost));
+  EXPECT_EQ(arbitrate(arbiter, 1, kAll & ~mask_of(Port::kHost), kNone), mask_of(Port::kResult));
+  EXPECT_EQ(arbitrate(arbiter, 2, ports({Port::kRightLut, Port::kLeftLut}), kNone), mask_of(Port::kLeftLut));
 }
 
 TEST(BankArbiter, SearchesFromAfterTheLastOneGrantedForEverySetOfRequests) {
@@ -55,9 +57,9 @@ TEST(BankArbiter, SearchesFromAfterTheLastOneGrantedForEverySetOfRequests) {
   for (std::size_t last = 0; last < kPortCount; ++last) {
     for (PortMask requests = 1; requests <= kAll; ++requests) {
       BankArbiter arbiter(config, 0);
-      ASSERT_EQ(arbiter.arbitrate(0, mask_of(config.priority[last]), kNone), mask_of(config.priority[last]));
+      ASSERT_EQ(arbitrate(arbiter, 0, mask_of(config.priority[last]), kNone), mask_of(config.priority[last]));
       const Port winner = config.priority[first_asking(config, last + 1, requests)];
-      EXPECT_EQ(arbiter.arbitrate(1, requests, kNone), mask_of(winner)) << last << ' ' << int{requests};
+      EXPECT_EQ(arbitrate(arbiter, 1, requests, kNone), mask_of(winner)) << last << ' ' << int{requests};
     }
   }
 }
@@ -66,7 +68,7 @@ TEST(BankArbiter, StartsTheRoundRobinFromTheHeadOfTheList) {
   const ArbiterConfig config = unusual_order(ArbitrationPolicy::kRoundRobin);
   BankArbiter arbiter(config, 0);
   for (uint64_t cycle = 0; cycle < 2 * kPortCount; ++cycle) {
-    EXPECT_EQ(arbiter.arbitrate(cycle, kAll, kNone), mask_of(config.priority[cycle % kPortCount]));
+    EXPECT_EQ(arbitrate(arbiter, cycle, kAll, kNone), mask_of(config.priority[cycle % kPortCount]));
   }
 }
 
@@ -79,18 +81,18 @@ TEST_P(Turnaround, GrantsTheOtherDirectionAtTurnaroundPlusOne) {
     const PortMask first = write_first ? port : kNone;
     const PortMask second = write_first ? kNone : port;
     BankArbiter early(ArbiterConfig{}, GetParam());
-    ASSERT_EQ(early.arbitrate(10, port, first), port);
+    ASSERT_EQ(arbitrate(early, 10, port, first), port);
     for (uint64_t cycle = 11; cycle <= 10 + turnaround; ++cycle) {
-      EXPECT_EQ(early.arbitrate(cycle, port, second), kNone) << cycle;
+      EXPECT_EQ(arbitrate(early, cycle, port, second), kNone) << cycle;
     }
-    EXPECT_EQ(early.arbitrate(10 + turnaround + 1, port, second), port);
+    EXPECT_EQ(arbitrate(early, 10 + turnaround + 1, port, second), port);
 
     BankArbiter first_asked_late(ArbiterConfig{}, GetParam());
-    ASSERT_EQ(first_asked_late.arbitrate(10, port, first), port);
-    EXPECT_EQ(first_asked_late.arbitrate(10 + turnaround, port, second), kNone);
+    ASSERT_EQ(arbitrate(first_asked_late, 10, port, first), port);
+    EXPECT_EQ(arbitrate(first_asked_late, 10 + turnaround, port, second), kNone);
     BankArbiter asked_in_time(ArbiterConfig{}, GetParam());
-    ASSERT_EQ(asked_in_time.arbitrate(10, port, first), port);
-    EXPECT_EQ(asked_in_time.arbitrate(10 + turnaround + 1, port, second), port);
+    ASSERT_EQ(arbitrate(asked_in_time, 10, port, first), port);
+    EXPECT_EQ(arbitrate(asked_in_time, 10 + turnaround + 1, port, second), port);
   }
 }
 
@@ -98,7 +100,7 @@ TEST_P(Turnaround, GrantsTheSameDirectionEveryCycle) {
   const PortMask port = mask_of(Port::kResult);
   for (const PortMask writes : {kNone, port}) {
     BankArbiter arbiter(ArbiterConfig{}, GetParam());
-    for (uint64_t cycle = 0; cycle < 5; ++cycle) EXPECT_EQ(arbiter.arbitrate(cycle, port, writes), port);
+    for (uint64_t cycle = 0; cycle < 5; ++cycle) EXPECT_EQ(arbitrate(arbiter, cycle, port, writes), port);
   }
 }
 
@@ -107,14 +109,14 @@ INSTANTIATE_TEST_SUITE_P(BankArbiter, Turnaround, testing::Values(1, 2, 7, 16));
 TEST(BankArbiter, NeedsNoTurnaroundBeforeTheFirstAccess) {
   for (const PortMask writes : {kNone, kAll}) {
     BankArbiter arbiter(ArbiterConfig{}, 16);
-    EXPECT_NE(arbiter.arbitrate(0, kAll, writes), kNone);
+    EXPECT_NE(arbitrate(arbiter, 0, kAll, writes), kNone);
   }
 }
 
 TEST(BankArbiter, GrantsBothDirectionsInTurnWithoutTurnaround) {
   BankArbiter arbiter(ArbiterConfig{}, 0);
   for (uint64_t cycle = 0; cycle < 6; ++cycle) {
-    EXPECT_EQ(arbiter.arbitrate(cycle, kAll, cycle % 2 == 0 ? kAll : kNone), mask_of(Port::kHost));
+    EXPECT_EQ(arbitrate(arbiter, cycle, kAll, cycle % 2 == 0 ? kAll : kNone), mask_of(Port::kHost));
   }
 }
 
@@ -123,11 +125,11 @@ TEST(BankArbiter, ChoosesTheWinnerBeforeItLooksAtTheTurnaround) {
   BankArbiter arbiter(ArbiterConfig{}, 2);
   const PortMask both = ports({Port::kResult, Port::kLeftPixel});
   const PortMask result = mask_of(Port::kResult);
-  ASSERT_EQ(arbiter.arbitrate(0, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
+  ASSERT_EQ(arbitrate(arbiter, 0, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
   arbiter.begin_counting(1);
-  EXPECT_EQ(arbiter.arbitrate(1, both, result), kNone);
-  EXPECT_EQ(arbiter.arbitrate(2, both, result), kNone);
-  EXPECT_EQ(arbiter.arbitrate(3, both, result), result);
+  EXPECT_EQ(arbitrate(arbiter, 1, both, result), kNone);
+  EXPECT_EQ(arbitrate(arbiter, 2, both, result), kNone);
+  EXPECT_EQ(arbitrate(arbiter, 3, both, result), result);
   arbiter.end_counting(4);
   const ArbiterStats stats = arbiter.stats();
   EXPECT_EQ(stats.turnaround_cycles, 2U);
@@ -139,9 +141,9 @@ TEST(BankArbiter, ChoosesTheWinnerBeforeItLooksAtTheTurnaround) {
 TEST(BankArbiter, RefusesATurningWinnerEvenIfAnotherCouldGoAhead) {
   // Lower in the list and in the bank's own direction, alone it is granted at once.
   BankArbiter arbiter(ArbiterConfig{}, 2);
-  ASSERT_EQ(arbiter.arbitrate(0, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
-  ASSERT_EQ(arbiter.arbitrate(1, ports({Port::kHost, Port::kLeftPixel}), mask_of(Port::kHost)), kNone);
-  EXPECT_EQ(arbiter.arbitrate(2, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
+  ASSERT_EQ(arbitrate(arbiter, 0, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
+  ASSERT_EQ(arbitrate(arbiter, 1, ports({Port::kHost, Port::kLeftPixel}), mask_of(Port::kHost)), kNone);
+  EXPECT_EQ(arbitrate(arbiter, 2, mask_of(Port::kLeftPixel), kNone), mask_of(Port::kLeftPixel));
 }
 
 TEST(BankArbiter, DoesNotMoveTheRoundRobinPlaceOnATurnaround) {
@@ -149,13 +151,13 @@ TEST(BankArbiter, DoesNotMoveTheRoundRobinPlaceOnATurnaround) {
   BankArbiter arbiter(config, 1);
   const PortMask host = mask_of(Port::kHost);
   const PortMask result = mask_of(Port::kResult);
-  ASSERT_EQ(arbiter.arbitrate(0, host, kNone), host);
+  ASSERT_EQ(arbitrate(arbiter, 0, host, kNone), host);
   // From after the host: the result port wins, and waits one cycle; it is still the one to win.
-  EXPECT_EQ(arbiter.arbitrate(1, kAll, result), kNone);
-  EXPECT_EQ(arbiter.arbitrate(2, kAll, result), result);
+  EXPECT_EQ(arbitrate(arbiter, 1, kAll, result), kNone);
+  EXPECT_EQ(arbitrate(arbiter, 2, kAll, result), result);
   // The next in the list is a reader again.
-  EXPECT_EQ(arbiter.arbitrate(3, kAll, result), kNone);
-  EXPECT_EQ(arbiter.arbitrate(4, kAll, result), mask_of(Port::kLeftPixel));
+  EXPECT_EQ(arbitrate(arbiter, 3, kAll, result), kNone);
+  EXPECT_EQ(arbitrate(arbiter, 4, kAll, result), mask_of(Port::kLeftPixel));
 }
 
 TEST(BankArbiter, CountsWhatItGrantsAndWhomItRefuses) {
@@ -163,10 +165,10 @@ TEST(BankArbiter, CountsWhatItGrantsAndWhomItRefuses) {
   const PortMask left = mask_of(Port::kLeftPixel);
   const PortMask result = mask_of(Port::kResult);
   arbiter.begin_counting(100);
-  arbiter.arbitrate(102, left, kNone);  // two idle cycles before
-  arbiter.arbitrate(103, static_cast<PortMask>(left | result), result);
-  arbiter.arbitrate(104, static_cast<PortMask>(left | result), result);
-  arbiter.arbitrate(106, kAll, result);  // the host reads
+  arbitrate(arbiter, 102, left, kNone);  // two idle cycles before
+  arbitrate(arbiter, 103, static_cast<PortMask>(left | result), result);
+  arbitrate(arbiter, 104, static_cast<PortMask>(left | result), result);
+  arbitrate(arbiter, 106, kAll, result);  // the host reads
   arbiter.end_counting(110);
   const ArbiterStats stats = arbiter.stats();
   EXPECT_EQ(stats.reads, 2U);
@@ -189,12 +191,12 @@ TEST(BankArbiter, CountsWhatItGrantsAndWhomItRefuses) {
 TEST(BankArbiter, CountsOnlyAccessesOutsideTheCountedCycles) {
   BankArbiter arbiter(ArbiterConfig{}, 2);
   const PortMask host = mask_of(Port::kHost);
-  arbiter.arbitrate(3, host, host);
-  arbiter.arbitrate(4, host, kNone);  // turning: no access
+  arbitrate(arbiter, 3, host, host);
+  arbitrate(arbiter, 4, host, kNone);  // turning: no access
   arbiter.begin_counting(10);
-  arbiter.arbitrate(10, host, kNone);
+  arbitrate(arbiter, 10, host, kNone);
   arbiter.end_counting(12);
-  arbiter.arbitrate(12, host, kNone);
+  arbitrate(arbiter, 12, host, kNone);
   arbiter.begin_counting(20);
   arbiter.end_counting(21);
   EXPECT_EQ(arbiter.uncounted_accesses(), 2U);
@@ -210,15 +212,17 @@ TEST(BankArbiter, CountsGrantsToAPortAloneWhereverTheyLay) {
   BankArbiter arbiter(config, 0);
   const PortMask left = mask_of(Port::kLeftPixel);
   const PortMask result = mask_of(Port::kResult);
-  arbiter.grant_alone(left, false, 7);
+  arbiter.count_alone(left, false, 7);
   EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
   arbiter.begin_counting(10);
-  arbiter.grant_alone(left, false, 4);
-  arbiter.grant_alone(result, true, 1);
-  arbiter.grant_alone(left, false, 0);
+  arbiter.count_alone(left, false, 4);
+  arbiter.count_alone(result, true, 1);
+  arbiter.count_alone(left, false, 0);
+  arbiter.move_place_behind(left);
+  arbiter.move_place_behind(result);
   // The place is behind the result port, the last that was granted.
-  EXPECT_EQ(arbiter.arbitrate(17, static_cast<PortMask>(left | result), result), left);
-  arbiter.grant_alone(left, false, 2);
+  EXPECT_EQ(arbitrate(arbiter, 17, static_cast<PortMask>(left | result), result), left);
+  arbiter.count_alone(left, false, 2);
   arbiter.end_counting(30);
   const ArbiterStats stats = arbiter.stats();
   EXPECT_EQ(stats.reads, 7U);
@@ -234,11 +238,11 @@ TEST(BankArbiter, RemembersDirectionAndPlaceBetweenCountedPeriods) {
   BankArbiter arbiter(config, 3);
   const PortMask host = mask_of(Port::kHost);
   arbiter.begin_counting(0);
-  ASSERT_EQ(arbiter.arbitrate(5, host, host), host);
+  ASSERT_EQ(arbitrate(arbiter, 5, host, host), host);
   arbiter.end_counting(6);
   arbiter.begin_counting(8);
-  EXPECT_EQ(arbiter.arbitrate(8, kAll, kNone), kNone);                   // 5 + 3: still turning
-  EXPECT_EQ(arbiter.arbitrate(9, kAll, kNone), mask_of(Port::kResult));  // after the host
+  EXPECT_EQ(arbitrate(arbiter, 8, kAll, kNone), kNone);                   // 5 + 3: still turning
+  EXPECT_EQ(arbitrate(arbiter, 9, kAll, kNone), mask_of(Port::kResult));  // after the host
 }
 
 TEST(BankArbiter, BlamesEveryStalledRequestExactlyOnce) {
@@ -253,7 +257,7 @@ TEST(BankArbiter, BlamesEveryStalledRequestExactlyOnce) {
     const auto requests = static_cast<PortMask>(random >> 24U & kAll);
     const auto writes = static_cast<PortMask>(requests & (random >> 16U));
     if (requests == 0) continue;
-    const PortMask granted = arbiter.arbitrate(cycle, requests, writes);
+    const PortMask granted = arbitrate(arbiter, cycle, requests, writes);
     ASSERT_EQ(granted & ~requests, 0);
     grants += uint64_t{granted != 0};
     for (std::size_t port = 0; port < kPortCount; ++port)
@@ -302,7 +306,7 @@ TEST_P(Repetition, CountsAndDecidesOnAsIfItHadBeenStepped) {
   for (uint64_t period = 1; period < 5; ++period) step_in_turn(steps, period * kPeriod);
   EXPECT_EQ(repeats.state(5 * kPeriod - 2), steps.state(5 * kPeriod - 2));
   for (BankArbiter* arbiter : {&repeats, &steps}) {
-    arbiter->arbitrate(5 * kPeriod - 2, kAll, kAll);
+    arbitrate(*arbiter, 5 * kPeriod - 2, kAll, kAll);
     if (GetParam()) arbiter->end_counting(100);
   }
   const ArbiterStats repeated = repeats.stats();
@@ -326,15 +330,15 @@ TEST(BankArbiter, HasTheStateOfItsPlaceAndOfTheCyclesThatItStillTurnsRound) {
   BankArbiter arbiter(config, 2);
   const std::uint32_t fresh = arbiter.state(0);
   EXPECT_EQ(fresh, arbiter.state(1000));
-  arbiter.arbitrate(10, mask_of(Port::kResult), kNone);
+  arbitrate(arbiter, 10, mask_of(Port::kResult), kNone);
   EXPECT_NE(arbiter.state(11), arbiter.state(12));
   EXPECT_NE(arbiter.state(12), arbiter.state(13));
   EXPECT_EQ(arbiter.state(13), arbiter.state(14));  // 10 + turnaround + 1: ready
   EXPECT_NE(arbiter.state(14), fresh);              // the place is another
   const std::uint32_t after_read = arbiter.state(11);
-  arbiter.arbitrate(20, mask_of(Port::kResult), mask_of(Port::kResult));
+  arbitrate(arbiter, 20, mask_of(Port::kResult), mask_of(Port::kResult));
   EXPECT_NE(arbiter.state(21), after_read);  // turning for the other direction
-  arbiter.arbitrate(30, mask_of(Port::kResult), kNone);
+  arbitrate(arbiter, 30, mask_of(Port::kResult), kNone);
   EXPECT_EQ(arbiter.state(31), after_read);
 }
 
@@ -348,7 +352,7 @@ TEST(BankArbiter, CountsAnOutcomeOfManyCyclesAtOnce) {
       if (counts) arbiter->begin_counting(first - 3);
     }
     at_once.count(first, at_once.decide(first, host, host), 5);
-    for (uint64_t cycle = first; cycle < first + 5; ++cycle) one_by_one.arbitrate(cycle, host, host);
+    for (uint64_t cycle = first; cycle < first + 5; ++cycle) arbitrate(one_by_one, cycle, host, host);
   }
   for (BankArbiter* arbiter : {&at_once, &one_by_one}) {
     arbiter->end_counting(110);

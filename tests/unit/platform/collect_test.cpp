@@ -168,6 +168,26 @@ TEST(CollectStatistics, TellsIdentitiesThatDoNotHoldWithBothSides) {
   EXPECT_EQ(run.finish().failed, std::vector<std::string>{});
 }
 
+TEST(CollectStatistics, FindsEveryWrongCountOfSlotsAndWords) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 1);
+  EXPECT_EQ(run.finish().failed, std::vector<std::string>{});
+  const auto failed_with = [&](const auto& change) {
+    BoardCounters counters = counters_of(run.system.board);
+    change(counters);
+    return collect_statistics(board, run.tables, run.system.board, counters).failed;
+  };
+  const auto lines = [](const std::string& line) { return std::vector<std::string>{line}; };
+  EXPECT_EQ(failed_with([](BoardCounters& counters) { ++counters.left.issued; }),
+            lines("left lane: slots issued = 289, but slots of the sequence = 288"));
+  EXPECT_EQ(failed_with([](BoardCounters& counters) { --counters.right.issued; }),
+            lines("right lane: slots issued = 287, but slots of the sequence = 288"));
+  EXPECT_EQ(failed_with([](BoardCounters& counters) { ++counters.packed_words; }),
+            lines("result packer: words = 25, but words of the images = 24"));
+  EXPECT_EQ(failed_with([](BoardCounters& counters) { --counters.written_words; }),
+            lines("result writer: words = 23, but words of the images = 24"));
+}
+
 TEST(CollectStatistics, TellsAFrameRateAboveItsBoundWithBothSides) {
   // The run had no valid entry to read a pixel for; the tables that the bound is told about have all.
   BoardConfig board = small_board();

@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/time.h>
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
@@ -54,6 +57,41 @@ TEST(Child, WorksOnACopy) {
   Child child([&value](const Child::Tell& tell) { tell(std::to_string(++value)); });
   EXPECT_EQ(child.next(), "2");
   EXPECT_EQ(value, 1);
+}
+
+TEST(Child, HasNewsOnceItHasToldSomethingOrEnded) {
+  using std::chrono::milliseconds;
+  std::array<int, 2> gate{};
+  ASSERT_EQ(pipe(gate.data()), 0);
+  Child child([&gate](const Child::Tell& tell) {
+    char byte = 0;
+    if (read(gate[0], &byte, 1) != 1) throw std::runtime_error("read");
+    tell("told");
+  });
+  EXPECT_FALSE(child.has_news(milliseconds(0)));
+  EXPECT_FALSE(child.has_news(milliseconds(20)));
+  ASSERT_EQ(write(gate[1], "", 1), 1);
+  EXPECT_TRUE(child.has_news(milliseconds(30'000)));
+  EXPECT_EQ(child.next(), "told");
+  EXPECT_TRUE(child.has_news(milliseconds(30'000)));
+  EXPECT_EQ(child.next(), std::nullopt);
+}
+
+TEST(Child, IsWaitedForUntilASignalHasBeenCaught) {
+  struct sigaction action = {};
+  action.sa_handler = [](int) {};
+  action.sa_flags = SA_RESTART;
+  ASSERT_EQ(sigaction(SIGALRM, &action, nullptr), 0);
+  Child child([](const Child::Tell& /*tell*/) {
+    for (;;) pause();
+  });
+  itimerval soon = {{0, 10'000}, {0, 10'000}};  // again and again, should the first come before the wait
+  ASSERT_EQ(setitimer(ITIMER_REAL, &soon, nullptr), 0);
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_FALSE(child.has_news(std::chrono::milliseconds(30'000)));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(20));
+  soon = {};
+  ASSERT_EQ(setitimer(ITIMER_REAL, &soon, nullptr), 0);
 }
 
 TEST(Child, HandsOnTheTextOfAnExceptionBehindTheMessagesBeforeIt) {
