@@ -21,7 +21,6 @@ constexpr std::array<const char*, memory::kPortCount> kBufferNames = {
     "left_lut", "right_lut", "left_image", "right_image", "disparity", ""};
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
 
-
 }  // namespace
 
 // The data.
