@@ -18,8 +18,8 @@ std::string path_problem(const std::string& path);
 // It may be copied: of one file a sweep makes many boards.
 class BoardDraft {
  public:
-  // `board` as for load_board(). Throws BoardError if there is no tree: an unknown preset, a file that cannot be
-  // read, an error of syntax. What else is wrong is said by read().
+  // `board` as for load_board(). Throws BoardError if there is no tree: an unknown preset, a file that cannot
+  // be read, an error of syntax. What else is wrong is said by read().
   explicit BoardDraft(const std::string& board);
 
   // `path=value`, as `--set` gives it.

@@ -10,8 +10,8 @@
 
 namespace stereotlm::platform {
 
-// Something wrong with a board, and where. The text is `path = value: rule`. Of a rule between keys, each may keep
-// its own.
+// Something wrong with a board, and where. The text is `path = value: rule`. Of a rule between keys, each may
+// keep its own.
 struct Finding {
   Place place;
   std::string text;

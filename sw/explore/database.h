@@ -17,8 +17,8 @@ class DatabaseError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// An open SQLite database. Its member functions, and those of its statements, throw DatabaseError. Not to be used across
-// fork().
+// An open SQLite database. Its member functions, and those of its statements, throw DatabaseError. Not to be
+// used across fork().
 class Database {
  public:
   enum class Access { kRead, kWrite, kCreate };

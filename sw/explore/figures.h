@@ -10,8 +10,8 @@ namespace stereotlm::explore {
 
 // What stats.json says, as a row of numbers.
 struct Figures {
-  // By the dotted path of their keys; an element of a list goes by its name: "banks.bank0.reads". A list of numbers is one
-  // text, "[1, 2]".
+  // By the dotted path of their keys; an element of a list goes by its name: "banks.bank0.reads". A list of
+  // numbers is one text, "[1, 2]".
   std::vector<platform::BoardValue> values;
   std::vector<StoredBlame> blame;
 };

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "platform/yaml_values.h"
-#include "sw/explore/sample.h"
+#include "sw/explore/shuffled_numbers.h"
 #include "sw/report/sha256.h"
 
 namespace stereotlm::explore {
@@ -44,13 +44,16 @@ std::uint64_t frames_of(const PointRun& run, const BoardConfig& board) {
 
 void Plan::apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
                  platform::BoardDraft& draft, PointRun& run) {
-  if (path == kSourcePath) {
-    run.camera = value.text == "camera";
-  } else if (path == kFramesPath) {
-    run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
+  if (is_of_run(path)) {
+    apply_to_run(path, value, run);
   } else {
     draft.replace(path, value, file);
   }
+}
+
+void Plan::apply_to_run(const std::string& path, const platform::YamlNode& value, PointRun& run) {
+  if (path == kSourcePath) run.camera = value.text == "camera";
+  if (path == kFramesPath) run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
 }
 
 Point Plan::point(std::uint64_t number) const {

@@ -17,8 +17,8 @@ struct PointRun {
   std::uint64_t frames = 0;  // 0: the default of the source, see frames_of()
 };
 
-// Frames of a run: those asked for, or of the board alone one turn of its allocation's lists (its frame rate is then that
-// of any number of turns), of the whole computer kCameraFrames.
+// Frames of a run: those asked for, or of the board alone one turn of its allocation's lists (its frame rate
+// is then that of any number of turns), of the whole computer kCameraFrames.
 inline constexpr std::uint64_t kCameraFrames = 12;
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 
@@ -44,12 +44,12 @@ struct Point {
   std::vector<platform::BoardValue> values;
 };
 
-// A plan of a sweep: a board, values for some of its keys, and which combinations of them are its points. Points are
-// made one by one, from their numbers: a plan takes as much memory for a million as for ten.
+// A plan of a sweep: a board, values for some of its keys, and which combinations of them are its points.
+// Points are made one by one, from their numbers: a plan takes as much memory for a million as for ten.
 class Plan {
  public:
-  // Reads a plan file. Throws platform::BoardError with everything that is wrong, and with the number of points that the plan
-  // would have.
+  // Reads a plan file. Throws platform::BoardError with everything that is wrong, and with the number of
+  // points that the plan would have.
   static Plan load(const std::string& path);
 
   // Points before conditions.
@@ -75,8 +75,10 @@ class Plan {
   };
 
   explicit Plan(const std::string& path) : path_(path) {}
+  // A value that has been checked, into a board or a run.
   static void apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
                     platform::BoardDraft& draft, PointRun& run);
+  static void apply_to_run(const std::string& path, const platform::YamlNode& value, PointRun& run);
 
   std::string path_;
   std::optional<platform::BoardDraft> base_;

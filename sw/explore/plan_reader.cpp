@@ -12,7 +12,7 @@
 #include "platform/text_file.h"
 #include "platform/yaml_tree.h"
 #include "platform/yaml_values.h"
-#include "sw/explore/condition.h"
+#include "sw/explore/conditions.h"
 #include "sw/explore/plan.h"
 
 namespace stereotlm::explore {
@@ -104,8 +104,8 @@ class PlanReader {
     throw platform::BoardError(std::move(diagnostics_));
   }
 
-  // The entries of a map, whose keys are `known` if any are given; nullptr, and reported, if it is none. Entries that are
-  // not known or repeated are reported too.
+  // The entries of a map, whose keys are `known` if any are given; nullptr, and reported, if it is none.
+  // Entries that are not known or repeated are reported too.
   const Entries* read_map(const std::string& path, const YamlNode& node,
                           const std::vector<std::string>& known, const std::string& rule) {
     if (!node.is_map()) {
@@ -170,10 +170,9 @@ class PlanReader {
   void read_run(const YamlNode& node) {
     const Entries* const entries = read_map("run", node, {"source", "frames"}, "a map");
     if (entries == nullptr) return;
-    platform::BoardDraft none("fpl2003");
     for (const YamlNode::Entry& entry : *entries) {
       const std::string path = "run." + entry.key.text;
-      if (check_run(path, entry.value)) Plan::apply(path, entry.value, plan_.path_, none, plan_.run_);
+      if (check_run(path, entry.value)) Plan::apply_to_run(path, entry.value, plan_.run_);
     }
   }
 

@@ -30,9 +30,9 @@ struct StoredPoint {
   std::vector<StoredBlame> blame;
 };
 
-// Results of points in an SQLite file: table `points` with a row and table `blame` with further rows for each. A point is
-// there whole or not at all, whatever ends the process. Several processes may add points at the same time. Member
-// functions throw DatabaseError. Not to be used across fork().
+// Results of points in an SQLite file: table `points` with a row and table `blame` with further rows for
+// each. A point is there whole or not at all, whatever ends the process. Several processes may add points at
+// the same time. Member functions throw DatabaseError. Not to be used across fork().
 class Store {
  public:
   // Opens the file, or makes it. All its points are of one version of the program.
@@ -57,9 +57,10 @@ class Store {
   std::map<std::string, std::unique_ptr<Statement>> insertions_;  // by their columns
 };
 
-// Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their hashes: its bytes
-// depend on nothing but the points. `out` may be one of the inputs; it is replaced when the new file is whole. Throws
-// DatabaseError, also if two inputs hold different results of one point, or of different versions.
+// Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their
+// hashes: its bytes depend on nothing but the points. `out` may be one of the inputs; it is replaced when the
+// new file is whole. Throws DatabaseError, also if two inputs hold different results of one point, or of
+// different versions.
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out);
 
 }  // namespace stereotlm::explore

@@ -34,10 +34,10 @@ struct SweepCounts {
   std::uint64_t ran() const { return ok + failed; }
 };
 
-// All points of the plan that the store does not have. `go_on` is called several times a second with what is done; once it
-// returns false no further point is begun. At the end the store is put into its final form, whose bytes depend on nothing
-// but its points (merge_stores()). Throws DatabaseError, and std::runtime_error if workers keep dying; all points that
-// were finished are kept.
+// All points of the plan that the store does not have. `go_on` is called several times a second with what is
+// done; once it returns false no further point is begun. At the end the store is put into its final form,
+// whose bytes depend on nothing but its points (merge_stores()). Throws DatabaseError, and std::runtime_error
+// if workers keep dying; all points that were finished are kept.
 SweepCounts sweep(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on);
 

@@ -15,7 +15,7 @@
 #include <system_error>
 #include <utility>
 
-#include "sw/explore/condition.h"
+#include "sw/explore/conditions.h"
 #include "sw/explore/figures.h"
 #include "sw/explore/store.h"
 
@@ -107,8 +107,9 @@ class PointRunner {
 };
 
 [[noreturn]] void be_worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
-                            const std::atomic<bool>& stop, int from, int to) {
+                            const std::atomic<bool>& stop, pid_t parent, int from, int to) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it has ended before that
   // A terminal's Ctrl-C goes to all processes; the one that hands out the work decides what it means.
   signal(SIGINT, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
@@ -141,13 +142,14 @@ Worker::Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& o
   std::array<int, 2> reports{};
   if (pipe2(orders.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
   if (pipe2(reports.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
+  const pid_t parent = getpid();
   std::fflush(nullptr);  // or both processes would write what is in the buffers
   pid_ = fork();
   if (pid_ < 0) throw_errno("fork");
   if (pid_ == 0) {
     close(orders[1]);
     close(reports[0]);
-    be_worker(plan, evaluate, options, stop, orders[0], reports[1]);
+    be_worker(plan, evaluate, options, stop, parent, orders[0], reports[1]);
   }
   close(orders[0]);
   close(reports[1]);

@@ -24,7 +24,8 @@ enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFaile
 // A process that does points one after another, and tells how each has ended. It ends with this process.
 class Worker {
  public:
-  // Forks; `stop`, in memory that the processes share, makes it begin no further point. Throws std::system_error.
+  // Forks; `stop`, in memory that the processes share, makes it begin no further point. Throws
+  // std::system_error.
   Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
          const std::atomic<bool>& stop);
   // Ends it if it still works.
@@ -37,8 +38,8 @@ class Worker {
   const WorkOrder& order() const { return order_; }
 
   int descriptor() const { return from_; }  // readable when there is something to receive()
-  // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with what it could
-  // not go on for.
+  // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with
+  // what it could not go on for.
   std::optional<PointEnd> receive();
   std::string death() const { return death_; }
 

@@ -1,3 +1,5 @@
+#include "sw/explore/conditions.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -5,7 +7,6 @@
 #include <string>
 
 #include "platform/board_yaml.h"
-#include "sw/explore/condition.h"
 
 namespace stereotlm::explore {
 namespace {

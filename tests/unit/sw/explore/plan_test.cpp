@@ -106,7 +106,6 @@ TEST(Plan, VariesHowAPointIsRun) {
 }
 
 TEST(Plan, RunsOneTurnOfTheListsOrTwelveFramesOfTheComputer) {
-  const std::string lists = "set: {allocation.disparity: [bank4, bank5, bank5], run_nothing: 0}\n";
   const Plan plan = plan_of(kBoard +
                             "set: {allocation.disparity: [bank4, bank5, bank5]}\n"
                             "vary: {run.source: [preloaded, camera]}\n");

@@ -1,4 +1,4 @@
-#include "sw/explore/condition.h"
+#include "sw/explore/conditions.h"
 
 #include <fmt/format.h>
 

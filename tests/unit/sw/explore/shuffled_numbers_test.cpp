@@ -1,4 +1,4 @@
-#include "sw/explore/sample.h"
+#include "sw/explore/shuffled_numbers.h"
 
 #include <gtest/gtest.h>
 

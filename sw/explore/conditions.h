@@ -10,8 +10,9 @@
 namespace stereotlm::explore {
 
 // Conditions on a point: SQL expressions (SQLite's) over the board's keys as a file has them, such as
-// `image.width * image.height <= 307200`. A list or a filter is its text; `ssram.banks` is their number; the name is
-// `board.name`; `run.source` and `run.frames` are there too. An absent value is NULL. Not to be used across fork().
+// `image.width * image.height <= 307200`. A list or a filter is its text; `ssram.banks` is their number; the
+// name is `board.name`; `run.source` and `run.frames` are there too. An absent value is NULL. Not to be used
+// across fork().
 class Conditions {
  public:
   // Throws std::invalid_argument with SQLite's message if a text is no such expression.
