@@ -23,8 +23,8 @@ using test::message_of;
 using test::read_file;
 using ::testing::HasSubstr;
 
-// 60 points. A quarter is left out; of the others a third is impossible, and a fifth of the rest fails. What a run gives
-// is made up.
+// 60 points. A quarter is left out; of the others a third is impossible, and a fifth of the rest fails. What
+// a run gives is made up.
 const char* const kPlan =
     "board: fpl2003\n"
     "vary:\n"
@@ -154,19 +154,19 @@ TEST_F(SweepTest, LosesNothingButThePointsUnderWayWhenItIsKilled) {
     const pid_t child = fork();
     if (child == 0) {
       const auto slow = [](const Point& point) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
         return evaluate(point);
       };
       sweep(plan(), slow, options("a.db", 2), always);
       _exit(0);
     }
-    while (points_in(file("a.db")) < 7 * (attempt + 1))
+    while (points_in(file("a.db")) < 4 * (attempt + 1))
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
   }
   const auto before = static_cast<std::uint64_t>(points_in(file("a.db")));
-  EXPECT_GE(before, 35U);
+  EXPECT_GE(before, 20U);
   EXPECT_LT(before, 45U) << "the sweep was to be killed before its end";
   const SweepCounts counts = sweep(plan(), evaluate, options("a.db", 2), always);
   EXPECT_GE(counts.known, before);
