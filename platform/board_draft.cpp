@@ -226,6 +226,7 @@ BoardConfig BoardDraft::read() const {
            std::tie(b.place.source, b.place.line, b.place.column);
   });
   std::vector<Diagnostic> diagnostics;
+  diagnostics.reserve(findings.size());
   for (Finding& finding : findings) {
     diagnostics.push_back({text_of(finding.place), std::move(finding.text), finding.is_between_keys});
   }

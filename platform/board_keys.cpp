@@ -75,6 +75,7 @@ std::vector<std::string> names(const std::array<const char*, kSize>& list) {
 
 Key device() {
   std::vector<std::string> known;
+  known.reserve(std::size(area::kDevices));
   for (const area::Device& one : area::kDevices) known.emplace_back(one.name);
   const auto get = [](const BoardConfig& board) {
     const area::Device* found = area::find_device(board.fpga.device);

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "platform/value_reader.h"
+
 namespace stereotlm::explore {
 namespace {
 
@@ -15,10 +17,10 @@ bool is_list_of_named(const Json& value) {
 void append(const std::string& path, const Json& value, std::vector<platform::BoardValue>& values) {
   if (value.is_object()) {
     for (const auto& [key, child] : value.items()) {
-      if (key != "name") append(path.empty() ? key : path + '.' + key, child, values);
+      if (key != "name") append(platform::below(path, key), child, values);
     }
   } else if (is_list_of_named(value)) {
-    for (const Json& item : value) append(path + '.' + item["name"].get<std::string>(), item, values);
+    for (const Json& item : value) append(platform::below(path, item["name"]), item, values);
   } else if (value.is_number_integer()) {
     values.push_back({path, value.get<std::int64_t>()});
   } else if (value.is_number()) {

@@ -10,6 +10,7 @@
 
 #include "platform/board_keys.h"
 #include "platform/text_file.h"
+#include "platform/value_reader.h"
 #include "platform/yaml_tree.h"
 #include "platform/yaml_values.h"
 #include "sw/explore/conditions.h"
@@ -116,7 +117,7 @@ class PlanReader {
     std::map<std::string, Place> first;
     for (const YamlNode::Entry& entry : node.entries) {
       const std::string name = short_text(entry.key);
-      const std::string full = path.empty() ? name : path + '.' + name;
+      const std::string full = platform::below(path, name);
       const auto [at, is_new] = first.emplace(name, entry.key.place);
       if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) {
         report(entry.key.place,

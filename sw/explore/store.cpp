@@ -298,6 +298,7 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
   std::filesystem::remove(aside, ignored);
   try {
     std::vector<std::unique_ptr<Reader>> readers;
+    readers.reserve(inputs.size());
     for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
     Database database(aside, Database::Access::kCreate);
     database.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA locking_mode = EXCLUSIVE");
