@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <tuple>
@@ -220,6 +221,11 @@ fpga::CoreConfig core_config(const BoardConfig& board) {
   core.result_fifo_words = board.fpga.result_fifo_words;
   core.pipeline_latency_cycles = board.fpga.pipeline_latency_cycles;
   return core;
+}
+
+std::uint64_t allocation_period_frames(const BoardConfig& board) {
+  const BufferLayout layout = layout_buffers(board);
+  return std::lcm(std::lcm(layout.left_image.size(), layout.right_image.size()), layout.disparity.size());
 }
 
 }  // namespace stereotlm::platform

@@ -131,6 +131,10 @@ struct BufferLayout {
 // Throws std::invalid_argument with all problems() if there are any.
 BufferLayout layout_buffers(const BoardConfig& board);
 
+// The number of frames after which the allocation lists begin anew together: the least common multiple of
+// their lengths. Throws std::invalid_argument if the board has problems.
+std::uint64_t allocation_period_frames(const BoardConfig& board);
+
 // What the FPGA of this board is synthesised for. Throws as layout_buffers() does.
 fpga::CoreConfig core_config(const BoardConfig& board);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -137,11 +136,6 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
   }
   bounds.push_back({"matcher", first_slot + geometry.slots + after_last_slot});
   return bounds;
-}
-
-std::uint64_t allocation_period_frames(const BoardConfig& board) {
-  const BufferLayout layout = layout_buffers(board);
-  return std::lcm(std::lcm(layout.left_image.size(), layout.right_image.size()), layout.disparity.size());
 }
 
 std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures) {

@@ -26,10 +26,6 @@ struct ResourceBound {
 // std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
 
-// The number of frames after which the allocation lists begin anew together: the least common multiple of
-// their lengths. Throws std::invalid_argument if the board has problems.
-std::uint64_t allocation_period_frames(const BoardConfig& board);
-
 // What a part of the computer around the board limits the rate of frames to, counted from time 0 to the last delivery;
 // no run can be faster:
 //   camera      its frame clock; on demand the time from the first to the last pixel of a frame

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "platform/yaml_values.h"
 #include "sw/explore/shuffled_numbers.h"
-#include "sw/report/sha256.h"
 
 namespace stereotlm::explore {
 namespace {
 
-using platform::BoardConfig;
 using platform::BoardValue;
 
 std::string rules_of(const platform::BoardError& error) {
@@ -34,14 +31,6 @@ bool is_of_run(const std::string& path) { return path == kSourcePath || path == 
 
 }  // namespace
 
-std::uint64_t frames_of(const PointRun& run, const BoardConfig& board) {
-  if (run.frames > 0) return run.frames;
-  if (run.camera) return kCameraFrames;
-  const auto& allocation = board.allocation;
-  return std::lcm(std::lcm(allocation.left_image.size(), allocation.right_image.size()),
-                  allocation.disparity.size());
-}
-
 void Plan::apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
                  platform::BoardDraft& draft, PointRun& run) {
   if (is_of_run(path)) {
@@ -57,10 +46,18 @@ void Plan::apply_to_run(const std::string& path, const platform::YamlNode& value
 }
 
 Point Plan::point(std::uint64_t number) const {
-  Point point;
-  point.number = number;
-  point.run = run_;
   platform::BoardDraft draft = *base_;
+  PointRun run = run_;
+  const std::vector<PlanValue> chosen = values_at(number);
+  for (const PlanValue& value : chosen) apply(value.path, value.value, path_, draft, run);
+  try {
+    return make_point(number, draft.read(), run);
+  } catch (const platform::BoardError& error) {
+    return impossible_point(number, run, chosen, rules_of(error));
+  }
+}
+
+std::vector<PlanValue> Plan::values_at(std::uint64_t number) const {
   std::uint64_t rest = sample_ ? ShuffledNumbers(product_, sample_->seed).at(number) : number;
   std::vector<PlanValue> chosen;
   for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
@@ -69,37 +66,31 @@ Point Plan::point(std::uint64_t number) const {
     for (std::size_t i = axis->paths.size(); i-- > 0;) chosen.push_back({axis->paths[i], place[i]});
   }
   std::reverse(chosen.begin(), chosen.end());
-  for (const PlanValue& value : chosen) apply(value.path, value.value, path_, draft, point.run);
-  std::string identity;
-  try {
-    point.board = draft.read();
-    point.yaml = to_yaml(*point.board);
-    point.values = values_of(*point.board);
-    point.run.frames = frames_of(point.run, *point.board);
-    identity = point.yaml;
-  } catch (const platform::BoardError& error) {
-    point.reason = rules_of(error);
-    point.yaml = base_yaml_;
-    point.values = values_of(*base_board_);
-    identity = point.yaml;
-    for (const PlanValue& value : chosen) {
-      identity += fmt::format("{}: {}\n", value.path, flow_text(value.value));
-      if (is_of_run(value.path)) continue;
-      BoardValue given = value_of(value.path, value.value);
-      const auto same = std::find_if(point.values.begin(), point.values.end(),
-                                     [&](const BoardValue& known) { return known.path == given.path; });
-      if (same == point.values.end()) {
-        point.values.push_back(std::move(given));
-      } else {
-        *same = std::move(given);
-      }
+  return chosen;
+}
+
+Point Plan::impossible_point(std::uint64_t number, const PointRun& run, const std::vector<PlanValue>& chosen,
+                             const std::string& reason) const {
+  Point point;
+  point.number = number;
+  point.run = run;
+  point.reason = reason;
+  point.yaml = base_yaml_;
+  point.values = platform::values_of(*base_board_);
+  std::string identity = base_yaml_;
+  for (const PlanValue& value : chosen) {
+    identity += fmt::format("{}: {}\n", value.path, flow_text(value.value));
+    if (is_of_run(value.path)) continue;
+    BoardValue given = value_of(value.path, value.value);
+    const auto same = std::find_if(point.values.begin(), point.values.end(),
+                                   [&](const BoardValue& known) { return known.path == given.path; });
+    if (same == point.values.end()) {
+      point.values.push_back(std::move(given));
+    } else {
+      *same = std::move(given);
     }
   }
-  const char* const source = point.run.camera ? "camera" : "preloaded";
-  point.values.push_back({kSourcePath, source});
-  point.values.push_back({kFramesPath, static_cast<std::int64_t>(point.run.frames)});
-  identity += fmt::format("run: {{source: {}, frames: {}}}\n", source, point.run.frames);
-  point.hash = report::sha256_hex(identity.data(), identity.size());
+  complete_point(identity, point);
   return point;
 }
 

@@ -57,9 +57,9 @@ class IgnoredSigpipe {
 
 class Sweep {
  public:
-  Sweep(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options)
-      : plan_(plan), evaluate_(evaluate), options_(options) {
-    const std::uint64_t size = plan.size();
+  Sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options)
+      : points_(points), evaluate_(evaluate), options_(options) {
+    const std::uint64_t size = points.size();
     counts_.total = size > options.shard ? (size - options.shard - 1) / options.shards + 1 : 0;
   }
 
@@ -85,7 +85,7 @@ class Sweep {
 
   void start_worker(std::size_t place) {
     if (place >= workers_.size()) workers_.resize(place + 1);
-    workers_[place] = std::make_unique<Worker>(plan_, evaluate_, options_, *stop_);
+    workers_[place] = std::make_unique<Worker>(points_, evaluate_, options_, *stop_);
     give_order(*workers_[place]);
   }
 
@@ -158,7 +158,7 @@ class Sweep {
     }
   }
 
-  const Plan& plan_;
+  const Points& points_;
   const Evaluate& evaluate_;
   const SweepOptions& options_;
   IgnoredSigpipe ignored_sigpipe_;
@@ -172,9 +172,9 @@ class Sweep {
 
 }  // namespace
 
-SweepCounts sweep(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on) {
-  return Sweep(plan, evaluate, options).run(go_on);
+  return Sweep(points, evaluate, options).run(go_on);
 }
 
 }  // namespace stereotlm::explore

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sw/explore/figures.h"
-#include "sw/explore/plan.h"
+#include "sw/explore/points.h"
 
 namespace stereotlm::explore {
 
@@ -23,7 +23,7 @@ struct SweepOptions {
 
 // Points of this shard.
 struct SweepCounts {
-  std::uint64_t total = 0;     // of the plan, before conditions
+  std::uint64_t total = 0;     // before conditions
   std::uint64_t excluded = 0;  // by conditions
   std::uint64_t known = 0;     // found in the store: of an earlier sweep, or equal to another point
   std::uint64_t ok = 0;        // these three: new
@@ -34,11 +34,11 @@ struct SweepCounts {
   std::uint64_t ran() const { return ok + failed; }
 };
 
-// All points of the plan that the store does not have. `go_on` is called several times a second with what is
-// done; once it returns false no further point is begun. At the end the store is put into its final form,
-// whose bytes depend on nothing but its points (merge_stores()). Throws DatabaseError, and std::runtime_error
-// if workers keep dying; all points that were finished are kept.
-SweepCounts sweep(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+// All points that the store does not have. `go_on` is called several times a second with what is done; once
+// it returns false no further point is begun. At the end the store is put into its final form, whose bytes
+// depend on nothing but its points (merge_stores()). Throws DatabaseError, and std::runtime_error if workers
+// keep dying; all points that were finished are kept.
+SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on);
 
 }  // namespace stereotlm::explore

@@ -67,14 +67,14 @@ void take_figures(Figures figures, StoredPoint& row) {
 // The work itself, in the process of the worker.
 class PointRunner {
  public:
-  PointRunner(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options)
-      : plan_(plan),
+  PointRunner(const Points& points, const Evaluate& evaluate, const SweepOptions& options)
+      : points_(points),
         evaluate_(evaluate),
-        conditions_(plan.conditions()),
+        conditions_(points.conditions()),
         store_(options.store, options.version) {}
 
   PointEnd run(std::uint64_t number) {
-    const Point point = plan_.point(number);
+    const Point point = points_.point(number);
     if (!conditions_.hold(point.values)) return PointEnd::kExcluded;
     if (store_.has(point.hash)) return PointEnd::kKnown;
     StoredPoint row;
@@ -100,13 +100,13 @@ class PointRunner {
   }
 
  private:
-  const Plan& plan_;
+  const Points& points_;
   const Evaluate& evaluate_;
   Conditions conditions_;
   Store store_;
 };
 
-[[noreturn]] void be_worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+[[noreturn]] void be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                             const std::atomic<bool>& stop, pid_t parent, int from, int to) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it has ended before that
@@ -115,7 +115,7 @@ class PointRunner {
   signal(SIGTERM, SIG_DFL);
   Report report;
   try {
-    PointRunner runner(plan, evaluate, options);
+    PointRunner runner(points, evaluate, options);
     WorkOrder order;
     while (read_all(from, &order, sizeof order)) {
       for (std::uint64_t i = 0; i < order.count; ++i) {
@@ -136,7 +136,7 @@ class PointRunner {
 
 }  // namespace
 
-Worker::Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                const std::atomic<bool>& stop) {
   std::array<int, 2> orders{};
   std::array<int, 2> reports{};
@@ -149,7 +149,7 @@ Worker::Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& o
   if (pid_ == 0) {
     close(orders[1]);
     close(reports[0]);
-    be_worker(plan, evaluate, options, stop, parent, orders[0], reports[1]);
+    be_worker(points, evaluate, options, stop, parent, orders[0], reports[1]);
   }
   close(orders[0]);
   close(reports[1]);

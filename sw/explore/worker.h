@@ -26,7 +26,7 @@ class Worker {
  public:
   // Forks; `stop`, in memory that the processes share, makes it begin no further point. Throws
   // std::system_error.
-  Worker(const Plan& plan, const Evaluate& evaluate, const SweepOptions& options,
+  Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
          const std::atomic<bool>& stop);
   // Ends it if it still works.
   ~Worker();

@@ -3,8 +3,8 @@
 import program
 from program import PRELOADED, ProgramTest, pgm, run
 
-COMMANDS = ["run", "check", "boards", "keys", "bounds", "calibrate", "sweep", "merge"]
-UNBUILT_COMMANDS = ["explain", "allocate", "paper", "plot", "diff", "report"]
+COMMANDS = ["run", "check", "boards", "keys", "bounds", "calibrate", "sweep", "merge", "allocate"]
+UNBUILT_COMMANDS = ["explain", "paper", "plot", "diff", "report"]
 UNBUILT_RUN_OPTIONS = [["--trace", "vcd"]]
 
 
@@ -41,7 +41,7 @@ class Help(ProgramTest):
 
 class UnknownThings(ProgramTest):
     def test_a_command_is_needed(self):
-        self.refused_in_one_line(run(), "a command is missing", "run, check, boards, keys, bounds, calibrate, sweep or merge")
+        self.refused_in_one_line(run(), "a command is missing", f"{', '.join(COMMANDS[:-1])} or {COMMANDS[-1]}")
 
     def test_an_unknown_command_names_the_nearest(self):
         self.refused_in_one_line(run("bound", "fpl2003"), "'bound': unknown command; nearest: bounds")

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "sw/explore/plan.h"
 #include "sw/explore/store.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/board_config.h"
+#include "platform/board_yaml.h"
+
+namespace stereotlm::explore {
+
+// Keys of a point that are not its board's.
+inline constexpr const char* kSourcePath = "run.source";
+inline constexpr const char* kFramesPath = "run.frames";
+inline constexpr const char* kCalibrationPath = "run.calibration";
+
+// How a point is simulated, beside its board.
+struct PointRun {
+  bool camera = false;       // the whole computer, else the board alone (preloaded)
+  std::uint64_t frames = 0;  // 0: the default of the source, see frames_of()
+  std::string calibration;   // SHA-256 of the tables; empty: the identity
+};
+
+// Frames of a run: those asked for, or of the board alone one turn of its allocation's lists (its frame rate
+// is then that of any number of turns), of the whole computer kCameraFrames.
+inline constexpr std::uint64_t kCameraFrames = 12;
+std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
+
+// One point: a board and how it is run; or why there is no such board.
+struct Point {
+  std::uint64_t number = 0;  // among its points, from 0
+  std::string hash;          // SHA-256 of the board in full and of the run, 64 hexadecimal digits
+  std::optional<platform::BoardConfig> board;
+  std::string yaml;    // the board in full, as config.yaml has it; of an impossible one the base board
+  std::string reason;  // of an impossible combination: every rule that it breaks
+  PointRun run;        // with its frames
+  // Of every key, and of the run; of an impossible board the base board's, and what the plan gives.
+  std::vector<platform::BoardValue> values;
+};
+
+// The point of a board.
+Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run);
+
+// Fills in what follows from the rest; `identity`: what its hash is of, beside the run.
+void complete_point(const std::string& identity, Point& point);
+
+// Points that are made one by one, from their numbers.
+class Points {
+ public:
+  virtual ~Points() = default;
+  virtual std::uint64_t size() const = 0;
+  virtual Point point(std::uint64_t number) const = 0;  // number: 0..size()-1
+  // What leaves points out, see Conditions.
+  virtual const std::vector<std::string>& conditions() const = 0;
+
+ protected:
+  Points() = default;
+  Points(const Points&) = default;
+  Points(Points&&) = default;
+  Points& operator=(const Points&) = default;
+  Points& operator=(Points&&) = default;
+};
+
+}  // namespace stereotlm::explore
