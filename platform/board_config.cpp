@@ -224,8 +224,9 @@ fpga::CoreConfig core_config(const BoardConfig& board) {
 }
 
 std::uint64_t allocation_period_frames(const BoardConfig& board) {
-  const BufferLayout layout = layout_buffers(board);
-  return std::lcm(std::lcm(layout.left_image.size(), layout.right_image.size()), layout.disparity.size());
+  const AllocationConfig& allocation = board.allocation;
+  return std::lcm(std::lcm(allocation.left_image.size(), allocation.right_image.size()),
+                  allocation.disparity.size());
 }
 
 }  // namespace stereotlm::platform

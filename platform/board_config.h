@@ -132,7 +132,7 @@ struct BufferLayout {
 BufferLayout layout_buffers(const BoardConfig& board);
 
 // The number of frames after which the allocation lists begin anew together: the least common multiple of
-// their lengths. Throws std::invalid_argument if the board has problems.
+// their lengths.
 std::uint64_t allocation_period_frames(const BoardConfig& board);
 
 // What the FPGA of this board is synthesised for. Throws as layout_buffers() does.

@@ -39,23 +39,33 @@ class RuleChecker {
 
   void check_bank_depths() {
     if (!all_sound({"image.width", "image.height", "ssram.banks"})) return;
+    std::vector<Buffer> known = buffers(board_.allocation);
+    known.erase(std::remove_if(known.begin(), known.end(),
+                               [this](const Buffer& buffer) { return !sound_(buffer.key); }),
+                known.end());
     for (const BankConfig& bank : board_.banks) {
-      std::vector<std::string> involved = {fmt::format("ssram.banks.{}.words", bank.name)};
-      std::vector<std::string> held;
       std::uint64_t needed = 0;
-      for (const Buffer& buffer : buffers(board_.allocation)) {
-        if (buffer.bank != bank.name || !sound_(buffer.key)) continue;
-        needed += buffer_words(buffer, board_.image);
-        involved.push_back(buffer.path());
-        held.push_back(buffer.path().substr(buffer.path().find('.') + 1));
+      for (const Buffer& buffer : known) {
+        if (buffer.bank == bank.name) needed += buffer_words(buffer, board_.image);
       }
-      if (!sound_(involved.front()) || needed <= static_cast<std::uint64_t>(bank.words)) continue;
-      involved.insert(involved.end(), {"image.width", "image.height"});
-      found_.push_back(
-          {fmt::format("{} = {}: {} words missing, its buffers ({}) need {}", involved.front(), bank.words,
-                       needed - static_cast<std::uint64_t>(bank.words), fmt::join(held, ", "), needed),
-           involved});
+      if (needed > static_cast<std::uint64_t>(bank.words)) report_depth(bank, known, needed);
     }
+  }
+
+  void report_depth(const BankConfig& bank, const std::vector<Buffer>& known, std::uint64_t needed) {
+    std::vector<std::string> involved = {fmt::format("ssram.banks.{}.words", bank.name)};
+    if (!sound_(involved.front())) return;
+    std::vector<std::string> held;
+    for (const Buffer& buffer : known) {
+      if (buffer.bank != bank.name) continue;
+      involved.push_back(buffer.path());
+      held.push_back(buffer.path().substr(buffer.path().find('.') + 1));
+    }
+    involved.insert(involved.end(), {"image.width", "image.height"});
+    found_.push_back(
+        {fmt::format("{} = {}: {} words missing, its buffers ({}) need {}", involved.front(), bank.words,
+                     needed - static_cast<std::uint64_t>(bank.words), fmt::join(held, ", "), needed),
+         involved});
   }
 
   void check_list_lengths() {

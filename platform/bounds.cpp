@@ -42,10 +42,10 @@ Accesses accesses_of(const fpga::FrameGeometry& geometry, const std::optional<Re
       continue;
     }
     accesses.lut += fetches[row] * width;
-    const auto first = table->entries.begin() + static_cast<std::ptrdiff_t>(row * width);
-    const auto valid =
-        std::count_if(first, first + static_cast<std::ptrdiff_t>(width), &kernels::entry_is_valid);
-    accesses.pixel += fetches[row] * static_cast<std::uint64_t>(valid);
+    const std::uint32_t* const entries = table->entries.data() + row * width;
+    std::uint32_t valid = 0;  // summed up like this, compilers use vectors
+    for (std::size_t column = 0; column < width; ++column) valid += entries[column] / kernels::kEntryValid;
+    accesses.pixel += fetches[row] * valid;
   }
   return accesses;
 }
@@ -67,9 +67,19 @@ int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
   return list[frame % list.size()].bank;
 }
 
-}  // namespace
+// The two sides.
+struct FrameAccesses {
+  Accesses left;
+  Accesses right;
+};
 
-std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame) {
+FrameAccesses accesses_of(const BoardConfig& board, const Tables& tables) {
+  const fpga::FrameGeometry geometry(core_config(board));
+  return {accesses_of(geometry, tables.left), accesses_of(geometry, tables.right)};
+}
+
+std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                        std::uint64_t frame) {
   const fpga::FrameGeometry geometry(core_config(board));
   const BufferLayout layout = layout_buffers(board);
   const auto latency = [&board](int bank) {
@@ -86,10 +96,9 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
     return place ? std::optional<int>(place->bank) : std::nullopt;
   };
   const std::array<SideOfFrame, 2> sides = {
-      SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut),
-                  accesses_of(geometry, tables.left)},
+      SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut), accesses.left},
       SideOfFrame{"right", bank_in_turn(layout.right_image, frame), lut_bank(layout.right_lut),
-                  accesses_of(geometry, tables.right)}};
+                  accesses.right}};
   const int disparity = bank_in_turn(layout.disparity, frame);
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const std::uint64_t after_last_slot = geometry.drain_cycles + 1 + pipeline;  // the drain and the last write
@@ -138,6 +147,12 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
   return bounds;
 }
 
+}  // namespace
+
+std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame) {
+  return frame_bounds(board, accesses_of(board, tables), frame);
+}
+
 std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures) {
   static_cast<void>(layout_buffers(board));
   const std::uint64_t picture =
@@ -153,9 +168,9 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
               : bus_clocks(picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
                            kAddressAndIdle + board.pci.bridge_wait_clocks);
   const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
-  // On the local bus: the result, and the pair either by DMA or as it was captured. A word is granted in a cycle of the
-  // FPGA of its own; between the grants of two of a burst lies a local clock, of two bursts the idle, address,
-  // decode and word clock.
+  // On the local bus: the result, and the pair either by DMA or as it was captured. A word is granted in a
+  // cycle of the FPGA of its own; between the grants of two of a burst lies a local clock, of two bursts the
+  // idle, address, decode and word clock.
   const double local_pictures = to_host || whole_pictures ? 3 : 1;
   const double words = local_pictures * static_cast<double>(picture);
   const double bursts =
@@ -182,11 +197,12 @@ void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& boun
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames) {
   if (frames == 0) throw std::invalid_argument("frames = 0: a bound of no frames");
   const std::uint64_t period = allocation_period_frames(board);
+  const FrameAccesses accesses = accesses_of(board, tables);
   std::uint64_t total = 0;
   ResourceBound slowest;
   for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
     ResourceBound limiting;
-    for (const ResourceBound& bound : frame_bounds(board, tables, frame)) {
+    for (const ResourceBound& bound : frame_bounds(board, accesses, frame)) {
       if (bound.cycles >= limiting.cycles) limiting = bound;
     }
     if (limiting.cycles > slowest.cycles) slowest = limiting;
@@ -196,6 +212,38 @@ Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t f
   bound.core = board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(total);
   bound.core_limited_by = slowest.resource;
   return bound;
+}
+
+double least_delivery_s(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+                        const FrameBegin& from) {
+  const BufferLayout layout = layout_buffers(board);
+  const FrameAccesses accesses = accesses_of(board, tables);
+  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;  // of a picture too
+  const std::uint64_t period = allocation_period_frames(board);
+  std::uint64_t one_by_one = 0;
+  std::vector<std::uint64_t> cycles_of_banks(board.banks.size());
+  const auto use = [&cycles_of_banks](int bank, std::uint64_t count) {
+    cycles_of_banks[static_cast<std::size_t>(bank)] += count;
+  };
+  std::vector<std::uint64_t> frame_cycles;
+  for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
+    std::uint64_t most = 0;
+    for (const ResourceBound& bound : frame_bounds(board, accesses, frame))
+      most = std::max(most, bound.cycles);
+    frame_cycles.push_back(most);
+  }
+  for (std::uint64_t frame = from.frame; frame < frames; ++frame) {
+    one_by_one += frame_cycles[frame % period];
+    const std::uint64_t pair_words = frame - from.frame < layout.left_image.size() ? 0 : words;
+    use(bank_in_turn(layout.left_image, frame), accesses.left.pixel + pair_words);
+    use(bank_in_turn(layout.right_image, frame), accesses.right.pixel + pair_words);
+    if (layout.left_lut) use(layout.left_lut->bank, accesses.left.lut);
+    if (layout.right_lut) use(layout.right_lut->bank, accesses.right.lut);
+    use(bank_in_turn(layout.disparity, frame), 2 * words);
+  }
+  const std::uint64_t cycles =
+      std::max(one_by_one, *std::max_element(cycles_of_banks.begin(), cycles_of_banks.end()));
+  return from.start_s + static_cast<double>(cycles) / (board.fpga.clock_mhz * 1e6);
 }
 
 }  // namespace stereotlm::platform

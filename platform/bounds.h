@@ -26,8 +26,8 @@ struct ResourceBound {
 // std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
 
-// What a part of the computer around the board limits the rate of frames to, counted from time 0 to the last delivery;
-// no run can be faster:
+// What a part of the computer around the board limits the rate of frames to, counted from time 0 to the last
+// delivery; no run can be faster:
 //   camera      its frame clock; on demand the time from the first to the last pixel of a frame
 //   pci         the clocks of the words of a pair and a result and of the bursts that they need at least
 //   bridge      the same for its local bus, whose words are granted one a cycle of the FPGA at most
@@ -42,6 +42,21 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
 
 // Puts the least of bound.core and computer_bounds() into bound.system. Throws as they do.
 void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound);
+
+// How a run of a computer goes on: the core starts with frame number `frame` at `start_s`, in seconds from
+// time 0.
+struct FrameBegin {
+  std::uint64_t frame = 0;
+  double start_s = 0;
+};
+
+// The earliest end of the last of `frames` deliveries, in seconds from time 0, of a run that goes on like
+// this and loses no pixel: the core does its frames one after another, none faster than its bound; and each
+// bank has one access a cycle for what the core reads and writes, for the results that are read back, and for
+// the pairs that can only come once the core has begun with a frame before (all but the first of each
+// buffer). Throws std::invalid_argument if the board has problems.
+double least_delivery_s(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+                        const FrameBegin& from);
 
 // Frames per second that frames 0..frames-1 cannot exceed, and the resource that limits the slowest of them
 // (of equal ones the last in the order above). Throws std::invalid_argument if the board has problems, or

@@ -17,6 +17,7 @@ SlotPattern::SlotPattern(const FrameGeometry& geometry)
     set_all(valid_.data() + static_cast<std::size_t>(row) * words_);
   }
   find_changes();
+  all_valid_ = true;
 }
 
 void SlotPattern::set_all(std::uint64_t* row_bits) const {
@@ -25,6 +26,8 @@ void SlotPattern::set_all(std::uint64_t* row_bits) const {
 }
 
 void SlotPattern::set_entries(const std::uint32_t* entries) {
+  const bool were_all_valid = all_valid_;
+  all_valid_ = true;
   for (int row = 0; row < geometry_.height; ++row) {
     std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
     std::uint32_t common = ~std::uint32_t{0};
@@ -34,6 +37,7 @@ void SlotPattern::set_entries(const std::uint32_t* entries) {
       entries += geometry_.width;
       continue;
     }
+    all_valid_ = false;
     for (std::size_t word = 0; word < words_; ++word) {
       const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
       std::uint64_t found = 0;
@@ -42,7 +46,7 @@ void SlotPattern::set_entries(const std::uint32_t* entries) {
       entries += count;
     }
   }
-  find_changes();
+  if (!(all_valid_ && were_all_valid)) find_changes();
 }
 
 void SlotPattern::find_changes() {

@@ -88,6 +88,8 @@ class StereoCore : public sc_core::sc_module {
   const memory::Crossbar& crossbar() const { return crossbar_; }
   // frame_cycles of every finished frame.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  // Cycle 0 of the frame that was started last, of the clock's.
+  std::uint64_t first_cycle() const { return first_cycle_; }
   // Frames that were started and are done cycle by cycle, at whatever fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
   // What each port does: who asks for which bank, and to whom it lost it most often so far.

@@ -23,13 +23,13 @@ std::string with_value(const char* base, std::uint32_t value) {
   return text;
 }
 
-std::vector<std::uint32_t> entries_of(const kernels::RectificationTable* table, bool expected,
-                                      const char* side) {
+const kernels::RectificationTable* checked(const kernels::RectificationTable* table, bool expected,
+                                           const char* side) {
   if ((table != nullptr) != expected) {
     throw std::invalid_argument(std::string(side) +
                                 (expected ? " table missing" : " table given, but no buffer"));
   }
-  return table != nullptr ? table->entries : std::vector<std::uint32_t>{};
+  return table;
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ IdealHost::IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig&
                      const kernels::RectificationTable* right_table, FrameSource& source, FrameSink& sink)
     : sc_module(name),
       config_(config),
-      left_entries_(entries_of(left_table, config.buffers.left_lut.has_value(), "left")),
-      right_entries_(entries_of(right_table, config.buffers.right_lut.has_value(), "right")),
+      left_table_(checked(left_table, config.buffers.left_lut.has_value(), "left")),
+      right_table_(checked(right_table, config.buffers.right_lut.has_value(), "right")),
       source_(source),
       sink_(sink),
       disparity_(config.pixels ? config.width : 0, config.pixels ? config.height : 0) {
@@ -62,14 +62,14 @@ void IdealHost::run() {
 }
 
 void IdealHost::load_tables() {
-  const auto load_table = [this](std::optional<std::uint32_t> base, const std::vector<std::uint32_t>& entries,
+  const auto load_table = [this](std::optional<std::uint32_t> base, const kernels::RectificationTable* table,
                                  std::uint64_t base_register) {
     if (!base) return;
-    preload(*base, entries.data(), entries.size() * sizeof(std::uint32_t));
+    preload(*base, table->entries.data(), table->entries.size() * sizeof(std::uint32_t));
     write_register(base_register, *base);
   };
-  load_table(config_.buffers.left_lut, left_entries_, registers_of::kLeftLutBase);
-  load_table(config_.buffers.right_lut, right_entries_, registers_of::kRightLutBase);
+  load_table(config_.buffers.left_lut, left_table_, registers_of::kLeftLutBase);
+  load_table(config_.buffers.right_lut, right_table_, registers_of::kRightLutBase);
 }
 
 bool IdealHost::load_pictures(std::uint32_t left, std::uint32_t right) {

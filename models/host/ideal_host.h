@@ -54,9 +54,8 @@ class IdealHost : public sc_core::sc_module {
   tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
   sc_core::sc_in<bool> done{"done"};
 
-  // The tables are copied; null for a side without one. `source` and `sink` outlive the host. Throws
-  // std::invalid_argument if a list of buffers is empty, or a side has a table but no buffer for it, or the
-  // other way round.
+  // Tables, null for a side without one, `source` and `sink` outlive the host. Throws std::invalid_argument if
+  // a list of buffers is empty, or a side has a table but no buffer for it, or the other way round.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
@@ -78,8 +77,8 @@ class IdealHost : public sc_core::sc_module {
   void debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size);
 
   IdealHostConfig config_;
-  std::vector<std::uint32_t> left_entries_;
-  std::vector<std::uint32_t> right_entries_;
+  const kernels::RectificationTable* left_table_;
+  const kernels::RectificationTable* right_table_;
   FrameSource& source_;
   FrameSink& sink_;
   memory::WordAccess access_{registers};

@@ -47,6 +47,23 @@ bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int w
   return (outside & kEntryValid) == 0;
 }
 
+namespace {
+
+// Row by row: what has been read once is still in the cache when it is read again.
+bool is_sound(const RectificationTable& table) {
+  const auto width = static_cast<std::size_t>(table.width);
+  std::uint32_t bits = 0;
+  bool inside = true;
+  for (std::size_t first = 0; first < table.entries.size(); first += width) {
+    const std::uint32_t* const row = table.entries.data() + first;
+    for (std::size_t column = 0; column < width; ++column) bits |= row[column];
+    inside = entries_point_inside(row, width, table.width, table.height) && inside;
+  }
+  return inside && (bits & kEntryUnusedBits) == 0;
+}
+
+}  // namespace
+
 std::vector<std::string> problems(const RectificationTable& table) {
   if (table.width < 1 || table.width > 2048 || table.height < 1 || table.height > 2048) {
     return {"table size = " + std::to_string(table.width) + " x " + std::to_string(table.height) +
@@ -56,11 +73,7 @@ std::vector<std::string> problems(const RectificationTable& table) {
     return {"table entries = " + std::to_string(table.entries.size()) +
             ": must be width * height = " + std::to_string(pixel_count(table.width, table.height))};
   }
-  std::uint32_t bits = 0;
-  for (const std::uint32_t entry : table.entries) bits |= entry;
-  const bool is_sound =
-      entries_point_inside(table.entries.data(), table.entries.size(), table.width, table.height);
-  if (is_sound && (bits & kEntryUnusedBits) == 0) return {};
+  if (is_sound(table)) return {};
   std::vector<std::string> found;
   for (std::size_t index = 0; index < table.entries.size() && found.size() < kMostProblems; ++index) {
     const std::uint32_t entry = table.entries[index];

@@ -18,7 +18,6 @@
 #include "sw/cli/progress.h"
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/unbuilt.h"
 #include "sw/cli/version.h"
 #include "sw/explore/allocation_search.h"
 #include "sw/explore/store.h"
@@ -45,13 +44,15 @@ struct AllocateOptions {
   Typed out;
 
   // As check_usage() leaves them.
+  bool camera = true;
   std::optional<int> banks;
   double keep_percent = kDefaultKeepPercent;
 
   void add_to(CLI::App& command) {
     board.add_to(command);
     banks_option.add_to(command, "--banks", "N", "Banks to use at most: 1 to those of the board");
-    source.add_to(command, "--source", "preloaded", "The core alone");
+    source.add_to(command, "--source", "camera|preloaded",
+                  "The whole computer, the default, or the core alone, fed by an ideal host");
     keep_option.add_to(command, "--keep-fps", "PERCENT",
                        "Say how few banks keep so much of the best frame rate (default 99)");
     out.add_to(command, "--out", "DB", "The database of the boards that are simulated, written or continued");
@@ -59,11 +60,8 @@ struct AllocateOptions {
 
   void check_usage() {
     Problems problems;
-    if (!source.is_given()) {
-      problems.add(std::string("--source camera, the default: ") + kNotInThisVersion + "; built: preloaded");
-    } else if (is_one_of({"camera", "preloaded"}, "--source", source.text, problems) &&
-               source.text == "camera") {
-      problems.add(std::string("--source camera: ") + kNotInThisVersion + "; built: preloaded");
+    if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
+      camera = source.text == "camera";
     }
     board.check_given(problems);
     if (!banks_option.is_given()) problems.add("--banks: missing: the most banks to use");
@@ -126,70 +124,112 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
   return text;
 }
 
-// Cycles of each point's run, from the database.
-std::vector<std::uint64_t> cycles_of(const AllocationSearch& search, const std::string& path) {
+// What the database says of some boards, to the search.
+void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path,
+                     AllocationSearch& search) {
   explore::Database store(path, explore::Database::Access::kRead);
-  explore::Statement find(store, "SELECT status, reason, cycles FROM points WHERE hash = ?");
-  std::vector<std::uint64_t> cycles;
-  for (std::uint64_t number = 0; number < search.size(); ++number) {
-    find.bind(1, search.point(number).hash);
-    if (!find.step() || find.text(0) != "ok") {
+  explore::Statement find(
+      store,
+      search.run().camera
+          ? "SELECT status, reason, cycles, \"frames_per_second.system\", \"frames_per_second.steady\", "
+            "\"cameras.left.dropped_pixels\" + \"cameras.right.dropped_pixels\" FROM points WHERE hash = ?"
+          : "SELECT status, reason, cycles, \"frames_per_second.core\" FROM points WHERE hash = ?");
+  for (const std::size_t number : numbers) {
+    const explore::Point point = search.point(number);
+    find.bind(1, point.hash);
+    if (!find.step()) {
+      search.record_given_up(number);
+      find.reset();
+      continue;
+    }
+    if (find.text(0) != "ok") {
       throw std::runtime_error(
           fmt::format("{}: an allocation could not be simulated: {}", path, find.text(1)));
     }
-    cycles.push_back(static_cast<std::uint64_t>(find.integer(2)));
+    explore::AllocationOutcome outcome;
+    const auto behind_last_write = static_cast<std::uint64_t>(point.board->fpga.pipeline_latency_cycles);
+    outcome.cycles = static_cast<std::uint64_t>(find.integer(2)) + point.run.frames * behind_last_write;
+    outcome.frames_per_second = find.real(3);
+    if (search.run().camera) {
+      outcome.steady = find.real(4);
+      outcome.loses_pixels = find.integer(5) > 0;
+    }
+    search.record(number, outcome);
     find.reset();
   }
-  return cycles;
 }
 
-std::string table(const AllocationSearch& search, const BoardConfig& board,
-                  const std::vector<BestPlacement>& all) {
-  std::string text = fmt::format("{:>5} {:>12} {:>14} {:>14} {:>10}  {}\n", "banks", "allocations",
-                                 "best frames/s", "bound", "reached by", "one of them");
+// What the lines of the table are about.
+struct Context {
+  const AllocationSearch& search;
+  const BoardConfig& board;
+  AllocationSearch::BoundOf bound;
+};
+
+std::string rate_text(double rate) { return fmt::format("{:.3f}", rate); }
+
+std::string table(const Context& context, const std::vector<BestPlacement>& all) {
+  const bool camera = context.search.run().camera;
+  std::string text =
+      fmt::format("{:>5} {:>12} {:>10} {:>14}", "banks", "allocations", "simulated", "best frames/s");
+  if (camera) text += fmt::format(" {:>8}", "steady");
+  text += fmt::format(" {:>10} {:>10}  one of them\n", "bound", "reached by");
   for (const BestPlacement& best : all) {
-    const BoardConfig one = explore::placed(board, best.witness);
-    const auto bound = platform::core_bound(one, platform::identity_tables(one), search.turn_frames());
-    text += fmt::format("{:>5} {:>12} {:>14.3f} {:>14.3f} {:>10}  {}\n", best.banks, best.placements,
-                        best.frames_per_second, bound.core, best.reached_by, text_of(board, best.witness));
+    text += fmt::format("{:>5} {:>12} {:>10}", best.banks, best.placements, best.known + best.given_up);
+    if (best.reached_by == 0) {
+      text += fmt::format(" {:>14}\n", "all lose pixels");
+      continue;
+    }
+    const BoardConfig one = explore::placed(context.board, best.witness);
+    text += fmt::format(" {:>14.3f}", best.frames_per_second);
+    if (camera) text += fmt::format(" {:>8.3f}", best.outcome.steady.value_or(0));
+    text += fmt::format(" {:>10.3f} {:>10}  {}\n", context.bound(one), best.reached_by,
+                        text_of(context.board, best.witness));
   }
   return text;
 }
 
-// Runs the best of each number of banks with pixels: all have to give the same disparities, and the cycles
-// that were found.
-void check_pixels(const AllocationSearch& search, const BoardConfig& board, const platform::Tables& tables,
-                  const std::vector<BestPlacement>& all) {
-  ScenePairs pairs(board);
+// Runs the best of each number of banks with pixels, each frame with another pair, fed by an ideal host: all
+// have to give the same disparities, and the cycles that were found.
+std::string check_pixels(const Context& context, const platform::Tables& tables,
+                         const std::vector<BestPlacement>& all) {
+  ScenePairs pairs(context.board);
+  const std::uint64_t frames = platform::allocation_period_frames(context.board);
   std::string first;
+  std::size_t checked = 0;
   for (const BestPlacement& best : all) {
-    const auto run = simulation::simulate_pixels(explore::placed(board, best.witness), tables, pairs,
-                                                 search.turn_frames());
-    if (first.empty()) first = run.disparities_sha256;
+    if (best.reached_by == 0) continue;
+    const auto run =
+        simulation::simulate_pixels(explore::placed(context.board, best.witness), tables, pairs, frames);
+    if (checked++ == 0) first = run.disparities_sha256;
     if (run.disparities_sha256 != first) {
       throw std::runtime_error(fmt::format("the disparities of {} differ from those of {}",
-                                           text_of(board, best.witness),
-                                           text_of(board, all.front().witness)));
+                                           text_of(context.board, best.witness),
+                                           text_of(context.board, all.front().witness)));
     }
-    if (run.cycles != best.cycles) {
+    if (!context.search.run().camera && run.cycles != best.outcome.cycles) {
       throw std::runtime_error(fmt::format("{}: {} cycles with pixels, {} found",
-                                           text_of(board, best.witness), run.cycles, best.cycles));
+                                           text_of(context.board, best.witness), run.cycles,
+                                           best.outcome.cycles));
     }
   }
+  return fmt::format("The disparities of these {} allocations are the same, pixel by pixel, in {} frames.\n",
+                     checked, frames);
 }
 
 // What has been shown.
-std::string certificate(const std::vector<BestPlacement>& all, double keep_percent) {
+std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& best) { return best.reached_by == 0; }),
+            all.end());
+  if (all.empty()) return "No allocation keeps all pixels.\n";
   const auto rate = [](const BestPlacement& best) { return best.frames_per_second; };
-  const auto top = std::max_element(all.begin(), all.end(),
-                                    [&](const auto& a, const auto& b) { return rate(a) < rate(b); });
+  const auto by_rate = [&](const auto& a, const auto& b) { return rate(a) < rate(b); };
+  const auto top = std::max_element(all.begin(), all.end(), by_rate);
   std::string text =
-      fmt::format("The best of all is {:.3f} frames/s, and needs {} banks", rate(*top), top->banks);
+      fmt::format("The best of all is {} frames/s, and needs {} banks", rate_text(rate(*top)), top->banks);
   if (top != all.begin()) {
-    const auto below =
-        std::max_element(all.begin(), top, [&](const auto& a, const auto& b) { return rate(a) < rate(b); });
-    text +=
-        fmt::format(": every allocation to fewer was tried, and the best of them gives {:.3f}", rate(*below));
+    text += fmt::format(": the best with fewer gives {}",
+                        rate_text(rate(*std::max_element(all.begin(), top, by_rate))));
   } else {
     text += ", the fewest that hold the buffers";
   }
@@ -198,29 +238,57 @@ std::string certificate(const std::vector<BestPlacement>& all, double keep_perce
     return rate(best) >= rate(*top) * keep_percent / 100;
   });
   return text +
-         fmt::format("{:g} % of it is kept with {} banks ({:.3f} frames/s, {:.2f} %), and not with fewer.\n",
-                     keep_percent, kept->banks, rate(*kept), 100 * rate(*kept) / rate(*top));
+         fmt::format("{:g} % of it is kept with {} banks ({} frames/s, {:.2f} %), and not with fewer.\n",
+                     keep_percent, kept->banks, rate_text(rate(*kept)), 100 * rate(*kept) / rate(*top));
 }
 
-std::string space_text(const AllocationSearch& search, const BoardConfig& board, int banks) {
+// What was tried, and why that is all.
+std::string space_text(const Context& context, int banks) {
+  const AllocationSearch& search = context.search;
   std::string text =
       fmt::format("{}: {} buffers in at most {} of {} banks: {} different allocations, {} of them fit\n",
-                  board.name, platform::buffers(board.allocation).size(), banks, board.banks.size(),
-                  search.placements(), search.fitting());
+                  context.board.name, platform::buffers(context.board.allocation).size(), banks,
+                  context.board.banks.size(), search.placements(), search.fitting());
   if (search.by_frames()) {
-    text += fmt::format(
-        "{} boards of one frame are all that has to be simulated: with fixed priority and without turnaround "
-        "a "
-        "frame\nleaves nothing behind, so that its cycles depend on which of its own buffers share a bank, "
-        "and on "
-        "nothing else\n",
-        search.size());
-  } else {
-    text += fmt::format(
-        "{} boards are simulated, one for each: a frame leaves arbiters or banks in another state\n",
-        search.size());
+    return text +
+           fmt::format(
+               "{} boards of one frame are all that has to be simulated: with fixed priority and without "
+               "turnaround a\nframe leaves nothing behind, so that its cycles depend on which of its own "
+               "buffers share a bank, and on nothing else\n",
+               search.size());
   }
-  return text;
+  text += search.run().camera
+              ? fmt::format(
+                    "frames/s: {} frames, from time 0 to the last delivery, without losing a pixel; steady: "
+                    "between the first and the last\n",
+                    explore::frames_of(search.run(), context.board))
+              : "a frame leaves arbiters or banks in another state: each allocation is a run of a turn of "
+                "its lists\n";
+  return text +
+         "an allocation whose bound is below the best rate of as many banks was not simulated, or not to its "
+         "end\n";
+}
+
+// Simulates what the search asks for. False if it was interrupted.
+bool simulate(AllocationSearch& search, const explore::Evaluate& evaluate,
+              const explore::SweepOptions& sweep) {
+  ProgressLine progress;
+  std::uint64_t before = 0;
+  for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
+    const std::uint64_t left = search.most_left();
+    const auto counts = explore::sweep(explore::AllocationPoints(search, numbers), evaluate, sweep,
+                                       [&](const explore::SweepCounts& done) {
+                                         progress.show([&](double) {
+                                           return fmt::format("{} boards simulated, {} left at most",
+                                                              before + done.done(), left - done.done());
+                                         });
+                                         return !interrupted();
+                                       });
+    if (counts.done() < counts.total) return false;
+    record_outcomes(numbers, sweep.store, search);
+    before += numbers.size();
+  }
+  return true;
 }
 
 int allocate(const AllocateOptions& options) {
@@ -232,11 +300,6 @@ int allocate(const AllocateOptions& options) {
                              board->banks.size()));
   }
   problems.check();
-  const AllocationSearch search(*board, *options.banks, calibration ? sha_of(calibration->tables) : "");
-  if (search.fitting() == 0) {
-    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks", *options.banks,
-                       search.placements()));
-  }
   explore::SweepOptions sweep;
   sweep.store = options.out.text;
   sweep.version = kVersion;
@@ -246,28 +309,38 @@ int allocate(const AllocateOptions& options) {
   } catch (const explore::DatabaseError& error) {
     refuse(fmt::format("--out {}", error.what()));
   }
-  catch_interrupts();
   const platform::Tables tables = tables_of(*board, calibration);
+  const explore::PointRun run = {options.camera, 0, calibration ? sha_of(calibration->tables) : ""};
+  const std::uint64_t frames = explore::frames_of(run, *board);
+  const platform::FrameBegin first = {0, options.camera ? simulation::first_start_s(*board, tables) : 0};
+  const auto rate_from = [&](const BoardConfig& one, const platform::FrameBegin& begin) {
+    return static_cast<double>(frames) / platform::least_delivery_s(one, tables, frames, begin);
+  };
+  const AllocationSearch::BoundOf bound = [&](const BoardConfig& one) {
+    return options.camera ? rate_from(one, first) : platform::core_bound(one, tables, frames).core;
+  };
+  AllocationSearch search(*board, *options.banks, run, bound);
+  if (search.fitting() == 0) {
+    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks", *options.banks,
+                       search.placements()));
+  }
+  catch_interrupts();
   simulation::PointSimulator simulator =
       calibration ? simulation::PointSimulator(tables) : simulation::PointSimulator();
-  ProgressLine progress;
-  const auto counts = explore::sweep(
-      search, [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
-      [&](const explore::SweepCounts& done) {
-        progress.show([&](double) { return fmt::format("{}/{} boards", done.done(), done.total); });
-        return !interrupted();
-      });
-  progress.erase();
-  if (counts.done() < counts.total) {
+  const auto evaluate = [&](const explore::Point& point) {
+    const double rate = search.rate_to_reach(point.number);
+    return simulator(point,
+                     [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
+  };
+  if (!simulate(search, evaluate, sweep)) {
     say("note", "interrupted: the same command goes on where this one has ended");
     return kInterrupted;
   }
-  const std::vector<BestPlacement> all = search.best(cycles_of(search, sweep.store));
-  check_pixels(search, *board, tables, all);
-  print(space_text(search, *board, *options.banks) + table(search, *board, all) +
-        certificate(all, options.keep_percent) +
-        fmt::format("The disparities of these {} allocations are the same, pixel by pixel, in {} frames.\n",
-                    all.size(), search.turn_frames()));
+  const Context context = {search, *board, bound};
+  const std::vector<BestPlacement> all = search.best();
+  const std::string pixels = check_pixels(context, tables, all);
+  print(space_text(context, *options.banks) + table(context, all) + certificate(all, options.keep_percent) +
+        pixels);
   return kDone;
 }
 
@@ -279,15 +352,16 @@ void add_allocate(CLI::App& program, Action& action) {
     options->check_usage();
     action = [options] { return allocate(*options); };
   };
-  options->add_to(add_command(program, "allocate",
-                              "Find the best allocation of the buffers to banks, and prove it", parsed,
-                              "Every different way to place the buffers in at most N banks is tried: "
-                              "placements that differ only by an\n"
-                              "exchange of banks that are alike count as one. For each number of banks: how "
-                              "many placements fit, the\n"
-                              "best frame rate of the core over a turn of the allocation's lists beside its "
-                              "bound, how many reach it,\n"
-                              "and one that does."));
+  options->add_to(add_command(
+      program, "allocate", "Find the best allocation of the buffers to banks, and prove it", parsed,
+      "Every different way to place the buffers in at most N banks is tried: placements that differ only by "
+      "an\n"
+      "exchange of banks that are alike count as one, and those whose bound is below the best rate of as "
+      "many\n"
+      "banks are not simulated, or not to the end. For each number of banks: how many placements fit, the "
+      "best\n"
+      "frame rate beside its bound, how many reach it, and one that does. An allocation with which captures\n"
+      "lose pixels does not count. DB is continued: after an interruption, give the same command."));
 }
 
 }  // namespace stereotlm::cli

@@ -143,6 +143,8 @@ std::string Statement::text(int column) const {
                          : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column)));
 }
 
+double Statement::real(int column) const { return sqlite3_column_double(handle_, column); }
+
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(handle_, column); }
 
 bool Statement::is_true(int column) const {

@@ -64,6 +64,7 @@ class Statement {
   std::string name(int column) const;
   std::string text(int column) const;  // of the row; empty for NULL
   std::int64_t integer(int column) const;
+  double real(int column) const;
   bool is_true(int column) const;
   sqlite3_stmt* handle() const { return handle_; }
 

@@ -23,8 +23,9 @@ struct PointRun {
 };
 
 // Frames of a run: those asked for, or of the board alone one turn of its allocation's lists (its frame rate
-// is then that of any number of turns), of the whole computer kCameraFrames.
-inline constexpr std::uint64_t kCameraFrames = 12;
+// is then that of any number of turns), of the whole computer kCameraFrames: between the first and the last
+// delivery every buffer of a list, of whatever length, is used as often as the others.
+inline constexpr std::uint64_t kCameraFrames = 13;
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 
 // One point: a board and how it is run; or why there is no such board.

@@ -153,6 +153,9 @@ class Sweep {
       case PointEnd::kFailed:
         ++counts_.failed;
         break;
+      case PointEnd::kGivenUp:
+        ++counts_.given_up;
+        break;
       case PointEnd::kNotBegun:
         break;
     }

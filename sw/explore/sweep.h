@@ -9,6 +9,9 @@
 
 namespace stereotlm::explore {
 
+// Thrown by Evaluate where nobody wants to know how a point ends any more. Nothing of it is kept.
+struct GivenUp {};
+
 // Simulates a point that has a board. Called in worker processes, which are forked from this
 // one; what it throws is the reason for which the point has failed.
 using Evaluate = std::function<Figures(const Point& point)>;
@@ -29,8 +32,9 @@ struct SweepCounts {
   std::uint64_t ok = 0;        // these three: new
   std::uint64_t impossible = 0;
   std::uint64_t failed = 0;
+  std::uint64_t given_up = 0;
 
-  std::uint64_t done() const { return excluded + known + ok + impossible + failed; }
+  std::uint64_t done() const { return excluded + known + ok + impossible + failed + given_up; }
   std::uint64_t ran() const { return ok + failed; }
 };
 

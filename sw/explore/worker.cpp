@@ -90,6 +90,8 @@ class PointRunner {
       try {
         take_figures(evaluate_(point), row);
         row.status = "ok";
+      } catch (const GivenUp&) {
+        return PointEnd::kGivenUp;
       } catch (const std::exception& error) {
         end = PointEnd::kFailed;
         row.status = "failed";

@@ -19,7 +19,7 @@ struct WorkOrder {
 };
 
 // How a point has ended.
-enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kNotBegun };
+enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kGivenUp, kNotBegun };
 
 // A process that does points one after another, and tells how each has ended. It ends with this process.
 class Worker {

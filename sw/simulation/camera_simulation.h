@@ -26,6 +26,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void end_early() override;
   platform::Statistics statistics() const override;
   const platform::Computer& computer() const { return computer_; }
+  std::uint64_t frames_started() const { return driver_.frames_started(); }  // by the core
 
  private:
   // What the camera of one side sees.

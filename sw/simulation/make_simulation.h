@@ -27,13 +27,18 @@ std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
 // Pairs of black pictures, where no pixel matters.
 class BlankPairs : public host::FrameSource {
  public:
-  explicit BlankPairs(const platform::BoardConfig& board)
-      : pair_{kernels::GrayImage(board.image.width, board.image.height),
-              kernels::GrayImage(board.image.width, board.image.height)} {}
-  const host::StereoPair& pair(std::uint64_t /*frame*/) override { return pair_; }
+  explicit BlankPairs(const platform::BoardConfig& board) : image_(board.image) {}
+  const host::StereoPair& pair(std::uint64_t /*frame*/) override {
+    if (pair_.left.pixels.empty()) {
+      const kernels::GrayImage black(image_.width, image_.height);
+      pair_ = {black, black};
+    }
+    return pair_;
+  }
 
  private:
-  host::StereoPair pair_;
+  platform::ImageConfig image_;
+  host::StereoPair pair_;  // empty until somebody looks
 };
 
 }  // namespace stereotlm::simulation

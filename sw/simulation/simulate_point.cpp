@@ -1,13 +1,17 @@
 #include "sw/simulation/simulate_point.h"
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "models/binder.h"
+#include "models/clock.h"
+#include "sw/explore/sweep.h"
 #include "sw/report/sha256.h"
 #include "sw/report/stats_json.h"
+#include "sw/simulation/camera_simulation.h"
 #include "sw/simulation/child.h"
 #include "sw/simulation/make_simulation.h"
 
@@ -16,19 +20,31 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+double seconds(const platform::BoardConfig& board, std::uint64_t cycle) {
+  return static_cast<double>(Clock(board.fpga.clock_mhz).edge_ps(cycle)) / 1e12;
+}
+
 bool is_table_of(const std::optional<kernels::RectificationTable>& table, const platform::BoardConfig& board,
                  bool is_used) {
   if (!table || !is_used) return table.has_value() == is_used;
   return table->width == board.image.width && table->height == board.image.height;
 }
 
-Json simulate(const explore::Point& point, const platform::Tables& tables) {
+// In a process that does nothing else: what has been built is left to its end. Nothing if it is hopeless.
+std::optional<Json> simulate(const explore::Point& point, const platform::Tables& tables,
+                             const PointSimulator::Hopeless& hopeless) {
   const platform::BoardConfig& board = *point.board;
-  Binder binder;
-  BlankPairs blank(board);
-  const auto simulation = make_simulation(
-      board, tables, blank, {point.run.camera, fpga::Fidelity::kTiming, point.run.frames}, binder);
-  while (!simulation->finished()) simulation->advance();
+  const RunMode mode = {point.run.camera, fpga::Fidelity::kTiming, point.run.frames};
+  auto* const binder = new Binder;
+  auto* const blank = new BlankPairs(board);
+  Simulation* const simulation = make_simulation(board, tables, *blank, mode, *binder).release();
+  const auto* const computer = dynamic_cast<const CameraSimulation*>(simulation);
+  while (!simulation->finished()) {
+    simulation->advance();
+    if (!hopeless || computer == nullptr || computer->frames_started() == 0) continue;
+    const fpga::StereoCore& core = computer->computer().board.core;
+    if (hopeless({computer->frames_started() - 1, seconds(board, core.first_cycle())})) return std::nullopt;
+  }
   const platform::Statistics statistics = simulation->statistics();
   if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
   return report::stats_document(statistics, std::nullopt);
@@ -36,7 +52,7 @@ Json simulate(const explore::Point& point, const platform::Tables& tables) {
 
 }  // namespace
 
-explore::Figures PointSimulator::operator()(const explore::Point& point) {
+explore::Figures PointSimulator::operator()(const explore::Point& point, const Hopeless& hopeless) {
   const platform::BoardConfig& board = *point.board;
   const bool is_usable = is_table_of(tables_.left, board, board.allocation.left_lut.has_value()) &&
                          is_table_of(tables_.right, board, board.allocation.right_lut.has_value());
@@ -44,12 +60,28 @@ explore::Figures PointSimulator::operator()(const explore::Point& point) {
     throw std::runtime_error("the tables of the calibration are of another board");
   if (!is_usable) tables_ = platform::identity_tables(board);
   Child child([&](const Child::Tell& tell) {
-    const auto bytes = Json::to_cbor(simulate(point, tables_));
+    const std::optional<Json> document = simulate(point, tables_, hopeless);
+    if (!document) return;
+    const auto bytes = Json::to_cbor(*document);
     tell(std::string(bytes.begin(), bytes.end()));
   });
-  const std::string document = child.next().value();
+  const std::optional<std::string> document = child.next();
+  if (!document) throw explore::GivenUp();
   child.next();
-  return explore::figures_of(Json::from_cbor(document));
+  return explore::figures_of(Json::from_cbor(*document));
+}
+
+double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables) {
+  Child child([&](const Child::Tell& tell) {
+    Binder binder;
+    BlankPairs blank(board);
+    CameraSimulation simulation(board, tables, blank, 1, binder, fpga::Fidelity::kTiming);
+    while (!simulation.finished()) simulation.advance();
+    tell(std::to_string(simulation.computer().board.core.first_cycle()));
+  });
+  const std::uint64_t cycle = std::stoull(child.next().value());
+  child.next();
+  return seconds(board, cycle);
 }
 
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
@@ -67,7 +99,8 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
     const platform::Statistics statistics = simulation->statistics();
     if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
     tell(report::sha256_hex(pixels.data(), pixels.size()));
-    tell(std::to_string(statistics.cycles));
+    const auto& cycles = statistics.frame_cycles;
+    tell(std::to_string(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})));
   });
   PixelRun run;
   run.disparities_sha256 = child.next().value();

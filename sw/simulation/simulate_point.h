@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "models/host/ideal_host.h"
+#include "platform/bounds.h"
 #include "platform/tables.h"
 #include "sw/explore/figures.h"
 #include "sw/explore/points.h"
@@ -17,8 +19,12 @@ class PointSimulator {
   // With the tables of a calibration, on boards that they fit.
   explicit PointSimulator(const platform::Tables& tables) : tables_(tables), is_calibrated_(true) {}
 
-  // Throws std::runtime_error with what the run has ended with.
-  explore::Figures operator()(const explore::Point& point);
+  // Asked from time to time while a computer runs, with the frame that its core has started last: whether the
+  // run is not worth its end.
+  using Hopeless = std::function<bool(const platform::FrameBegin& last)>;
+
+  // Throws std::runtime_error with what the run has ended with, and explore::GivenUp if it is hopeless.
+  explore::Figures operator()(const explore::Point& point, const Hopeless& hopeless = {});
 
  private:
   // The identities of the last point, unless they are given; most have the same.
@@ -26,7 +32,12 @@ class PointSimulator {
   bool is_calibrated_ = false;
 };
 
-// The disparities of some frames of the core alone, all as one SHA-256, and the cycles that they took.
+// When the core of the whole computer starts for the first time, in seconds from time 0. Until then the host
+// alone uses the banks, and only writes: the time does not depend on where the buffers lie. In a child of
+// this process. Throws as PointSimulator does.
+double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables);
+
+// The disparities of some frames of the core alone, all as one SHA-256, and the sum of their frame_cycles.
 struct PixelRun {
   std::string disparities_sha256;
   std::uint64_t cycles = 0;

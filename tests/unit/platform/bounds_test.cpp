@@ -325,5 +325,32 @@ TEST_P(FewPlaces, TakeLessThanARoundLongerThanTheirBound) {
 
 INSTANTIATE_TEST_SUITE_P(Bounds, FewPlaces, ::testing::Values("one_place", "two_places", "four_places"));
 
+// 40 MHz: a cycle takes 25 ns.
+constexpr double kCycle = 25e-9;
+
+TEST(LeastDelivery, IsWhenTheFramesAreDoneOneAfterAnother) {
+  const BoardConfig board = small_board();
+  const Tables tables = identity_tables(board);
+  const auto cycles = static_cast<double>(2 * largest(board, tables, 0) + largest(board, tables, 1));
+  EXPECT_NEAR(least_delivery_s(board, tables, 3, {0, 0.5}), 0.5 + cycles * kCycle, 1e-12);
+  EXPECT_NEAR(least_delivery_s(board, tables, 5, {2, 1.5}), 1.5 + cycles * kCycle, 1e-12);
+}
+
+// Of 100 frames, or the last 10 of them: what the core reads and writes, results read back, and all pairs but the first.
+TEST(LeastDelivery, CountsWhatTheHostMovesInABank) {
+  BoardConfig board = small_board();
+  board.allocation.left_image = {"bank0"};
+  board.allocation.right_image = {"bank2"};
+  board.allocation.disparity = {"bank0"};
+  const Tables tables = identity_tables(board);
+  for (const uint64_t from : {uint64_t{0}, uint64_t{90}}) {
+    const uint64_t frames = 100 - from;
+    const uint64_t cycles = frames * (kReads + 2 * kWords) + (frames - 1) * kWords;
+    ASSERT_GT(cycles, frames * largest(board, tables, 0));
+    EXPECT_NEAR(least_delivery_s(board, tables, 100, {from, 0.25}),
+                0.25 + static_cast<double>(cycles) * kCycle, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace stereotlm::platform

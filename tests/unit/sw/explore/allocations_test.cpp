@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/board_rules.h"
@@ -108,49 +111,144 @@ TEST(Frames, AreIndependentWithFixedPriorityAndWithoutTurnaround) {
       frames_are_independent(fpl2003({"ssram.banks.bank3={kind: sync_burst, turnaround_cycles: 1}"})));
 }
 
+// Where bounds rule nothing out.
+double no_bound(const BoardConfig& /*board*/) { return 1e9; }
+
+AllocationSearch core_search(const BoardConfig& board, int most_banks) {
+  return AllocationSearch(board, most_banks, {}, no_bound);
+}
+
 TEST(AllocationSearch, NeedsARunForEachWayInWhichAFramesBuffersShare) {
-  const AllocationSearch search(fpl2003(), 8);
+  const AllocationSearch search = core_search(fpl2003(), 8);
+  EXPECT_TRUE(search.by_frames());
   EXPECT_EQ(search.placements(), 4140U);
   EXPECT_EQ(search.fitting(), 2507U);
   EXPECT_EQ(search.size(), 35U);
+  EXPECT_EQ(search.next().size(), 35U);
+  EXPECT_EQ(search.most_left(), 35U);
   EXPECT_EQ(search.point(0).run.frames, 1U);
   // With banks that hold everything each of the 52 ways occurs.
-  EXPECT_EQ(AllocationSearch(fpl2003({"ssram.default.words=2097152"}), 8).size(), 52U);
+  EXPECT_EQ(core_search(fpl2003({"ssram.default.words=2097152"}), 8).size(), 52U);
 }
 
 TEST(AllocationSearch, RunsEachPlacementWhereFramesAreNotIndependent) {
-  const BoardConfig board = fpl2003({"fpga.arbitration=round_robin"});
-  const AllocationSearch search(board, 3);
-  EXPECT_EQ(search.size(), search.fitting());
-  EXPECT_EQ(search.point(0).run.frames, 2U);
+  const AllocationSearch core = core_search(fpl2003({"fpga.arbitration=round_robin"}), 3);
+  EXPECT_EQ(core.size(), core.fitting());
+  EXPECT_EQ(core.point(0).run.frames, 2U);
+  const AllocationSearch computer(fpl2003(), 3, {true, 0, ""}, no_bound);
+  EXPECT_EQ(computer.size(), computer.fitting());
+  EXPECT_EQ(computer.point(0).run.frames, kCameraFrames);
 }
 
 // With made-up cycles: the more buffers share, the longer a frame.
 TEST(AllocationSearch, FindsTheBestForEachNumberOfBanks) {
-  const BoardConfig board = fpl2003();
-  const AllocationSearch search(board, 8);
-  std::vector<std::uint64_t> cycles;
-  for (std::uint64_t number = 0; number < search.size(); ++number) {
+  AllocationSearch search = core_search(fpl2003(), 8);
+  for (const std::size_t number : search.next()) {
     std::set<std::string> banks;
     for (const auto& buffer : platform::buffers(search.point(number).board->allocation))
       banks.insert(buffer.bank);
-    cycles.push_back(1000 * (6 - banks.size()));
+    AllocationOutcome outcome;
+    outcome.cycles = 1000 * (6 - banks.size());
+    search.record(number, outcome);
   }
-  const auto all = search.best(cycles);
+  EXPECT_TRUE(search.next().empty());
+  EXPECT_EQ(search.most_left(), 0U);
+  const auto all = search.best();
   ASSERT_EQ(all.size(), 6U);
   std::uint64_t placements = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].banks, static_cast<int>(i) + 3);
     EXPECT_EQ(banks_used(all[i].witness), all[i].banks);
-    EXPECT_EQ(search.cycles_of(all[i].witness, cycles), all[i].cycles);
-    EXPECT_EQ(all[i].frames_per_second, 40e6 * 2 / static_cast<double>(all[i].cycles));
+    EXPECT_EQ(all[i].frames_per_second, 40e6 * 2 / static_cast<double>(all[i].outcome.cycles));
+    EXPECT_EQ(all[i].known, all[i].placements);
     placements += all[i].placements;
   }
   EXPECT_EQ(placements, search.fitting());
   EXPECT_EQ(all.back().reached_by, 1U);
-  EXPECT_EQ(all.back().cycles, 2000U);
-  EXPECT_EQ(all[2].cycles, 2000U) << "five banks are enough for the five buffers of each frame";
-  EXPECT_EQ(all[0].cycles, 6000U);
+  EXPECT_EQ(all.back().outcome.cycles, 2000U);
+  EXPECT_EQ(all[2].outcome.cycles, 2000U) << "five banks are enough for the five buffers of each frame";
+  EXPECT_EQ(all[0].outcome.cycles, 6000U);
+}
+
+// Made-up rates of a computer, from 10 to 20 frames/s, and bounds by up to a tenth above them.
+class ComputerSearch : public ::testing::Test {
+ protected:
+  static std::uint64_t mixed(const BoardConfig& board) {
+    std::uint64_t mix = 1469598103934665603U;
+    for (const auto& buffer : platform::buffers(board.allocation)) {
+      for (const char c : buffer.bank) mix = (mix ^ static_cast<unsigned char>(c)) * 1099511628211U;
+      mix ^= mix >> 29U;
+    }
+    return mix;
+  }
+  static double rate_of(const BoardConfig& board) {
+    return 10 + static_cast<double>(mixed(board) % 101) / 10;
+  }
+  static double bound_of(const BoardConfig& board) {
+    return rate_of(board) * (1 + static_cast<double>(mixed(board) / 101 % 100) / 1000);
+  }
+  static bool loses(const BoardConfig& board) { return mixed(board) / 10100 % 10 == 0; }
+
+  AllocationSearch search{fpl2003(), 8, {true, 0, ""}, bound_of};
+};
+
+TEST_F(ComputerSearch, FindsTheBestThatLosesNoPixelsAndLeavesOutWhatABoundRulesOut) {
+  std::map<int, std::pair<double, std::uint64_t>> expected;  // best rate, reached by
+  std::map<int, std::uint64_t> placements;
+  for (std::size_t number = 0; number < search.size(); ++number) {
+    const BoardConfig board = *search.point(number).board;
+    std::set<std::string> banks;
+    for (const auto& buffer : platform::buffers(board.allocation)) banks.insert(buffer.bank);
+    ++placements[static_cast<int>(banks.size())];
+    if (loses(board)) continue;
+    auto& [rate, reached_by] = expected[static_cast<int>(banks.size())];
+    if (rate_of(board) > rate) reached_by = 0;
+    rate = std::max(rate, rate_of(board));
+    if (rate_of(board) == rate) ++reached_by;
+  }
+  std::uint64_t simulated = 0;
+  std::uint64_t given_up = 0;
+  for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
+    for (const std::size_t number : numbers) {
+      const BoardConfig board = *search.point(number).board;
+      ++simulated;
+      if (!loses(board) && rate_of(board) < search.rate_to_reach(number) && number % 2 == 0) {
+        search.record_given_up(number);
+        ++given_up;
+      } else {
+        search.record(number, {1000, rate_of(board), rate_of(board) + 1, loses(board)});
+      }
+    }
+    EXPECT_LE(simulated + search.most_left(), search.size());
+  }
+  EXPECT_LT(simulated, search.size() / 2);
+  EXPECT_GT(given_up, 0U);
+  std::uint64_t known = 0;
+  for (const BestPlacement& best : search.best()) {
+    ASSERT_EQ(expected.count(best.banks), std::size_t{best.reached_by > 0}) << best.banks;
+    EXPECT_EQ(best.placements, placements[best.banks]);
+    known += best.known + best.given_up;
+    if (best.reached_by == 0) continue;
+    EXPECT_EQ(best.frames_per_second, expected[best.banks].first) << best.banks;
+    EXPECT_EQ(best.reached_by, expected[best.banks].second) << best.banks;
+    EXPECT_EQ(rate_of(placed(fpl2003(), best.witness)), best.frames_per_second);
+    EXPECT_EQ(best.outcome.steady, best.frames_per_second + 1);
+  }
+  EXPECT_EQ(known, simulated);
+}
+
+TEST_F(ComputerSearch, RefusesARateAboveItsBound) {
+  const std::size_t number = search.next().front();
+  EXPECT_THROW(search.record(number, {1000, 100, 100, false}), std::logic_error);
+  search.record(number, {1000, 100, 100, true});  // moves fewer words than the bound counts
+}
+
+TEST(AllocationPoints, AreThoseOfTheirNumbers) {
+  const AllocationSearch search = core_search(fpl2003(), 8);
+  const AllocationPoints points(search, {7, 3});
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points.point(0).hash, search.point(7).hash);
+  EXPECT_EQ(points.point(1).number, 3U);
 }
 
 }  // namespace
