@@ -99,6 +99,7 @@ Action parse_command_line(int argc, const char* const* argv) {
   add_boards(program, action);
   add_keys(program, action);
   add_bounds(program, action);
+  add_explain(program, action);
   add_calibrate(program, action);
   add_sweep(program, action);
   add_merge(program, action);

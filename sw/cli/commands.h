@@ -18,6 +18,7 @@ void add_check(CLI::App& program, Action& action);
 void add_boards(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_bounds(CLI::App& program, Action& action);
+void add_explain(CLI::App& program, Action& action);
 void add_calibrate(CLI::App& program, Action& action);
 void add_allocate(CLI::App& program, Action& action);
 void add_sweep(CLI::App& program, Action& action);

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -58,7 +59,13 @@ struct Report {
   std::uint32_t text_bytes = 0;
 };
 
+// A figure with the path of a key is another column: bridge.posted_words is what the bridge can hold, and
+// bridge.posted_words.counted what it has taken.
 void take_figures(Figures figures, StoredPoint& row) {
+  for (platform::BoardValue& figure : figures.values) {
+    const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
+    if (std::any_of(row.values.begin(), row.values.end(), is_key)) figure.path += ".counted";
+  }
   row.values.insert(row.values.end(), std::make_move_iterator(figures.values.begin()),
                     std::make_move_iterator(figures.values.end()));
   row.blame = std::move(figures.blame);

@@ -1,0 +1,306 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "platform/board_rules.h"
+#include "platform/bounds.h"
+#include "sw/cli/add_command.h"
+#include "sw/cli/board_options.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/interrupt.h"
+#include "sw/cli/progress.h"
+#include "sw/cli/streams.h"
+#include "sw/cli/text.h"
+#include "sw/cli/typed_option.h"
+#include "sw/cli/version.h"
+#include "sw/explore/batch.h"
+#include "sw/explore/knobs.h"
+#include "sw/simulation/simulate_point.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using explore::KnobStep;
+using platform::BoardConfig;
+
+constexpr int kMostBlames = 5;
+constexpr double kVisible = 0.0005;  // frames per second: half of the last digit printed
+
+struct ExplainOptions {
+  BoardOptions board;
+  Typed source;
+  bool camera = true;  // as check_usage() leaves it
+
+  void add_to(CLI::App& command) {
+    board.add_to(command);
+    source.add_to(command, "--source", "camera|preloaded",
+                  "The whole computer, the default, or the core alone, fed by an ideal host");
+  }
+
+  void check_usage() {
+    Problems problems;
+    board.check_given(problems);
+    if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
+      camera = source.text == "camera";
+    }
+    problems.check();
+  }
+};
+
+// What came of one board.
+struct Rate {
+  double frames_per_second = 0;
+  bool loses_pixels = false;
+};
+
+struct StepRate {
+  const KnobStep* step = nullptr;
+  Rate rate;
+};
+
+// The boards of one `explain`: the board itself, and one for each step.
+class Explanation {
+ public:
+  Explanation(const BoardConfig& board, const platform::Tables& tables, bool camera)
+      : board_(board),
+        tables_(tables),
+        run_{camera, 0, ""},
+        steps_(explore::knob_steps(board, camera)),
+        points_(boards(), run_) {}
+
+  // False if it was interrupted.
+  bool simulate(simulation::PointSimulator simulator) {
+    ProgressLine progress;
+    return batch_.run(
+        points_, [&simulator](const explore::Point& point) { return simulator(point); }, kVersion,
+        std::max(1U, std::thread::hardware_concurrency()),
+        [&](const explore::SweepCounts& done) {
+          progress.show(
+              [&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
+          return !interrupted();
+        });
+  }
+
+  std::string text() {
+    const Rate now = rate_of(0);
+    std::vector<StepRate> rates;
+    for (std::size_t i = 0; i < steps_.size(); ++i) rates.push_back({&steps_[i], rate_of(i + 1)});
+    return head(now) + resources(now) + blames() + prices(now, rates) +
+           knobs_with(Effect::kTooSmall, "less than 0.0005 frames/s: ", now, rates) +
+           knobs_with(Effect::kNone, "no effect on this run: ", now, rates);
+  }
+
+ private:
+  std::vector<BoardConfig> boards() const {
+    std::vector<BoardConfig> all = {board_};
+    for (const KnobStep& step : steps_) all.push_back(step.board);
+    return all;
+  }
+
+  Rate rate_of(std::uint64_t number) {
+    const explore::StoredRow& row = batch_.row_of(points_.point(number));
+    const auto lost =
+        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
+    return {row.real(run_.camera ? "frames_per_second.steady" : "frames_per_second.core"), lost > 0};
+  }
+
+  std::string head(const Rate& now) {
+    const std::uint64_t frames = explore::frames_of(run_, board_);
+    const explore::StoredRow& row = batch_.row_of(points_.point(0));
+    const char* const of = run_.camera ? "bound.system" : "bound.core";
+    return fmt::format("{}, {}: {:.3f} frames/s{} ({} frames); bound {:.3f}, limited by {}{}\n", board_.name,
+                       run_.camera ? "the whole computer" : "the core alone", now.frames_per_second,
+                       run_.camera ? " between the first and the last delivery" : "", frames, row.real(of),
+                       row.text(std::string(of) + "_limited_by"),
+                       now.loses_pixels ? "; captures lose pixels" : "");
+  }
+
+  // What a resource would allow, and how much more than now.
+  struct Resource {
+    std::string name;
+    double frames_per_second = 0;
+    double headroom_percent = 0;
+    std::uint64_t frame = 0;
+    bool varies = false;  // has more in other frames
+  };
+
+  // Of the core's own in the frame in which they have the least headroom. A frame lasts as long as its
+  // cycles; in a computer it is longer by its share of the time between frames.
+  std::vector<Resource> resources_of(const Rate& now) {
+    const auto frame_cycles = nlohmann::json::parse(batch_.row_of(points_.point(0)).text("frame_cycles"))
+                                  .get<std::vector<double>>();
+    const double mean = std::accumulate(frame_cycles.begin(), frame_cycles.end(), 0.0) /
+                        static_cast<double>(frame_cycles.size());
+    const double clock_hz = board_.fpga.clock_mhz * 1e6;
+    const double stretch = clock_hz / mean / now.frames_per_second;
+    std::vector<Resource> all;
+    const auto add = [&all](const Resource& found) {
+      const auto known =
+          std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.name == found.name; });
+      if (known == all.end()) {
+        all.push_back(found);
+      } else if (found.headroom_percent != known->headroom_percent) {
+        if (found.headroom_percent < known->headroom_percent) *known = found;
+        known->varies = true;
+      }
+    };
+    const std::uint64_t turn = platform::allocation_period_frames(board_);
+    for (std::uint64_t frame = 0; frame < std::min<std::uint64_t>(turn, frame_cycles.size()); ++frame) {
+      for (const platform::ResourceBound& bound : platform::frame_bounds(board_, tables_, frame)) {
+        const auto cycles = static_cast<double>(bound.cycles);
+        add({bound.resource, clock_hz / cycles, 100 * (stretch * frame_cycles[frame] / cycles - 1), frame});
+      }
+    }
+    if (run_.camera) {
+      for (const platform::RateBound& part : platform::computer_bounds(board_, !now.loses_pixels)) {
+        add({part.resource, part.frames_per_second,
+             100 * (part.frames_per_second / now.frames_per_second - 1), 0});
+      }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Resource& a, const Resource& b) {
+      return a.headroom_percent < b.headroom_percent;
+    });
+    return all;
+  }
+
+  // Equal ones of a kind in one line.
+  std::string resources(const Rate& now) {
+    const std::vector<Resource> all = resources_of(now);
+    const std::uint64_t turn = platform::allocation_period_frames(board_);
+    std::string text = fmt::format("  {:>12} {:>14}  {}\n", "headroom %", "bound frames/s", "resource");
+    for (auto first = all.begin(); first != all.end();) {
+      const std::string kind = first->name.substr(0, first->name.find(' ') + 1);
+      std::string label = first->name;
+      auto next = first + 1;
+      for (; next != all.end() && next->headroom_percent == first->headroom_percent && !kind.empty() &&
+             next->name.rfind(kind, 0) == 0 && next->varies == first->varies &&
+             (!first->varies || next->frame == first->frame);
+           ++next) {
+        label += ", " + next->name.substr(kind.size());
+      }
+      if (first->varies) label += fmt::format(", in frame {} of {}", first->frame, turn);
+      text += fmt::format("  {:>12.2f} {:>14.3f}  {}\n", first->headroom_percent, first->frames_per_second,
+                          label);
+      first = next;
+    }
+    return text;
+  }
+
+  std::string blames() {
+    const explore::Point point = points_.point(0);
+    const auto cycles = static_cast<double>(batch_.row_of(point).integer("cycles"));
+    explore::Database store(batch_.path(), explore::Database::Access::kRead);
+    explore::Statement find(
+        store,
+        "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
+    find.bind(1, point.hash);
+    std::string text = "who waits for whom, % of the cycles of the frames\n";
+    int rows = 0;
+    for (; find.step(); ++rows) {
+      if (rows == kMostBlames) return text + "  and others, less\n";
+      text += fmt::format("  {:<12} on {:<12} for {:<12} {:>8.3f}\n", find.text(0), find.text(1),
+                          find.text(2), 100 * static_cast<double>(find.integer(3)) / cycles);
+    }
+    return rows > 0 ? text : "no port waits for another\n";
+  }
+
+  // The steps whose effect can be seen, the best first.
+  std::string prices(const Rate& now, std::vector<StepRate> rates) const {
+    std::stable_sort(rates.begin(), rates.end(), [](const StepRate& a, const StepRate& b) {
+      return a.rate.frames_per_second > b.rate.frames_per_second;
+    });
+    std::string text = fmt::format(
+        "one step of each knob: {} boards simulated; *: the disparities change too\n", steps_.size());
+    text += fmt::format("  {:>9} {:>9} {:>8}  knob: from -> to\n", "frames/s", "gained", "%");
+    std::map<std::string, int> shown;
+    for (const auto& [step, rate] : rates) {
+      if (step->only_best ? shown[step->knob]++ > 0 : effect_of(now, rate) != Effect::kSeen) continue;
+      const double gained = rate.frames_per_second - now.frames_per_second;
+      text +=
+          fmt::format("  {:>9.3f} {:>+9.3f} {:>+8.2f}  {}{}: {} -> {}{}\n", rate.frames_per_second, gained,
+                      100 * gained / now.frames_per_second, step->knob, step->changes_disparities ? " *" : "",
+                      step->from, step->to, rate.loses_pixels && !now.loses_pixels ? "  loses pixels" : "");
+    }
+    return text;
+  }
+
+  enum class Effect { kNone, kTooSmall, kSeen };
+
+  static Effect effect_of(const Rate& now, const Rate& rate) {
+    if (rate.loses_pixels != now.loses_pixels) return Effect::kSeen;
+    const double gained = std::abs(rate.frames_per_second - now.frames_per_second);
+    return gained >= kVisible ? Effect::kSeen : gained > 0 ? Effect::kTooSmall : Effect::kNone;
+  }
+
+  // The knobs of which no step does more than that.
+  std::string knobs_with(Effect effect, const char* head, const Rate& now,
+                         const std::vector<StepRate>& rates) const {
+    std::vector<std::string> knobs;
+    std::map<std::string, Effect> effects;
+    for (const auto& [step, rate] : rates) {
+      if (step->only_best) continue;
+      if (effects.count(step->knob) == 0) knobs.push_back(step->knob);
+      Effect& most = effects[step->knob];
+      most = std::max(most, effect_of(now, rate));
+    }
+    std::string list;
+    for (const std::string& knob : knobs) {
+      if (effects[knob] == effect) list += (list.empty() ? "" : "; ") + knob;
+    }
+    return list.empty() ? "" : paragraph(head, 2, list);
+  }
+
+  const BoardConfig& board_;
+  const platform::Tables& tables_;
+  explore::PointRun run_;
+  std::vector<KnobStep> steps_;
+  explore::BoardPoints points_;
+  explore::Batch batch_;
+};
+
+int explain(const ExplainOptions& options) {
+  Problems problems;
+  const auto board = options.board.load(problems);
+  const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  problems.check();
+  const platform::Tables tables = tables_of(*board, calibration);
+  catch_interrupts();
+  Explanation explanation(*board, tables, options.camera);
+  if (!explanation.simulate(calibration ? simulation::PointSimulator(tables)
+                                        : simulation::PointSimulator())) {
+    return kInterrupted;
+  }
+  print(explanation.text());
+  return kDone;
+}
+
+}  // namespace
+
+void add_explain(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<ExplainOptions>();
+  const auto parsed = [options, &action] {
+    options->check_usage();
+    action = [options] { return explain(*options); };
+  };
+  options->add_to(add_command(
+      program, "explain", "Say what limits a board, and what one step of each knob gains or costs", parsed,
+      "The board is simulated, and then once more with each of its knobs one step up or down: a cycle, a "
+      "MHz,\n"
+      "a place in a queue, a word of a burst, a buffer, a bank. What comes out is sorted by the frame rate. "
+      "A\n"
+      "bank more is the best of giving any one buffer a new bank of its own, a bank less the best of moving\n"
+      "all buffers of one bank into another. The size of the images, the depth of banks and the device "
+      "stay."));
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,52 @@
+#include "sw/explore/batch.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+namespace stereotlm::explore {
+
+Batch::Batch() {
+  std::string name = (std::filesystem::temp_directory_path() / "stereotlm_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    throw std::runtime_error(
+        fmt::format("{}: a folder for temporary files cannot be made: {}", name, std::strerror(errno)));
+  }
+  folder_ = name;
+  path_ = (folder_ / "points.db").string();
+}
+
+Batch::~Batch() {
+  row_.reset();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+bool Batch::run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+                const std::function<bool(const SweepCounts& counts)>& go_on) {
+  SweepOptions options;
+  options.store = path_;
+  options.version = version;
+  options.jobs = jobs;
+  row_.reset();
+  const SweepCounts counts = sweep(points, evaluate, options, go_on);
+  return counts.done() == counts.total;
+}
+
+const StoredRow& Batch::row_of(const Point& point) {
+  if (!row_) row_ = std::make_unique<StoredRow>(path_);
+  StoredRow& row = *row_;
+  if (!row.find(point.hash))
+    throw std::runtime_error(fmt::format("point {} was not simulated", point.number));
+  if (row.text("status") != "ok") {
+    throw std::runtime_error(
+        fmt::format("{}: point {} has failed: {}", point.board->name, point.number, row.text("reason")));
+  }
+  return row;
+}
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sw/explore/points.h"
+#include "sw/explore/stored_row.h"
+#include "sw/explore/sweep.h"
+
+namespace stereotlm::explore {
+
+// Simulates points on several processors, with a database of its own in a folder for temporary files, which
+// goes when the batch does.
+class Batch {
+ public:
+  Batch();  // throws std::runtime_error if there can be no folder
+  ~Batch();
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  // As sweep(). False if `go_on` has ended it.
+  bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+           const std::function<bool(const SweepCounts& counts)>& go_on);
+
+  // The database, after run().
+  const std::string& path() const { return path_; }
+  // Of a point that was simulated; until the next call. Throws std::runtime_error with the reason if its run
+  // has failed.
+  const StoredRow& row_of(const Point& point);
+
+ private:
+  std::filesystem::path folder_;
+  std::string path_;
+  std::unique_ptr<StoredRow> row_;
+};
+
+}  // namespace stereotlm::explore
