@@ -189,7 +189,6 @@ class Figures(PlotTest):
         for row in banks:
             allocation = [value for key, value in rows[row["hash"]].items() if key.startswith("allocation.")]
             self.assertEqual(int(row["banks_used"]), len(set(re.findall(r"bank\d", " ".join(allocation)))))
-        self.check_best(banks)
 
         stalls = self.table("stalls")
         drawn = {row["hash"] for row in stalls}
@@ -206,19 +205,24 @@ class Figures(PlotTest):
         for key in set(rows) - drawn:
             self.assertLessEqual(sum(row[4] for row in blame if row[0] == key) / rows[key]["frames"], least)
 
-    def check_best(self, banks):
-        """The line goes through the best allocation for each number of banks; its keys are not told apart by color."""
-        best = {}
-        for row in banks:
-            used = int(row["banks_used"])
-            best[used] = max(best.get(used, 0), float(row["frames_per_second.core"]))
-        order = sorted(best, key=lambda used: -best[used])
-        for curve in self.curves(self.out / "banks.svg"):
-            self.assertEqual(len(curve), len(best))
-            by_height = sorted(range(len(curve)), key=lambda place: curve[place][1])  # y points downwards
-            self.assertAlmostEqual(curve[by_height[0]][0], curve[sorted(best).index(order[0])][0])
+    def test_go_through_the_best_allocation(self):
+        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "fpga.clock_mhz",
+                  "frames_per_second.core", "bound.core"]
+        rows = [("made", "preloaded", lut, image, clock, rate * clock, 13 * clock) for clock in (1, 2)
+                for lut, image, rate in (("bank0", "[bank0, bank0]", 8), ("none", "[bank1]", 12), ("bank2", "[bank1]", 10))]
+        store = self.folder / "best.db"
+        make_database(store, header, rows)
+        self.succeeds(self.script("plot_banks.py", store, "--out", self.out))
+        self.assertEqual(sorted(int(row["banks_used"]) for row in self.table("banks")), [1, 1, 1, 1, 2, 2])
+        slow, fast = self.curves(self.out / "banks.svg")
+        zero = 2 * slow[0][1] - fast[0][1]  # y of no frame at all: from zero, and one board twice as fast
+        for curve in (slow, fast):
+            self.assertEqual(len(curve), 2)
+            self.assertLess(curve[0][0], curve[1][0])
+            self.assertAlmostEqual((zero - curve[0][1]) / (zero - curve[1][1]), 12 / 10, places=4)
         texts = self.texts(self.out / "banks.svg")
-        for text in ("banks used by the allocation", "best allocation", "every allocation", "bound"):
+        for text in ("banks used by the allocation", "best allocation", "every allocation", "bound",
+                     "fpga.clock_mhz = 1"):
             self.assertIn(text, texts)
 
     def test_of_the_whole_computer(self):
@@ -240,7 +244,7 @@ class Figures(PlotTest):
         header = ["name", "run.source", "matcher.window", "fpga.clock_mhz", "fpga.arbitration", "frames_per_second.core",
                   "bound.core"]
         rows = [("made", "preloaded", window, clock, kind, clock / window / (1 + weight), clock / window)
-                for window in (3, 5) for clock in range(20, 40) for weight, kind in enumerate(("a$b", "c$d"))]
+                for window in (3, 5) for clock in range(20, 40) for weight, kind in enumerate(("$a$", "$c$"))]
         store = self.folder / "many.db"
         make_database(store, header, rows)
         self.assertIn("80 points, without lines", self.succeeds(self.script("plot_window.py", store, "--out", self.out)))
@@ -250,7 +254,7 @@ class Figures(PlotTest):
         said = self.succeeds(self.script("plot_window.py", store, "--out", self.out, "--only", "fpga.clock_mhz=20"))
         self.assertIn("4 of 80 points; left out: 76 other than --only fpga.clock_mhz=20", said)
         self.assertIn("4 points, 2 lines", said)
-        self.assertIn("fpga.arbitration = a$b", self.texts(self.out / "window.svg"))
+        self.assertIn("fpga.arbitration = $a$", self.texts(self.out / "window.svg"))
 
     def test_tell_by_how_much_keys_that_look_the_same_differ(self):
         header = ["name", "run.source", "matcher.window", "fpga.lane_fifo_slots", "frames_per_second.core", "bound.core"]
@@ -356,7 +360,8 @@ class Refusals(PlotTest):
     def setUp(self):
         super().setUp()
         self.store = self.folder / "made.db"
-        header = ["name", "run.source", "matcher.window", "matcher.fetch", "frames_per_second.core", "bound.core", "pci.clocks"]
+        header = ["name", "run.source", "matcher.window", "matcher.fetch", "frames_per_second.core", "bound.core",
+                  "pci.clocks"]
         make_database(self.store, header, [("made", "preloaded", window, kind, 90 / window, 90 / window, None)
                                            for window, kind in ((3, "column"), (5, "line_buffer"))])
 
@@ -383,7 +388,8 @@ class Refusals(PlotTest):
              "frames_per_second.core",
              "--pareto = frames_per_sec.core:max,matcher.fetch:min: column matcher.fetch is no number: column"])
         self.assertEqual(
-            self.refused_at(self.store, "--out", self.out, "--only", "matcher.window=3", "--only", "matcher.fetch=line_buffer"),
+            self.refused_at(self.store, "--out", self.out, "--only", "matcher.window=3", "--only",
+                            "matcher.fetch=line_buffer"),
             ["--only matcher.window=3 matcher.fetch=line_buffer: no point with figures has all these values"])
         self.assertEqual(self.refused_at(self.store, "--out", self.out, "--pareto", "pci.clocks:min,matcher.window:min"),
                          ["--pareto = pci.clocks:min,matcher.window:min: column pci.clocks is empty"])
@@ -435,7 +441,8 @@ class Refusals(PlotTest):
         (self.out / ".partial" / "mine").touch()
         self.refused_in_one_line(run("plot", self.store, "--out", self.out), f"--out {self.out}: holds '.partial/mine'")
         self.refused_in_one_line(run("plot", self.store, "--out", self.left), f"--out {self.left}: not a folder")
-        self.refused_in_one_line(run("plot", self.store, "--out", "/proc/none/out"), "--out /proc/none/out: cannot be written to")
+        self.refused_in_one_line(run("plot", self.store, "--out", "/proc/none/out"),
+                                 "--out /proc/none/out: cannot be written to")
 
     def test_of_figures_that_do_not_apply(self):
         process = self.script("plot_disparities.py", self.store, "--out", self.out)
