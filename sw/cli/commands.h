@@ -23,5 +23,6 @@ void add_calibrate(CLI::App& program, Action& action);
 void add_allocate(CLI::App& program, Action& action);
 void add_sweep(CLI::App& program, Action& action);
 void add_merge(CLI::App& program, Action& action);
+void add_plot(CLI::App& program, Action& action);
 
 }  // namespace stereotlm::cli

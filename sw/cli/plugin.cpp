@@ -2,15 +2,14 @@
 
 #include <dlfcn.h>
 
-#include <filesystem>
 #include <stdexcept>
+
+#include "sw/cli/installed_path.h"
 
 namespace stereotlm::cli {
 
 const void* plugin_symbol(const std::string& library_name, const char* symbol, const std::string& what) {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-  const std::string path =
-      (program.parent_path() / STEREOTLM_PLUGIN_FOLDER / library_name).lexically_normal();
+  const std::string path = installed_path(STEREOTLM_PLUGIN_FOLDER) / library_name;
   void* const library = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const found = library == nullptr ? nullptr : dlsym(library, symbol);
   if (found == nullptr) {

@@ -53,8 +53,8 @@ def read_png(path, bits=8):
     """(width, height, channels, rows of bytes) of a PNG, not interlaced."""
     chunks = list(png_chunks(pathlib.Path(path).read_bytes()))
     width, height, depth, kind, _, _, interlaced = struct.unpack(">IIBBBBB", chunks[0][1])
-    assert depth == bits and interlaced == 0 and kind in (0, 2)
-    channels = 3 if kind == 2 else 1
+    assert depth == bits and interlaced == 0 and kind in (0, 2, 6)
+    channels = {0: 1, 2: 3, 6: 4}[kind]
     raw = zlib.decompress(b"".join(data for name, data in chunks if name == b"IDAT"))
     bytes_per_pixel = channels * bits // 8
     stride = width * bytes_per_pixel

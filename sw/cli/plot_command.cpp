@@ -1,0 +1,74 @@
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sw/cli/add_command.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/problems.h"
+#include "sw/cli/python_script.h"
+#include "sw/cli/typed_option.h"
+
+namespace stereotlm::cli {
+namespace {
+
+constexpr const char* kFooter =
+    "Each figure that applies to the database is drawn, as NAME.png and NAME.svg, with its data in "
+    "NAME.csv:\n"
+    "  window       frames per second against matcher.window\n"
+    "  disparities  frames per second, and area, against matcher.disparities\n"
+    "  banks        frames per second against the banks that the allocation uses\n"
+    "  states       what each port does in the cycles of a frame\n"
+    "  stalls       stall cycles of each port by whom they are blamed on\n"
+    "  use          how busy each bank is\n"
+    "  pareto       two columns of the database, and the points than which none is better in both;\n"
+    "               beside the columns there is banks_used\n"
+    "Points that differ in more than the x axis are a line each. DIR must be empty or hold only such files,\n"
+    "which are replaced. The scripts that draw, one for each figure, lie in share/stereotlm/plots where the\n"
+    "program is installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
+
+// What they mean, and what is wrong with them, is the script's to say.
+struct PlotOptions {
+  Typed database;
+  Typed out;
+  TypedList only;
+  Typed pareto;
+
+  void add_to(CLI::App& command) {
+    database.add_to(command, "DB", " ", "A database of sweep");
+    out.add_to(command, "--out", "DIR", "The folder to write, created if missing");
+    only.add_to(command, "--only", "KEY=VALUE", "Only points with that value; once for each key");
+    only.takes_one_at_a_time();
+    pareto.add_to(command, "--pareto", "X:SENSE,Y:SENSE",
+                  "Two columns, each with min or max: what is better; default "
+                  "area.slices:min,frames_per_second.core:max");
+  }
+
+  // A value that looks like an option stays a value.
+  std::vector<std::string> arguments() const {
+    std::vector<std::string> words;
+    if (out.is_given()) words.push_back("--out=" + out.text);
+    for (const std::string& each : only.text) words.push_back("--only=" + each);
+    if (pareto.is_given()) words.push_back("--pareto=" + pareto.text);
+    if (database.is_given()) words.insert(words.end(), {"--", database.text});
+    return words;
+  }
+};
+
+int plot(const PlotOptions& options) {
+  try {
+    become_script("plot_all.py", options.arguments());
+  } catch (const std::runtime_error& error) {
+    refuse(error.what());
+  }
+}
+
+}  // namespace
+
+void add_plot(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<PlotOptions>();
+  const auto parsed = [options, &action] { action = [options] { return plot(*options); }; };
+  options->add_to(add_command(program, "plot", "Draw the figures of a sweep", parsed, kFooter));
+}
+
+}  // namespace stereotlm::cli

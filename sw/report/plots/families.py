@@ -1,0 +1,186 @@
+"""Which points make a line, and how the lines of a figure are told apart: by color, marker and dashes."""
+
+import itertools
+
+from points import natural, text_of
+
+MOST_LINES = 28
+MOST_SINGLE = 6  # so many lines have a color each; more are told apart key by key
+MOST_MARKERS = 4
+NOTHING_TO_SEE = 0.01  # of the value: less is not seen in a figure
+
+# Okabe and Ito's, which the color-blind can tell apart, without the yellow that white paper swallows.
+COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+GRAY = "#808080"
+MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
+DASHES = ["-", (0, (4, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5))]
+MOST_TEXT = 48
+
+
+class Look:
+    def __init__(self, color=COLORS[0], marker=MARKERS[0], dashes=DASHES[0]):
+        self.color, self.marker, self.dashes = color, marker, dashes
+
+
+class Family:
+    """One combination of values of the keys that vary: its points, by their places in Points."""
+
+    def __init__(self, values, places):
+        self.values, self.places, self.look = values, places, Look()
+
+
+class Families:
+    """The points of a figure over column `x`, one family for each combination of the other keys that vary.
+
+    keys: that vary; all: the families; told: the keys that the looks tell apart; legend: groups of (text, Look);
+    as_points: there are more combinations of these than lines can be told apart, and all look the same;
+    note: about what is not told apart.
+    """
+
+    def __init__(self, points, places, x, x_keys, columns):
+        """x_keys: the keys that the x axis stands for; columns: those that are drawn."""
+        values = {key: points.column(key) for key in points.varied if key not in x_keys}
+        self.keys = [key for key, column in values.items() if len({column[place] for place in places}) > 1]
+        found = {}
+        for place in places:
+            found.setdefault(tuple(values[key][place] for key in self.keys), []).append(place)
+        self.all = [Family(each, found[each]) for each in sorted(found, key=order)]
+        self._drop_what_cannot_be_seen(points, points.column(x), columns)
+        combinations = sorted({self._told(family) for family in self.all}, key=order)
+        looks, self.legend = self._looks(combinations)
+        self.as_points = looks is None
+        if self.as_points:
+            self.note = (f"Points without lines: {len(combinations)} combinations of {', '.join(self.told)} are more "
+                         "than can be told apart; --only KEY=VALUE draws fewer.")
+        for family in self.all:
+            family.look = looks[self._told(family)] if looks else Look()
+
+    def _told(self, family):
+        return tuple(value for key, value in zip(self.keys, family.values) if key in self.told)
+
+    def _drop_what_cannot_be_seen(self, points, xs, columns):
+        """Finds the keys that change so little that their lines lie on each other."""
+        drawn = [self._drawn(points, family, xs, columns) for family in self.all]
+        self.told = list(self.keys)
+        effect = 0
+        for key in self.keys:
+            self.told.remove(key)
+            change = self._greatest_change(drawn)
+            if change > NOTHING_TO_SEE:
+                self.told = [each for each in self.keys if each in self.told or each == key]
+            else:
+                effect = change
+        dropped = [key for key in self.keys if key not in self.told]
+        self.note = ""
+        if dropped:
+            change = f"by {100 * effect:.2g} % at most" if effect else "not at all"
+            keys = ", ".join(self._with_values(key) for key in dropped)
+            self.note = f"Lines that differ only in {keys} look the same: what is drawn changes {change}."
+
+    def _with_values(self, key):
+        values = self._values(key)
+        return f"{key} ({text_of(values[0])}, {'.., ' * (len(values) > 2)}{text_of(values[-1])})"
+
+    @staticmethod
+    def _drawn(points, family, xs, columns):
+        """The greatest value of each column at each x."""
+        greatest = {}
+        for column in columns:
+            values = points.column(column)
+            for place in family.places:
+                if values[place] is not None:
+                    at = (column, xs[place])
+                    greatest[at] = max(values[place], greatest.get(at, values[place]))
+        return greatest
+
+    def _greatest_change(self, drawn):
+        """Between families that look the same, as a part of the greater value."""
+        together = {}
+        for family, values in zip(self.all, drawn):
+            together.setdefault(self._told(family), []).append(values)
+        greatest = 0
+        for group in together.values():
+            for at in set().union(*group):
+                values = [each[at] for each in group if at in each]
+                if max(values) != min(values):
+                    greatest = max(greatest, (max(values) - min(values)) / max(map(abs, values)))
+        return greatest
+
+    def _looks(self, combinations):
+        """A look for each combination of the keys that are told apart, and the legend; None if there are too many."""
+        if len(combinations) == 1:
+            return {combinations[0]: Look()}, []
+        if len(combinations) > MOST_LINES:
+            return None, []
+        if len(combinations) <= MOST_SINGLE or len(self.told) == 1:
+            colors = colors_of(combinations)
+            if colors is None:
+                return None, []
+            looks = {each: Look(color, MARKERS[number % len(MARKERS)])
+                     for number, (each, color) in enumerate(zip(combinations, colors))}
+            texts = named(self.told, combinations)
+            return looks, [[(text, looks[each]) for text, each in zip(texts, combinations)]]
+        for key in sorted(self.told, key=lambda each: -len(self._values(each))):
+            looks, legend = self._looks_by(key, combinations)
+            if looks:
+                return looks, legend
+        return None, []
+
+    def _values(self, key):
+        at = self.keys.index(key)
+        return sorted({family.values[at] for family in self.all}, key=natural)
+
+    def _looks_by(self, key, combinations):
+        """One key by color, the others by marker and dashes."""
+        at = self.told.index(key)
+        values = sorted({(each[at],) for each in combinations}, key=order)
+        colors = colors_of(values)
+        others = sorted({without(each, at) for each in combinations}, key=order)
+        if colors is None or len(others) > MOST_MARKERS:
+            return None, []
+        color_of = dict(zip(values, colors))
+        place_of = {each: place for place, each in enumerate(others)}
+        looks = {}
+        for each in combinations:
+            place = place_of[without(each, at)]
+            looks[each] = Look(color_of[(each[at],)], MARKERS[place], DASHES[place])
+        by_color = [(text, Look(color, None)) for text, color in zip(named([key], values), colors)]
+        texts = named(without(self.told, at), others)
+        by_marker = [(text, Look(GRAY, MARKERS[place], DASHES[place])) for place, text in enumerate(texts)]
+        return looks, [by_color, by_marker]
+
+
+def order(values):
+    return [natural(value) for value in values]
+
+
+def without(values, at):
+    return tuple(itertools.chain(values[:at], values[at + 1 :]))
+
+
+def named(keys, combinations):
+    """"key = value, .." of each; long values are shortened as long as that tells them apart."""
+    def texts(shorten):
+        return [", ".join(f"{key} = {shorten(text_of(value))}" for key, value in zip(keys, each))
+                for each in combinations]
+
+    short = texts(shortened)
+    return short if len(set(short)) == len(short) else texts(str)
+
+
+def shortened(text):
+    return text if len(text) <= MOST_TEXT else text[: MOST_TEXT - 2] + ".."
+
+
+def colors_of(combinations):
+    """One for each; shades in order where they are of one number. None if there are too many."""
+    if len(combinations) > 3 and all(len(each) == 1 and isinstance(each[0], (int, float)) for each in combinations):
+        return shades(len(combinations)) if len(combinations) <= 12 else None
+    return COLORS[: len(combinations)] if len(combinations) <= len(COLORS) else None
+
+
+def shades(count):
+    """From dark to light, as viridis has them, without its end that is too light for white paper."""
+    from matplotlib import colormaps, colors
+
+    return [colors.to_hex(colormaps["viridis"](0.9 * number / (count - 1))) for number in range(count)]

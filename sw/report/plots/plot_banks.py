@@ -1,0 +1,21 @@
+#!/usr/bin/python3
+"""Frames per second against the number of banks that the allocation uses.
+
+Every allocation is a dot. A line goes through the best of them for each number of banks; there is one for each
+combination of the keys that vary beside the allocation.
+"""
+
+import command
+import lines
+from points import BANKS_USED, Unusable
+
+
+def draw(points, _):
+    if not points.varies(BANKS_USED):
+        raise Unusable(f"all points use {points.column(BANKS_USED)[0]} banks")
+    allocation = [key for key in points.varied if key.startswith("allocation.")]
+    return lines.draw(points, BANKS_USED, allocation, lines.rate_panels(points), best=True)
+
+
+if __name__ == "__main__":
+    command.main(__doc__, {"banks": draw})

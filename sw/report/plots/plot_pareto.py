@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+"""Any two columns against each other, and the Pareto front: the points than which none is better in both."""
+
+import re
+
+import command
+from drawing import TOO_LARGE, Drawing, Sheet, bound_of, line_handle, pale, scale, title
+from families import COLORS
+from points import Unusable, counted, short_names, text_of
+
+DEFAULT = "area.slices:min,frames_per_second.core:max"
+SENSES = {"min": "less is better", "max": "more is better"}
+MOST_NAMED = 16
+FRONT, OTHER = COLORS[1], "#9AA5AE"
+
+
+def parse(text):
+    """[(column, sense), (column, sense)]; None if it is not two of these."""
+    found = [re.fullmatch(r"(.+):(min|max)", part) for part in text.split(",")]
+    if len(found) != 2 or not all(found) or found[0][1] == found[1][1]:
+        return None
+    return [match.groups() for match in found]
+
+
+def check(points, options):
+    """What is wrong with --pareto."""
+    if options.pareto is None:
+        return []
+    axes = parse(options.pareto)
+    if axes is None:
+        return [f"--pareto = {options.pareto}: must be two columns, each with min or max: {DEFAULT}"]
+    problems = [points.number_problem(column) for column, _ in axes] if points else []
+    return [f"--pareto = {options.pareto}: {problem}" for problem in problems if problem]
+
+
+def front_of(xs, ys, senses):
+    """Places of the points that no other is better than in one and as good as in the other, from the best x on."""
+    signs = [1 if sense == "min" else -1 for sense in senses]
+    order = sorted(range(len(xs)), key=lambda place: (signs[0] * xs[place], signs[1] * ys[place]))
+    front = []
+    for place in order:
+        is_better = not front or signs[1] * ys[place] < signs[1] * ys[front[-1]]
+        if is_better or (xs[place], ys[place]) == (xs[front[-1]], ys[front[-1]]):
+            front.append(place)
+    return front
+
+
+def draw(points, options):
+    axes_of = parse(options.pareto or DEFAULT)
+    (x, x_sense), (y, y_sense) = axes_of
+    if options.pareto is None:
+        for column in (x, y):
+            points.need_variation(column)
+    places = [place for place, pair in enumerate(zip(points.column(x), points.column(y))) if None not in pair]
+    if not places:
+        raise Unusable(f"no point has both {x} and {y}")
+    xs = [points.column(x)[place] for place in places]
+    ys = [points.column(y)[place] for place in places]
+    front = front_of(xs, ys, (x_sense, y_sense))
+    corners = list(dict.fromkeys((xs[place], ys[place]) for place in front))
+    bounds = {axis: points.column(bound_of(column)) for axis, column in (("x", x), ("y", y)) if bound_of(column)}
+
+    sheet = Sheet()
+    handles = [(line_handle(FRONT, "o"), "Pareto front"), (line_handle(OTHER, "o", ""), "other points")]
+    if bounds:
+        handles.append((line_handle(pale(FRONT), "_", "", markersize=12, markeredgewidth=4),
+                        "bound of a point of the front"))
+    fitting = pairs_that_fit(points, x, y, places)
+    too_large = [pair for pair in dict.fromkeys(zip(xs, ys)) if pair not in fitting]
+    if too_large:
+        handles.append((line_handle(TOO_LARGE, "x", "", markersize=4.5), "more area than the FPGA has"))
+    sheet.legend(handles)
+    names = [name(points, [places[at] for at in front if (xs[at], ys[at]) == corner]) for corner in corners]
+    for number, text in enumerate(names[:MOST_NAMED], 1):
+        sheet.list_entry(number, text)
+    if len(names) > MOST_NAMED:
+        sheet.note(f"{len(names) - MOST_NAMED} more of the front are in the table.")
+    sheet.note(points.size_note(places))
+    sheet.note(points.note(len(places)))
+    (axes,) = sheet.rows([3.6])
+    axes.plot(xs, ys, "o", color=OTHER, markersize=4, alpha=0.7, markeredgewidth=0, zorder=2)
+    axes.plot([pair[0] for pair in too_large], [pair[1] for pair in too_large], "x", color=TOO_LARGE, markersize=4.5,
+              zorder=3.5)
+    draw_front(axes, corners, xs, ys, axes_of)
+    for axis, column in bounds.items():
+        for at in front:
+            limit = column[places[at]]
+            where = (limit, ys[at]) if axis == "x" else (xs[at], limit)
+            axes.plot(*where, "|" if axis == "x" else "_", color=pale(FRONT), markersize=14,
+                      markeredgewidth=4, zorder=1.5)
+    for which, (column, sense) in zip("xy", axes_of):
+        limits = [bounds[which][places[at]] for at in front] if which in bounds else []
+        scale(axes, which, title(column), [*(points.column(column)[place] for place in places), *limits], SENSES[sense])
+
+    of_front = {place: number for number, place in enumerate(front)}
+    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *filter(None, (bound_of(x), bound_of(y)))]))
+    order = sorted(range(len(places)), key=lambda at: (of_front.get(at, len(front)), points.hashes[places[at]]))
+    rows = [[*(points.column(each)[places[at]] for each in columns), int(at in of_front)] for at in order]
+    said = f"{counted(len(places), 'point')}, {len(front)} of them on the front"
+    return Drawing(sheet, [*columns, "front"], rows, said)
+
+
+def pairs_that_fit(points, x, y, places):
+    """Where there is a point that fits into the FPGA."""
+    fitting = set(places) - set(points.too_large())
+    return {(points.column(x)[place], points.column(y)[place]) for place in fitting}
+
+
+def draw_front(axes, corners, xs, ys, axes_of):
+    """The line around what the front dominates, and the number of each point."""
+    worse = [max if sense == "min" else min for _, sense in axes_of]
+    line = [(corners[0][0], worse[1](ys)), corners[0]]
+    for before, after in zip(corners, corners[1:]):
+        line += [(worse[0](before[0], after[0]), worse[1](before[1], after[1])), after]
+    line.append((worse[0](xs), corners[-1][1]))
+    axes.plot(*zip(*line), "-", color=FRONT, linewidth=1.2, zorder=2.5)
+    axes.plot(*zip(*corners), "o", color=FRONT, markeredgecolor="white", markeredgewidth=0.6, zorder=3)
+    # Where there are no points.
+    side, align = (-1, "right") if axes_of[0][1] == "min" else (1, "left")
+    rise, seat = (1, "bottom") if axes_of[1][1] == "max" else (-1, "top")
+    for number, corner in enumerate(corners[:MOST_NAMED], 1):
+        axes.annotate(str(number), corner, (5 * side, 5 * rise), textcoords="offset points", fontsize=8, ha=align,
+                      va=seat, zorder=4)
+
+
+def name(points, places):
+    """The values of the keys that vary, of the points at one place."""
+    short = short_names(points.varied)
+    same = [key for key in points.varied if len({points.column(key)[place] for place in places}) == 1]
+    text = ", ".join(f"{short[key]}={text_of(points.column(key)[places[0]])}" for key in same)
+    if len(places) == 1:
+        return text
+    others = ", ".join(short[key] for key in points.varied if key not in same)
+    return f"{text}{', ' * bool(text)}{len(places)} points with other {others}"
+
+
+if __name__ == "__main__":
+    command.main(__doc__, {"pareto": draw}, check)

@@ -1,0 +1,16 @@
+#!/usr/bin/python3
+"""Frames per second against the size of the window, a line for each combination of the other keys that vary."""
+
+import command
+import lines
+
+KEY = "matcher.window"
+
+
+def draw(points, _):
+    points.need_variation(KEY)
+    return lines.draw(points, KEY, [KEY], lines.rate_panels(points))
+
+
+if __name__ == "__main__":
+    command.main(__doc__, {"window": draw})

@@ -1,0 +1,284 @@
+"""Reads the database of stereotlm sweep: `points`, a column for each key and each figure of stats.json, and `blame`.
+
+Anything that cannot be drawn is said with its reason: Unusable.
+"""
+
+import difflib
+import os
+import re
+import sqlite3
+import urllib.parse
+
+APPLICATION_ID = 0x53544C4D
+LAYOUT = 1
+
+# What is neither a key of the board or the run nor a figure.
+ADMINISTRATION = {"hash", "status", "reason", "version", "config"}
+FIGURES = re.compile(
+    r"(board|fidelity|frames|cycles|frame_cycles)$|(area|banks|ports|bound|frames_per_second|latency_ms|accuracy)\."
+    r"|pci\.(clocks$|busy_clocks$|masters\.)|bridge\.(dma_words|local_clocks|local_busy_clocks)$"
+    r"|cameras\.(left|right)\.")
+
+MOST_NAMED = 12  # values in an error
+
+# Of our own: distinct banks that the allocation names.
+BANKS_USED = "banks_used"
+
+PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
+TURNAROUND = "turnaround"
+
+
+class Unusable(Exception):
+    """Lines that say, each, why the command cannot be done; nothing has been done yet."""
+
+    def __init__(self, *lines):
+        super().__init__("; ".join(lines))
+        self.lines = lines
+
+
+def is_key(column):
+    return column not in ADMINISTRATION and not FIGURES.match(column)
+
+
+def natural(value):
+    """A key to sort values by: numbers by size and in front, texts with the numbers in them by size, none last."""
+    if value is None:
+        return (2, [])
+    if isinstance(value, (int, float)):
+        return (0, value)
+    parts = re.split(r"(\d+)", value)
+    return (1, [(int(part), "") if part.isdigit() else (-1, part) for part in parts])
+
+
+def text_of(value):
+    if value is None:
+        return "absent"
+    if isinstance(value, float) and value == int(value):
+        return str(int(value))
+    return str(value)
+
+
+def counted(number, what):
+    return f"{number} {what}" + "s" * (number != 1)
+
+
+def quoted(name):
+    return '"' + name.replace('"', '""') + '"'
+
+
+def banks_of(allocated):
+    """The names in the value of one allocation key: "[bank0, bank1]", "bank6" or "none"."""
+    names = re.findall(r"[^\[\], ]+", allocated or "")
+    return {name for name in names if name != "none"}
+
+
+def nearest(word, words):
+    """The nearest of `words` in quotation of an error: a part of the name is enough."""
+    parts = {}
+    for each in words:
+        for start in range(each.count(".") + 1):
+            parts.setdefault(".".join(each.split(".")[start:]), []).append(each)
+    found = [name for part in difflib.get_close_matches(word, parts, 3, 0.5) for name in parts[part]]
+    return list(dict.fromkeys(found))[:3]
+
+
+class Points:
+    """The points of a database that have figures, in the order of their hashes; all of one state of the database.
+
+    path: as given; total: rows of table points; left_out: {reason in words: rows}; names: of all columns;
+    hashes: of the points here; varied: the keys that differ between them.
+    """
+
+    def __init__(self, path):
+        self.path = path
+        self.name = os.fsencode(os.path.basename(path)).decode(errors="replace")
+        self._database = self._open()
+        try:
+            self.names = [row[0] for row in self._rows("SELECT name FROM pragma_table_info('points') ORDER BY cid")]
+            self.total = self._rows("SELECT count(*) FROM points")[0][0]
+            self.left_out = dict(self._rows("SELECT status, count(*) FROM points WHERE status <> 'ok' GROUP BY status "
+                                            "ORDER BY status DESC"))
+            self._select("status = 'ok'", [])
+        except sqlite3.DatabaseError as error:
+            raise Unusable(f"{path}: {error}") from None
+
+    def _select(self, condition, values):
+        self._condition, self._values, self._columns = condition, values, {}
+        self.hashes = self.column("hash")
+        if not self.hashes:
+            raise Unusable(f"{self.path}: no point to draw: {self.left_out_text() or 'it is empty'}")
+        self.varied = self._varied()
+
+    def _open(self):
+        try:
+            with open(self.path, "rb"):
+                pass
+        except OSError as error:
+            raise Unusable(f"{self.path}: cannot be opened: {error.strerror}") from None
+        try:
+            address = urllib.parse.quote(os.fsencode(os.path.abspath(self.path)))
+            database = sqlite3.connect(f"file:{address}?mode=ro", uri=True, isolation_level=None, timeout=60)
+            database.execute("BEGIN")  # a sweep may be writing
+            application = database.execute("PRAGMA application_id").fetchone()[0]
+            layout = database.execute("PRAGMA user_version").fetchone()[0]
+        except sqlite3.DatabaseError as error:
+            what = "not a database" if "not a database" in str(error) else str(error)
+            raise Unusable(f"{self.path}: {what}") from None
+        if application != APPLICATION_ID:
+            raise Unusable(f"{self.path}: not a database of stereotlm sweep")
+        if layout != LAYOUT:
+            raise Unusable(f"{self.path}: its layout is {layout}, of another version; this version reads {LAYOUT}")
+        return database
+
+    def _rows(self, sql, *values):
+        return self._database.execute(sql, values).fetchall()
+
+    def keep(self, only):
+        """Leaves out points without these values, "KEY=VALUE" each. What is wrong; if anything, all are kept."""
+        problems = []
+        condition, values = self._condition, []
+        for text in only:
+            key, equals, wanted = text.partition("=")
+            keys = [name for name in self.names if is_key(name)]
+            there = self._rows(f"SELECT DISTINCT {quoted(key)} FROM points") if key in keys else []
+            same = [value for (value,) in there if text_of(value) == wanted]
+            if not equals:
+                problems.append(f"--only = {text}: must be KEY=VALUE")
+            elif key not in keys:
+                problems.append(f"--only = {text}: {unknown('key', key, keys)}")
+            elif not same:
+                known = sorted((value for (value,) in there), key=natural)[:MOST_NAMED]
+                values_there = ", ".join(map(text_of, known))
+                problems.append(f"--only = {text}: no point has that value; there are: {values_there}")
+            else:
+                condition += f" AND {quoted(key)} IS ?"
+                values.append(same[0])
+        if only and not problems:
+            before = len(self.hashes)
+            if not self._rows(f"SELECT 1 FROM points WHERE {condition} LIMIT 1", *values):
+                return [f"--only {' '.join(only)}: no point with figures has all these values"]
+            self._select(condition, values)
+            self.left_out["other than --only " + " ".join(only)] = before - len(self.hashes)
+        return problems
+
+    def column(self, name):
+        """The values of a column, or of BANKS_USED, point by point; None where a point has none."""
+        if name not in self._columns:
+            if name == BANKS_USED:
+                allocated = [self.column(key) for key in self.names if key.startswith("allocation.")]
+                self._columns[name] = [len(set().union(*map(banks_of, each))) for each in zip(*allocated)]
+            elif name in self.names:
+                rows = self._rows(f"SELECT {quoted(name)} FROM points WHERE {self._condition} ORDER BY hash",
+                                  *self._values)
+                self._columns[name] = [row[0] for row in rows]
+            else:
+                self._columns[name] = [None] * len(self.hashes)
+        return self._columns[name]
+
+    def blame(self, place):
+        """The stalls of one point: (port, bank, by, cycles) each."""
+        return self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
+                          self.hashes[place])
+
+    def stall_cycles(self):
+        """Of every point, over all ports."""
+        return [sum(each) for each in zip(*(self.column(f"ports.{port}.stall_cycles") for port in PORTS))]
+
+    def too_large(self):
+        """Places of the points that take more of something than the FPGA has."""
+        columns = [self.column(name) for name in self.names if re.fullmatch(r"area\.\w+_percent", name)]
+        return [place for place, values in enumerate(zip(*columns)) if any(value and value > 100 for value in values)]
+
+    def size_note(self, places):
+        count = len(set(places) & set(self.too_large()))
+        return f"{count} of the points take more area than the FPGA has." if count else ""
+
+    def varies(self, name):
+        return len(set(self.column(name))) > 1
+
+    def need_variation(self, name):
+        if not self.varies(name):
+            raise Unusable(f"all points have {name} = {text_of(self.column(name)[0])}")
+
+    def number_problem(self, name):
+        """Why a column cannot be drawn as numbers; empty if it can."""
+        known = [*self.names, BANKS_USED]
+        if name not in known:
+            return unknown("column", name, [each for each in known if each not in ADMINISTRATION])
+        values = [value for value in self.column(name) if value is not None]
+        if not values:
+            return f"column {name} is empty"
+        if any(isinstance(value, str) for value in values):
+            return f"column {name} is no number: {values[0]}"
+        return ""
+
+    def left_out_text(self):
+        return ", ".join(f"{count} {reason}" for reason, count in self.left_out.items() if count)
+
+    def note(self, shown, more=None):
+        """For below a figure: how many points it shows, and why not the others. more: {reason: points} of its own."""
+        reasons = {**self.left_out, **(more or {})}
+        missing = len(self.hashes) - shown - sum((more or {}).values())
+        if missing:
+            reasons["without these figures"] = missing
+        board = self.column("name")[0] if not self.varies("name") else "several boards"
+        source = self.column("run.source")[0] if not self.varies("run.source") else "several"
+        text = f"{board}, source {source}: {shown} of {self.total} points of {self.name}"
+        others = ", ".join(f"{count} {reason}" for reason, count in reasons.items() if count)
+        return f"{text}; not shown: {others}." if others else f"{text}."
+
+    def why_left_out(self):
+        """The commonest reasons of points without figures: (status, reason, points)."""
+        return self._rows("SELECT status, reason, count(*) FROM points WHERE status <> 'ok' GROUP BY status, reason "
+                          "ORDER BY 3 DESC, 1, 2 LIMIT 3")
+
+    def _varied(self):
+        keys = [name for name in self.names if is_key(name)]
+        counts = []
+        for start in range(0, len(keys), 400):  # fewer than SQLite allows in a row
+            asked = ", ".join(f"count(DISTINCT {name}), count({name})"
+                              for name in map(quoted, keys[start : start + 400]))
+            counts += self._rows(f"SELECT {asked} FROM points WHERE {self._condition}", *self._values)[0]
+        points = len(self.hashes)
+        varied = [key for key, distinct, there in zip(keys, counts[::2], counts[1::2])
+                  if distinct > 1 or (distinct == 1 and there < points)]
+        return self._without_frames(self._one_for_all_banks(varied))
+
+    def _without_frames(self, varied):
+        """Frames of a run that follow from the lists of the allocation tell nothing more."""
+        lists = [self.column(key) for key in varied if key.startswith("allocation.")]
+        frames = self.column("run.frames")
+        if "run.frames" in varied and len(set(zip(*lists))) == len(set(zip(*lists, frames))):
+            varied.remove("run.frames")
+        return varied
+
+    def _one_for_all_banks(self, varied):
+        """Keys of the banks that are the same for all banks in each point, such as those of ssram.default, are one."""
+        banks = [name for name in self.names if name.startswith("ssram.banks.")]
+        for ending in sorted({name.rsplit(".", 1)[1] for name in banks}):
+            ours = [name for name in banks if name.endswith("." + ending)]
+            if len(ours) > 1 and set(ours) <= set(varied) and len({tuple(self.column(name)) for name in ours}) == 1:
+                name = f"ssram.banks.*.{ending}"
+                self._columns[name] = self.column(ours[0])
+                at = varied.index(ours[0])
+                varied = [key for key in varied[:at] if key not in ours] + [name] + [
+                    key for key in varied[at:] if key not in ours]
+        return varied
+
+
+def unknown(kind, name, known):
+    near = nearest(name, known)
+    return f"unknown {kind} {name}" + (f"; nearest: {', '.join(near)}" if near else "")
+
+
+def short_names(keys):
+    """{key: the shortest end of its dotted path that no other has}."""
+    names = {}
+    for key in keys:
+        parts = key.split(".")
+        for length in range(1, len(parts) + 1):
+            end = ".".join(parts[-length:])
+            if not any(other != key and ("." + other).endswith("." + end) for other in keys):
+                break
+        names[key] = end
+    return names

@@ -1,0 +1,488 @@
+"""plot: the figures of a sweep, their data, and what is refused."""
+
+import csv
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+
+import program
+from program import HEIGHT, WIDTH, ProgramTest, read_png, run
+
+PYTHON = "/usr/bin/python3"
+SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "sw" / "report" / "plots"
+FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]
+ENDINGS = [".png", ".svg", ".csv"]
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SCRIPTS))
+import points as reader  # noqa: E402: the module under test that needs no matplotlib
+
+SMALL_BOARD = f"""
+board: fpl2003
+run: {{source: preloaded}}
+set: {{image.width: {WIDTH}, image.height: {HEIGHT}, matcher.filter: none}}
+"""
+WINDOWS = [3, 5, 7]
+DISPARITIES = [4, 8]
+PLAN = SMALL_BOARD + f"""
+vary:
+  matcher.window: {WINDOWS}
+  matcher.disparities: {DISPARITIES}
+  matcher.fetch: [column, line_buffer]
+  allocation.right_image: [[bank2, bank3], bank3]
+"""
+FAMILIES = 4  # of window: disparities and fetch; allocation.right_image leaves one possibility
+ALLOCATIONS = SMALL_BOARD + """
+vary:
+  allocation.left_lut: [bank6, bank0, bank4]
+  allocation.right_lut: [bank7, bank2]
+  allocation.disparity: [[bank4, bank5], [bank0, bank0]]
+  ssram.default.kind: [zbt_pipelined, zbt_flow_through]
+"""
+
+
+def make_database(path, header, rows):
+    """One as sweep makes it, with these columns."""
+    connection = sqlite3.connect(path)
+    connection.execute(f"PRAGMA application_id = {0x53544C4D}")
+    connection.execute("PRAGMA user_version = 1")
+    columns = ["hash", "status", "reason", "version", "config", *header]
+    connection.execute(f"CREATE TABLE points({', '.join(map(reader.quoted, columns))})")
+    connection.execute("CREATE TABLE blame(hash, port, bank, by, cycles)")
+    marks = ", ".join("?" * len(columns))
+    for number, row in enumerate(rows):
+        connection.execute(f"INSERT INTO points VALUES({marks})", (f"{number:064}", "ok", "", "0.1.0", "", *row))
+    connection.commit()
+    connection.close()
+
+
+class PlotTest(ProgramTest):
+    def sweep(self, plan, name="points.db"):
+        store = self.folder / name
+        self.succeeds(run("sweep", self.file(name + ".yaml", plan.encode()), "--out", store))
+        return store
+
+    def script(self, name, *arguments):
+        """A figure's own script."""
+        command = [PYTHON, "-B", SCRIPTS / name, *arguments]
+        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300, check=False)
+
+    def table(self, name, folder=None):
+        with open((folder or self.out) / f"{name}.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def database(self, store):
+        """{hash: the row by column} and the blame."""
+        connection = sqlite3.connect(store)
+        connection.row_factory = sqlite3.Row
+        rows = {row["hash"]: dict(row) for row in connection.execute("SELECT * FROM points")}
+        blame = [tuple(row) for row in connection.execute("SELECT hash, port, bank, by, cycles FROM blame")]
+        connection.close()
+        return rows, blame
+
+    def is_from(self, store, table, *more):
+        """Every cell is the database's, but those of the columns `more`."""
+        rows, _ = self.database(store)
+        self.assertGreater(len(table), 0)
+        for row in table:
+            known = rows[row["hash"]]
+            for column in set(row) - set(more):
+                at = "ssram.banks.bank0." + column.rsplit(".", 1)[1] if "*" in column else column
+                self.assertEqual(row[column], "" if known[at] is None else str(known[at]), column)
+
+    def is_a_picture(self, path):
+        width, height, _, rows = read_png(path)
+        self.assertEqual(width, 1440)  # 7.2 inches
+        self.assertTrue(300 <= height <= 3000, height)
+        pixels = [row[at : at + 3] for row in rows[::4] for at in range(0, 4 * width, 4)]
+        white = pixels.count(b"\xff\xff\xff") / len(pixels)
+        self.assertTrue(0.3 < white < 0.99, white)
+        self.assertGreater(len(set(pixels)), 20)
+
+    def texts(self, path):
+        return [text for text in re.findall(r"<text[^>]*>([^<]*)</text>", path.read_text())]
+
+    def curves(self, path, width="1.4"):
+        """The data's lines of that width in a drawing: (x, y) each."""
+        found = re.findall(r'<path d="([^"]*)" clip-path="[^"]*" style="fill: none; [^"]*stroke-width: ([\d.]+)',
+                           path.read_text())
+        return [[tuple(map(float, pair)) for pair in re.findall(r"[ML] (\S+) (\S+)", line)]
+                for line, found_width in found if found_width == width]
+
+
+class Figures(PlotTest):
+    def test_of_a_sweep(self):
+        store = self.sweep(PLAN)
+        said = self.succeeds(run("plot", store, "--out", self.out)).splitlines()
+        self.assertEqual(said[0], f"{store}: 12 of 24 points; left out: 12 impossible")
+        self.assertRegex(said[1], r"^  12 impossible: allocation.right_image = \[bank3\]: must be as long as left_image")
+        self.assertEqual(said[2:], [
+            "window       12 points, 4 lines",
+            "disparities  12 points, 6 lines",
+            "banks        not drawn: all points use 8 banks",
+            "states       12 points, 5 ports",
+            "stalls       not drawn: no port stalls in any point",
+            "use          12 points, 8 banks",
+            "pareto       12 points, " + said[-2].split(", ")[1],
+            f"{self.out}: 15 files: a picture, a drawing and the data of each figure that is drawn",
+        ])
+        drawn = ["window", "disparities", "states", "use", "pareto"]
+        self.assertEqual(sorted(os.listdir(self.out)), sorted(name + ending for name in drawn for ending in ENDINGS))
+        for name in drawn:
+            with self.subTest(name):
+                self.is_a_picture(self.out / f"{name}.png")
+                self.is_from(store, self.table(name), "port", "grants", "passed_cycles", "stall_cycles", "blocked_cycles",
+                             "starved_cycles", "idle_cycles", "front")
+                self.assertEqual(len({row["hash"] for row in self.table(name)}), 12)
+                self.assertIn("fpl2003, source preloaded: 12 of 24 points of points.db; not shown: 12 impossible.",
+                              self.texts(self.out / f"{name}.svg"))
+        self.check_lines()
+        self.check_states(store)
+        self.check_again(store)
+
+    def check_lines(self):
+        """One for each combination of the other keys, through the points of that combination alone."""
+        texts = self.texts(self.out / "window.svg")
+        for text in ("window n, pixels (of n x n)", "bound", "matcher.fetch = column", "matcher.fetch = line_buffer",
+                     *map(str, WINDOWS)):
+            self.assertIn(text, texts)
+        self.assertTrue(any(text.startswith("core, frames/s") for text in texts), texts)
+        for width in ("1.4", "5.5"):  # simulated, bound
+            curves = self.curves(self.out / "window.svg", width)
+            self.assertEqual(len(curves), FAMILIES)
+            for curve in curves:
+                self.assertEqual(len(curve), len(WINDOWS))
+                self.assertEqual(sorted({x for x, _ in curve}), [x for x, _ in curve])
+        texts = self.texts(self.out / "disparities.svg")
+        self.assertIn("disparities D", texts)
+        self.assertTrue(any(text.startswith("area, % of the slices") for text in texts), texts)
+        self.assertEqual(len(self.curves(self.out / "disparities.svg")), 2 * 6)  # in two panels
+
+    def check_states(self, store):
+        rows, _ = self.database(store)
+        for row in self.table("states"):
+            for count in ("grants", "passed_cycles", "stall_cycles", "blocked_cycles", "starved_cycles", "idle_cycles"):
+                self.assertEqual(int(row[count]), rows[row["hash"]][f"ports.{row['port']}.{count}"])
+
+    def check_again(self, store):
+        """The same bytes, also where there are figures already; those that do not apply any more go."""
+        before = self.result()
+        (self.out / "banks.png").write_bytes(b"")
+        self.succeeds(run("plot", store, "--out", self.out))
+        self.assertEqual(self.result(), before)
+
+    def test_of_allocations(self):
+        store = self.sweep(ALLOCATIONS)
+        said = self.succeeds(run("plot", store, "--out", self.out))
+        rows, blame = self.database(store)
+        self.assertIn("banks        24 points, 2 lines\n", said)
+        self.assertIn("window       not drawn: all points have matcher.window = 7\n", said)
+        banks = self.table("banks")
+        self.is_from(store, banks, "banks_used")
+        for row in banks:
+            allocation = [value for key, value in rows[row["hash"]].items() if key.startswith("allocation.")]
+            self.assertEqual(int(row["banks_used"]), len(set(re.findall(r"bank\d", " ".join(allocation)))))
+
+        stalls = self.table("stalls")
+        drawn = {row["hash"] for row in stalls}
+        self.assertEqual(len(drawn), 16)
+        texts = self.texts(self.out / "stalls.svg")
+        self.assertIn("The 16 points with most stall cycles a frame.", texts)
+        self.assertIn("fpl2003, source preloaded: 16 of 24 points of points.db; not shown: 8 with fewer stalls.", texts)
+        self.assertIn("thousand stall cycles of the port a frame", texts)
+        self.assertIn("lost to left_pixel", texts)
+        self.assertIn("disparity=[bank0,\N{NO-BREAK SPACE}bank0],", " ".join(texts))
+        self.assertEqual(sorted((row["hash"], row["port"], row["bank"], row["by"], int(row["cycles"])) for row in stalls),
+                         sorted(row for row in blame if row[0] in drawn))
+        least = min(sum(row[4] for row in blame if row[0] == key) / rows[key]["frames"] for key in drawn)
+        for key in set(rows) - drawn:
+            self.assertLessEqual(sum(row[4] for row in blame if row[0] == key) / rows[key]["frames"], least)
+
+    def test_go_through_the_best_allocation(self):
+        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "fpga.clock_mhz",
+                  "frames_per_second.core", "bound.core"]
+        rows = [("made", "preloaded", lut, image, clock, rate * clock, 13 * clock) for clock in (1, 2)
+                for lut, image, rate in (("bank0", "[bank0, bank0]", 8), ("none", "[bank1]", 12), ("bank2", "[bank1]", 10))]
+        store = self.folder / "best.db"
+        make_database(store, header, rows)
+        self.succeeds(self.script("plot_banks.py", store, "--out", self.out))
+        self.assertEqual(sorted(int(row["banks_used"]) for row in self.table("banks")), [1, 1, 1, 1, 2, 2])
+        slow, fast = self.curves(self.out / "banks.svg")
+        zero = 2 * slow[0][1] - fast[0][1]  # y of no frame at all: from zero, and one board twice as fast
+        for curve in (slow, fast):
+            self.assertEqual(len(curve), 2)
+            self.assertLess(curve[0][0], curve[1][0])
+            self.assertAlmostEqual((zero - curve[0][1]) / (zero - curve[1][1]), 12 / 10, places=4)
+        texts = self.texts(self.out / "banks.svg")
+        for text in ("banks used by the allocation", "best allocation", "every allocation", "bound",
+                     "fpga.clock_mhz = 1"):
+            self.assertIn(text, texts)
+
+    def test_of_the_whole_computer(self):
+        plan = SMALL_BOARD.replace("preloaded", "camera, frames: 3") + "vary: {matcher.window: [3, 5]}\n"
+        store = self.sweep(plan)
+        self.succeeds(self.script("plot_window.py", store, "--out", self.out))
+        self.assertEqual(sorted(os.listdir(self.out)), sorted("window" + ending for ending in ENDINGS))
+        self.is_from(store, self.table("window"))
+        for column in ("frames_per_second.core", "bound.core", "frames_per_second.steady", "frames_per_second.system",
+                       "bound.system"):
+            self.assertIn(column, self.table("window")[0])
+        texts = self.texts(self.out / "window.svg")
+        self.assertIn("whole computer, steady frames/s", texts)
+        self.assertIn("from power-up, tables included", texts)
+        self.assertEqual(len(self.curves(self.out / "window.svg")), 2)
+        self.assertEqual(len(self.curves(self.out / "window.svg", "5.5")), 2)
+
+    def test_with_more_combinations_than_lines(self):
+        header = ["name", "run.source", "matcher.window", "fpga.clock_mhz", "fpga.arbitration", "frames_per_second.core",
+                  "bound.core"]
+        rows = [("made", "preloaded", window, clock, kind, clock / window / (1 + weight), clock / window)
+                for window in (3, 5) for clock in range(20, 40) for weight, kind in enumerate(("$a$", "$c$"))]
+        store = self.folder / "many.db"
+        make_database(store, header, rows)
+        self.assertIn("80 points, without lines", self.succeeds(self.script("plot_window.py", store, "--out", self.out)))
+        self.assertEqual(self.curves(self.out / "window.svg"), [])
+        self.assertIn("Points without lines: 40 combinations of fpga.clock_mhz, fpga.arbitration are more than can be told "
+                      "apart; --only KEY=VALUE draws", self.texts(self.out / "window.svg"))
+        said = self.succeeds(self.script("plot_window.py", store, "--out", self.out, "--only", "fpga.clock_mhz=20"))
+        self.assertIn("4 of 80 points; left out: 76 other than --only fpga.clock_mhz=20", said)
+        self.assertIn("4 points, 2 lines", said)
+        self.assertIn("fpga.arbitration = $a$", self.texts(self.out / "window.svg"))
+
+    def test_tell_by_how_much_keys_that_look_the_same_differ(self):
+        header = ["name", "run.source", "matcher.window", "fpga.lane_fifo_slots", "frames_per_second.core", "bound.core"]
+        rows = [("made", "preloaded", window, slots, rate * 100 / window, rate * 100 / window)
+                for window in (3, 5) for slots, rate in ((8, 0.996), (16, 1), (32, 1))]
+        store = self.folder / "same.db"
+        make_database(store, header, rows)
+        self.succeeds(self.script("plot_window.py", store, "--out", self.out))
+        self.assertEqual(len(self.curves(self.out / "window.svg")), 3)
+        self.assertIn("Lines that differ only in fpga.lane_fifo_slots (8, .., 32) look the same: what is drawn changes by "
+                      "0.4 % at most.", self.texts(self.out / "window.svg"))
+        connection = sqlite3.connect(store)
+        connection.execute('UPDATE points SET "frames_per_second.core" = 18 WHERE "fpga.lane_fifo_slots" = 8 AND '
+                           '"matcher.window" = 5')
+        connection.commit()
+        connection.close()
+        self.succeeds(self.script("plot_window.py", store, "--out", self.out))
+        texts = self.texts(self.out / "window.svg")
+        for slots in (8, 16, 32):
+            self.assertIn(f"fpga.lane_fifo_slots = {slots}", texts)
+
+
+class ParetoFront(PlotTest):
+    COLUMNS = ("area.luts", "latency_ms.capture_to_host.p50")
+    HEADER = ("name", "run.source", "fpga.clock_mhz", *COLUMNS)
+
+    def is_better(self, one, other, senses):
+        """In one at least, and in none worse."""
+        signs = [1 if sense == "min" else -1 for sense in senses]
+        one, other = ([sign * value for sign, value in zip(signs, pair)] for pair in (one, other))
+        return all(a <= b for a, b in zip(one, other)) and one != other
+
+    def test_is_that_of_a_comparison_of_all_with_all(self):
+        generator = random.Random(1)
+        pairs = [(generator.randrange(12), generator.randrange(12) / 4) for _ in range(60)]  # with equal ones
+        store = self.folder / "random.db"
+        make_database(store, self.HEADER,
+                      [("made", "preloaded", number, *pair) for number, pair in enumerate([*pairs, (3, None)])])
+        for senses in (("min", "max"), ("max", "min"), ("min", "min"), ("max", "max")):
+            with self.subTest(senses):
+                asked = ",".join(f"{column}:{sense}" for column, sense in zip(self.COLUMNS, senses))
+                said = self.succeeds(self.script("plot_pareto.py", store, "--out", self.out, "--pareto", asked))
+                expected = [pair for pair in pairs if not any(self.is_better(other, pair, senses) for other in pairs)]
+                table = self.table("pareto")
+                self.assertEqual(len(table), len(pairs))
+                front = [tuple(float(row[column]) for column in self.COLUMNS) for row in table if row["front"] == "1"]
+                self.assertEqual(sorted(front), sorted(expected))
+                self.assertIn(f"60 points, {len(expected)} of them on the front", said)
+        self.assertIn("made, source preloaded: 60 of 61 points of random.db; not shown: 1 without these figures.",
+                      self.texts(self.out / "pareto.svg"))
+        self.is_from(store, table, "front")
+
+    def test_names_its_points_by_what_varies(self):
+        store = self.folder / "named.db"
+        make_database(store, self.HEADER, [("made", "preloaded", 40, 5, 9), ("made", "preloaded", 50, 7, 12),
+                                           ("made", "preloaded", 60, 7, 12), ("made", "preloaded", 70, 8, 11)])
+        self.succeeds(self.script("plot_pareto.py", store, "--out", self.out, "--pareto",
+                                  "area.luts:min,latency_ms.capture_to_host.p50:max"))
+        texts = self.texts(self.out / "pareto.svg")
+        for text in ("1  clock_mhz=40", "2  2 points with other clock_mhz", "area, LUTs (less is better)",
+                     "capture_to_host.p50, ms (more is better)"):
+            self.assertIn(text, texts)
+
+    def test_takes_the_number_of_banks_for_a_column(self):
+        store = self.sweep(ALLOCATIONS)
+        self.succeeds(run("plot", store, "--out", self.out, "--pareto", "banks_used:min,frames_per_second.core:max"))
+        table = self.table("pareto")
+        self.is_from(store, table, "banks_used", "front")
+        best = max(float(row["frames_per_second.core"]) for row in table)
+        self.assertTrue(any(row["front"] == "1" and float(row["frames_per_second.core"]) == best for row in table))
+        self.assertIn("bound of a point of the front", self.texts(self.out / "pareto.svg"))
+
+
+class Columns(PlotTest):
+    def test_are_keys_or_figures(self):
+        said = self.succeeds(run("keys")).splitlines()[1:]
+        keys = [line.split()[0] for line in said if line[0] != " " and not line.startswith("extends ")]
+        self.assertGreater(len(keys), 40)
+        for key in keys:
+            self.assertTrue(reader.is_key(key), key)
+        store = self.sweep(SMALL_BOARD.replace("preloaded", "camera, frames: 2") + "vary: {matcher.window: [3]}\n")
+        (row,) = self.database(store)[0].values()
+        board = self.file("board.yaml", row["config"].encode())
+        self.succeeds(run("run", board, "--timing-only", "--frames", 2, "--out", self.out))
+        for figure in self.paths("", self.stats()):
+            if figure not in ("schema", "bridge.posted_words") and not figure.startswith("blame"):
+                self.assertIn(figure, row)
+                self.assertFalse(reader.is_key(figure), figure)
+        self.assertEqual(self.stats()["frames"], row["frames"])
+
+    def paths(self, path, value):
+        if isinstance(value, dict):
+            return [found for key, each in value.items() if key != "name"
+                    for found in self.paths(f"{path}.{key}" if path else key, each)]
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            if "name" not in value[0]:
+                return []
+            return [found for each in value for found in self.paths(f"{path}.{each['name']}", each)]
+        return [path]
+
+
+class Refusals(PlotTest):
+    def setUp(self):
+        super().setUp()
+        self.store = self.folder / "made.db"
+        header = ["name", "run.source", "matcher.window", "matcher.fetch", "frames_per_second.core", "bound.core",
+                  "pci.clocks"]
+        make_database(self.store, header, [("made", "preloaded", window, kind, 90 / window, 90 / window, None)
+                                           for window, kind in ((3, "column"), (5, "line_buffer"))])
+
+    def refused_at(self, *arguments):
+        lines = self.refused(run("plot", *arguments))
+        self.assertFalse(self.out.exists())
+        return [line.removeprefix("stereotlm: error: ") for line in lines]
+
+    def test_of_everything_at_once(self):
+        self.assertEqual(self.refused_at("--pareto", "a:max", "--only", "b"), [
+            "DB: missing: a database of stereotlm sweep",
+            "--pareto = a:max: must be two columns, each with min or max: area.slices:min,frames_per_second.core:max",
+            "--out: missing: the folder of the figures",
+        ])
+
+    def test_of_options_name_the_nearest(self):
+        self.assertEqual(
+            self.refused_at(self.store, "--out", self.out, "--only", "matcher.widow=3", "--only", "matcher.fetch=row",
+                            "--only", "frames_per_second.core=3", "--pareto", "frames_per_sec.core:max,matcher.fetch:min"),
+            ["--only = matcher.widow=3: unknown key matcher.widow; nearest: matcher.window, matcher.fetch",
+             "--only = matcher.fetch=row: no point has that value; there are: column, line_buffer",
+             "--only = frames_per_second.core=3: unknown key frames_per_second.core",
+             "--pareto = frames_per_sec.core:max,matcher.fetch:min: unknown column frames_per_sec.core; nearest: "
+             "frames_per_second.core",
+             "--pareto = frames_per_sec.core:max,matcher.fetch:min: column matcher.fetch is no number: column"])
+        self.assertEqual(
+            self.refused_at(self.store, "--out", self.out, "--only", "matcher.window=3", "--only",
+                            "matcher.fetch=line_buffer"),
+            ["--only matcher.window=3 matcher.fetch=line_buffer: no point with figures has all these values"])
+        self.assertEqual(self.refused_at(self.store, "--out", self.out, "--pareto", "pci.clocks:min,matcher.window:min"),
+                         ["--pareto = pci.clocks:min,matcher.window:min: column pci.clocks is empty"])
+        for wrong in ("matcher.window", "matcher.window:max", "matcher.window:least,bound.core:max", "",
+                      "matcher.window:max,matcher.window:min", "matcher.window:max,bound.core:max,run.source:min"):
+            (line,) = self.refused_at(self.store, "--out", self.out, "--pareto", wrong)
+            self.assertIn(f"--pareto = {wrong}: must be two columns", line)
+
+    def test_of_databases(self):
+        for path, reason in ((self.folder / "none.db", "cannot be opened: No such file or directory"),
+                             (self.folder, "cannot be opened: Is a directory"), (self.left, "not a database")):
+            self.assertEqual(self.refused_at(path, "--out", self.out), [f"{path}: {reason}"])
+        other = self.folder / "other.db"
+        connection = sqlite3.connect(other)
+        connection.execute("CREATE TABLE points(a)")
+        connection.commit()
+        self.assertEqual(self.refused_at(other, "--out", self.out), [f"{other}: not a database of stereotlm sweep"])
+        connection.execute(f"PRAGMA application_id = {0x53544C4D}")
+        connection.execute("PRAGMA user_version = 2")
+        connection.close()
+        self.assertEqual(self.refused_at(other, "--out", self.out),
+                         [f"{other}: its layout is 2, of another version; this version reads 1"])
+        empty = self.folder / "empty.db"
+        make_database(empty, ["name", "run.source"], [])
+        self.assertEqual(self.refused_at(empty, "--out", self.out), [f"{empty}: no point to draw: it is empty"])
+        make = sqlite3.connect(empty)
+        make.execute("INSERT INTO points VALUES('0', 'failed', 'why', '0.1.0', '', 'a', 'preloaded')")
+        make.commit()
+        make.close()
+        self.assertEqual(self.refused_at(empty, "--out", self.out), [f"{empty}: no point to draw: 1 failed"])
+
+    def test_of_folders_with_files_that_it_does_not_write(self):
+        def file(path):
+            path.write_text("mine")
+
+        def link(path):
+            path.symlink_to(self.left)
+
+        for make, name in ((file, "notes.txt"), (file, "window.pdf"), (file, ".partial"), (pathlib.Path.mkdir, "window.png"),
+                           (pathlib.Path.mkdir, "frames"), (link, "window.png"), (link, ".partial")):
+            out = self.folder / "given"
+            out.mkdir()
+            make(out / name)
+            self.refused_in_one_line(run("plot", self.store, "--out", out),
+                                     f"--out {out}: holds '{name}': must be empty or hold only files that plot writes")
+            self.assertEqual(os.listdir(out), [name])
+            shutil.rmtree(out)
+        (self.out / ".partial").mkdir(parents=True)
+        (self.out / ".partial" / "mine").touch()
+        self.refused_in_one_line(run("plot", self.store, "--out", self.out), f"--out {self.out}: holds '.partial/mine'")
+        self.refused_in_one_line(run("plot", self.store, "--out", self.left), f"--out {self.left}: not a folder")
+        self.refused_in_one_line(run("plot", self.store, "--out", "/proc/none/out"),
+                                 "--out /proc/none/out: cannot be written to")
+
+    def test_of_figures_that_do_not_apply(self):
+        process = self.script("plot_disparities.py", self.store, "--out", self.out)
+        self.refused_in_one_line(process, "plot_disparities.py: error: disparities not drawn: all points have "
+                                          "matcher.disparities = absent")
+        self.assertFalse(self.out.exists())
+        self.refused_in_one_line(self.script("plot_window.py", self.store, "--out", self.out, "--pareto", "a"),
+                                 "plot_window.py: error: unrecognized arguments: --pareto a (see plot_window.py --help)")
+
+    def test_without_matplotlib(self):
+        self.file("matplotlib.py", b"raise ImportError('not there')\n")
+        process = run("plot", self.store, "--out", self.out, env={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.refused_in_one_line(process, "stereotlm: error: needs matplotlib, which ./setup installs: not there")
+
+    def test_without_scripts(self):
+        (self.folder / "bin").mkdir()
+        alone = shutil.copy(program.PROGRAM, self.folder / "bin" / "stereotlm")
+        process = subprocess.run([alone, "plot", str(self.store), "--out", str(self.out)], capture_output=True, text=True,
+                                 timeout=60, check=False)
+        self.refused_in_one_line(process, f"'{self.folder}/share/stereotlm/plots/plot_all.py': not found")
+
+
+class Interrupted(PlotTest):
+    def test_leaves_what_was_there(self):
+        store = self.sweep(ALLOCATIONS)
+        self.out.mkdir()
+        (self.out / "banks.csv").write_text("earlier")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = subprocess.Popen([program.PROGRAM, "plot", str(store), "--out", str(self.out)],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            end = time.monotonic() + 60
+            while not (self.out / ".partial").exists() and time.monotonic() < end:
+                time.sleep(0.005)
+            process.send_signal(number)
+            out, errors = process.communicate(timeout=60)
+            self.assertEqual((process.returncode, out), (130, ""))
+            self.assertEqual(errors, "stereotlm: note: interrupted: nothing was written\n")
+            self.assertEqual(self.result(), {"banks.csv": b"earlier"})
+            self.assertEqual(os.listdir(self.out), ["banks.csv"])
+
+
+if __name__ == "__main__":
+    program.main()
