@@ -22,5 +22,6 @@ void add_calibrate(CLI::App& program, Action& action);
 void add_allocate(CLI::App& program, Action& action);
 void add_sweep(CLI::App& program, Action& action);
 void add_merge(CLI::App& program, Action& action);
+void add_diff(CLI::App& program, Action& action);
 
 }  // namespace stereotlm::cli

@@ -7,7 +7,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr std::array kCommands = {"explain", "paper", "plot", "diff", "report"};
+constexpr std::array kCommands = {"explain", "paper", "plot", "report"};
 
 }  // namespace
 

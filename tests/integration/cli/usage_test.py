@@ -3,8 +3,8 @@
 import program
 from program import PRELOADED, ProgramTest, pgm, run
 
-COMMANDS = ["run", "check", "boards", "keys", "bounds", "calibrate", "sweep", "merge", "allocate"]
-UNBUILT_COMMANDS = ["explain", "paper", "plot", "diff", "report"]
+COMMANDS = ["run", "check", "boards", "keys", "bounds", "calibrate", "sweep", "merge", "allocate", "diff"]
+UNBUILT_COMMANDS = ["explain", "paper", "plot", "report"]
 UNBUILT_RUN_OPTIONS = [["--trace", "vcd"]]
 
 
