@@ -100,6 +100,8 @@ class ResultControl {
   }
   void skip_words(std::uint64_t words) { written_ += words; }
 
+  // Of this frame.
+  std::uint64_t words_written() const { return written_; }
   std::uint64_t words_left() const { return words_per_frame_ - written_; }
   // At one time, over all frames.
   int most_queued() const { return most_queued_; }

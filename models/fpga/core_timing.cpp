@@ -13,10 +13,14 @@ constexpr bool has(memory::PortMask mask, memory::Port port) { return (mask & me
 }  // namespace
 
 CoreTiming::CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration)
-    : control_(config), arbitration_(arbitration), all_valid_(control_.geometry()) {}
+    : control_(config),
+      rows_(control_.geometry()),
+      arbitration_(arbitration),
+      all_valid_(control_.geometry()) {}
 
 void CoreTiming::start_frame(const FrameLatencies& latencies) {
   control_.start_frame(latencies);
+  rows_.start_frame(control_);
   left_ = {};
   right_ = {};
   tracking_ = false;
@@ -131,10 +135,12 @@ std::uint64_t CoreTiming::alike_to(const LaneControl& lane, const Side& side) co
          static_cast<std::uint64_t>(control_.geometry().slots_per_column);
 }
 
-// How often the last columns can come again before something is different.
+// How often the last columns can come again before something is different, or a row of results is whole.
 std::uint64_t CoreTiming::times_alike(std::uint64_t columns) const {
   const MatchControl& match = control_.match();
-  const std::uint64_t times = match.columns_alike() / columns;
+  std::uint64_t times = match.columns_alike() / columns;
+  if (match.word_leaves())
+    times = std::min(times, (rows_.next_words() - control_.result().words_written() - 1) / (columns / 4));
   if (match.draining()) return times;
   const std::uint64_t slots = columns * static_cast<std::uint64_t>(control_.geometry().slots_per_column);
   // The slot behind the last one taken counts too: a port decides by it.

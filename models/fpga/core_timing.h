@@ -5,6 +5,7 @@
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/row_recorder.h"
 #include "models/fpga/slot_pattern.h"
 #include "models/memory/arbitration.h"
 
@@ -24,6 +25,8 @@ struct EntriesRead {
 // that ends. Of a pixel port that is alone on its bank it does not matter which entries are valid: a slot that needs an
 // access takes the cycle of one that passes. Running ahead, all are taken for valid then, and the counts are put right
 // in the end.
+//
+// While rows are recorded the cycles around the end of each are stepped: at most so many more as two periods have.
 class CoreTiming {
  public:
   // `arbitration` outlives it. Throws std::invalid_argument if the configuration has problems.
@@ -38,6 +41,10 @@ class CoreTiming {
   // All cycles of the frame have been run: puts the counts right.
   void end_frame() { look_at_entries(); }
 
+  // To be turned on between two frames.
+  RowRecorder& rows() { return rows_; }
+  const RowRecorder& rows() const { return rows_; }
+
   // One cycle, in which the host requests or not. `move` is called as move(decision, granted) between the grants and
   // what follows from them, and returns EntriesRead.
   template <class Move>
@@ -49,6 +56,7 @@ class CoreTiming {
     const EntriesRead read = move(decision, granted);
     four_columns_ = control_.commit(decision, granted, read.left_valid, read.right_valid);
     control_.count_host(host_requests, (granted & host) != 0);
+    if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     return granted;
   }
   // The same, with the entries that the patterns foretell.
@@ -99,6 +107,7 @@ class CoreTiming {
   std::uint64_t times_alike(std::uint64_t columns) const;
 
   CoreControl control_;
+  RowRecorder rows_;
   memory::Arbitration& arbitration_;
   SlotPattern all_valid_;
   Side left_;

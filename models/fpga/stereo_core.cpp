@@ -372,6 +372,7 @@ bool StereoCore::access_host(std::uint64_t cycle, const sc_core::sc_time& at) {
 void StereoCore::end_frame() {
   state_ = State::kIdle;
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
+  if (timing_.rows().is_on()) row_profiles_.push_back(timing_.rows().profile(first_cycle_));
   register_file_.finish_frame(frame_cycles_.back(), failed_ || access_errors() != errors_before_);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <systemc>
 #include <tlm>
+#include <utility>
 #include <vector>
 
 #include "models/binder.h"
@@ -23,6 +24,7 @@
 #include "models/fpga/result_packer.h"
 #include "models/fpga/result_writer.h"
 #include "models/fpga/row_buffer.h"
+#include "models/fpga/row_profile.h"
 #include "models/fpga/sad_array.h"
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
@@ -90,6 +92,10 @@ class StereoCore : public sc_core::sc_module {
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
   // Cycle 0 of the frame that was started last, of the clock's.
   std::uint64_t first_cycle() const { return first_cycle_; }
+  // From the next frame on: when its rows of results were whole. Those of the frames finished since the last call,
+  // which only the caller keeps from growing with the frames.
+  void record_rows() { timing_.rows().turn_on(); }
+  std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
   // Frames that were started and are done cycle by cycle, at whatever fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
   // What each port does: who asks for which bank, and to whom it lost it most often so far.
@@ -225,6 +231,7 @@ class StereoCore : public sc_core::sc_module {
   std::size_t served_bank_ = 0;
   sc_core::sc_event start_event_{"start_event"};
   std::vector<std::uint64_t> frame_cycles_;
+  std::vector<RowProfile> row_profiles_;  // not yet taken
 };
 
 }  // namespace stereotlm::fpga

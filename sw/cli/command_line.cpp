@@ -105,6 +105,7 @@ Action parse_command_line(int argc, const char* const* argv) {
   add_merge(program, action);
   add_allocate(program, action);
   add_plot(program, action);
+  add_diff(program, action);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   add_unbuilt_commands(program);
   check_first_argument(program, argc, argv);

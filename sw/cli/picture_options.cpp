@@ -13,12 +13,14 @@ const std::vector<std::string>& layout_names() {
   return names;
 }
 
-VideoLayout layout_of(const std::string& name) {
-  const auto& names = layout_names();
-  return static_cast<VideoLayout>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 }  // namespace
+
+std::optional<VideoLayout> video_layout_of(const std::string& name) {
+  const auto& names = layout_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<VideoLayout>(found - names.begin());
+}
 
 void PictureOptions::add_to(CLI::App& command) {
   left_.add_to(command, "--left", "F",
@@ -75,7 +77,7 @@ void PictureOptions::check_video(Problems& problems) {
     problems.add(
         fmt::format("{}: missing: goes with --video, one of {}", option, platform::listed(layout_names())));
   } else if (is_one_of(layout_names(), option, name, problems)) {
-    video = {video_.text, layout_of(name), name};
+    video = {video_.text, *video_layout_of(name), name};
     const std::size_t needed = video->layout == VideoLayout::kTwo ? 2 : 1;
     if (video_.text.size() != needed) {
       problems.add(fmt::format("--video '{}': must name {} with {} {}", fmt::join(video_.text, "' '"),

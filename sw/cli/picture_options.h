@@ -16,6 +16,9 @@ namespace stereotlm::cli {
 
 enum class VideoLayout : std::uint8_t { kTwo, kSideBySide, kTopBottom };
 
+// By its name on the command line; nothing for an unknown one.
+std::optional<VideoLayout> video_layout_of(const std::string& name);
+
 // The options of `run` that say which pictures it works on.
 class PictureOptions {
  public:

@@ -7,7 +7,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr std::array kCommands = {"paper", "diff", "report"};
+constexpr std::array kCommands = {"paper", "report"};
 
 }  // namespace
 

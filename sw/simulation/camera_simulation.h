@@ -44,6 +44,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
+  fpga::StereoCore& core() override { return computer_.board.core; }
   std::uint64_t work_done();
 
   const platform::BoardConfig& board_;

@@ -25,6 +25,7 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
  private:
   const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
   void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
+  fpga::StereoCore& core() override { return system_.board.core; }
 
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;

@@ -44,6 +44,11 @@ class Simulation {
   std::uint64_t cycles() const;
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }
 
+  // From the next frame of the core on: when its rows of results were whole.
+  void record_rows() { core().record_rows(); }
+  // Of the frames that the core has finished since the last call. Results come in the same order, of a computer later.
+  std::vector<fpga::RowProfile> take_rows() { return core().take_rows(); }
+
   // Of the frames that are done, with no other under way that end_early() would finish; one at least for a computer.
   virtual platform::Statistics statistics() const = 0;
   const Result& last() const { return last_; }
@@ -57,6 +62,7 @@ class Simulation {
   // Within a SystemC process, which an exception of the source ends.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
+  virtual fpga::StereoCore& core() = 0;
   // Throws std::runtime_error if nothing has gone on for too long.
   virtual void check_progress() {}
 

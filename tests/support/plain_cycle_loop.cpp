@@ -228,6 +228,7 @@ class ResultQueue {
   }
   void word_enters() { ++entered_; }
   void word_is_written() { ++written_; }
+  std::int64_t written() const { return written_; }
 
  private:
   std::int64_t capacity_;
@@ -263,6 +264,8 @@ class CycleLoop {
     bank_of_port_[index_of(PlainPort::kRightPixel)] = right_image;
     bank_of_port_[index_of(PlainPort::kResult)] = disparity;
 
+    std::vector<PlainRowEnd> rows;
+    PlainRowEnd until_now;
     const Cycle end = start + static_cast<Cycle>(max_frame_cycles);
     for (Cycle now = start; now < end; ++now) {
       std::array<Wish, kPlainPortCount> wishes{};
@@ -281,6 +284,10 @@ class CycleLoop {
       const std::array<bool, kPlainPortCount> granted = arbitrate(wishes, now);
       count_port_states(wishes, granted);
       ++result_.counted_cycles;
+      ++until_now.cycles;
+      for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+        if (wishes[port] == Wish::kAccess && !granted[port]) ++until_now.stalls[port];
+      }
 
       const auto acts = [&](PlainPort port) {
         return wishes[index_of(port)] == Wish::kPass || granted[index_of(port)];
@@ -294,8 +301,14 @@ class CycleLoop {
       if (acts(PlainPort::kRightPixel)) right.pixel_port_handled(now);
       if (acts(PlainPort::kLeftLut)) left.lut_port_took(now);
       if (acts(PlainPort::kRightLut)) right.lut_port_took(now);
-      if (acts(PlainPort::kResult)) queue.word_is_written();
-      if (queue.all_written()) return now;
+      if (acts(PlainPort::kResult)) {
+        queue.word_is_written();
+        if (queue.written() * 4 % input_.width == 0) rows.push_back(until_now);
+      }
+      if (queue.all_written()) {
+        result_.rows.push_back(rows);
+        return now;
+      }
     }
     return std::nullopt;
   }

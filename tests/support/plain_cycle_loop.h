@@ -44,11 +44,18 @@ struct PlainBlame {
   }
 };
 
+// A row of results is whole with the write of its last word.
+struct PlainRowEnd {
+  std::uint64_t cycles = 0;                             // of its frame, that write's included
+  std::array<std::uint64_t, kPlainPortCount> stalls{};  // of these cycles, in the order of PlainPort
+};
+
 // Counters are sums over the frames and cover the counted cycles, 0 .. frame_cycles - 1 -
 // pipeline_latency_cycles of each frame.
 struct PlainCycleResult {
   bool hang = false;                        // a frame did not end in max_frame_cycles; the figures end there
   std::vector<std::uint64_t> frame_cycles;  // of the frames that ended
+  std::vector<std::vector<PlainRowEnd>> rows;  // of the same frames
   std::uint64_t counted_cycles = 0;
   std::array<PlainPortStates, kPlainPortCount> ports;  // in the order of PlainPort
   std::vector<PlainBankStates> banks;                  // in the order of PlainCycleInput::banks

@@ -39,17 +39,19 @@ std::string blame_key(const std::string& port, const std::string& bank, const st
 
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
                            const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
-                           fpga::Fidelity fidelity) {
+                           fpga::Fidelity fidelity, bool with_rows) {
   PairsInTurn source(pairs);
   KeptFrames sink;
   MonitoringBinder binder;
   platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder, fidelity);
+  if (with_rows) system.board.core.record_rows();
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
   // Two of the host, three to five from the ports of the core, one to each bank.
   const std::size_t tables_bound = (tables.left ? 1U : 0U) + (tables.right ? 1U : 0U);
   EXPECT_EQ(binder.monitors().size(), 7 + tables_bound + board.banks.size());
-  return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities)};
+  return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities),
+          system.board.core.take_rows()};
 }
 
 Figures figures(const platform::Statistics& statistics) {

@@ -17,13 +17,14 @@ namespace stereotlm::test {
 struct PreloadedRun {
   platform::Statistics statistics;
   std::vector<kernels::GrayImage> disparity;  // per frame
+  std::vector<fpga::RowProfile> rows;         // per frame, if they were asked for
 };
 
 // Simulates `frames` frames, frame f with pair f mod length, every memory-mapped link under a protocol
 // monitor (a violation fails the test). Once per process.
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
                            const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
-                           fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
+                           fpga::Fidelity fidelity = fpga::Fidelity::kCycle, bool with_rows = false);
 
 // Every counter under a name of its own, "left_lut granted", "bank0 reads", "left_lut blames result in
 // bank0", "frame 0 cycles": of the model and of the plain loop alike.

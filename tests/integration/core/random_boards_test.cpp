@@ -34,12 +34,12 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 PreloadedRun run_board(const RandomBoard& board, const platform::BoardConfig& config,
-                       Fidelity fidelity = Fidelity::kCycle) {
+                       Fidelity fidelity = Fidelity::kCycle, bool with_rows = false) {
   std::vector<host::StereoPair> pairs;
   for (std::size_t pair = 0; pair < board.pictures.size(); ++pair)
     pairs.push_back(stereo_pair(board, static_cast<int>(pair)));
-  return run_preloaded(config, board_tables(board), pairs, static_cast<std::uint64_t>(board.frames),
-                       fidelity);
+  return run_preloaded(config, board_tables(board), pairs, static_cast<std::uint64_t>(board.frames), fidelity,
+                       with_rows);
 }
 
 std::string pixel_differences(const kernels::GrayImage& image, const std::vector<std::uint8_t>& expected) {
@@ -70,12 +70,43 @@ std::string compare_with_references(const RandomBoard& board, Fidelity fidelity)
   return text;
 }
 
-void expect_boards_equal_references(Fidelity fidelity, std::uint64_t boards) {
+// A line for each row, of the ports that the models record.
+template <typename Rows>
+std::string text_of_rows(const std::vector<Rows>& frames) {
+  std::string text;
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+    for (std::size_t row = 0; row < frames[frame].size(); ++row) {
+      const auto& end = frames[frame][row];
+      text += "frame " + std::to_string(frame) + ", row " + std::to_string(row) + ": " +
+              std::to_string(end.cycles) + "; stalls";
+      for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+        text += ' ' + std::to_string(end.stalls[port]);
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+// What differs in figures and rows, with rows recorded.
+std::string compare_rows_with_references(const RandomBoard& board, Fidelity fidelity) {
+  const PlainCycleResult expected = run_plain_cycle_loop(cycle_input(board), board.frames, kMaxFrameCycles);
+  if (expected.hang) return kHang;
+  const PreloadedRun run = run_board(board, board_config(board), fidelity, true);
+  EXPECT_EQ(run.rows.size(), static_cast<std::size_t>(board.frames));
+  EXPECT_EQ(run.rows.front().size(), static_cast<std::size_t>(board.height));
+  EXPECT_EQ(text_of_rows(run.rows), text_of_rows(expected.rows));
+  return differences(figures(run.statistics), figures(expected));
+}
+
+using Comparison = std::string (*)(const RandomBoard& board, Fidelity fidelity);
+
+void expect_boards_equal_references(Fidelity fidelity, std::uint64_t boards,
+                                    Comparison compare = compare_with_references) {
   const std::uint64_t first = from_environment("STEREOTLM_RANDOM_FIRST", 0);
   const std::uint64_t count = from_environment("STEREOTLM_RANDOM_BOARDS", boards);
   std::vector<ChildWork> jobs;
   for (std::uint64_t seed = first; seed < first + count; ++seed)
-    jobs.push_back([seed, fidelity] { return compare_with_references(make_random_board(seed), fidelity); });
+    jobs.push_back([seed, fidelity, compare] { return compare(make_random_board(seed), fidelity); });
   const std::vector<ChildResult> results = run_in_children(jobs, processors());
   std::uint64_t hangs = 0;
   for (std::size_t job = 0; job < results.size(); ++job) {
@@ -99,6 +130,14 @@ TEST(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmeticAtFastFidelity) 
 
 TEST(RandomBoards, EqualThePlainCycleLoopWithoutPixels) {
   expect_boards_equal_references(Fidelity::kTiming, 300);
+}
+
+TEST(RandomBoards, HaveTheRowsOfThePlainCycleLoop) {
+  expect_boards_equal_references(Fidelity::kCycle, 100, compare_rows_with_references);
+}
+
+TEST(RandomBoards, HaveTheRowsOfThePlainCycleLoopAtFastFidelity) {
+  expect_boards_equal_references(Fidelity::kTiming, 500, compare_rows_with_references);
 }
 
 // A file that a child writes and this process reads.

@@ -76,18 +76,21 @@ const RectificationTable* pointer(const std::optional<RectificationTable>& table
 
 struct Outcome {
   std::vector<Result> results;
+  std::vector<fpga::RowProfile> rows;  // if they were asked for
   platform::Statistics statistics;
 };
 
 Outcome simulate(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frames,
-                 Fidelity fidelity) {
+                 Fidelity fidelity, bool with_rows = false) {
   Noise pairs(board);
   test::MonitoringBinder binder;
   CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
+  if (with_rows) simulation.record_rows();
   Outcome outcome;
   while (!simulation.finished()) {
     for (Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
   }
+  outcome.rows = simulation.take_rows();
   outcome.statistics = simulation.statistics();
   return outcome;
 }
@@ -135,14 +138,21 @@ std::string problems_of_random_run(std::uint64_t seed, Fidelity fidelity) {
   return wrong.empty() ? wrong : wrong + platform::to_yaml(computer.board);
 }
 
-// All that a run tells, but for the name of the fidelity.
+// All that a run tells, but for the name of the fidelity; of every second one also its rows.
 std::string report_of_random_run(std::uint64_t seed, Fidelity fidelity) {
   const Computer computer(seed);
-  Outcome outcome = simulate(computer.board, computer.tables, computer.frames, fidelity);
+  Outcome outcome = simulate(computer.board, computer.tables, computer.frames, fidelity, seed % 2 == 1);
   outcome.statistics.fidelity = "any";
   std::string text = report::stats_json(outcome.statistics, std::nullopt);
   for (const Result& result : outcome.results)
     text += "camera frame " + std::to_string(result.number) + " at " + std::to_string(result.time_ps) + '\n';
+  for (const fpga::RowProfile& rows : outcome.rows) {
+    for (const fpga::RowEnd& row : rows) {
+      text += "row whole after " + std::to_string(row.cycles) + ", stalls";
+      for (const std::uint64_t stalls : row.stalls) text += ' ' + std::to_string(stalls);
+      text += '\n';
+    }
+  }
   return text;
 }
 

@@ -67,7 +67,7 @@ class Timing {
  public:
   enum class Way { kStepped, kAhead };
 
-  Timing(const Setting& setting, Way way)
+  Timing(const Setting& setting, Way way, bool records_rows = false)
       : setting_(setting),
         way_(way),
         arbitration_(setting.arbiter, setting.banks),
@@ -76,6 +76,7 @@ class Timing {
         right_(FrameGeometry(setting.core)) {
     if (setting.core.left_table) left_.set_entries(setting.left_entries.data());
     if (setting.core.right_table) right_.set_entries(setting.right_entries.data());
+    if (records_rows) timing_.rows().turn_on();
   }
 
   void start(std::uint64_t cycle) {
@@ -135,6 +136,7 @@ class Timing {
     arbitration_.end_counting(cycle_);
   }
   std::uint64_t first_cycle() const { return first_cycle_; }
+  RowProfile rows() const { return timing_.rows().profile(first_cycle_); }
 
   // All that is counted, and where it is.
   std::string figures() const {
@@ -158,6 +160,11 @@ class Timing {
     }
     text << "consumed " << timing_.control().left().consumed() << ' ' << timing_.control().right().consumed()
          << ", most queued " << timing_.control().result().most_queued() << '\n';
+    for (const RowEnd& row : rows()) {
+      text << "row whole after " << row.cycles << ", stalls";
+      for (const std::uint64_t cycles : row.stalls) text << ' ' << cycles;
+      text << '\n';
+    }
     return text.str();
   }
 
@@ -175,13 +182,13 @@ class Timing {
 // Two of the same setting, one stepped and one run ahead, frame after frame: `frame(random, stepped, ahead)` takes both
 // to the end of each.
 template <typename Frame>
-void expect_equal_in_random_settings(std::uint64_t settings, const Frame& frame) {
+void expect_equal_in_random_settings(std::uint64_t settings, const Frame& frame, bool record_rows = false) {
   for (std::uint64_t seed = 0; seed < settings; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const Setting setting = random_setting(random);
-    Timing stepped(setting, Timing::Way::kStepped);
-    Timing ahead(setting, Timing::Way::kAhead);
+    Timing stepped(setting, Timing::Way::kStepped, record_rows);
+    Timing ahead(setting, Timing::Way::kAhead, record_rows);
     std::uint64_t cycle = static_cast<std::uint64_t>(random.between(0, 100));
     for (int number = 0; number < setting.frames; ++number) {
       stepped.start(cycle);
@@ -231,23 +238,81 @@ TEST(CoreTiming, IsStoppedInTheMiddleWithTheCountsOfTheSteps) {
   }
 }
 
-TEST(CoreTiming, IsSteppedForTheHostInBetween) {
-  expect_equal_in_random_settings(300, [](auto& random, const Setting& setting, Timing& stepped,
-                                          Timing& ahead) {
-    for (int bursts = random.between(0, 6); bursts > 0; --bursts) {
-      Burst burst;
-      burst.cycle = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 500, 5000));
-      burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));
-      burst.write = random.chance(50);
-      burst.words = random.mostly_small(1, 8, 100);
-      stepped.step_to(burst.cycle);
-      ahead.run_to(burst.cycle);
-      stepped.serve(burst);
-      ahead.serve(burst);
+// Both to the end of a frame, with bursts of the host in between.
+void run_beside_host(test::SplitMix64& random, const Setting& setting, Timing& stepped, Timing& ahead) {
+  for (int bursts = random.between(0, 6); bursts > 0; --bursts) {
+    Burst burst;
+    burst.cycle = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 500, 5000));
+    burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));
+    burst.write = random.chance(50);
+    burst.words = random.mostly_small(1, 8, 100);
+    stepped.step_to(burst.cycle);
+    ahead.run_to(burst.cycle);
+    stepped.serve(burst);
+    ahead.serve(burst);
+  }
+  stepped.step_to(kNever);
+  ahead.run_to(kNever);
+}
+
+TEST(CoreTiming, IsSteppedForTheHostInBetween) { expect_equal_in_random_settings(300, run_beside_host); }
+
+TEST(CoreTiming, RecordsTheRowsOfItsSteps) { expect_equal_in_random_settings(400, run_beside_host, true); }
+
+// Row y is whole with the write behind column (y + 1) * W + C - 1, n cycles each from cycle 4 on.
+TEST(CoreTiming, RecordsRowsWhereThePapersBoardHasThem) {
+  Setting setting;
+  setting.core.filter.reset();
+  setting.banks.resize(6);
+  for (std::size_t port = 0; port < memory::kPortCount; ++port) setting.bank_of[port] = port;
+  setting.left_entries = setting.right_entries = kernels::identity_table(640, 480).entries;
+  Timing timing(setting, Timing::Way::kAhead, true);
+  for (const std::uint64_t first_cycle : {100U, 10'000'000U}) {
+    timing.start(first_cycle);
+    timing.run_to(kNever);
+    const RowProfile rows = timing.rows();
+    ASSERT_EQ(rows.size(), 480U);
+    for (std::uint64_t row = 0; row < 480; ++row) {
+      EXPECT_EQ(rows[row], (RowEnd{4 + 7 * (640 * (row + 1) + 79 + 3) + 1, {}})) << row;
     }
-    stepped.step_to(kNever);
-    ahead.run_to(kNever);
-  });
+    EXPECT_EQ(rows.back().cycles + 16, 2'150'995U);  // contract section 2
+    EXPECT_EQ(timing.cycle(), first_cycle + rows.back().cycles);
+    timing.finish();
+  }
+}
+
+// The left table beside the left image (contract section 2): half of the columns' reads come too late.
+TEST(CoreTiming, RecordsInWhichRowsAPortIsStalled) {
+  Setting setting;
+  setting.core.filter.reset();
+  setting.banks.resize(6);
+  for (std::size_t port = 0; port < memory::kPortCount; ++port) setting.bank_of[port] = port;
+  setting.bank_of[memory::index_of(Port::kLeftLut)] = setting.bank_of[memory::index_of(Port::kLeftPixel)];
+  setting.left_entries = setting.right_entries = kernels::identity_table(640, 480).entries;
+  Timing timing(setting, Timing::Way::kAhead, true);
+  timing.start(0);
+  timing.run_to(kNever);
+  const RowProfile rows = timing.rows();
+  ASSERT_EQ(rows.size(), 480U);
+  EXPECT_EQ(rows.back().cycles + 16, 4'288'597U);
+  EXPECT_EQ(rows.back().stalls, (std::array<std::uint64_t, kCorePortCount>{2'137'602, 0, 0, 0, 0}));
+  for (std::size_t row = 10; row < 400; ++row) {
+    EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
+    EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
+  }
+}
+
+TEST(CoreTiming, RecordsNoRowsUnasked) {
+  Setting setting;
+  setting.core.width = 16;
+  setting.core.height = 5;
+  setting.banks.resize(6);
+  setting.left_entries = setting.right_entries = kernels::identity_table(16, 5).entries;
+  Timing timing(setting, Timing::Way::kAhead);
+  timing.start(0);
+  timing.run_to(kNever);
+  EXPECT_TRUE(timing.done());
+  EXPECT_TRUE(timing.rows().empty());
 }
 
 TEST(CoreTiming, NeverNamesALastWriteLaterThanItIs) {

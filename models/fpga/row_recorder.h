@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "models/fpga/core_control.h"
+#include "models/fpga/row_profile.h"
+
+namespace stereotlm::fpga {
+
+// Notes when the rows of results of a frame are whole, once it is turned on. Whoever steps the core asks after each
+// cycle whether as many words are written as next_words() says; that is all it costs.
+class RowRecorder {
+ public:
+  explicit RowRecorder(const FrameGeometry& geometry)
+      : row_words_(geometry.columns_per_strip() / 4), rows_(static_cast<std::size_t>(geometry.height)) {}
+
+  void turn_on() { is_on_ = true; }  // from the next frame on
+  bool is_on() const { return is_on_; }
+
+  void start_frame(const CoreControl& control);
+  // Words of the frame with which the next row is whole; while it is off, more than there are.
+  std::uint64_t next_words() const { return next_words_; }
+  // They have been written in cycle `cycle`, in which `control` was stepped.
+  void note(std::uint64_t cycle, const CoreControl& control);
+
+  // Of the frame that was started last, whose cycle 0 was `first_cycle`: the rows that are whole.
+  RowProfile profile(std::uint64_t first_cycle) const;
+
+ private:
+  static constexpr std::uint64_t kNever = UINT64_MAX;
+  using Stalls = std::array<std::uint64_t, kCorePortCount>;
+  static Stalls stalls_of(const CoreControl& control);
+
+  std::uint64_t row_words_;
+  bool is_on_ = false;
+  std::uint64_t next_words_ = kNever;
+  Stalls stalls_before_{};  // the frame
+  std::size_t rows_whole_ = 0;
+  RowProfile rows_;  // their cycles are those of the clock
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "sw/cli/add_command.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/diff_text.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/frame_alignment.h"
+#include "sw/cli/interrupt.h"
+#include "sw/cli/recorded_run.h"
+#include "sw/cli/streams.h"
+#include "sw/cli/typed_option.h"
+#include "sw/report/rows_csv.h"
+
+namespace stereotlm::cli {
+namespace {
+
+constexpr const char* kFooter =
+    "Both are run again from their config.yaml and run.json, after a check of every input by its\n"
+    "SHA-256, and must give the figures of their stats.json. What is not the same is printed;\n"
+    "differences are B - A. A row of results is whole with the write of its last word. Its cycles are\n"
+    "those since the row above was whole, those of the top row since the frame began; in the table of\n"
+    "rows they are sums over the frames.";
+
+struct DiffOptions {
+  Typed a;
+  Typed b;
+  Typed csv_option;
+
+  void add_to(CLI::App& command) {
+    a.add_to(command, "A", " ", "A folder that run --out has written");
+    b.add_to(command, "B", " ", "Another one");
+    csv_option.add_to(command, "--csv", "F.csv",
+                      "Write the cycles and stalls of every frame and row of both");
+  }
+
+  // As check_usage() leaves it.
+  std::optional<std::string> csv;
+
+  void check_usage() {
+    Problems problems;
+    for (const auto& [name, run] : {std::pair("A", &a), std::pair("B", &b)}) {
+      if (run->text.empty())
+        problems.add(fmt::format("{}: missing: a folder that run --out has written", name));
+    }
+    if (csv_option.is_given()) csv = csv_option.text;
+    if (csv && std::filesystem::path(*csv).extension() != ".csv")
+      problems.add(fmt::format("--csv '{}': must end in .csv", *csv));
+    problems.check();
+  }
+};
+
+int diff(const DiffOptions& options) {
+  Problems problems;
+  const auto a = load_recorded_run(options.a.text, problems);
+  const auto b = load_recorded_run(options.b.text, problems);
+  problems.check();
+  for (const RecordedRun& run : {std::cref(*a), std::cref(*b)}) open_again(run, problems);
+  const DiffLimits limits(*a, *b);
+  std::unique_ptr<report::RowsCsv> csv;
+  if (options.csv) {
+    if (!limits.rows.empty()) problems.add(fmt::format("--csv: rows cannot be compared: {}", limits.rows));
+    try {
+      csv = std::make_unique<report::RowsCsv>(*options.csv);
+    } catch (const std::runtime_error& error) {
+      problems.add(fmt::format("--csv {}", error.what()));
+    }
+  }
+  problems.check();
+  catch_interrupts();
+  FrameAlignment aligned(*a, *b, limits, csv.get());
+  if (!aligned.run()) {
+    say("note", "interrupted: nothing is compared");
+    return kInterrupted;
+  }
+  if (csv) csv->commit();
+  print(diff_text(*a, *b, aligned, limits));
+  return kDone;
+}
+
+}  // namespace
+
+void add_diff(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<DiffOptions>();
+  const auto parsed = [options, &action] {
+    options->check_usage();
+    action = [options] { return diff(*options); };
+  };
+  options->add_to(
+      add_command(program, "diff", "Compare two runs, frame by frame and row by row", parsed, kFooter));
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "platform/board_config.h"
+#include "sw/cli/problems.h"
+#include "sw/cli/run_input.h"
+#include "sw/report/run_json.h"
+
+namespace stereotlm::cli {
+
+// What a result folder of `run --out` says: with which board and options the run was made, and its figures.
+struct RecordedRun {
+  std::string folder;  // as it was named
+  platform::BoardConfig board;
+  std::string run_json;
+  report::RunOptions options;  // as run_json says
+  std::string stats_json;
+};
+
+// Reads config.yaml, run.json and stats.json of the folder and checks that every input is there, with its SHA-256.
+// Nothing if it is not so, with every reason reported.
+std::optional<RecordedRun> load_recorded_run(const std::string& folder, Problems& problems);
+
+// What it takes to run it again, with its pictures opened. Reports what is wrong: the result is good for nothing then.
+RunInput open_again(const RecordedRun& run, Problems& problems);
+
+}  // namespace stereotlm::cli

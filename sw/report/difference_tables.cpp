@@ -1,0 +1,207 @@
+#include "sw/report/difference_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <tuple>
+#include <variant>
+
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::report {
+namespace {
+
+using Value = decltype(platform::BoardValue::value);
+
+constexpr std::size_t kLabelColumns = 42;
+constexpr std::size_t kSettingColumns = 26;
+
+std::string text_of(const Value* value) {
+  if (value == nullptr) return "-";
+  if (const auto* integer = std::get_if<std::int64_t>(value)) return fmt::format("{}", *integer);
+  if (const auto* number = std::get_if<double>(value)) return fmt::format("{:.6g}", *number);
+  return std::get<std::string>(*value);
+}
+
+std::string signed_text(std::int64_t value) { return value == 0 ? "0" : fmt::format("{:+}", value); }
+
+// Nothing for what is no number, or has no partner.
+std::string difference_text(const Value* a, const Value* b) {
+  if (a == nullptr || b == nullptr) return "";
+  const auto number = [](const Value& value) {
+    const auto* integer = std::get_if<std::int64_t>(&value);
+    return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(value);
+  };
+  if (std::holds_alternative<std::string>(*a) || std::holds_alternative<std::string>(*b)) return "";
+  if (std::holds_alternative<std::int64_t>(*a) && std::holds_alternative<std::int64_t>(*b))
+    return signed_text(std::get<std::int64_t>(*b) - std::get<std::int64_t>(*a));
+  return fmt::format("{:+.6g}", number(*b) - number(*a));
+}
+
+struct Differing {
+  std::string path;
+  const Value* a;  // null: missing
+  const Value* b;
+};
+
+// In the order of A, those that only B has at the end.
+std::vector<Differing> differing(const Values& a, const Values& b) {
+  const auto find = [](const Values& values, const std::string& path) -> const Value* {
+    const auto found = std::find_if(values.begin(), values.end(),
+                                    [&](const platform::BoardValue& value) { return value.path == path; });
+    return found == values.end() ? nullptr : &found->value;
+  };
+  std::vector<Differing> rows;
+  for (const platform::BoardValue& value : a) {
+    const Value* const other = find(b, value.path);
+    if (other == nullptr || *other != value.value) rows.push_back({value.path, &value.value, other});
+  }
+  for (const platform::BoardValue& value : b) {
+    if (find(a, value.path) == nullptr) rows.push_back({value.path, nullptr, &value.value});
+  }
+  return rows;
+}
+
+std::string line(const std::string& label, const std::string& a, const std::string& b,
+                 const std::string& difference) {
+  std::string text = fmt::format("{:<{}} {:>17} {:>17} {:>17}", label, kLabelColumns, a, b, difference);
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text + '\n';
+}
+
+std::string head_line(const std::string& label) { return line(label, "A", "B", "difference"); }
+
+std::uint64_t magnitude(std::int64_t value) { return static_cast<std::uint64_t>(std::llabs(value)); }
+
+struct FrameLine {
+  std::uint64_t frames = 0;
+  std::uint64_t first = 0;
+  std::uint64_t a = 0;
+  std::uint64_t b = 0;
+
+  std::int64_t difference() const { return static_cast<std::int64_t>(b - a); }
+  std::int64_t in_all() const { return difference() * static_cast<std::int64_t>(frames); }
+};
+
+std::string rows_text(const RowComparison::Range& range) {
+  return range.first_row == range.last_row ? fmt::format("{}", range.first_row)
+                                           : fmt::format("{}..{}", range.first_row, range.last_row);
+}
+
+std::string each_text(const RowComparison::Range& range) {
+  return range.least == range.most ? signed_text(range.least)
+                                   : fmt::format("{}..{}", signed_text(range.least), signed_text(range.most));
+}
+
+}  // namespace
+
+std::string settings_table(const std::string& head, const Values& a, const Values& b) {
+  const std::vector<Differing> rows = differing(a, b);
+  if (rows.empty()) return "";
+  std::string text = fmt::format("{:<{}} {:<{}} {}\n", head, kLabelColumns, "A", kSettingColumns, "B");
+  for (std::size_t i = 0; i < std::min(rows.size(), kMostSettings); ++i) {
+    const Differing& row = rows[i];
+    const std::string of_a = text_of(row.a);
+    const std::string of_b = text_of(row.b);
+    if (std::max(of_a.size(), of_b.size()) <= kSettingColumns) {
+      text += fmt::format("  {:<{}} {:<{}} {}\n", row.path, kLabelColumns - 2, of_a, kSettingColumns, of_b);
+    } else {
+      text += fmt::format("  {}\n    A  {}\n    B  {}\n", row.path, of_a, of_b);
+    }
+  }
+  return rows.size() <= kMostSettings ? text : text + fmt::format("  {} more\n", rows.size() - kMostSettings);
+}
+
+std::string figures_table(const std::string& head, const Values& a, const Values& b) {
+  std::string text;
+  for (const Differing& row : differing(a, b))
+    text += line("  " + row.path, text_of(row.a), text_of(row.b), difference_text(row.a, row.b));
+  return text.empty() ? text : head_line(head) + text;
+}
+
+std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
+                         const std::vector<std::uint64_t>& cycles_b) {
+  std::vector<FrameLine> lines;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::size_t> known;
+  std::int64_t rest = 0;  // of lines that are not shown
+  for (std::size_t frame = 0; frame < std::min(cycles_a.size(), cycles_b.size()); ++frame) {
+    const auto [entry, is_new] = known.emplace(std::pair(cycles_a[frame], cycles_b[frame]), lines.size());
+    if (is_new) lines.push_back({0, frame, cycles_a[frame], cycles_b[frame]});
+    FrameLine& line = lines[entry->second];
+    ++line.frames;
+    rest += line.difference();
+  }
+  const auto is_same = [](const FrameLine& line) { return line.a == line.b; };
+  if (std::all_of(lines.begin(), lines.end(), is_same)) return "";
+  const std::size_t shown = std::min(lines.size(), kMostLines);
+  const auto end = lines.begin() + static_cast<std::ptrdiff_t>(shown);
+  std::stable_sort(lines.begin(), lines.end(), [](const FrameLine& x, const FrameLine& y) {
+    return magnitude(x.in_all()) > magnitude(y.in_all());
+  });
+  std::sort(lines.begin(), end, [](const FrameLine& x, const FrameLine& y) { return x.first < y.first; });
+  std::string text = head_line("cycles of a frame");
+  for (auto frame = lines.begin(); frame != end; ++frame) {
+    const std::string label =
+        frame->frames == 1 ? fmt::format("  frame {}", frame->first)
+                           : fmt::format("  each of {} frames, the first is {}", frame->frames, frame->first);
+    text += line(label, fmt::format("{}", frame->a), fmt::format("{}", frame->b),
+                 signed_text(frame->difference()));
+    rest -= frame->in_all();
+  }
+  if (shown == lines.size()) return text;
+  return text + line(fmt::format("  {} more lines, in all", lines.size() - shown), "", "", signed_text(rest));
+}
+
+std::string rows_table(const RowComparison& rows) {
+  if (!rows.parting()) return "";
+  const RowComparison::Parting& parting = *rows.parting();
+  std::string text = fmt::format("they part in frame {}, row {}: whole after {} cycles in A, {} in B\n",
+                                 parting.frame, parting.row, parting.cycles_a, parting.cycles_b);
+  const std::vector<RowComparison::Range> ranges = rows.ranges(kMostLines);
+  if (ranges.empty()) return text;  // what one frame costs another one gains
+  text += fmt::format("{:>43}stall cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+    text += fmt::format(" {:>11}", memory::kPortNames[port]);
+  text += '\n';
+  for (const RowComparison::Range& range : ranges) {
+    text +=
+        fmt::format("  {:<9} {:>11} {:>15}", rows_text(range), signed_text(range.cycles), each_text(range));
+    for (const std::int64_t stalls : range.stalls) text += fmt::format(" {:>11}", signed_text(stalls));
+    text += '\n';
+  }
+  return text;
+}
+
+std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
+  std::map<std::tuple<std::string, std::string, std::string>, std::pair<std::uint64_t, std::uint64_t>> all;
+  for (const platform::BlameRow& row : a) all[{row.port, row.bank, row.by}].first = row.cycles;
+  for (const platform::BlameRow& row : b) all[{row.port, row.bank, row.by}].second = row.cycles;
+  std::vector<std::pair<std::int64_t, std::string>> lines;
+  for (const auto& [row, cycles] : all) {
+    const auto& [port, bank, by] = row;
+    const auto difference = static_cast<std::int64_t>(cycles.second - cycles.first);
+    if (difference == 0) continue;
+    lines.emplace_back(difference,
+                       line(fmt::format("  {} on {} to {}", port, bank, by), fmt::format("{}", cycles.first),
+                            fmt::format("{}", cycles.second), fmt::format("{:+}", difference)));
+  }
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const auto& x, const auto& y) { return magnitude(x.first) > magnitude(y.first); });
+  std::string text = lines.empty() ? "" : head_line("cycles lost");
+  for (const auto& [difference, written] : lines) text += written;
+  return text;
+}
+
+std::string pixels_line(const PixelComparison& pixels) {
+  const std::string frames = fmt::format("{} frame{}", pixels.frames(), pixels.frames() == 1 ? "" : "s");
+  if (!pixels.first()) return fmt::format("disparities: the same, pixel for pixel, in {}\n", frames);
+  const PixelComparison::First& first = *pixels.first();
+  return fmt::format(
+      "disparities: {} pixel{} differ{}, in {} of {}; the first in frame {} at ({}, {}): {} in A, {} in B\n",
+      pixels.pixels(), pixels.pixels() == 1 ? "" : "s", pixels.pixels() == 1 ? "s" : "",
+      pixels.frames_that_differ(), frames, first.camera_frame, first.column, first.row, first.a, first.b);
+}
+
+}  // namespace stereotlm::report
