@@ -102,13 +102,16 @@ std::string path_problem(const std::string& path) {
   return "";
 }
 
-BoardDraft::BoardDraft(const std::string& board) {
+bool is_board_file(const std::string& board) {
   const std::string ending = ".yaml";
-  const bool is_path = board.find('/') != std::string::npos ||
-                       (board.size() >= ending.size() &&
-                        board.compare(board.size() - ending.size(), ending.size(), ending) == 0);
+  return board.find('/') != std::string::npos ||
+         (board.size() >= ending.size() &&
+          board.compare(board.size() - ending.size(), ending.size(), ending) == 0);
+}
+
+BoardDraft::BoardDraft(const std::string& board) {
   std::string text;
-  if (is_path) {
+  if (is_board_file(board)) {
     board_name_ = board;
     text = read_text_file(board, "board file");
   } else {

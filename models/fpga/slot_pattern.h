@@ -53,8 +53,8 @@ class SlotPattern {
   bool strip_begins_alike(int strip) const;
 
   FrameGeometry geometry_;
-  std::size_t words_;                                // of 64 bits, for a row of the image
-  std::vector<std::uint64_t> valid_;                 // [row][word]
+  std::size_t words_;                 // of 64 bits, for a row of the image
+  std::vector<std::uint64_t> valid_;  // [row][word]
   bool all_valid_ = false;
   std::vector<std::uint64_t> changes_;               // [strip][word]: columns that differ from the one before
   std::vector<std::uint64_t> invalid_before_strip_;  // [strip]: slots

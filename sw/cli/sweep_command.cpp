@@ -1,12 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "platform/board_draft.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
@@ -14,17 +19,22 @@
 #include "sw/cli/progress.h"
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/unbuilt.h"
 #include "sw/cli/version.h"
 #include "sw/explore/plan.h"
+#include "sw/explore/shard_folder.h"
+#include "sw/explore/slurm_sweep.h"
 #include "sw/explore/store.h"
 #include "sw/explore/sweep.h"
+#include "sw/report/whole_file.h"
 #include "sw/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
 namespace {
 
 constexpr unsigned kMostJobs = 1024;
+constexpr std::uint64_t kMostShards = 1000;  // of a job array: merge opens all their files
+constexpr std::uint64_t kDefaultShards = 16;
+constexpr std::chrono::seconds kBetweenCounts{2};
 
 constexpr const char* kFooter =
     "A plan is a YAML file, such as\n"
@@ -42,14 +52,23 @@ constexpr const char* kFooter =
     "the reason if it is not ok, the board in full, and a column for each key and for each figure of\n"
     "stats.json; stalls by port, bank and cause are in table `blame`. For instance\n"
     "  sqlite3 -box DB 'SELECT \"matcher.window\", \"frames_per_second.core\" FROM points'\n"
-    "Points that DB holds already are not run again: after an interruption, give the same command.";
+    "Points that DB holds already are not run again: after an interruption, give the same command.\n\n"
+    "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into DB; "
+    "it\n"
+    "waits, and submits again what is lost. The machines share the file system of DB and of this program.\n"
+    "A task uses the processors that its job has: --sbatch cpus-per-task=8.";
 
 struct SweepCommandOptions {
   Typed plan;
   Typed out;
   Typed jobs;
   Typed shard;
+  Typed board;
+  Typed known;
+  Typed progress;
   Typed launcher;
+  Typed shards_option;
+  TypedList sbatch;
 
   void add_to(CLI::App& command) {
     plan.add_to(command, "PLAN", " ", "The plan's file");
@@ -57,11 +76,24 @@ struct SweepCommandOptions {
     jobs.add_to(command, "--jobs", "N", "Worker processes; default: the processors of this machine");
     shard.add_to(command, "--shard", "I/N",
                  "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge");
-    launcher.add_to(command, "--launcher", "WHERE", "Where it runs: local, the default");
+    board.add_to(command, "--board", "BOARD", "In place of the board that the plan names");
+    known.add_to(command, "--known", "DB2", "A database, only read, whose points are not run either");
+    progress.add_to(command, "--progress", "F", "Keep in this file how many points are done");
+    launcher.add_to(command, "--launcher", "WHERE", "Where it runs: local, the default, or slurm");
+    shards_option.add_to(command, "--shards", "N",
+                         fmt::format("With slurm: the tasks of the job array (default {})", kDefaultShards));
+    sbatch.add_to(
+        command, "--sbatch", "NAME=VALUE",
+        "With slurm: an option of sbatch for all jobs, such as partition=long or time=8:00:00; again "
+        "for further ones");
+    sbatch.takes_one_at_a_time();
   }
 
   // As check_usage() leaves them.
   explore::SweepOptions sweep;
+  bool is_slurm = false;
+  std::uint64_t shards = kDefaultShards;
+  std::vector<std::string> sbatch_options;
 
   void check_usage() {
     Problems problems;
@@ -79,14 +111,60 @@ struct SweepCommandOptions {
       }
     }
     if (shard.is_given()) check_shard(problems);
-    if (launcher.is_given() && is_one_of({"local", "slurm"}, "--launcher", launcher.text, problems) &&
-        launcher.text == "slurm") {
-      problems.add(fmt::format("--launcher slurm: {}; built: local", kNotInThisVersion));
+    sweep.known = known.text;
+    if (launcher.is_given()) is_one_of({"local", "slurm"}, "--launcher", launcher.text, problems);
+    is_slurm = launcher.text == "slurm";
+    check_launcher(problems);
+    for (const auto& [option, name] :
+         {std::pair{&board, "--board"}, {&known, "--known"}, {&progress, "--progress"}}) {
+      if (option->is_given() && option->text.empty()) problems.add(fmt::format("{}: empty", name));
     }
     problems.check();
   }
 
  private:
+  void check_launcher(Problems& problems) {
+    const auto refuse_given = [&problems](bool is_given, const char* name, const char* rule) {
+      if (is_given) problems.add(fmt::format("{}: {}", name, rule));
+    };
+    if (!is_slurm) {
+      refuse_given(shards_option.is_given(), "--shards", "goes with --launcher slurm");
+      refuse_given(sbatch.is_given(), "--sbatch", "goes with --launcher slurm");
+      return;
+    }
+    refuse_given(jobs.is_given(), "--jobs", "not with --launcher slurm: --sbatch cpus-per-task=N");
+    refuse_given(shard.is_given(), "--shard", "not with --launcher slurm, which submits all shards");
+    refuse_given(known.is_given(), "--known", "not with --launcher slurm");
+    refuse_given(progress.is_given(), "--progress", "not with --launcher slurm");
+    if (shards_option.is_given()) {
+      const auto number = number_of<std::uint64_t>(shards_option.text);
+      if (!number || *number < 1 || *number > kMostShards) {
+        problems.add(fmt::format("--shards = {}: must be 1..{}", shards_option.text, kMostShards));
+      } else {
+        shards = *number;
+      }
+    }
+    for (const std::string& option : sbatch.text) {
+      check_sbatch(option, problems);
+      sbatch_options.push_back("--" + option);
+    }
+  }
+
+  // What the launcher gives sbatch itself cannot be given.
+  static void check_sbatch(const std::string& option, Problems& problems) {
+    const std::vector<std::string> own = {"array",  "dependency", "error", "job-name",
+                                          "output", "wait",       "wrap"};
+    const std::string name = option.substr(0, option.find('='));
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
+    if (name.empty() || name[0] == '-' || !std::all_of(name.begin(), name.end(), is_letter)) {
+      problems.add(fmt::format(
+          "--sbatch = {}: must be a long option of sbatch without its dashes, such as partition=long",
+          option));
+    } else if (std::find(own.begin(), own.end(), name) != own.end()) {
+      problems.add(fmt::format("--sbatch = {}: given by the launcher; others may be given", option));
+    }
+  }
+
   void check_shard(Problems& problems) {
     const std::size_t slash = shard.text.find('/');
     const auto index = number_of<std::uint64_t>(shard.text.substr(0, slash));
@@ -102,17 +180,18 @@ struct SweepCommandOptions {
   }
 };
 
-std::string progress_text(const explore::SweepCounts& counts, double seconds) {
+// `before`: points that were done when the seconds began.
+std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
   const auto done = static_cast<double>(counts.done());
-  const double rate = done / seconds;
+  const double rate = (done - static_cast<double>(before)) / seconds;
   return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
                      100 * done / static_cast<double>(counts.total), rate,
                      time_text((static_cast<double>(counts.total) - done) / rate));
 }
 
-explore::Plan load_plan(const std::string& path) {
+explore::Plan load_plan(const SweepCommandOptions& options) {
   try {
-    return explore::Plan::load(path);
+    return explore::Plan::load(options.plan.text, options.board.text);
   } catch (const platform::BoardError& error) {
     Problems problems;
     problems.add(error);
@@ -146,30 +225,117 @@ std::string reasons(explore::Database& store, const std::string& status) {
   return text;
 }
 
-int sweep(const SweepCommandOptions& options) {
-  const explore::Plan plan = load_plan(options.plan.text);
+int report(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
+  std::string text = summary(counts, options);
+  if (std::filesystem::exists(options.sweep.store)) {
+    explore::Database store(options.sweep.store, explore::Database::Access::kRead);
+    text += reasons(store, "failed") + reasons(store, "impossible");
+    text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
+  }
+  print(text);
+  if (counts.done() == counts.total) return kDone;
+  say("note", "interrupted: the same command goes on where this one has ended");
+  return kInterrupted;
+}
+
+// The file of --progress, if there is any.
+class ProgressFile {
+ public:
+  explicit ProgressFile(const std::string& path) : path_(path) {}
+  void show(const explore::SweepCounts& counts) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= next_) write(counts);
+  }
+  void write(const explore::SweepCounts& counts) {
+    if (path_.empty()) return;
+    report::replace_file(path_, explore::counts_text(counts));
+    next_ = std::chrono::steady_clock::now() + kBetweenCounts;
+  }
+
+ private:
+  std::string path_;
+  std::chrono::steady_clock::time_point next_;
+};
+
+int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan) {
+  ProgressFile file(options.progress.text);
   try {
     const explore::Store store(options.sweep.store, options.sweep.version);
   } catch (const explore::DatabaseError& error) {
     refuse(fmt::format("--out {}", error.what()));
+  }
+  try {
+    if (!options.sweep.known.empty()) {
+      const explore::FinishedStore known(options.sweep.known, options.sweep.version);
+    }
+    file.write({});
+  } catch (const explore::DatabaseError& error) {
+    refuse(fmt::format("--known {}", error.what()));
+  } catch (const std::system_error& error) {
+    refuse(fmt::format("--progress {}: {}", options.progress.text, error.code().message()));
   }
   catch_interrupts();
   simulation::PointSimulator simulator;
   ProgressLine progress;
   const auto counts = explore::sweep(
       plan, [&simulator](const explore::Point& point) { return simulator(point); }, options.sweep,
-      [&progress](const explore::SweepCounts& done) {
-        progress.show([&done](double seconds) { return progress_text(done, seconds); });
+      [&progress, &file](const explore::SweepCounts& done) {
+        progress.show([&done](double seconds) { return progress_text(done, 0, seconds); });
+        file.show(done);
         return !interrupted();
       });
   progress.erase();
-  explore::Database store(options.sweep.store, explore::Database::Access::kRead);
-  std::string text = summary(counts, options) + reasons(store, "failed") + reasons(store, "impossible");
-  text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
-  print(text);
-  if (counts.done() == counts.total) return kDone;
-  say("note", "interrupted: the same command goes on where this one has ended");
-  return kInterrupted;
+  file.write(counts);
+  return report(counts, options);
+}
+
+// What tasks on other machines need of the files that the plan is made of.
+explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan) {
+  explore::ShardedSweep sweep;
+  sweep.plan = report::read_whole_file(plan.path());
+  if (platform::is_board_file(plan.board())) sweep.board = report::read_whole_file(plan.board());
+  sweep.version = options.sweep.version;
+  sweep.points = plan.size();
+  sweep.shards = std::min(options.shards, plan.size());
+  return sweep;
+}
+
+std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t before, double seconds) {
+  std::string text = progress_text(progress.counts, before, seconds);
+  text += fmt::format("   {} running", progress.running);
+  if (progress.waiting > 0) text += fmt::format(", {} waiting", progress.waiting);
+  if (!progress.reason.empty()) text += fmt::format(" ({})", progress.reason);
+  return text;
+}
+
+int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan) {
+  ProgressLine progress;
+  explore::SlurmSweep sweep(sharded(options, plan), options.sweep.store, options.sbatch_options,
+                            [&progress](const std::string& note) {
+                              progress.erase();
+                              say("note", note);
+                            });
+  catch_interrupts();
+  try {
+    sweep.begin();
+  } catch (const explore::DatabaseError& error) {
+    refuse(fmt::format("--out {}", error.what()));
+  } catch (const std::exception& error) {
+    refuse(fmt::format("--launcher slurm: {}", error.what()));
+  }
+  std::optional<std::uint64_t> before;
+  const auto counts = sweep.wait([&](const explore::SlurmProgress& now) {
+    if (!before) before = now.counts.done();
+    progress.show([&](double seconds) { return progress_text(now, *before, seconds); });
+    return !interrupted();
+  });
+  progress.erase();
+  return report(counts, options);
+}
+
+int sweep(const SweepCommandOptions& options) {
+  const explore::Plan plan = load_plan(options);
+  return options.is_slurm ? sweep_on_slurm(options, plan) : sweep_here(options, plan);
 }
 
 }  // namespace

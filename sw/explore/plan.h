@@ -22,9 +22,9 @@ struct PlanValue {
 // Points are made one by one, from their numbers: a plan takes as much memory for a million as for ten.
 class Plan : public Points {
  public:
-  // Reads a plan file. Throws platform::BoardError with everything that is wrong, and with the number of
-  // points that the plan would have.
-  static Plan load(const std::string& path);
+  // Reads a plan file; `board`, if it is given, in place of the board that the plan names. Throws
+  // platform::BoardError with everything that is wrong, and with the number of points that the plan would have.
+  static Plan load(const std::string& path, const std::string& board = "");
 
   // Points before conditions.
   std::uint64_t size() const override { return sample_ ? sample_->points : product_; }
@@ -34,6 +34,7 @@ class Plan : public Points {
   // Paths that vary, in the order of the file.
   std::vector<std::string> varied() const;
   const std::string& path() const { return path_; }
+  const std::string& board() const { return board_; }  // a preset, or the path of a board file
 
  private:
   friend class PlanReader;
@@ -48,7 +49,7 @@ class Plan : public Points {
     std::uint64_t seed = 0;
   };
 
-  explicit Plan(const std::string& path) : path_(path) {}
+  Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
   std::vector<PlanValue> values_at(std::uint64_t number) const;
   Point impossible_point(std::uint64_t number, const PointRun& run, const std::vector<PlanValue>& chosen,
                          const std::string& reason) const;
@@ -57,6 +58,7 @@ class Plan : public Points {
   static void apply_to_run(const std::string& path, const platform::YamlNode& value, PointRun& run);
 
   std::string path_;
+  std::string board_;
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
   std::string base_yaml_;

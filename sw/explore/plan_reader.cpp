@@ -66,7 +66,7 @@ std::string text_of(const Decimal& value) {
 // Reads one plan; what is wrong with it is collected.
 class PlanReader {
  public:
-  explicit PlanReader(const std::string& path) : plan_(path) {}
+  PlanReader(const std::string& path, const std::string& board) : plan_(path, board) {}
 
   Plan read() {
     YamlNode tree;
@@ -144,8 +144,9 @@ class PlanReader {
     const YamlNode* const board = find(sections, "board");
     if (board == nullptr) return report(tree.place, "board: missing: a preset, or the path of a board file");
     if (!board->is_scalar()) return report("board", *board, "a preset, or the path of a board file");
+    if (plan_.board_.empty()) plan_.board_ = board->text;
     try {
-      plan_.base_.emplace(board->text);
+      plan_.base_.emplace(plan_.board_);
       plan_.base_->read();
     } catch (const platform::BoardError& error) {
       plan_.base_.reset();
@@ -377,6 +378,6 @@ class PlanReader {
   std::map<std::string, Place> places_;
 };
 
-Plan Plan::load(const std::string& path) { return PlanReader(path).read(); }
+Plan Plan::load(const std::string& path, const std::string& board) { return PlanReader(path, board).read(); }
 
 }  // namespace stereotlm::explore

@@ -46,6 +46,23 @@ void check_layout(Database& database) {
   }
 }
 
+void check_version(Database& database, const std::string& version) {
+  Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
+  other.bind(1, version);
+  if (!other.step()) return;
+  throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
+                                  database.path(), other.text(0), version));
+}
+
+constexpr const char* kFind = "SELECT 1 FROM points WHERE hash = ?";
+
+bool finds(Statement& find, const std::string& hash) {
+  find.bind(1, hash);
+  const bool found = find.step();
+  find.reset();
+  return found;
+}
+
 std::vector<std::string> columns_of(const Database& database) {
   std::vector<std::string> names;
   Statement statement(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
@@ -70,14 +87,9 @@ const std::string kInsertBlame = fmt::format("INSERT INTO blame({}) VALUES(?, ?,
 Store::Store(const std::string& path, const std::string& version)
     : database_(path, Database::Access::kCreate), version_(version) {
   create();
-  Statement other(database_, "SELECT version FROM points WHERE version <> ? LIMIT 1");
-  other.bind(1, version);
-  if (other.step()) {
-    throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
-                                    path, other.text(0), version));
-  }
+  check_version(database_, version);
   read_columns();
-  find_ = std::make_unique<Statement>(database_, "SELECT 1 FROM points WHERE hash = ?");
+  find_ = std::make_unique<Statement>(database_, kFind);
   insert_blame_ = std::make_unique<Statement>(database_, kInsertBlame);
 }
 
@@ -99,12 +111,7 @@ void Store::read_columns() {
   columns_ = {names.begin(), names.end()};
 }
 
-bool Store::has(const std::string& hash) {
-  find_->bind(1, hash);
-  const bool found = find_->step();
-  find_->reset();
-  return found;
-}
+bool Store::has(const std::string& hash) { return finds(*find_, hash); }
 
 bool Store::add(const StoredPoint& point) {
   database_.execute("BEGIN IMMEDIATE");
@@ -157,6 +164,15 @@ Statement& Store::insertion(const StoredPoint& point) {
   statement->clear_bindings();
   return *statement;
 }
+
+FinishedStore::FinishedStore(const std::string& path, const std::string& version)
+    : database_(path, Database::Access::kRead) {
+  check_layout(database_);
+  check_version(database_, version);
+  find_.emplace(database_, kFind);
+}
+
+bool FinishedStore::has(const std::string& hash) { return finds(*find_, hash); }
 
 std::uint64_t Store::size() {
   return static_cast<std::uint64_t>(database_.number("SELECT count(*) FROM points"));

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -55,6 +56,19 @@ class Store {
   std::unique_ptr<Statement> find_;
   std::unique_ptr<Statement> insert_blame_;
   std::map<std::string, std::unique_ptr<Statement>> insertions_;  // by their columns
+};
+
+// The file of a Store that nobody writes to. Any number of machines may read it at the same time if it has the
+// final form of merge_stores(). Member functions throw DatabaseError. Not to be used across fork().
+class FinishedStore {
+ public:
+  // Throws if it holds points of another version.
+  FinishedStore(const std::string& path, const std::string& version);
+  bool has(const std::string& hash);
+
+ private:
+  Database database_;
+  std::optional<Statement> find_;
 };
 
 // Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -78,12 +79,14 @@ class PointRunner {
       : points_(points),
         evaluate_(evaluate),
         conditions_(points.conditions()),
-        store_(options.store, options.version) {}
+        store_(options.store, options.version) {
+    if (!options.known.empty()) known_.emplace(options.known, options.version);
+  }
 
   PointEnd run(std::uint64_t number) {
     const Point point = points_.point(number);
     if (!conditions_.hold(point.values)) return PointEnd::kExcluded;
-    if (store_.has(point.hash)) return PointEnd::kKnown;
+    if (store_.has(point.hash) || (known_ && known_->has(point.hash))) return PointEnd::kKnown;
     StoredPoint row;
     row.hash = point.hash;
     row.config = point.yaml;
@@ -113,6 +116,7 @@ class PointRunner {
   const Evaluate& evaluate_;
   Conditions conditions_;
   Store store_;
+  std::optional<FinishedStore> known_;
 };
 
 [[noreturn]] void be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,

@@ -88,6 +88,28 @@ class Sweep(SweepTest):
         self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already", said)
         self.assertIn(f"points.db: {POINTS + 4} points", said)
 
+    def test_leaves_out_what_another_database_has(self):
+        self.succeeds(self.sweep())
+        before = self.store.read_bytes()
+        plan = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[7, 9]").encode())
+        more = self.folder / "more.db"
+        self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already",
+                      self.succeeds(self.sweep("--known", self.store, plan=plan, store=more)))
+        self.assertEqual(self.query("SELECT DISTINCT \"matcher.window\" FROM points", more), [(9,)])
+        self.assertEqual(self.store.read_bytes(), before)
+        self.assertEqual(list(self.folder.glob("*.db-*")), [])
+
+    def test_keeps_a_file_with_its_progress(self):
+        progress = self.file("progress", b"of an earlier sweep")
+        self.succeeds(self.sweep("--progress", progress))
+        self.assertEqual(progress.read_text(),
+                         f"total {POINTS}\nexcluded 0\nknown 0\nok {POINTS - IMPOSSIBLE}\nimpossible {IMPOSSIBLE}\nfailed 0\ngiven_up 0\n")
+
+    def test_of_another_board_than_the_plan_names(self):
+        board = self.file("board.yaml", b"extends: fpl2003\nfpga: {clock_mhz: 50}\n")
+        self.succeeds(self.sweep("--board", board))
+        self.assertEqual(self.query("SELECT DISTINCT \"fpga.clock_mhz\" FROM points"), [(50,)])
+
     def test_of_the_whole_computer(self):
         plan = self.file("computer.yaml", (PLAN.replace("preloaded", "camera, frames: 3").replace("[3, 5, 7]", "[3]")
                                            + f"where: allocation.left_image = '[bank0, bank1]'\n").encode())
@@ -113,6 +135,13 @@ class Refusals(SweepTest):
         for shard in ("3/3", "1", "x/2", "-1/2", "1/0"):
             self.refused_in_one_line(self.sweep("--shard", shard), f"--shard = {shard}: must be I/N")
         self.refused_in_one_line(self.sweep("--launcher", "pbs"), "--launcher = pbs: must be local or slurm")
+        self.refused_in_one_line(self.sweep("--known", self.left), f"--known {self.left}: not a database")
+        self.refused_in_one_line(self.sweep("--known", self.folder / "none.db"), "--known ", "No such file or directory")
+        none = self.folder / "none" / "progress"
+        self.refused_in_one_line(self.sweep("--progress", none), f"--progress {none}: No such file or directory")
+        self.refused(self.sweep("--board", "fpl2004"), "fpl2004: not a preset")
+        self.refused(self.sweep("--known", "", "--progress", "", "--board", ""), "--known: empty", "--progress: empty",
+                     "--board: empty")
         self.refused(run("sweep"), "PLAN: missing", "--out: missing")
         self.refused(run("merge"), "OUT: missing", "DB: missing")
 

@@ -49,6 +49,14 @@ std::vector<std::string> refusals(const std::string& text) {
 
 const std::string kBoard = "board: fpl2003\n";
 
+TEST(Plan, MayBeOfAnotherBoardThanItNames) {
+  std::ofstream(plan_path()) << kBoard;
+  const Plan plan = Plan::load(plan_path(), "fpl2003-qvga");
+  EXPECT_EQ(plan.board(), "fpl2003-qvga");
+  EXPECT_EQ(plan.point(0).board, platform::load_board("fpl2003-qvga"));
+  EXPECT_EQ(plan_of(kBoard).board(), "fpl2003");
+}
+
 TEST(Plan, WithoutAnythingIsItsBoard) {
   const Plan plan = plan_of(kBoard);
   ASSERT_EQ(plan.size(), 1U);

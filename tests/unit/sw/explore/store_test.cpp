@@ -102,6 +102,21 @@ TEST_F(StoreTest, IsContinued) {
   EXPECT_TRUE(store.add(point("h2")));
 }
 
+TEST_F(StoreTest, IsOnlyReadOnceItIsFinished) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  merge_stores({file("a.db")}, file("a.db"));
+  const std::string before = test::read_file(file("a.db"));
+  FinishedStore one(file("a.db"), kVersion);
+  FinishedStore two(file("a.db"), kVersion);
+  EXPECT_TRUE(one.has("h1"));
+  EXPECT_TRUE(two.has("h1"));
+  EXPECT_FALSE(one.has("h2"));
+  EXPECT_FALSE(std::filesystem::exists(file("a.db-shm"))) << "what machines would have to share";
+  EXPECT_EQ(test::read_file(file("a.db")), before);
+  EXPECT_EQ(message_of([&] { FinishedStore(file("a.db"), "1.2.4"); }),
+            file("a.db") + ": holds points of version 1.2.3; this is version 1.2.4: give another file");
+}
+
 TEST_F(StoreTest, HoldsPointsOfOneVersion) {
   { Store(file("a.db"), kVersion).add(point("h1")); }
   EXPECT_EQ(message_of([&] { Store(file("a.db"), "1.2.4"); }),

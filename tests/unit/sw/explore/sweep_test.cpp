@@ -149,6 +149,20 @@ std::int64_t points_in(const std::string& path) {
   }
 }
 
+TEST_F(SweepTest, DoesNotRunAPointThatAKnownStoreHas) {
+  SweepOptions first = options("a.db");
+  first.shards = 2;
+  sweep(plan(), evaluate, first, always);
+  SweepOptions second = options("b.db");
+  second.known = file("a.db");
+  const SweepCounts counts = sweep(plan(), evaluate, second, always);
+  EXPECT_GT(counts.known, 0U);
+  EXPECT_EQ(counts.known, static_cast<std::uint64_t>(points_in(file("a.db"))));
+  EXPECT_EQ(counts.known + static_cast<std::uint64_t>(points_in(file("b.db"))), 45U);
+  merge_stores({file("a.db"), file("b.db")}, file("merged.db"));
+  EXPECT_EQ(read_file(file("merged.db")), reference());
+}
+
 TEST_F(SweepTest, LosesNothingButThePointsUnderWayWhenItIsKilled) {
   const std::string expected = reference();
   for (int attempt = 0; attempt < 5; ++attempt) {
