@@ -12,16 +12,12 @@ const BoardConfig& checked(const BoardConfig& config) {
   return config;
 }
 
-memory::SsramBankConfig bank_config(const BoardConfig& board, const BankConfig& bank) {
-  return {static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles, board.fpga.clock_mhz};
-}
-
 fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board, fpga::Fidelity fidelity) {
   fpga::StereoCoreConfig config{core_config(board),
                                 {board.fpga.arbiter, {}},
                                 {board.bridge.local_clock_mhz, buffer_ranges(board)},
                                 fidelity};
-  for (const BankConfig& bank : board.banks) config.memory.banks.push_back(bank_config(board, bank));
+  for (const BankConfig& bank : board.banks) config.memory.banks.push_back(ssram_config(board, bank));
   return config;
 }
 
@@ -32,7 +28,7 @@ Board::Board(const sc_core::sc_module_name& name, const BoardConfig& config, Bin
     : sc_module(name), core("core", stereo_core_config(checked(config), fidelity), binder) {
   banks.init(config.banks.size(), [&config](const char* /*numbered*/, std::size_t bank) {
     return new memory::SsramBank(("ssram_" + config.banks[bank].name).c_str(),
-                                 bank_config(config, config.banks[bank]));
+                                 ssram_config(config, config.banks[bank]));
   });
   for (std::size_t bank = 0; bank < banks.size(); ++bank) {
     binder.bind(core.banks[bank], banks[bank].port, "crossbar_to_" + config.banks[bank].name);

@@ -204,6 +204,10 @@ BufferLayout layout_buffers(const BoardConfig& board) {
   return layout;
 }
 
+memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig& bank) {
+  return {static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles, board.fpga.clock_mhz};
+}
+
 fpga::CoreConfig core_config(const BoardConfig& board) {
   require_sound(board);
   fpga::CoreConfig core;

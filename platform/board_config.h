@@ -135,6 +135,9 @@ BufferLayout layout_buffers(const BoardConfig& board);
 // their lengths.
 std::uint64_t allocation_period_frames(const BoardConfig& board);
 
+// What one of its banks is built with.
+memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig& bank);
+
 // What the FPGA of this board is synthesised for. Throws as layout_buffers() does.
 fpga::CoreConfig core_config(const BoardConfig& board);
 

@@ -121,11 +121,17 @@ BoardCounters counters_of(const Board& board) {
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters) {
+  const bool is_cycle = board.core.fidelity() == fpga::Fidelity::kCycle;
+  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frame_cycles(), counters);
+}
+
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
+                              const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters) {
   Statistics statistics;
   statistics.board = config.name;
-  statistics.fidelity = board.core.fidelity() == fpga::Fidelity::kCycle ? "cycle" : "fast";
+  statistics.fidelity = fidelity;
   statistics.frames = counters.frames;
-  const auto first = board.core.frame_cycles().begin();
+  const auto first = frame_cycles.begin();
   statistics.frame_cycles.assign(first, first + static_cast<std::ptrdiff_t>(counters.frames));
   const std::uint64_t all_cycles =
       std::accumulate(statistics.frame_cycles.begin(), statistics.frame_cycles.end(), std::uint64_t{0});
@@ -144,7 +150,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   Audit audit;
   audit_ports(counters, statistics.cycles, audit);
   audit_banks(config, counters, statistics.cycles, audit);
-  audit_flow(board.core.control().geometry(), counters, audit);
+  audit_flow(fpga::FrameGeometry(core_config(config)), counters, audit);
   if (statistics.frames > 0) {
     statistics.frames_per_second.core = config.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) /
                                         static_cast<double>(all_cycles);

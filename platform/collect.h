@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "models/fpga/lane_control.h"
@@ -42,6 +43,10 @@ BoardCounters counters_of(const Board& board);
 // checked: those that do not hold are listed in `failed`. `counters` are of this board, now or earlier.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters);
+
+// The same of a core that was run without a board: `frame_cycles` of its frames, at this fidelity.
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
+                              const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters);
 
 // Of all frames that the board has finished. To be called between two frames.
 inline Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board) {

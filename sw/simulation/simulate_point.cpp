@@ -8,6 +8,7 @@
 
 #include "models/binder.h"
 #include "models/clock.h"
+#include "platform/core_run.h"
 #include "sw/explore/sweep.h"
 #include "sw/report/sha256.h"
 #include "sw/report/stats_json.h"
@@ -30,24 +31,27 @@ bool is_table_of(const std::optional<kernels::RectificationTable>& table, const 
   return table->width == board.image.width && table->height == board.image.height;
 }
 
-// In a process that does nothing else: what has been built is left to its end. Nothing if it is hopeless.
-std::optional<Json> simulate(const explore::Point& point, const platform::Tables& tables,
-                             const PointSimulator::Hopeless& hopeless) {
-  const platform::BoardConfig& board = *point.board;
-  const RunMode mode = {point.run.camera, fpga::Fidelity::kTiming, point.run.frames};
-  auto* const binder = new Binder;
-  auto* const blank = new BlankPairs(board);
-  Simulation* const simulation = make_simulation(board, tables, *blank, mode, *binder).release();
-  const auto* const computer = dynamic_cast<const CameraSimulation*>(simulation);
-  while (!simulation->finished()) {
-    simulation->advance();
-    if (!hopeless || computer == nullptr || computer->frames_started() == 0) continue;
-    const fpga::StereoCore& core = computer->computer().board.core;
-    if (hopeless({computer->frames_started() - 1, seconds(board, core.first_cycle())})) return std::nullopt;
-  }
-  const platform::Statistics statistics = simulation->statistics();
+Json document_of(const platform::Statistics& statistics) {
   if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
   return report::stats_document(statistics, std::nullopt);
+}
+
+// The whole computer, in a process that does nothing else: what has been built is left to its end. Nothing if it
+// is hopeless.
+std::optional<Json> simulate_computer(const explore::Point& point, const platform::Tables& tables,
+                                      const PointSimulator::Hopeless& hopeless) {
+  const platform::BoardConfig& board = *point.board;
+  auto* const binder = new Binder;
+  auto* const blank = new BlankPairs(board);
+  auto* const simulation =
+      new CameraSimulation(board, tables, *blank, point.run.frames, *binder, fpga::Fidelity::kTiming);
+  while (!simulation->finished()) {
+    simulation->advance();
+    if (!hopeless || simulation->frames_started() == 0) continue;
+    const fpga::StereoCore& core = simulation->computer().board.core;
+    if (hopeless({simulation->frames_started() - 1, seconds(board, core.first_cycle())})) return std::nullopt;
+  }
+  return document_of(simulation->statistics());
 }
 
 }  // namespace
@@ -59,8 +63,11 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, const H
   if (!is_usable && is_calibrated_)
     throw std::runtime_error("the tables of the calibration are of another board");
   if (!is_usable) tables_ = platform::identity_tables(board);
+  if (!point.run.camera) {
+    return explore::figures_of(document_of(platform::run_core(board, tables_, point.run.frames)));
+  }
   Child child([&](const Child::Tell& tell) {
-    const std::optional<Json> document = simulate(point, tables_, hopeless);
+    const std::optional<Json> document = simulate_computer(point, tables_, hopeless);
     if (!document) return;
     const auto bytes = Json::to_cbor(*document);
     tell(std::string(bytes.begin(), bytes.end()));

@@ -12,7 +12,7 @@
 
 namespace stereotlm::simulation {
 
-// Simulates points of a plan without pixels, each in a child of this process.
+// Simulates points of a plan without pixels: the board alone in this process, each computer in a child of it.
 class PointSimulator {
  public:
   PointSimulator() = default;

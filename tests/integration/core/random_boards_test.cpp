@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "platform/board_yaml.h"
+#include "platform/core_run.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
@@ -98,6 +99,18 @@ std::string compare_rows_with_references(const RandomBoard& board, Fidelity fide
   return differences(figures(run.statistics), figures(expected));
 }
 
+// What differs between the core's timing in a loop and the plain cycle loop.
+std::string compare_core_run_with_references(const RandomBoard& board, Fidelity /*its own*/) {
+  const PlainCycleResult expected = run_plain_cycle_loop(cycle_input(board), board.frames, kMaxFrameCycles);
+  if (expected.hang) return kHang;
+  const auto frames = static_cast<std::uint64_t>(board.frames);
+  const platform::Statistics found = platform::run_core(board_config(board), board_tables(board), frames);
+  std::string text = differences(figures(found), figures(expected));
+  for (const std::string& failed : found.failed) text += failed + "\n";
+  EXPECT_EQ(found.fidelity, "fast");
+  return text;
+}
+
 using Comparison = std::string (*)(const RandomBoard& board, Fidelity fidelity);
 
 void expect_boards_equal_references(Fidelity fidelity, std::uint64_t boards,
@@ -130,6 +143,10 @@ TEST(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmeticAtFastFidelity) 
 
 TEST(RandomBoards, EqualThePlainCycleLoopWithoutPixels) {
   expect_boards_equal_references(Fidelity::kTiming, 300);
+}
+
+TEST(RandomBoards, EqualThePlainCycleLoopInALoopOfTheirOwn) {
+  expect_boards_equal_references(Fidelity::kTiming, 1000, compare_core_run_with_references);
 }
 
 TEST(RandomBoards, HaveTheRowsOfThePlainCycleLoop) {

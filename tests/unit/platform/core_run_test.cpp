@@ -1,0 +1,90 @@
+#include "platform/core_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "platform/board_yaml.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/unit/platform/preloaded_run.h"
+
+namespace stereotlm::platform {
+namespace {
+
+using test::message_of;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::PreloadedRun;
+using testing::small_board;
+
+// Contract section 2, worked values.
+TEST(CoreRun, GivesTheWorkedValues) {
+  const auto first_frame = [](const std::vector<std::string>& sets) {
+    const BoardConfig board = load_board("fpl2003", sets);
+    return run_core(board, identity_tables(board), 1).frame_cycles;
+  };
+  EXPECT_THAT(first_frame({}), ElementsAre(2151016));
+  EXPECT_THAT(first_frame({"matcher.filter=none"}), ElementsAre(2150995));
+  EXPECT_THAT(first_frame({"matcher.fetch=line_buffer"}), ElementsAre(311146));
+  EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.left_lut=bank0"}), ElementsAre(4288597));
+  EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.disparity=[bank0, bank0]",
+                           "ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}"}),
+              ElementsAre(2534153));
+}
+
+// Again and again in one process.
+TEST(CoreRun, IsTheRunOfTheModules) {
+  const BoardConfig board = small_board();
+  PreloadedRun run(board, identity_tables(board), 5);
+  const Statistics expected = run.finish();
+  for (int again = 0; again < 2; ++again) {
+    const Statistics found = run_core(run.config, run.tables, 5);
+    EXPECT_EQ(found.frame_cycles, expected.frame_cycles);
+    EXPECT_EQ(found.cycles, expected.cycles);
+    EXPECT_EQ(found.frames_per_second.core, expected.frames_per_second.core);
+    EXPECT_EQ(found.bound.core_limited_by, expected.bound.core_limited_by);
+    EXPECT_THAT(found.failed, IsEmpty());
+    ASSERT_EQ(found.ports.size(), expected.ports.size());
+    for (std::size_t port = 0; port < found.ports.size(); ++port) {
+      EXPECT_EQ(found.ports[port].grants, expected.ports[port].grants) << found.ports[port].name;
+      EXPECT_EQ(found.ports[port].starved_cycles, expected.ports[port].starved_cycles)
+          << found.ports[port].name;
+    }
+    ASSERT_EQ(found.banks.size(), expected.banks.size());
+    for (std::size_t bank = 0; bank < found.banks.size(); ++bank)
+      EXPECT_EQ(found.banks[bank].reads, expected.banks[bank].reads) << found.banks[bank].name;
+  }
+}
+
+TEST(CoreRun, RefusesWhatDoesNotFit) {
+  BoardConfig board = small_board();
+  Tables tables = identity_tables(board);
+  EXPECT_THAT(message_of([&] { run_core(board, tables, 0); }), HasSubstr("frames = 0"));
+  tables.right.reset();
+  EXPECT_THAT(message_of([&] { run_core(board, tables, 1); }), HasSubstr("right table missing"));
+  board.allocation.right_lut.reset();
+  tables.left->entries[5] = 0x40000000U;
+  EXPECT_THAT(message_of([&] { run_core(board, tables, 1); }), HasSubstr("left table: entry (5, 0)"));
+  tables = identity_tables(board);
+  tables.left->width *= 2;
+  EXPECT_THAT(message_of([&] { run_core(board, tables, 1); }),
+              HasSubstr("must be of the size of the images"));
+  tables = identity_tables(board);
+  board.allocation.left_lut.reset();
+  EXPECT_THAT(message_of([&] { run_core(board, tables, 1); }), HasSubstr("left table given, but no buffer"));
+  board.matcher.window = 4;
+  EXPECT_THROW(run_core(board, {}, 1), std::invalid_argument);
+}
+
+TEST(CoreRun, EndsAFrameThatDoesNotGoOn) {
+  const BoardConfig board = small_board();
+  EXPECT_THAT(message_of([&] { run_core(board, identity_tables(board), 1, 1); }),
+              HasSubstr("frame 0 of the core: no slot consumed and no result written for 1 cycles"));
+}
+
+}  // namespace
+}  // namespace stereotlm::platform
