@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -61,6 +62,7 @@ struct ExplainOptions {
 struct Rate {
   double frames_per_second = 0;
   bool loses_pixels = false;
+  std::string failure;  // the reason; empty: the run has ended well
 };
 
 struct StepRate {
@@ -93,11 +95,12 @@ class Explanation {
 
   std::string text() {
     const Rate now = rate_of(0);
+    if (!now.failure.empty()) throw std::runtime_error(now.failure);
     std::vector<StepRate> rates;
     for (std::size_t i = 0; i < steps_.size(); ++i) rates.push_back({&steps_[i], rate_of(i + 1)});
     return head(now) + resources(now) + blames() + prices(now, rates) +
            knobs_with(Effect::kTooSmall, "less than 0.0005 frames/s: ", now, rates) +
-           knobs_with(Effect::kNone, "no effect on this run: ", now, rates);
+           knobs_with(Effect::kNone, "no effect on this run: ", now, rates) + failures(rates);
   }
 
  private:
@@ -108,10 +111,14 @@ class Explanation {
   }
 
   Rate rate_of(std::uint64_t number) {
-    const explore::StoredRow& row = batch_.row_of(points_.point(number));
-    const auto lost =
-        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
-    return {row.real(run_.camera ? "frames_per_second.steady" : "frames_per_second.core"), lost > 0};
+    try {
+      const explore::StoredRow& row = batch_.row_of(points_.point(number));
+      const auto lost =
+          row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
+      return {row.real(run_.camera ? "frames_per_second.steady" : "frames_per_second.core"), lost > 0, ""};
+    } catch (const explore::PointFailed& failed) {
+      return {0, false, failed.what()};
+    }
   }
 
   std::string head(const Rate& now) {
@@ -224,12 +231,22 @@ class Explanation {
     text += fmt::format("  {:>9} {:>9} {:>8}  knob: from -> to\n", "frames/s", "gained", "%");
     std::map<std::string, int> shown;
     for (const auto& [step, rate] : rates) {
+      if (!rate.failure.empty()) continue;
       if (step->only_best ? shown[step->knob]++ > 0 : effect_of(now, rate) != Effect::kSeen) continue;
       const double gained = rate.frames_per_second - now.frames_per_second;
       text +=
           fmt::format("  {:>9.3f} {:>+9.3f} {:>+8.2f}  {}{}: {} -> {}{}\n", rate.frames_per_second, gained,
                       100 * gained / now.frames_per_second, step->knob, step->changes_disparities ? " *" : "",
                       step->from, step->to, rate.loses_pixels && !now.loses_pixels ? "  loses pixels" : "");
+    }
+    return text;
+  }
+
+  static std::string failures(const std::vector<StepRate>& rates) {
+    std::string text;
+    for (const auto& [step, rate] : rates) {
+      if (rate.failure.empty()) continue;
+      text += fmt::format("failed: {}: {} -> {}: {}\n", step->knob, step->from, step->to, rate.failure);
     }
     return text;
   }
@@ -248,7 +265,7 @@ class Explanation {
     std::vector<std::string> knobs;
     std::map<std::string, Effect> effects;
     for (const auto& [step, rate] : rates) {
-      if (step->only_best) continue;
+      if (step->only_best || !rate.failure.empty()) continue;
       if (effects.count(step->knob) == 0) knobs.push_back(step->knob);
       Effect& most = effects[step->knob];
       most = std::max(most, effect_of(now, rate));

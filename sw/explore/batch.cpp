@@ -43,8 +43,7 @@ const StoredRow& Batch::row_of(const Point& point) {
   if (!row.find(point.hash))
     throw std::runtime_error(fmt::format("point {} was not simulated", point.number));
   if (row.text("status") != "ok") {
-    throw std::runtime_error(
-        fmt::format("{}: point {} has failed: {}", point.board->name, point.number, row.text("reason")));
+    throw PointFailed(fmt::format("{}: {}", point.board->name, row.text("reason")));
   }
   return row;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "sw/explore/points.h"
@@ -10,6 +11,12 @@
 #include "sw/explore/sweep.h"
 
 namespace stereotlm::explore {
+
+// The run of a point has failed: what() names its board and the reason.
+class PointFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // Simulates points on several processors, with a database of its own in a folder for temporary files, which
 // goes when the batch does.
@@ -26,8 +33,8 @@ class Batch {
 
   // The database, after run().
   const std::string& path() const { return path_; }
-  // Of a point that was simulated; until the next call. Throws std::runtime_error with the reason if its run
-  // has failed.
+  // Of a point that was simulated; until the next call. Throws PointFailed, and std::runtime_error if it was not
+  // simulated.
   const StoredRow& row_of(const Point& point);
 
  private:
