@@ -23,7 +23,6 @@
 #include "sw/explore/store.h"
 #include "sw/explore/sweep.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/report/sha256.h"
 #include "sw/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
@@ -100,15 +99,6 @@ class ScenePairs : public host::FrameSource {
   media::SyntheticScene scene_;
   host::StereoPair pair_;
 };
-
-std::string sha_of(const platform::Tables& tables) {
-  std::string bytes;
-  for (const auto& table : {tables.left, tables.right}) {
-    if (table) bytes.append(reinterpret_cast<const char*>(table->entries.data()), table->entries.size() * 4);
-    bytes += '|';
-  }
-  return report::sha256_hex(bytes.data(), bytes.size());
-}
 
 // "left_image bank0 bank1, .., right_lut bank0"
 std::string text_of(const BoardConfig& board, const Placement& placement) {
@@ -310,7 +300,7 @@ int allocate(const AllocateOptions& options) {
     refuse(fmt::format("--out {}", error.what()));
   }
   const platform::Tables tables = tables_of(*board, calibration);
-  const explore::PointRun run = {options.camera, 0, calibration ? sha_of(calibration->tables) : ""};
+  const explore::PointRun run = {options.camera, 0, calibration ? sha256_of(calibration->tables) : ""};
   const std::uint64_t frames = explore::frames_of(run, *board);
   const platform::FrameBegin first = {0, options.camera ? simulation::first_start_s(*board, tables) : 0};
   const auto rate_from = [&](const BoardConfig& one, const platform::FrameBegin& begin) {
