@@ -21,6 +21,7 @@
 #include "sw/cli/version.h"
 #include "sw/explore/allocation_search.h"
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "sw/explore/sweep.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/simulation/simulate_point.h"
@@ -281,6 +282,17 @@ bool simulate(AllocationSearch& search, const explore::Evaluate& evaluate,
   return true;
 }
 
+// How many more banks it takes.
+std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run,
+                        const AllocationSearch::BoundOf& bound) {
+  const auto most = static_cast<int>(board.banks.size());
+  while (++banks <= most) {
+    if (AllocationSearch(board, banks, run, bound).fitting() > 0)
+      return fmt::format("; with {} some do", banks);
+  }
+  return "";
+}
+
 int allocate(const AllocateOptions& options) {
   Problems problems;
   const auto board = options.board.load(problems);
@@ -294,11 +306,6 @@ int allocate(const AllocateOptions& options) {
   sweep.store = options.out.text;
   sweep.version = kVersion;
   sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
-  try {
-    const explore::Store store(sweep.store, sweep.version);
-  } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--out {}", error.what()));
-  }
   const platform::Tables tables = tables_of(*board, calibration);
   const explore::PointRun run = {options.camera, 0, calibration ? sha256_of(calibration->tables) : ""};
   const std::uint64_t frames = explore::frames_of(run, *board);
@@ -311,8 +318,14 @@ int allocate(const AllocateOptions& options) {
   };
   AllocationSearch search(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {
-    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks", *options.banks,
-                       search.placements()));
+    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", *options.banks,
+                       search.placements(), fewest_text(*board, *options.banks, run, bound)));
+  }
+  try {
+    const explore::StoreLock lock(sweep.store);
+    const explore::Store store(sweep.store, sweep.version);
+  } catch (const explore::DatabaseError& error) {
+    refuse(fmt::format("--out {}", error.what()));
   }
   catch_interrupts();
   simulation::PointSimulator simulator =
