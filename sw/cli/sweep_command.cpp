@@ -64,10 +64,9 @@ constexpr const char* kFooter =
     "Points that DB holds already are not run again: after an interruption, give the same command. To try\n"
     "again what has failed:\n"
     "  sqlite3 DB \"DELETE FROM points WHERE status = 'failed'\"\n\n"
-    "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into DB; "
-    "it\n"
-    "waits, and submits again what is lost. The machines share the file system of DB and of this program.\n"
-    "A task uses the processors that its job has: --sbatch cpus-per-task=8.";
+    "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into\n"
+    "DB; it waits, and submits again what is lost. The machines share the file system of DB and of this\n"
+    "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
 
 struct SweepCommandOptions {
   Typed plan;
