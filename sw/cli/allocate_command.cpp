@@ -21,9 +21,9 @@
 #include "sw/cli/version.h"
 #include "sw/explore/allocation_search.h"
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "sw/explore/sweep.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/report/sha256.h"
 #include "sw/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
@@ -100,15 +100,6 @@ class ScenePairs : public host::FrameSource {
   media::SyntheticScene scene_;
   host::StereoPair pair_;
 };
-
-std::string sha_of(const platform::Tables& tables) {
-  std::string bytes;
-  for (const auto& table : {tables.left, tables.right}) {
-    if (table) bytes.append(reinterpret_cast<const char*>(table->entries.data()), table->entries.size() * 4);
-    bytes += '|';
-  }
-  return report::sha256_hex(bytes.data(), bytes.size());
-}
 
 // "left_image bank0 bank1, .., right_lut bank0"
 std::string text_of(const BoardConfig& board, const Placement& placement) {
@@ -291,6 +282,17 @@ bool simulate(AllocationSearch& search, const explore::Evaluate& evaluate,
   return true;
 }
 
+// How many more banks it takes.
+std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run,
+                        const AllocationSearch::BoundOf& bound) {
+  const auto most = static_cast<int>(board.banks.size());
+  while (++banks <= most) {
+    if (AllocationSearch(board, banks, run, bound).fitting() > 0)
+      return fmt::format("; with {} some do", banks);
+  }
+  return "";
+}
+
 int allocate(const AllocateOptions& options) {
   Problems problems;
   const auto board = options.board.load(problems);
@@ -304,13 +306,8 @@ int allocate(const AllocateOptions& options) {
   sweep.store = options.out.text;
   sweep.version = kVersion;
   sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
-  try {
-    const explore::Store store(sweep.store, sweep.version);
-  } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--out {}", error.what()));
-  }
   const platform::Tables tables = tables_of(*board, calibration);
-  const explore::PointRun run = {options.camera, 0, calibration ? sha_of(calibration->tables) : ""};
+  const explore::PointRun run = {options.camera, 0, calibration ? sha256_of(calibration->tables) : ""};
   const std::uint64_t frames = explore::frames_of(run, *board);
   const platform::FrameBegin first = {0, options.camera ? simulation::first_start_s(*board, tables) : 0};
   const auto rate_from = [&](const BoardConfig& one, const platform::FrameBegin& begin) {
@@ -321,8 +318,14 @@ int allocate(const AllocateOptions& options) {
   };
   AllocationSearch search(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {
-    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks", *options.banks,
-                       search.placements()));
+    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", *options.banks,
+                       search.placements(), fewest_text(*board, *options.banks, run, bound)));
+  }
+  try {
+    const explore::StoreLock lock(sweep.store);
+    const explore::Store store(sweep.store, sweep.version);
+  } catch (const explore::DatabaseError& error) {
+    refuse(fmt::format("--out {}", error.what()));
   }
   catch_interrupts();
   simulation::PointSimulator simulator =

@@ -17,8 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kOption = "--calibration";
-
 report::InputFile described(const fs::path& path, const std::string& content) {
   return {fs::absolute(path).string(), report::sha256_hex(content.data(), content.size())};
 }
@@ -53,24 +51,24 @@ kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& r
 }  // namespace
 
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
-                                                 Problems& problems) {
+                                                 Problems& problems, const std::string& named) {
   bool is_right = true;
   const auto attempt = [&](const auto& step) {
     try {
       step();
     } catch (const std::exception& error) {
-      problems.add(fmt::format("{} {}", kOption, error.what()));
+      problems.add(fmt::format("{} {}", named, error.what()));
       is_right = false;
     }
   };
-  const auto named = [&path](const std::string& problem) {
+  const auto at_path = [&path](const std::string& problem) {
     return std::runtime_error(fmt::format("'{}': {}", path, problem));
   };
   CalibrationInput input;
   attempt([&] {
     const RigFiles files = rig_files(path);
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
-      input.files.push_back({kOption, file.string()});
+      input.files.push_back({named, file.string()});
     }
     const std::string content = report::read_whole_file(files.calibration);
     input.described.file = described(files.calibration, content);
@@ -78,7 +76,7 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
       input.calibration = calibration_functions().parse_calibration(content);
       if (board != nullptr) check_board(input.calibration.rig, *board);
     } catch (const std::runtime_error& error) {
-      throw named(error.what());
+      throw at_path(error.what());
     }
     const calib::Calibration& calibration = input.calibration;
     attempt([&] {
@@ -95,11 +93,20 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     const calib::Calibration& calibration = input.calibration;
     if (!calib::are_tables_of({*input.tables.left, *input.tables.right}, calibration.rig,
                               calibration.rectification, calibration.disparity_offset)) {
-      throw named("matrices and disparity_offset: must be those that its tables were made with");
+      throw at_path("matrices and disparity_offset: must be those that its tables were made with");
     }
   });
   if (!is_right) return std::nullopt;
   return input;
+}
+
+std::string sha256_of(const platform::Tables& tables) {
+  std::string bytes;
+  for (const auto& table : {tables.left, tables.right}) {
+    if (table) bytes.append(reinterpret_cast<const char*>(table->entries.data()), table->entries.size() * 4);
+    bytes += '|';
+  }
+  return report::sha256_hex(bytes.data(), bytes.size());
 }
 
 platform::Tables tables_of(const platform::BoardConfig& board,

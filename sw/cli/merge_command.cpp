@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -28,6 +31,8 @@ struct MergeOptions {
 
 int merge(const MergeOptions& options) {
   try {
+    std::optional<explore::StoreLock> lock;
+    if (std::filesystem::exists(options.out.text)) lock.emplace(options.out.text);
     explore::merge_stores(options.inputs.text, options.out.text);
   } catch (const explore::DatabaseError& error) {
     refuse(error.what());

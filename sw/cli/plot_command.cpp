@@ -23,9 +23,10 @@ constexpr const char* kFooter =
     "  use          how busy each bank is\n"
     "  pareto       two columns of the database, and the points than which none is better in both;\n"
     "               beside the columns there is banks_used\n"
-    "Points that differ in more than the x axis are a line each. DIR must be empty or hold only such files,\n"
-    "which are replaced. The scripts that draw, one for each figure, lie in share/stereotlm/plots where the\n"
-    "program is installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
+    "Points that differ in more than the x axis are a line each. Of more than 16 points states, stalls and\n"
+    "use show some; the figure says which. DIR must be empty or hold only such files, which are replaced.\n"
+    "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
+    "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
 
 // What they mean, and what is wrong with them, is the script's to say.
 struct PlotOptions {

@@ -122,7 +122,12 @@ std::optional<RecordedRun> load_recorded_run(const std::string& folder, Problems
       is_right = false;
     }
   };
-  const std::string rule = "RUN must be a folder that run --out has written: ";
+  const std::string rule = "A and B must be folders that run --out has written: ";
+  if (!fs::is_directory(folder)) {
+    problems.add(
+        fmt::format("{}'{}': {}", rule, folder, fs::exists(folder) ? "not a folder" : "no such folder"));
+    return std::nullopt;
+  }
   const auto read = [&](const char* name, std::string& text, const std::function<void()>& use) {
     const std::string path = (fs::path(folder) / name).string();
     attempt(rule, [&] {

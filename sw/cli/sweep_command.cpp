@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -13,6 +14,7 @@
 
 #include "platform/board_draft.h"
 #include "sw/cli/add_command.h"
+#include "sw/cli/calibration_input.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/interrupt.h"
@@ -24,6 +26,7 @@
 #include "sw/explore/shard_folder.h"
 #include "sw/explore/slurm_sweep.h"
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "sw/explore/sweep.h"
 #include "sw/report/whole_file.h"
 #include "sw/simulation/simulate_point.h"
@@ -38,9 +41,9 @@ constexpr std::chrono::seconds kBetweenCounts{2};
 
 constexpr const char* kFooter =
     "A plan is a YAML file, such as\n"
-    "  board: fpl2003                                       # a preset or a board file; its tables\n"
-    "  run: {source: preloaded}                             # are the identity. Or camera; and frames\n"
-    "  set: {matcher.filter: none}                          # of every point\n"
+    "  board: fpl2003                                       # a preset or a board file\n"
+    "  run: {source: preloaded}                             # how each point runs, see below\n"
+    "  set: {matcher.filter: none}                          # keys of all points\n"
     "  vary:                                                # all combinations of these\n"
     "    matcher.window: [5, 7, 9]\n"
     "    matcher.disparities: {from: 16, to: 128, step: 16}\n"
@@ -48,15 +51,22 @@ constexpr const char* kFooter =
     "    - {image.width: [320, 640], image.height: [240, 480]}\n"
     "  where: [matcher.window * matcher.disparities <= 800] # SQL over keys: leaves the others out\n"
     "  sample: {points: 20, seed: 1}                        # so many of them, drawn before `where`\n"
-    "(see stereotlm keys). Each point is a row of table `points` of DB, an SQLite database: its status,\n"
-    "the reason if it is not ok, the board in full, and a column for each key and for each figure of\n"
-    "stats.json; stalls by port, bank and cause are in table `blame`. For instance\n"
-    "  sqlite3 -box DB 'SELECT \"matcher.window\", \"frames_per_second.core\" FROM points'\n"
-    "Points that DB holds already are not run again: after an interruption, give the same command.\n\n"
-    "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into DB; "
-    "it\n"
-    "waits, and submits again what is lost. The machines share the file system of DB and of this program.\n"
-    "A task uses the processors that its job has: --sbatch cpus-per-task=8.";
+    "(see stereotlm keys). What may stand in `run`:\n"
+    "  source       preloaded, the core alone, fed by an ideal host (the default here), or camera, the\n"
+    "               whole computer\n"
+    "  frames       to deliver: by default one turn of the allocation's lists, with cameras 13\n"
+    "  calibration  F.yaml of stereotlm calibrate: the tables; by default they are the identity\n\n"
+    "Each point is a row of table `points` of DB, an SQLite database: its status, the reason if it is not\n"
+    "ok, the board in full, and a column for each key and for each figure of stats.json; stalls by port,\n"
+    "bank and cause are in table `blame`. For instance\n"
+    "  sqlite3 DB \"SELECT name FROM pragma_table_info('points')\"      # all columns\n"
+    "  sqlite3 -box DB 'SELECT \"matcher.window\", \"frames_per_second.core\" FROM points ORDER BY 1'\n"
+    "Points that DB holds already are not run again: after an interruption, give the same command. To try\n"
+    "again what has failed:\n"
+    "  sqlite3 DB \"DELETE FROM points WHERE status = 'failed'\"\n\n"
+    "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into\n"
+    "DB; it waits, and submits again what is lost. The machines share the file system of DB and of this\n"
+    "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
 
 struct SweepCommandOptions {
   Typed plan;
@@ -64,6 +74,7 @@ struct SweepCommandOptions {
   Typed jobs;
   Typed shard;
   Typed board;
+  Typed calibration;
   Typed known;
   Typed progress;
   Typed launcher;
@@ -77,6 +88,7 @@ struct SweepCommandOptions {
     shard.add_to(command, "--shard", "I/N",
                  "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge");
     board.add_to(command, "--board", "BOARD", "In place of the board that the plan names");
+    calibration.add_to(command, "--calibration", "F", "In place of the calibration that the plan names");
     known.add_to(command, "--known", "DB2", "A database, only read, whose points are not run either");
     progress.add_to(command, "--progress", "F", "Keep in this file how many points are done");
     launcher.add_to(command, "--launcher", "WHERE", "Where it runs: local, the default, or slurm");
@@ -115,8 +127,10 @@ struct SweepCommandOptions {
     if (launcher.is_given()) is_one_of({"local", "slurm"}, "--launcher", launcher.text, problems);
     is_slurm = launcher.text == "slurm";
     check_launcher(problems);
-    for (const auto& [option, name] :
-         {std::pair{&board, "--board"}, {&known, "--known"}, {&progress, "--progress"}}) {
+    for (const auto& [option, name] : {std::pair{&board, "--board"},
+                                       {&calibration, "--calibration"},
+                                       {&known, "--known"},
+                                       {&progress, "--progress"}}) {
       if (option->is_given() && option->text.empty()) problems.add(fmt::format("{}: empty", name));
     }
     problems.check();
@@ -200,6 +214,25 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
   }
 }
 
+// The calibration of all points, if they have one; the plan is given its tables. Refused if no point can have them.
+std::optional<CalibrationInput> load_calibration(const SweepCommandOptions& options, explore::Plan& plan) {
+  const bool is_option = !options.calibration.text.empty();
+  const std::string path = is_option ? options.calibration.text : plan.calibration();
+  if (path.empty()) return std::nullopt;
+  const std::string named = is_option
+                                ? "--calibration"
+                                : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
+  Problems problems;
+  auto calibration = load_calibration(path, nullptr, problems, named);
+  if (calibration) {
+    const calib::Rig& rig = calibration->calibration.rig;
+    const auto problem = plan.use_calibration(sha256_of(calibration->tables), rig.width, rig.height);
+    if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
+  }
+  problems.check();
+  return calibration;
+}
+
 std::string summary(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
   std::string text = fmt::format("{}: {} points", options.plan.text, counts.total);
   if (options.sweep.shards > 1) text += fmt::format(" in shard {}", options.shard.text);
@@ -229,8 +262,8 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   std::string text = summary(counts, options);
   if (std::filesystem::exists(options.sweep.store)) {
     explore::Database store(options.sweep.store, explore::Database::Access::kRead);
-    text += reasons(store, "failed") + reasons(store, "impossible");
     text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
+    text += reasons(store, "failed") + reasons(store, "impossible");
   }
   print(text);
   if (counts.done() == counts.total) return kDone;
@@ -257,9 +290,11 @@ class ProgressFile {
   std::chrono::steady_clock::time_point next_;
 };
 
-int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan) {
+int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
+               const std::optional<CalibrationInput>& calibration) {
   ProgressFile file(options.progress.text);
   try {
+    const explore::StoreLock lock(options.sweep.store);
     const explore::Store store(options.sweep.store, options.sweep.version);
   } catch (const explore::DatabaseError& error) {
     refuse(fmt::format("--out {}", error.what()));
@@ -275,25 +310,40 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan) {
     refuse(fmt::format("--progress {}: {}", options.progress.text, error.code().message()));
   }
   catch_interrupts();
-  simulation::PointSimulator simulator;
+  simulation::PointSimulator simulator =
+      calibration ? simulation::PointSimulator(calibration->tables) : simulation::PointSimulator();
   ProgressLine progress;
-  const auto counts = explore::sweep(
-      plan, [&simulator](const explore::Point& point) { return simulator(point); }, options.sweep,
-      [&progress, &file](const explore::SweepCounts& done) {
-        progress.show([&done](double seconds) { return progress_text(done, 0, seconds); });
-        file.show(done);
-        return !interrupted();
-      });
-  progress.erase();
-  file.write(counts);
+  explore::SweepCounts counts;
+  try {
+    counts = explore::sweep(
+        plan, [&simulator](const explore::Point& point) { return simulator(point); }, options.sweep,
+        [&progress, &file](const explore::SweepCounts& done) {
+          progress.show([&done](double seconds) { return progress_text(done, 0, seconds); });
+          file.show(done);
+          return !interrupted();
+        });
+    progress.erase();
+    file.write(counts);
+  } catch (const std::exception& error) {
+    progress.erase();
+    throw std::runtime_error(
+        fmt::format("{}; what is done is kept: the same command goes on with it", error.what()));
+  }
   return report(counts, options);
 }
 
 // What tasks on other machines need of the files that the plan is made of.
-explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan) {
+explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
+                              const std::optional<CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
   sweep.plan = report::read_whole_file(plan.path());
   if (platform::is_board_file(plan.board())) sweep.board = report::read_whole_file(plan.board());
+  if (calibration) {
+    const report::InputCalibration& files = calibration->described;
+    sweep.calibration = {report::read_whole_file(files.file.path),
+                         report::read_whole_file(files.left_lut.path),
+                         report::read_whole_file(files.right_lut.path)};
+  }
   sweep.version = options.sweep.version;
   sweep.points = plan.size();
   sweep.shards = std::min(options.shards, plan.size());
@@ -308,9 +358,10 @@ std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t 
   return text;
 }
 
-int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan) {
+int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
+                   const std::optional<CalibrationInput>& calibration) {
   ProgressLine progress;
-  explore::SlurmSweep sweep(sharded(options, plan), options.sweep.store, options.sbatch_options,
+  explore::SlurmSweep sweep(sharded(options, plan, calibration), options.sweep.store, options.sbatch_options,
                             [&progress](const std::string& note) {
                               progress.erase();
                               say("note", note);
@@ -334,8 +385,10 @@ int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan
 }
 
 int sweep(const SweepCommandOptions& options) {
-  const explore::Plan plan = load_plan(options);
-  return options.is_slurm ? sweep_on_slurm(options, plan) : sweep_here(options, plan);
+  explore::Plan plan = load_plan(options);
+  const auto calibration = load_calibration(options, plan);
+  return options.is_slurm ? sweep_on_slurm(options, plan, calibration)
+                          : sweep_here(options, plan, calibration);
 }
 
 }  // namespace

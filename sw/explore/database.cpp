@@ -10,20 +10,22 @@
 namespace stereotlm::explore {
 namespace {
 
-constexpr int kPatienceMs = 60'000;
-
-std::string meaning_of(int code, const char* message) {
-  switch (code & 0xFF) {
+// `error`: of the system, at an error of input or output or when a file cannot be opened.
+std::string meaning_of(int code, int error, const char* message) {
+  const int kind = code & 0xFF;
+  const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
+  if (is_of_system && (error == ENOSPC || error == EDQUOT)) return "the disk is full";
+  switch (kind) {
     case SQLITE_FULL:
       return "the disk is full";
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return fmt::format("another process has kept it locked for {} s", kPatienceMs / 1000);
+      return "another process keeps it locked";
     case SQLITE_READONLY:
     case SQLITE_PERM:
       return "not writable";
     case SQLITE_CANTOPEN:
-      return errno != 0 ? fmt::format("cannot be opened: {}", std::strerror(errno)) : "cannot be opened";
+      return error != 0 ? fmt::format("cannot be opened: {}", std::strerror(error)) : "cannot be opened";
     case SQLITE_NOTADB:
       return "not a database";
     default:
@@ -45,16 +47,16 @@ int flags_of(Database::Access access) {
 
 }  // namespace
 
-Database::Database(const std::string& path, Access access) : path_(path) {
-  errno = 0;
+Database::Database(const std::string& path, Access access, std::chrono::milliseconds patience) : path_(path) {
   const int code = sqlite3_open_v2(path.c_str(), &handle_, flags_of(access), nullptr);
   if (code != SQLITE_OK) {
-    const std::string text = fmt::format("{}: {}", path, meaning_of(code, sqlite3_errmsg(handle_)));
+    const std::string text =
+        fmt::format("{}: {}", path, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
     sqlite3_close(handle_);
     throw DatabaseError(text);
   }
   sqlite3_extended_result_codes(handle_, 1);
-  sqlite3_busy_timeout(handle_, kPatienceMs);
+  sqlite3_busy_timeout(handle_, static_cast<int>(patience.count()));
   // A word in double quotes is a name or an error, never a text.
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
@@ -63,7 +65,8 @@ Database::Database(const std::string& path, Access access) : path_(path) {
 Database::~Database() { sqlite3_close(handle_); }
 
 void Database::fail(int code) const {
-  throw DatabaseError(fmt::format("{}: {}", path_, meaning_of(code, sqlite3_errmsg(handle_))));
+  throw DatabaseError(
+      fmt::format("{}: {}", path_, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
 }
 
 void Database::execute(const std::string& sql) {

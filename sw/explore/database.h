@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -23,8 +24,11 @@ class Database {
  public:
   enum class Access { kRead, kWrite, kCreate };
 
-  // Waits up to a minute for other processes. ":memory:" is a database of its own.
-  Database(const std::string& path, Access access);
+  // For how long it waits for a process that keeps the file locked.
+  static constexpr std::chrono::milliseconds kPatience = std::chrono::minutes(1);
+
+  // ":memory:" is a database of its own.
+  Database(const std::string& path, Access access, std::chrono::milliseconds patience = kPatience);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;

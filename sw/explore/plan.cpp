@@ -51,10 +51,45 @@ Point Plan::point(std::uint64_t number) const {
   const std::vector<PlanValue> chosen = values_at(number);
   for (const PlanValue& value : chosen) apply(value.path, value.value, path_, draft, run);
   try {
-    return make_point(number, draft.read(), run);
+    const platform::BoardConfig board = draft.read();
+    auto problem = wrong_size(board);
+    if (!problem) problem = missing_table(board);
+    if (problem)
+      return impossible_point(number, run, chosen, fmt::format("{}: {}", kCalibrationPath, *problem));
+    return make_point(number, board, run);
   } catch (const platform::BoardError& error) {
     return impossible_point(number, run, chosen, rules_of(error));
   }
+}
+
+std::optional<std::string> Plan::use_calibration(const std::string& sha256, int width, int height) {
+  run_.calibration = sha256;
+  tables_width_ = width;
+  tables_height_ = height;
+  const auto problem = varies("image") ? std::nullopt : wrong_size(*base_board_);
+  if (problem || varies("allocation")) return problem;
+  return missing_table(*base_board_);
+}
+
+std::optional<std::string> Plan::wrong_size(const platform::BoardConfig& board) const {
+  const bool is_right = tables_width_ == board.image.width && tables_height_ == board.image.height;
+  if (run_.calibration.empty() || is_right) return std::nullopt;
+  return fmt::format("image size = {}x{}: must be that of the board's images, {}x{}", tables_width_,
+                     tables_height_, board.image.width, board.image.height);
+}
+
+std::optional<std::string> Plan::missing_table(const platform::BoardConfig& board) const {
+  const platform::AllocationConfig& allocation = board.allocation;
+  if (run_.calibration.empty() || (allocation.left_lut && allocation.right_lut)) return std::nullopt;
+  return fmt::format("goes with a board that has both tables; allocation.{} = none",
+                     allocation.left_lut ? "right_lut" : "left_lut");
+}
+
+bool Plan::varies(const std::string& path) const {
+  const std::vector<std::string> paths = varied();
+  return std::any_of(paths.begin(), paths.end(), [&path](const std::string& one) {
+    return one == path || one.compare(0, path.size() + 1, path + '.') == 0;
+  });
 }
 
 std::vector<PlanValue> Plan::values_at(std::uint64_t number) const {

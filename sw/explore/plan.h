@@ -36,6 +36,13 @@ class Plan : public Points {
   const std::string& path() const { return path_; }
   const std::string& board() const { return board_; }  // a preset, or the path of a board file
 
+  // The file of the calibration that `run` names, and where; empty: none.
+  const std::string& calibration() const { return calibration_; }
+  const std::string& calibration_place() const { return calibration_place_; }
+  // Gives all points the tables of a calibration, of images of that size, in place of the identity. Points that
+  // they do not fit are impossible; if no point can be another one this gives the rule, else nothing.
+  std::optional<std::string> use_calibration(const std::string& sha256, int width, int height);
+
  private:
   friend class PlanReader;
 
@@ -51,6 +58,10 @@ class Plan : public Points {
 
   Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
   std::vector<PlanValue> values_at(std::uint64_t number) const;
+  // Why a board cannot have the tables of the calibration.
+  std::optional<std::string> wrong_size(const platform::BoardConfig& board) const;
+  std::optional<std::string> missing_table(const platform::BoardConfig& board) const;
+  bool varies(const std::string& path) const;  // the key, or one in it
   Point impossible_point(std::uint64_t number, const PointRun& run, const std::vector<PlanValue>& chosen,
                          const std::string& reason) const;
   static void apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
@@ -59,6 +70,10 @@ class Plan : public Points {
 
   std::string path_;
   std::string board_;
+  std::string calibration_;
+  std::string calibration_place_;
+  int tables_width_ = 0;
+  int tables_height_ = 0;
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
   std::string base_yaml_;

@@ -93,7 +93,10 @@ class PlanReader {
   using Entries = std::vector<YamlNode::Entry>;
 
   void report(const Place& place, const std::string& text) {
-    diagnostics_.push_back({fmt::format("{}:{}:{}", plan_.path_, place.line, place.column), text});
+    diagnostics_.push_back({place_text(place), text});
+  }
+  std::string place_text(const Place& place) const {
+    return fmt::format("{}:{}:{}", plan_.path_, place.line, place.column);
   }
   void report(const std::string& path, const YamlNode& node, const std::string& rule) {
     report(node.place, fmt::format("{} = {}: {}", path, short_text(node), rule));
@@ -170,11 +173,15 @@ class PlanReader {
   }
 
   void read_run(const YamlNode& node) {
-    const Entries* const entries = read_map("run", node, {"source", "frames"}, "a map");
+    const Entries* const entries = read_map("run", node, {"source", "frames", "calibration"}, "a map");
     if (entries == nullptr) return;
     for (const YamlNode::Entry& entry : *entries) {
       const std::string path = "run." + entry.key.text;
-      if (check_run(path, entry.value)) Plan::apply_to_run(path, entry.value, plan_.run_);
+      if (!check_run(path, entry.value)) continue;
+      Plan::apply_to_run(path, entry.value, plan_.run_);
+      if (path != kCalibrationPath) continue;
+      plan_.calibration_ = entry.value.text;
+      plan_.calibration_place_ = place_text(entry.value.place);
     }
   }
 
@@ -189,6 +196,8 @@ class PlanReader {
       if (!frames || *frames < 1 || *frames > static_cast<std::int64_t>(kMostFrames))
         report(path, value, fmt::format("1..{}, the frames of each point", kMostFrames));
     }
+    if (path == kCalibrationPath && (!value.is_scalar() || value.text.empty()))
+      report(path, value, "the file of a calibration, as written by stereotlm calibrate");
     return diagnostics_.size() == before;
   }
 
@@ -197,7 +206,9 @@ class PlanReader {
     const std::string& path = key.text;
     const bool is_run = section != "set" && (path == kSourcePath || path == kFramesPath);
     const bool is_checked_later = section == "set";  // by the board
-    const std::string rule = is_run || is_checked_later ? "" : platform::path_problem(path);
+    const std::string rule = is_run || is_checked_later ? ""
+                             : path == kCalibrationPath ? "goes with `run`: one for all points"
+                                                        : platform::path_problem(path);
     const auto [first, is_new] = places_.emplace(path, key.place);
     if (!rule.empty()) {
       report(key.place, fmt::format("{}: {}: {}", section, path, rule));
@@ -293,11 +304,15 @@ class PlanReader {
     int places = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const char* const key = std::array{"from", "to", "step"}[i];
+      constexpr const char* kRule = "a decimal number of at most 15 digits";
       const YamlNode::Entry* const entry = node.find(key);
-      const auto number = entry == nullptr ? std::nullopt : decimal(entry->value);
+      if (entry == nullptr) {
+        report(node.place, fmt::format("{}.{}: missing: {}", name, key, kRule));
+        return {};
+      }
+      const auto number = decimal(entry->value);
       if (!number) {
-        report(entry == nullptr ? node.place : entry->value.place,
-               fmt::format("{}.{}: a decimal number of at most 15 digits", name, key));
+        report(fmt::format("{}.{}", name, key), entry->value, kRule);
         return {};
       }
       numbers[i] = *number;

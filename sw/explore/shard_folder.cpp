@@ -9,11 +9,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
 
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "sw/report/sha256.h"
 #include "sw/report/whole_file.h"
 
@@ -27,6 +29,9 @@ constexpr const char* kLock = "lock";
 constexpr const char* kSweep = "sweep";
 constexpr const char* kPlan = "plan.yaml";
 constexpr const char* kBoard = "board.yaml";
+constexpr const char* kCalibration = "calibration.yaml";
+constexpr const char* kLeftLut = "calibration_left.lut";
+constexpr const char* kRightLut = "calibration_right.lut";
 constexpr const char* kMerged = "merged";
 
 // Both scripts are called with PROGRAM FOLDER SHARDS STORE.
@@ -37,6 +42,7 @@ shard=$folder/shard_$SLURM_ARRAY_TASK_ID
 [ ! -e "$shard.db" ] || exit 0
 set --
 [ ! -e "$folder/board.yaml" ] || set -- --board "$folder/board.yaml"
+[ ! -e "$folder/calibration.yaml" ] || set -- "$@" --calibration "$folder/calibration.yaml"
 [ ! -e "$store" ] || set -- "$@" --known "$store"
 "$program" sweep "$folder/plan.yaml" "$@" --shard "$SLURM_ARRAY_TASK_ID/$shards" \
   --jobs "${SLURM_CPUS_ON_NODE:-1}" --out "$shard.work" --progress "$shard.progress" &&
@@ -59,8 +65,13 @@ std::string sha(const std::string& text) { return report::sha256_hex(text.data()
 
 // What makes a sweep another one.
 std::string identity(const ShardedSweep& sweep) {
-  return fmt::format("version {}\nshards {}\nplan {}\nboard {}\n", sweep.version, sweep.shards,
-                     sha(sweep.plan), sweep.board ? sha(*sweep.board) : "preset");
+  const auto& calibration = sweep.calibration;
+  const std::string tables = calibration
+                                 ? fmt::format("{} {} {}", sha(calibration->file), sha(calibration->left_lut),
+                                               sha(calibration->right_lut))
+                                 : "none";
+  return fmt::format("version {}\nshards {}\nplan {}\nboard {}\ncalibration {}\n", sweep.version,
+                     sweep.shards, sha(sweep.plan), sweep.board ? sha(*sweep.board) : "preset", tables);
 }
 
 std::string shard_file(std::uint64_t shard, const char* ending) {
@@ -114,7 +125,11 @@ void ShardFolder::keep_points(const std::string& version) {
     if (entry.path().extension() == ".work" || entry.path().extension() == ".db") stores.push_back(path);
   }
   if (stores.empty()) return;
-  if (fs::exists(store_)) stores.push_back(store_);
+  std::optional<StoreLock> lock;
+  if (fs::exists(store_)) {
+    lock.emplace(store_);
+    stores.push_back(store_);
+  }
   merge_stores(stores, store_);
 }
 
@@ -126,12 +141,18 @@ void ShardFolder::empty() const {
 
 void ShardFolder::begin(const ShardedSweep& sweep) {
   if (fs::exists(store_)) {
+    const StoreLock lock(store_);
     { const Store checked(store_, sweep.version); }
     merge_stores({store_}, store_);
   }
   empty();
   report::write_whole_file(file(kPlan), sweep.plan);
   if (sweep.board) report::write_whole_file(file(kBoard), *sweep.board);
+  if (sweep.calibration) {
+    report::write_whole_file(file(kCalibration), sweep.calibration->file);
+    report::write_whole_file(file(kLeftLut), sweep.calibration->left_lut);
+    report::write_whole_file(file(kRightLut), sweep.calibration->right_lut);
+  }
   report::write_whole_file(task_script(), kTaskScript);
   report::write_whole_file(merge_script(), kMergeScript);
   report::write_whole_file(file(kSweep), identity(sweep));

@@ -13,15 +13,21 @@ namespace stereotlm::explore {
 struct ShardedSweep {
   std::string plan;                  // the text of its file
   std::optional<std::string> board;  // that of the board file that it names; nothing: it names a preset
-  std::string version;               // of the program
+  struct Calibration {
+    std::string file;
+    std::string left_lut;
+    std::string right_lut;
+  };
+  std::optional<Calibration> calibration;  // the bytes of its files; nothing: tables are the identity
+  std::string version;                     // of the program
   std::uint64_t points = 0;
   std::uint64_t shards = 1;
 
   std::uint64_t points_of(std::uint64_t shard) const;
 };
 
-// The folder STORE.shards, on a file system that all machines share. There lie copies of the plan and of its
-// board, the scripts of the tasks, and for each shard its store, its counts and its log: some files a shard,
+// The folder STORE.shards, on a file system that all machines share. There lie copies of the plan, of its
+// board and of its calibration, the scripts of the tasks, and for each shard its store, its counts and its log: some files a shard,
 // none a point. A shard is whole when shard_I.db is there. Member functions throw std::runtime_error that
 // names the file.
 class ShardFolder {

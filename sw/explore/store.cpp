@@ -54,6 +54,14 @@ void check_version(Database& database, const std::string& version) {
                                   database.path(), other.text(0), version));
 }
 
+// SQLite does not wait when it is to change the kind of its journal.
+void wait_for_writers(Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
+
+std::string journal_of(const Database& database) {
+  Statement statement(database, "PRAGMA journal_mode");
+  return statement.step() ? statement.text(0) : "";
+}
+
 constexpr const char* kFind = "SELECT 1 FROM points WHERE hash = ?";
 
 bool finds(Statement& find, const std::string& hash) {
@@ -84,8 +92,8 @@ const std::string kInsertBlame = fmt::format("INSERT INTO blame({}) VALUES(?, ?,
 
 }  // namespace
 
-Store::Store(const std::string& path, const std::string& version)
-    : database_(path, Database::Access::kCreate), version_(version) {
+Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds patience)
+    : database_(path, Database::Access::kCreate, patience), version_(version) {
   create();
   check_version(database_, version);
   read_columns();
@@ -96,6 +104,7 @@ Store::Store(const std::string& path, const std::string& version)
 // Once, by whoever comes first.
 void Store::create() {
   if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
+    wait_for_writers(database_);
     // Readers do not wait for the one who writes; nothing is lost when the process ends, however it does.
     database_.execute("PRAGMA journal_mode = WAL");
     database_.execute("BEGIN IMMEDIATE");
@@ -103,6 +112,7 @@ void Store::create() {
     database_.execute("COMMIT");
   }
   check_layout(database_);
+  if (journal_of(database_) != "wal") wait_for_writers(database_);
   database_.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
 }
 
@@ -306,6 +316,14 @@ void copy_points(std::vector<std::unique_ptr<Reader>>& readers, Database& out,
   }
 }
 
+// Brings all that its journal holds into the file itself: the journal can go then, whatever follows.
+void empty_journal(const std::string& path) {
+  Database database(path, Database::Access::kWrite);
+  check_layout(database);
+  Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
+  if (checkpoint.step() && checkpoint.integer(0) != 0) database.fail(SQLITE_BUSY);
+}
+
 }  // namespace
 
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out) {
@@ -313,11 +331,13 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
   std::error_code ignored;
   std::filesystem::remove(aside, ignored);
   try {
+    if (std::filesystem::exists(out)) empty_journal(out);
     std::vector<std::unique_ptr<Reader>> readers;
     readers.reserve(inputs.size());
     for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
     Database database(aside, Database::Access::kCreate);
-    database.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA locking_mode = EXCLUSIVE");
+    database.execute(
+        "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA locking_mode = EXCLUSIVE");
     database.execute("BEGIN");
     std::vector<std::string> columns = all_columns(readers);
     create_tables(database, columns);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -37,7 +38,8 @@ struct StoredPoint {
 class Store {
  public:
   // Opens the file, or makes it. All its points are of one version of the program.
-  Store(const std::string& path, const std::string& version);
+  Store(const std::string& path, const std::string& version,
+        std::chrono::milliseconds patience = Database::kPatience);
 
   bool has(const std::string& hash);
   // False if the point is there already.
@@ -73,7 +75,8 @@ class FinishedStore {
 
 // Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their
 // hashes: its bytes depend on nothing but the points. `out` may be one of the inputs; it is replaced when the
-// new file is whole. Throws DatabaseError, also if two inputs hold different results of one point, or of
+// new file is whole and on the disk; nobody else may write to it (see StoreLock). An `out` that is there and is
+// not a file of a Store is an error. Throws DatabaseError, also if two inputs hold different results of one point, or of
 // different versions.
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out);
 

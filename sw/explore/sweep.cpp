@@ -9,13 +9,15 @@
 #include <atomic>
 #include <cerrno>
 #include <deque>
+#include <map>
 #include <memory>
 #include <new>
-#include <stdexcept>
+#include <string>
 #include <system_error>
 #include <vector>
 
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "sw/explore/worker.h"
 
 namespace stereotlm::explore {
@@ -23,7 +25,6 @@ namespace {
 
 constexpr std::uint64_t kMostOfAnOrder = 16;  // points
 constexpr int kLookMs = 100;
-constexpr int kMostDeaths = 3;  // of workers, one after another without a finished point
 
 // A flag in memory that forked processes share.
 class SharedFlag {
@@ -64,7 +65,10 @@ class Sweep {
   }
 
   SweepCounts run(const std::function<bool(const SweepCounts&)>& go_on) {
-    { const Store made(options_.store, options_.version); }  // what is wrong with the file is said once
+    const StoreLock lock(options_.store);
+    {  // What is wrong with the file is said once.
+      const Store made(options_.store, options_.version, options_.patience);
+    }
     const std::uint64_t jobs = std::min<std::uint64_t>(options_.jobs, counts_.total);
     for (std::uint64_t job = 0; job < jobs; ++job) start_worker(job);
     while (is_busy()) {
@@ -122,18 +126,25 @@ class Sweep {
     if (worker.order().count == 0) return;
     const auto end = worker.receive();
     if (end) {
-      deaths_ = 0;
       count(*end);
       if (worker.order().count == 0) give_order(worker);
       return;
     }
-    const WorkOrder order = worker.order();
-    if (++deaths_ == kMostDeaths) {
-      throw std::runtime_error(fmt::format("a worker has ended with {} at point {}, the {}. time in a row",
-                                           worker.death(), order.first, deaths_));
+    WorkOrder order = worker.order();
+    if (++deaths_[order.first] == kMostDeaths) {
+      deaths_.erase(order.first);
+      fail(order.first, fmt::format("its process has ended with {}, {} times", worker.death(), kMostDeaths));
+      order.first += order.step;
+      --order.count;
     }
     if (order.count > 0) left_.push_back(order);
     start_worker(place);
+  }
+
+  // A point whose worker could not say so itself.
+  void fail(std::uint64_t number, const std::string& reason) {
+    Store store(options_.store, options_.version, options_.patience);
+    count(store.add(failed_point(points_.point(number), reason)) ? PointEnd::kFailed : PointEnd::kKnown);
   }
 
   void count(PointEnd end) {
@@ -167,9 +178,9 @@ class Sweep {
   IgnoredSigpipe ignored_sigpipe_;
   SharedFlag stop_;
   SweepCounts counts_;
-  std::uint64_t next_ = 0;      // of this shard's points, not handed out yet
-  std::deque<WorkOrder> left_;  // of dead workers
-  int deaths_ = 0;
+  std::uint64_t next_ = 0;                        // of this shard's points, not handed out yet
+  std::deque<WorkOrder> left_;                    // of dead workers
+  std::map<std::uint64_t, int> deaths_;           // of workers, by the point
   std::vector<std::unique_ptr<Worker>> workers_;  // end before what they share
 };
 

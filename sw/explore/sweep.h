@@ -1,9 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
 
+#include "sw/explore/database.h"
 #include "sw/explore/figures.h"
 #include "sw/explore/points.h"
 #include "sw/explore/sweep_counts.h"
@@ -13,8 +15,9 @@ namespace stereotlm::explore {
 // Thrown by Evaluate where nobody wants to know how a point ends any more. Nothing of it is kept.
 struct GivenUp {};
 
-// Simulates a point that has a board. Called in worker processes, which are forked from this
-// one; what it throws is the reason for which the point has failed.
+// Simulates a point that has a board. Called in worker processes, which are forked from this one; what it
+// throws is the reason for which the point has failed. But std::system_error ends the sweep: it is the machine
+// that lacks something; and EndedBySignal counts as the end of the worker.
 using Evaluate = std::function<Figures(const Point& point)>;
 
 struct SweepOptions {
@@ -24,12 +27,15 @@ struct SweepOptions {
   unsigned jobs = 1;        // worker processes
   std::uint64_t shard = 0;  // does the points whose number modulo `shards` is this
   std::uint64_t shards = 1;
+  std::chrono::milliseconds patience = Database::kPatience;  // with who keeps the store locked
 };
 
 // All points that the stores do not have. `go_on` is called several times a second with what is done of this
 // shard; once it returns false no further point is begun. At the end the store is put into its final form,
-// whose bytes depend on nothing but its points (merge_stores()). Throws DatabaseError, and std::runtime_error
-// if workers keep dying; all points that were finished are kept.
+// whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun again, and
+// is one that has failed when it has died kMostDeaths times. Throws DatabaseError, also if another sweep is at
+// work on the store, and std::runtime_error; all points that were finished are kept.
+inline constexpr int kMostDeaths = 3;
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on);
 

@@ -18,8 +18,8 @@
 #include <utility>
 
 #include "sw/explore/conditions.h"
+#include "sw/explore/ended_by_signal.h"
 #include "sw/explore/figures.h"
-#include "sw/explore/store.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -72,6 +72,14 @@ void take_figures(Figures figures, StoredPoint& row) {
   row.blame = std::move(figures.blame);
 }
 
+StoredPoint row_of(const Point& point) {
+  StoredPoint row;
+  row.hash = point.hash;
+  row.config = point.yaml;
+  row.values = point.values;
+  return row;
+}
+
 // The work itself, in the process of the worker.
 class PointRunner {
  public:
@@ -79,7 +87,7 @@ class PointRunner {
       : points_(points),
         evaluate_(evaluate),
         conditions_(points.conditions()),
-        store_(options.store, options.version) {
+        store_(options.store, options.version, options.patience) {
     if (!options.known.empty()) known_.emplace(options.known, options.version);
   }
 
@@ -87,10 +95,7 @@ class PointRunner {
     const Point point = points_.point(number);
     if (!conditions_.hold(point.values)) return PointEnd::kExcluded;
     if (store_.has(point.hash) || (known_ && known_->has(point.hash))) return PointEnd::kKnown;
-    StoredPoint row;
-    row.hash = point.hash;
-    row.config = point.yaml;
-    row.values = point.values;
+    StoredPoint row = row_of(point);
     PointEnd end = PointEnd::kOk;
     if (!point.board) {
       end = PointEnd::kImpossible;
@@ -102,10 +107,13 @@ class PointRunner {
         row.status = "ok";
       } catch (const GivenUp&) {
         return PointEnd::kGivenUp;
+      } catch (const EndedBySignal&) {
+        throw;
+      } catch (const std::system_error&) {
+        throw;
       } catch (const std::exception& error) {
         end = PointEnd::kFailed;
-        row.status = "failed";
-        row.reason = error.what();
+        row = failed_point(point, error.what());
       }
     }
     return store_.add(row) ? end : PointEnd::kKnown;
@@ -137,6 +145,10 @@ class PointRunner {
       }
     }
     _exit(0);
+  } catch (const EndedBySignal& error) {
+    signal(error.signal(), SIG_DFL);
+    raise(error.signal());
+    _exit(1);  // a signal that does not end it
   } catch (const std::exception& error) {
     const std::string text = error.what();
     report.is_failure = true;
@@ -148,6 +160,13 @@ class PointRunner {
 }
 
 }  // namespace
+
+StoredPoint failed_point(const Point& point, const std::string& reason) {
+  StoredPoint row = row_of(point);
+  row.status = "failed";
+  row.reason = reason;
+  return row;
+}
 
 Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                const std::atomic<bool>& stop) {

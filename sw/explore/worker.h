@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "sw/explore/points.h"
+#include "sw/explore/store.h"
 #include "sw/explore/sweep.h"
 
 namespace stereotlm::explore {
@@ -20,6 +22,9 @@ struct WorkOrder {
 
 // How a point has ended.
 enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kGivenUp, kNotBegun };
+
+// The row of a point that has failed.
+StoredPoint failed_point(const Point& point, const std::string& reason);
 
 // A process that does points one after another, and tells how each has ended. It ends with this process.
 class Worker {

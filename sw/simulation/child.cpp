@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "sw/explore/ended_by_signal.h"
+
 namespace stereotlm::simulation {
 namespace {
 
@@ -133,8 +135,9 @@ void Child::throw_end() {
   }
   pid_ = -1;
   if (WIFSIGNALED(status)) {
-    throw std::runtime_error(fmt::format("the process was ended by signal {} ({})", WTERMSIG(status),
-                                         strsignal(WTERMSIG(status))));
+    const int signal = WTERMSIG(status);
+    throw explore::EndedBySignal(
+        fmt::format("the process was ended by signal {} ({})", signal, strsignal(signal)), signal);
   }
   throw std::runtime_error(
       fmt::format("the process ended with status {} before its work was done", WEXITSTATUS(status)));

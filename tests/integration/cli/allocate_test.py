@@ -127,8 +127,10 @@ class Allocate(ProgramTest):
         shallow = self.file("shallow.yaml", BOARD.replace("ssram: {", f"ssram: {{default: {{words: {WIDTH * HEIGHT}, kind: zbt_pipelined}}, ").encode())
         said = self.succeeds(self.allocate("--source", "preloaded", board=shallow))
         self.assertEqual(min(self.rows(said)), 3)
+        self.store.unlink()
         refused = self.allocate("--source", "preloaded", board=shallow, banks=2)
-        self.refused_in_one_line(refused, "--banks = 2: none of", "fits into so few banks")
+        self.assertFalse(self.store.exists())
+        self.refused_in_one_line(refused, "--banks = 2: none of", "fits into so few banks; with 3 some do")
 
     def test_wrong_usage(self):
         board = self.board()

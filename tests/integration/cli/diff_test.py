@@ -384,10 +384,10 @@ class Folders(DiffTest):
             self.write(folder)
 
     def test_that_are_none_are_refused(self):
-        rule = "RUN must be a folder that run --out has written"
+        rule = "A and B must be folders that run --out has written"
         none = self.folder / "none"
-        for line in self.refused(self.diff(b=none), rule, f"'{none}/run.json': no such file"):
-            self.assertIn(str(none), line)
+        self.refused_in_one_line(self.diff(b=none), f"error: {rule}: '{none}': no such folder")
+        self.refused_in_one_line(self.diff(b=self.left), f"error: {rule}: '{self.left}': not a folder")
         for name in ("run.json", "config.yaml", "stats.json"):
             copy = self.folder / "copy"
             shutil.copytree(self.b, copy)

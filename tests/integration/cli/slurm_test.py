@@ -141,6 +141,22 @@ class Results(SlurmTest):
         plan.write_text(text)
         self.assert_whole(plan)
 
+    def test_are_of_a_calibration_as_it_was_submitted(self):
+        rig = self.folder / "rig.yaml"
+        self.succeeds(run("calibrate", "--synthetic", 3, "--grid", "9x6", "--square-mm", 25, "--out", rig))
+        text = f"board: fpl2003\nrun: {{calibration: {rig}}}\nvary: {{matcher.disparities: {{from: 10, to: 19, step: 1}}}}\n"
+        plan = self.file("rig_plan.yaml", text.encode())
+        expected = self.local(plan)
+        process = self.start(plan=plan)
+        self.wait_until(lambda: cluster.jobs())
+        table = self.folder / "rig_left.lut"
+        before = table.read_bytes()
+        table.write_bytes(b"damaged")
+        self.finishes(process)
+        self.assertEqual(self.store.read_bytes(), expected)
+        self.assertFalse(self.shards.exists())
+        table.write_bytes(before)
+
     def test_use_the_processors_of_their_jobs(self):
         process = self.start("--sbatch", "cpus-per-task=2", plan=self.slow)
         self.wait_for_points()

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "platform/board_yaml.h"
@@ -55,6 +56,60 @@ TEST(Plan, MayBeOfAnotherBoardThanItNames) {
   EXPECT_EQ(plan.board(), "fpl2003-qvga");
   EXPECT_EQ(plan.point(0).board, platform::load_board("fpl2003-qvga"));
   EXPECT_EQ(plan_of(kBoard).board(), "fpl2003");
+}
+
+TEST(Plan, NamesTheFileOfItsCalibration) {
+  const Plan plan = plan_of(kBoard + "run: {calibration: rigs/mine.yaml}\n");
+  EXPECT_EQ(plan.calibration(), "rigs/mine.yaml");
+  EXPECT_EQ(plan.calibration_place(), plan_path() + ":2:20");
+  EXPECT_EQ(plan_of(kBoard).calibration(), "");
+}
+
+TEST(Plan, WithACalibrationHasOtherPoints) {
+  Plan plan = plan_of(kBoard);
+  const Point before = plan.point(0);
+  EXPECT_EQ(plan.use_calibration("5a", 640, 480), std::nullopt);
+  const Point point = plan.point(0);
+  EXPECT_EQ(point.run.calibration, "5a");
+  EXPECT_EQ(point.values.back().path, kCalibrationPath);
+  EXPECT_EQ(std::get<std::string>(point.values.back().value), "5a");
+  EXPECT_NE(point.hash, before.hash);
+  PointRun run;
+  run.calibration = "5a";
+  EXPECT_EQ(point.hash, make_point(0, *before.board, run).hash);
+}
+
+TEST(Plan, MakesPointsImpossibleThatTheTablesDoNotFit) {
+  Plan plan = plan_of(kBoard +
+                      "zip: [{image.width: [640, 320], image.height: [480, 240]}]\n"
+                      "vary: {allocation.left_lut: [bank6, none]}\n");
+  EXPECT_EQ(plan.use_calibration("5a", 640, 480), std::nullopt);
+  const std::string size =
+      "run.calibration: image size = 640x480: must be that of the board's images, 320x240";
+  for (std::uint64_t number = 0; number < plan.size(); ++number) {
+    const Point point = plan.point(number);
+    // The axes of `vary` come before those of `zip`.
+    const bool is_small = number % 2 == 1;
+    const bool has_none = number / 2 == 1;
+    EXPECT_EQ(point.reason, is_small   ? size
+                            : has_none ? "run.calibration: goes with a board that has both tables; "
+                                         "allocation.left_lut = none"
+                                       : "");
+    EXPECT_EQ(point.board.has_value(), point.reason.empty());
+    EXPECT_EQ(point.run.calibration, "5a");
+  }
+}
+
+TEST(Plan, SaysIfNoPointCanHaveTheTables) {
+  const std::string size = "image size = 320x240: must be that of the board's images, 640x480";
+  EXPECT_EQ(plan_of(kBoard).use_calibration("5a", 320, 240), size);
+  EXPECT_EQ(plan_of(kBoard + "vary: {allocation.left_lut: [bank6, none]}\n").use_calibration("5a", 320, 240),
+            size);
+  const std::string without = "board: fpl2003-no-calibration\n";
+  const std::string none = "goes with a board that has both tables; allocation.left_lut = none";
+  EXPECT_EQ(plan_of(without).use_calibration("5a", 640, 480), none);
+  EXPECT_EQ(plan_of(without + "vary: {allocation.left_lut: [bank6, none]}\n").use_calibration("5a", 640, 480),
+            std::nullopt);
 }
 
 TEST(Plan, WithoutAnythingIsItsBoard) {
@@ -224,9 +279,19 @@ TEST(PlanRefusals, AreForRangesThatDoNotEnd) {
         << range;
   }
   EXPECT_THAT(refusals(kBoard + "vary: {matcher.disparities: {from: x, to: 4, step: 1}}\n").front(),
-              HasSubstr("vary: matcher.disparities.from: a decimal number of at most 15 digits"));
+              HasSubstr("vary: matcher.disparities.from = x: a decimal number of at most 15 digits"));
   EXPECT_THAT(refusals(kBoard + "vary: {matcher.disparities: {from: 1, to: 4}}\n").front(),
-              HasSubstr("vary: matcher.disparities.step: a decimal number"));
+              HasSubstr("vary: matcher.disparities.step: missing: a decimal number"));
+}
+
+TEST(PlanRefusals, AreForCalibrationsThatAreNoFile) {
+  for (const std::string file : {"[a.yaml]", "\"\"", "null"}) {
+    EXPECT_THAT(refusals(kBoard + "run: {calibration: " + file + "}\n").front(),
+                HasSubstr(": the file of a calibration, as written by stereotlm calibrate"))
+        << file;
+  }
+  EXPECT_THAT(refusals(kBoard + "vary: {run.calibration: [a.yaml, b.yaml]}\n").front(),
+              HasSubstr(":2:8: vary: run.calibration: goes with `run`: one for all points"));
 }
 
 TEST(PlanRefusals, AreForGroupsOfDifferentLengths) {

@@ -71,6 +71,14 @@ TEST_F(ShardFolderTest, IsOfTheSweepThatHasBegunIt) {
   other.board = "extends: fpl2003\n";
   EXPECT_FALSE(folder.is_of(other));
   other = three_shards();
+  other.calibration = {"a", "b", "c"};
+  EXPECT_FALSE(folder.is_of(other));
+  folder.begin(other);
+  EXPECT_TRUE(folder.is_of(other));
+  other.calibration->right_lut = "d";
+  EXPECT_FALSE(folder.is_of(other));
+  folder.begin(three_shards());
+  other = three_shards();
   other.shards = 4;
   EXPECT_FALSE(folder.is_of(other));
   other = three_shards();
@@ -83,12 +91,18 @@ TEST_F(ShardFolderTest, HoldsWhatItsTasksNeedAndNothingElse) {
   folder.lock();
   ShardedSweep sweep = three_shards();
   sweep.board = "extends: fpl2003\n";
+  sweep.calibration = {"the rig", "left", "right"};
   folder.begin(sweep);
   EXPECT_EQ(read_file(file("plan.yaml")), sweep.plan);
   EXPECT_EQ(read_file(file("board.yaml")), *sweep.board);
   EXPECT_THAT(names(folder.path()),
-              UnorderedElementsAre("lock", "sweep", "plan.yaml", "board.yaml", "task.sh", "merge.sh"));
+              UnorderedElementsAre("lock", "sweep", "plan.yaml", "board.yaml", "calibration.yaml",
+                                   "calibration_left.lut", "calibration_right.lut", "task.sh", "merge.sh"));
+  EXPECT_EQ(read_file(file("calibration.yaml")), "the rig");
+  EXPECT_EQ(read_file(file("calibration_left.lut")), "left");
+  EXPECT_EQ(read_file(file("calibration_right.lut")), "right");
   folder.begin(three_shards());
+  EXPECT_FALSE(fs::exists(file("calibration.yaml")));
   EXPECT_FALSE(fs::exists(file("board.yaml")));
   folder.remove();
   EXPECT_FALSE(folder.exists());

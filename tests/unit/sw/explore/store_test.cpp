@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -196,6 +199,32 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
                 merge_stores({file("d.db"), file("e.db")}, file("c.db"));
               }),
               HasSubstr("another result of point h1"));
+}
+
+// A process that has added a point ends at once: the point is in the journal alone. Whatever ends the merge, its
+// journal may be gone then.
+TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  const pid_t child = fork();
+  if (child == 0) {
+    auto* const store = new Store(file("a.db"), kVersion);
+    store->add(point("h2"));
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_GT(std::filesystem::file_size(file("a.db-wal")), 0U);
+  std::filesystem::create_directories(file("a.db.new/x"));  // the merge cannot write
+  EXPECT_THAT(message_of([&] { merge_stores({file("a.db")}, file("a.db")); }), HasSubstr("a.db.new: "));
+  for (const char* const ending : {"-wal", "-shm"}) std::filesystem::remove(file("a.db") + ending);
+  EXPECT_THAT(rows(file("a.db"), "SELECT hash FROM points ORDER BY hash"), ElementsAre("h1", "h2"));
+}
+
+TEST_F(StoreTest, DoesNotReplaceWhatIsNoStore) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  test::write_file(file("notes.txt"), "notes");
+  EXPECT_THAT(message_of([&] { merge_stores({file("a.db")}, file("notes.txt")); }),
+              HasSubstr("notes.txt: not a database"));
+  EXPECT_EQ(read_file(file("notes.txt")), "notes");
 }
 
 TEST_F(StoreTest, MergesOnlyWhatIsThere) {

@@ -5,14 +5,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
+#include "sw/explore/ended_by_signal.h"
 #include "sw/explore/plan.h"
 #include "sw/explore/store.h"
 #include "tests/support/scratch_folder.h"
@@ -204,17 +208,107 @@ TEST_F(SweepTest, ReplacesAWorkerThatDies) {
   EXPECT_EQ(read_file(file("a.db")), expected);
 }
 
-TEST_F(SweepTest, GivesUpWhereWorkersDieAgainAndAgain) {
+// Of 60 points 6 have a board and the window 9.
+TEST_F(SweepTest, MakesARowOfEachPointWhoseWorkersDieAgainAndAgain) {
   const auto dies = [](const Point& point) -> Figures {
     if (point.board->matcher.window == 9) raise(SIGKILL);
     return evaluate(point);
   };
-  const std::string message = message_of([&] { sweep(plan(), dies, options("a.db"), always); });
-  EXPECT_THAT(message, HasSubstr("a worker has ended with signal 9 (Killed) at point "));
+  for (const unsigned jobs : {1U, 3U}) {
+    const std::string store = std::to_string(jobs) + ".db";
+    const SweepCounts counts = sweep(plan(), dies, options(store, jobs), always);
+    EXPECT_EQ(counts.done(), counts.total);
+    EXPECT_EQ(counts.ok, 18U);
+    EXPECT_EQ(counts.failed, 12U);
+    Database database(file(store), Database::Access::kWrite);
+    const std::string killed =
+        "status = 'failed' AND reason = 'its process has ended with signal 9 (Killed), 3 times'";
+    EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND " + killed), 6);
+    EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE " + killed), 6);
+    database.execute("DELETE FROM points WHERE " + killed);
+  }
+  EXPECT_EQ(read_file(file("1.db")), read_file(file("3.db")));
+  sweep(plan(), evaluate, options("1.db"), always);
+  EXPECT_EQ(read_file(file("1.db")), reference());
+}
+
+TEST_F(SweepTest, TakesTheEndOfAProcessOfEvaluateForThatOfTheWorker) {
+  const std::string once = file("died");
+  const auto child_dies = [&once](const Point& point) {
+    if (point.board->matcher.window == 9) throw EndedBySignal("the process was ended", SIGSEGV);
+    if (!std::filesystem::exists(once)) {
+      test::write_file(once, "");
+      throw EndedBySignal("the process was ended", SIGKILL);
+    }
+    return evaluate(point);
+  };
+  const SweepCounts counts = sweep(plan(), child_dies, options("a.db"), always);
+  EXPECT_EQ(counts.ok, 18U);
   Database database(file("a.db"), Database::Access::kRead);
-  EXPECT_GE(database.number("SELECT count(*) FROM points WHERE status = 'ok'"), 18)
-      << "what was done is kept";
+  EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND reason = "
+                            "'its process has ended with signal 11 (Segmentation fault), 3 times'"),
+            6);
+}
+
+TEST_F(SweepTest, EndsWhereTheMachineLacksSomething) {
+  const auto lacks = [](const Point& point) -> Figures {
+    if (point.board->matcher.window == 9) throw std::system_error(EAGAIN, std::generic_category(), "fork");
+    return evaluate(point);
+  };
+  EXPECT_EQ(message_of([&] { sweep(plan(), lacks, options("a.db"), always); }),
+            "fork: Resource temporarily unavailable");
+  EXPECT_GE(points_in(file("a.db")), 18) << "what was done is kept";
   sweep(plan(), evaluate, options("a.db"), always);
+  EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, SaysThatItsStoreIsLocked) {
+  SweepOptions impatient = options("a.db");
+  impatient.patience = std::chrono::milliseconds(50);
+  sweep(plan(), evaluate, impatient, [](const SweepCounts& counts) { return counts.done() < 20; });
+  const auto before = points_in(file("a.db"));
+  EXPECT_GE(before, 5);
+  for (const char* const lock : {"BEGIN IMMEDIATE", "BEGIN EXCLUSIVE"}) {
+    Database other(file("a.db"), Database::Access::kWrite);
+    other.execute(lock);
+    EXPECT_EQ(message_of([&] { sweep(plan(), evaluate, impatient, always); }),
+              file("a.db") + ": another process keeps it locked");
+  }
+  EXPECT_EQ(points_in(file("a.db")), before);
+  sweep(plan(), evaluate, impatient, always);
+  EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, EndsIfItsStoreIsLockedMeanwhile) {
+  SweepOptions impatient = options("a.db", 2);
+  impatient.patience = std::chrono::milliseconds(50);
+  std::unique_ptr<Database> other;
+  const auto lock = [&](const SweepCounts& counts) {
+    if (counts.done() >= 20 && !other) {
+      other = std::make_unique<Database>(file("a.db"), Database::Access::kWrite);
+      other->execute("BEGIN IMMEDIATE");
+    }
+    return true;
+  };
+  EXPECT_EQ(message_of([&] { sweep(plan(), evaluate, impatient, lock); }),
+            file("a.db") + ": another process keeps it locked");
+  other.reset();
+  const SweepCounts counts = sweep(plan(), evaluate, impatient, always);
+  EXPECT_GE(counts.known, 5U) << "what was done is kept";
+  EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, KeepsOtherSweepsOut) {
+  bool is_tried = false;
+  const auto try_another = [&](const SweepCounts& /*counts*/) {
+    if (is_tried) return true;
+    is_tried = true;
+    EXPECT_EQ(message_of([&] { sweep(plan(), evaluate, options("a.db"), always); }),
+              file("a.db") + ": another process is at work on it: wait for its end, or give another file");
+    return true;
+  };
+  sweep(plan(), evaluate, options("a.db"), try_another);
+  EXPECT_TRUE(is_tried);
   EXPECT_EQ(read_file(file("a.db")), reference());
 }
 

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sw/explore/ended_by_signal.h"
+
 namespace stereotlm::simulation {
 namespace {
 
@@ -114,6 +116,16 @@ TEST(Child, NamesTheSignalThatEndedIt) {
     kill(getpid(), SIGKILL);
   });
   EXPECT_EQ(failure_of(child), "the process was ended by signal 9 (Killed)");
+}
+
+TEST(Child, TellsTheSignalApartFromAFailure) {
+  Child child([](const Child::Tell& /*tell*/) { kill(getpid(), SIGTERM); });
+  try {
+    child.next();
+    FAIL() << "it was ended";
+  } catch (const explore::EndedBySignal& end) {
+    EXPECT_EQ(end.signal(), SIGTERM);
+  }
 }
 
 TEST(Child, NamesTheStatusWithWhichItEndedTooEarly) {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace stereotlm::explore {
+
+// Keeps a store for one writer: the merge at the end of a sweep replaces the file, and points that another
+// process added meanwhile would be lost. The lock is of the system and ends with this object, or with this
+// process and those that it has forked since. Readers are not kept out.
+class StoreLock {
+ public:
+  // For how long it waits: processes of a sweep that was killed take a moment to end.
+  static constexpr std::chrono::milliseconds kPatience{3000};
+
+  // The file is made, empty, if it is not there. Throws DatabaseError.
+  explicit StoreLock(const std::string& store, std::chrono::milliseconds patience = kPatience);
+  ~StoreLock();
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,92 @@
+#include "sw/explore/store_lock.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "sw/explore/database.h"
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using test::message_of;
+using ::testing::EndsWith;
+using namespace std::chrono_literals;
+
+class StoreLockTest : public ::testing::Test {
+ protected:
+  std::string store() const { return (folder_.path() / "a.db").string(); }
+  // What a second lock is refused with.
+  std::string refusal() const {
+    return message_of([&] { const StoreLock second(store(), 0ms); });
+  }
+
+ private:
+  test::ScratchFolder folder_;
+};
+
+TEST_F(StoreLockTest, IsForOne) {
+  auto first = std::make_unique<StoreLock>(store());
+  EXPECT_EQ(refusal(),
+            store() + ": another process is at work on it: wait for its end, or give another file");
+  first.reset();
+  const StoreLock second(store(), 0ms);
+}
+
+TEST_F(StoreLockTest, HoldsWhileSqliteOpensAndClosesTheFile) {
+  const StoreLock first(store());
+  for (int i = 0; i < 2; ++i) {
+    Database database(store(), Database::Access::kCreate);
+    database.execute("CREATE TABLE IF NOT EXISTS t(x); INSERT INTO t VALUES(1)");
+  }
+  EXPECT_THAT(refusal(), EndsWith("give another file"));
+}
+
+TEST_F(StoreLockTest, EndsWithTheProcessAndThoseThatItHasForked) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const StoreLock lock(store());
+    test::write_file(store() + ".locked", "");
+    pause();
+  }
+  while (!std::filesystem::exists(store() + ".locked")) std::this_thread::sleep_for(1ms);
+  EXPECT_THAT(refusal(), EndsWith("give another file"));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  const StoreLock lock(store(), 0ms);
+}
+
+TEST_F(StoreLockTest, WaitsForAProcessThatEnds) {
+  auto first = std::make_unique<StoreLock>(store());
+  std::thread other([&first] {
+    std::this_thread::sleep_for(100ms);
+    first.reset();
+  });
+  const StoreLock second(store(), 60s);
+  other.join();
+}
+
+TEST_F(StoreLockTest, IsOfTheFileThatIsThere) {
+  const StoreLock first(store());
+  test::write_file(store() + ".new", "");
+  std::filesystem::rename(store() + ".new", store());
+  const StoreLock second(store(), 0ms);
+  EXPECT_THAT(refusal(), EndsWith("give another file"));
+}
+
+TEST_F(StoreLockTest, SaysWhyItCannotBe) {
+  EXPECT_EQ(message_of([&] { const StoreLock lock(store() + "/none.db"); }),
+            store() + "/none.db: cannot be opened to write: No such file or directory");
+}
+
+}  // namespace
+}  // namespace stereotlm::explore
