@@ -102,7 +102,8 @@ def draw(core, computer):
             right.text(row["lost_percent"] + 1, at + 0.3 - 0.2 * number, f"{name}: {row['steady']:.2f} frames/s", fontsize=7,
                        va="center")
     right.set(yticks=range(len(names)), yticklabels=[name.replace(" (", "\n(").replace(", ", ",\n") for name in names],
-              xlabel="pixels of the left camera that are lost, %", title="the whole computer, steady", xlim=(0, 165), xticks=range(0, 101, 20))
+              xlabel="pixels of the left camera that are lost, %", title="the whole computer, steady",
+              xlim=(0, 165), xticks=range(0, 101, 20))
     study.save(figure, HERE / "arbitration.png")
 
 
