@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,6 +7,7 @@
 #include "sw/explore/points.h"
 #include "sw/explore/stored_row.h"
 #include "sw/explore/sweep.h"
+#include "sw/report/temporary_folder.h"
 
 namespace stereotlm::explore {
 
@@ -15,10 +15,8 @@ namespace stereotlm::explore {
 // goes when the batch does.
 class Batch {
  public:
-  Batch();  // throws std::runtime_error if there can be no folder
-  ~Batch();
-  Batch(const Batch&) = delete;
-  Batch& operator=(const Batch&) = delete;
+  // Throws std::runtime_error if there can be no folder.
+  Batch() : path_((folder_.path() / "points.db").string()) {}
 
   // As sweep(). False if `go_on` has ended it.
   bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
@@ -31,7 +29,7 @@ class Batch {
   const StoredRow& row_of(const Point& point);
 
  private:
-  std::filesystem::path folder_;
+  report::TemporaryFolder folder_;
   std::string path_;
   std::unique_ptr<StoredRow> row_;
 };
