@@ -189,8 +189,8 @@ std::string key(const std::string& buffer, const std::string& first, const std::
   return key(buffer, fmt::format("[{}, {}]", first, second));
 }
 
-// The whole computer with some allocations: of each number of banks the best, as `allocate` finds it in some minutes.
-// Banks that are not named are those of the board.
+// The whole computer with some allocations: of each number of banks the best, as `allocate` finds it in some
+// minutes. Banks that are not named are those of the board.
 Claim banks_of_computer() {
   const std::vector<std::vector<std::string>> placed = {
       {},

@@ -7,7 +7,8 @@
 
 namespace stereotlm::paper {
 
-// A board as a command line names it, and how it is run: without pixels, for as many frames as explore::frames_of().
+// A board as a command line names it, and how it is run: without pixels, for as many frames as
+// explore::frames_of().
 struct BoardRun {
   std::string preset;
   std::vector<std::string> sets;  // KEY=VALUE
@@ -16,14 +17,16 @@ struct BoardRun {
 
 // What is compared.
 enum class Quantity {
-  kRate,  // frames per second of the first run: of the core alone, or of the computer between the first delivery
-          // and the last. Further runs stand beside it
+  // Frames per second of the first run: of the core alone, or of the computer between the first delivery and
+  // the last. Further runs stand beside it.
+  kRate,
   kSlices,   // % of the slices of the FPGA, of the first run's board
   kSpread,   // the highest rate of the runs less the lowest
   kSpeedUp,  // the first run's rate in times of the second's
-  kBanksProved,  // the fewest banks with which an allocation reaches the best rate of the first run's board with all of
-                 // its banks, of all allocations
-  kBanksFound,  // the fewest banks that one of the runs uses which reaches the rate of the first
+  // The fewest banks with which, of all allocations, one reaches the best rate of the first run's board.
+  kBanksProved,
+  // The fewest banks that one of the runs uses which reaches the rate of the first.
+  kBanksFound,
 };
 
 // "frames/s", "% of the slices", "times", "banks"
@@ -46,8 +49,8 @@ struct Claim {
   std::vector<Case> cases;
 };
 
-// Every number of the paper that is compared, with where it stands, the boards that it is about and the rule that
-// decides; the sizes of Table 2 alone are explore::table_2(), to which the area is fitted.
+// Every number of the paper that is compared, with where it stands, the boards that it is about and the rule
+// that decides; the sizes of Table 2 alone are explore::table_2(), to which the area is fitted.
 std::vector<Claim> claims();
 
 }  // namespace stereotlm::paper

@@ -16,8 +16,8 @@ inline constexpr const char* kFigures[] = {"table1", "table2", "banks"};
 // The other files beside it: tables and pictures.
 std::vector<std::string> file_names();
 
-// The tables, by name: table1.csv, table2.csv, banks.csv, claims.csv. Numbers are the shortest decimals that read back
-// equal, as in stats.json.
+// The tables, by name: table1.csv, table2.csv, banks.csv, claims.csv. Numbers are the shortest decimals that
+// read back equal, as in stats.json.
 std::map<std::string, std::string> tables(const Findings& findings);
 
 // paper.md: every claim with its rule, its values and the commands that give them.

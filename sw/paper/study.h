@@ -65,25 +65,26 @@ struct Means {
   std::function<bool(std::uint64_t done, std::uint64_t total)> go_on;  // several times a second
 };
 
-// Simulates what the claims are about. Nothing if `go_on` has ended it. Throws std::runtime_error if a board cannot be
-// simulated.
+// Simulates what the claims are about. Nothing if `go_on` has ended it. Throws std::runtime_error if a board
+// cannot be simulated.
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means);
 
-// The command that gives the number of a run, as typed into a shell: "stereotlm run fpl2003 --timing-only ..".
+// The command that gives the number of a run, as typed into a shell: "stereotlm run fpl2003 --timing-only
+// ..".
 std::string command_of(const BoardRun& run);
 // Of a case: those that give the numbers that its own is made of.
 std::vector<std::string> commands_of(const Claim& claim, const Case& one);
 
-// At which clock of the FPGA the core alone would reach a printed rate, in MHz: of the least and of the greatest value
-// that is printed so. Nothing unless the case is a rate of the core alone.
+// At which clock of the FPGA the core alone would reach a printed rate, in MHz: of the least and of the
+// greatest value that is printed so. Nothing unless the case is a rate of the core alone.
 struct ClockRange {
   double least_mhz = 0;
   double most_mhz = 0;
 };
 std::optional<ClockRange> clock_for(const Claim& claim, const Case& one, const CaseFinding& finding);
 
-// The modelled value against the printed one, in percent of that; nothing where that would say nothing: of banks, and
-// where the printed one is 0.
+// The modelled value against the printed one, in percent of that; nothing where that would say nothing: of
+// banks, and where the printed one is 0.
 std::optional<double> deviation_percent(const Claim& claim, const Case& one, const CaseFinding& finding);
 
 }  // namespace stereotlm::paper

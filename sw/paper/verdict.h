@@ -34,12 +34,12 @@ std::string text_of(const Rule& rule);
 // kConfirmed or kNotConfirmed.
 Verdict verdict_of(const Rule& rule, double printed, double modelled);
 
-// "So many are needed": `found` is the fewest that were found to do. With fewer than `printed` the claim is wrong
-// whoever has found them; that it is right takes a proof that no fewer do.
+// "So many are needed": `found` is the fewest that were found to do. With fewer than `printed` the claim is
+// wrong whoever has found them; that it is right takes a proof that no fewer do.
 Verdict verdict_of_need(int printed, int found, bool is_proved);
 
-// Of a claim, from those of its cases: theirs if they are all the same; else kInPart if one of them is confirmed, and
-// kNotConfirmed if none is. kOpen without cases.
+// Of a claim, from those of its cases: theirs if they are all the same; else kInPart if one of them is
+// confirmed, and kNotConfirmed if none is. kOpen without cases.
 Verdict verdict_of_all(const std::vector<Verdict>& cases);
 
 }  // namespace stereotlm::paper

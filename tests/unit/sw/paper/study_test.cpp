@@ -15,7 +15,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-// Made up: 420 / window frames a second, a tenth less in a computer, and half of it if a table and results share a bank.
+// Made up: 420 / window frames a second, a tenth less in a computer, and half of it if a table and results
+// share a bank.
 double made_up_rate(const BoardConfig& board, bool camera) {
   const double rate = 420.0 / board.matcher.window * (camera ? 0.9 : 1);
   return board.allocation.left_lut == board.allocation.disparity[0] ? rate / 2 : rate;
