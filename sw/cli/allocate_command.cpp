@@ -19,6 +19,7 @@
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
+#include "sw/explore/allocation_run.h"
 #include "sw/explore/allocation_search.h"
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"
@@ -103,51 +104,7 @@ class ScenePairs : public host::FrameSource {
 
 // "left_image bank0 bank1, .., right_lut bank0"
 std::string text_of(const BoardConfig& board, const Placement& placement) {
-  std::string text;
-  std::string last;
-  const auto buffers = platform::buffers(board.allocation);
-  for (std::size_t i = 0; i < buffers.size(); ++i) {
-    const std::string name = buffers[i].key.substr(buffers[i].key.find('.') + 1);
-    if (name != last) text += (text.empty() ? "" : ", ") + name;
-    text += ' ' + board.banks[static_cast<std::size_t>(placement[i])].name;
-    last = name;
-  }
-  return text;
-}
-
-// What the database says of some boards, to the search.
-void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path,
-                     AllocationSearch& search) {
-  explore::Database store(path, explore::Database::Access::kRead);
-  explore::Statement find(
-      store,
-      search.run().camera
-          ? "SELECT status, reason, cycles, \"frames_per_second.system\", \"frames_per_second.steady\", "
-            "\"cameras.left.dropped_pixels\" + \"cameras.right.dropped_pixels\" FROM points WHERE hash = ?"
-          : "SELECT status, reason, cycles, \"frames_per_second.core\" FROM points WHERE hash = ?");
-  for (const std::size_t number : numbers) {
-    const explore::Point point = search.point(number);
-    find.bind(1, point.hash);
-    if (!find.step()) {
-      search.record_given_up(number);
-      find.reset();
-      continue;
-    }
-    if (find.text(0) != "ok") {
-      throw std::runtime_error(
-          fmt::format("{}: an allocation could not be simulated: {}", path, find.text(1)));
-    }
-    explore::AllocationOutcome outcome;
-    const auto behind_last_write = static_cast<std::uint64_t>(point.board->fpga.pipeline_latency_cycles);
-    outcome.cycles = static_cast<std::uint64_t>(find.integer(2)) + point.run.frames * behind_last_write;
-    outcome.frames_per_second = find.real(3);
-    if (search.run().camera) {
-      outcome.steady = find.real(4);
-      outcome.loses_pixels = find.integer(5) > 0;
-    }
-    search.record(number, outcome);
-    find.reset();
-  }
+  return explore::allocation_text(explore::placed(board, placement));
 }
 
 // What the lines of the table are about.
@@ -175,7 +132,7 @@ std::string table(const Context& context, const std::vector<BestPlacement>& all)
     text += fmt::format(" {:>14.3f}", best.frames_per_second);
     if (camera) text += fmt::format(" {:>8.3f}", best.outcome.steady.value_or(0));
     text += fmt::format(" {:>10.3f} {:>10}  {}\n", context.bound(one), best.reached_by,
-                        text_of(context.board, best.witness));
+                        explore::allocation_text(one));
   }
   return text;
 }
@@ -260,28 +217,6 @@ std::string space_text(const Context& context, int banks) {
          "end\n";
 }
 
-// Simulates what the search asks for. False if it was interrupted.
-bool simulate(AllocationSearch& search, const explore::Evaluate& evaluate,
-              const explore::SweepOptions& sweep) {
-  ProgressLine progress;
-  std::uint64_t before = 0;
-  for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
-    const std::uint64_t left = search.most_left();
-    const auto counts = explore::sweep(explore::AllocationPoints(search, numbers), evaluate, sweep,
-                                       [&](const explore::SweepCounts& done) {
-                                         progress.show([&](double) {
-                                           return fmt::format("{} boards simulated, {} left at most",
-                                                              before + done.done(), left - done.done());
-                                         });
-                                         return !interrupted();
-                                       });
-    if (counts.done() < counts.total) return false;
-    record_outcomes(numbers, sweep.store, search);
-    before += numbers.size();
-  }
-  return true;
-}
-
 // How many more banks it takes.
 std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run,
                         const AllocationSearch::BoundOf& bound) {
@@ -335,7 +270,14 @@ int allocate(const AllocateOptions& options) {
     return simulator(point,
                      [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
   };
-  if (!simulate(search, evaluate, sweep)) {
+  ProgressLine progress;
+  const auto go_on = [&progress](std::uint64_t done, std::uint64_t left) {
+    progress.show([&](double) { return fmt::format("{} boards simulated, {} left at most", done, left); });
+    return !interrupted();
+  };
+  const bool is_whole = explore::simulate(search, evaluate, sweep, go_on);
+  progress.erase();
+  if (!is_whole) {
     say("note", "interrupted: the same command goes on where this one has ended");
     return kInterrupted;
   }

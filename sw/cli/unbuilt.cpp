@@ -7,7 +7,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr std::array kCommands = {"paper", "report"};
+constexpr std::array kCommands = {"report"};
 
 }  // namespace
 

@@ -2,29 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <stdexcept>
-#include <system_error>
 
 namespace stereotlm::explore {
-
-Batch::Batch() {
-  std::string name = (std::filesystem::temp_directory_path() / "stereotlm_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error(
-        fmt::format("{}: a folder for temporary files cannot be made: {}", name, std::strerror(errno)));
-  }
-  folder_ = name;
-  path_ = (folder_ / "points.db").string();
-}
-
-Batch::~Batch() {
-  row_.reset();
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
 
 bool Batch::run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
                 const std::function<bool(const SweepCounts& counts)>& go_on) {

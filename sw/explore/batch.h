@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include "sw/explore/points.h"
 #include "sw/explore/stored_row.h"
 #include "sw/explore/sweep.h"
+#include "sw/report/temporary_folder.h"
 
 namespace stereotlm::explore {
 
@@ -22,10 +22,8 @@ class PointFailed : public std::runtime_error {
 // goes when the batch does.
 class Batch {
  public:
-  Batch();  // throws std::runtime_error if there can be no folder
-  ~Batch();
-  Batch(const Batch&) = delete;
-  Batch& operator=(const Batch&) = delete;
+  // Throws std::runtime_error if there can be no folder.
+  Batch() : path_((folder_.path() / "points.db").string()) {}
 
   // As sweep(). False if `go_on` has ended it.
   bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
@@ -38,7 +36,7 @@ class Batch {
   const StoredRow& row_of(const Point& point);
 
  private:
-  std::filesystem::path folder_;
+  report::TemporaryFolder folder_;
   std::string path_;
   std::unique_ptr<StoredRow> row_;
 };

@@ -3,8 +3,8 @@
 import program
 from program import PRELOADED, ProgramTest, pgm, run
 
-COMMANDS = ["run", "check", "boards", "keys", "bounds", "explain", "calibrate", "sweep", "merge", "allocate", "plot", "diff"]
-UNBUILT_COMMANDS = ["paper", "report"]
+COMMANDS = ["run", "check", "boards", "keys", "bounds", "explain", "calibrate", "sweep", "merge", "allocate", "plot", "diff", "paper"]
+UNBUILT_COMMANDS = ["report"]
 UNBUILT_RUN_OPTIONS = [["--trace", "vcd"]]
 
 

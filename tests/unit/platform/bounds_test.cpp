@@ -174,7 +174,6 @@ TEST(CoreBound, RefusesABoardWithProblemsAndNoFrames) {
   EXPECT_NO_THROW(core_bound(board, identity_tables(board), 1));
   board.matcher.window = 4;
   EXPECT_THROW(core_bound(board, Tables{}, 1), std::invalid_argument);
-  EXPECT_THROW(allocation_period_frames(board), std::invalid_argument);
   board = small_board();
   board.allocation.disparity.clear();
   EXPECT_THROW(core_bound(board, identity_tables(board), 1), std::invalid_argument);

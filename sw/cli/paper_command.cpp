@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "platform/bounds.h"
+#include "sw/cli/add_command.h"
+#include "sw/cli/calibration_input.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/interrupt.h"
+#include "sw/cli/problems.h"
+#include "sw/cli/progress.h"
+#include "sw/cli/python_script.h"
+#include "sw/cli/streams.h"
+#include "sw/cli/typed_option.h"
+#include "sw/cli/version.h"
+#include "sw/paper/document.h"
+#include "sw/paper/study.h"
+#include "sw/report/document_folder.h"
+#include "sw/report/temporary_folder.h"
+#include "sw/report/whole_file.h"
+#include "sw/simulation/simulate_point.h"
+
+namespace stereotlm::cli {
+namespace {
+
+constexpr const char* kScript = "plot_paper.py";
+constexpr const char* kFooter =
+    "Written are paper.md, every claim with paper value, model value, bound, rule, verdict and the commands\n"
+    "that give the numbers again; claims.csv with a row for each case; table1.csv, table2.csv and "
+    "banks.csv;\n"
+    "and their figures table1, table2 and banks as .png and .svg. Other files in DIR stay; files of these\n"
+    "names are replaced if paper.md is there. \"At least eight banks\" is settled with every allocation of "
+    "the\n"
+    "core alone; of the whole computer some allocations are run, see stereotlm allocate for all of them.";
+
+struct PaperOptions {
+  Typed out;
+
+  void add_to(CLI::App& command) {
+    out.add_to(command, "--out", "DIR", "The folder to write, created if missing");
+  }
+
+  void check_usage() const {
+    if (!out.is_given()) refuse("--out: missing: the folder to write");
+  }
+};
+
+// Nothing if it was interrupted.
+std::optional<paper::Findings> study() {
+  simulation::PointSimulator simulator;
+  ProgressLine progress;
+  paper::Means means;
+  means.evaluate = [&simulator](const explore::Point& point) { return simulator(point); };
+  means.bound = [](const platform::BoardConfig& board, std::uint64_t frames) {
+    return platform::core_bound(board, tables_of(board, std::nullopt), frames);
+  };
+  means.version = kVersion;
+  means.jobs = std::max(1U, std::thread::hardware_concurrency());
+  means.go_on = [&progress](std::uint64_t done, std::uint64_t total) {
+    progress.show([&](double) { return fmt::format("{}/{} boards simulated", done, total); });
+    return !interrupted();
+  };
+  return paper::study(paper::claims(), means);
+}
+
+// Adds the pictures of the tables; false if it was interrupted.
+bool draw(std::map<std::string, std::string>& files) {
+  const report::TemporaryFolder folder;
+  for (const auto& [name, bytes] : files) report::write_whole_file(folder.path() / name, bytes);
+  const auto end = run_script(kScript, {"--out=" + folder.path().string(), "--", folder.path().string()});
+  if (interrupted()) return false;
+  if (end.status != 0) {
+    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,
+                                         end.status, end.errors));
+  }
+  for (const char* figure : paper::kFigures) {
+    for (const char* ending : {".png", ".svg"}) {
+      const std::string name = std::string(figure) + ending;
+      files[name] = report::read_whole_file(folder.path() / name);
+    }
+  }
+  return true;
+}
+
+int compare_with_paper(const PaperOptions& options) {
+  std::unique_ptr<report::DocumentFolder> folder;
+  try {
+    folder =
+        std::make_unique<report::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
+  } catch (const std::runtime_error& error) {
+    refuse(fmt::format("--out {}: {}", options.out.text, error.what()));
+  }
+  catch_interrupts();
+  const auto findings = study();
+  auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
+  if (!findings || !draw(files)) {
+    say("note", "interrupted: nothing was written");
+    return kInterrupted;
+  }
+  files[paper::kDocument] = paper::document(*findings);
+  folder->commit(files);
+  print(paper::summary(*findings) + fmt::format("{}: {} files\n", options.out.text, files.size()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_paper(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<PaperOptions>();
+  const auto parsed = [options, &action] {
+    options->check_usage();
+    action = [options] { return compare_with_paper(*options); };
+  };
+  options->add_to(
+      add_command(program, "paper", "Compare the paper's figures with the model's", parsed, kFooter));
+}
+
+}  // namespace stereotlm::cli

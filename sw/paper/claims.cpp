@@ -1,0 +1,235 @@
+#include "sw/paper/claims.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "sw/explore/area_fit.h"
+
+namespace stereotlm::paper {
+namespace {
+
+constexpr const char* kBoard = "fpl2003";
+
+// Table 1: window n of n x n, frames per second. 640x480, 80 disparities; 40 MHz stands in Table 2.
+constexpr std::pair<int, double> kTable1[] = {{15, 8.7}, {13, 10.0}, {11, 11.8},
+                                              {9, 14.5}, {7, 18.9},  {5, 26.0}};
+constexpr double kTable1HalfDigit = 0.05;
+// Of its rows but one; a row is printed with three digits, which is up to 0.57 %.
+constexpr double kRatePercent = 0.35;
+// Table 2: frames per second at 80, 160 and 200 disparities, 640x480, 7x7, 40 MHz.
+constexpr double kTable2Rate = 18.9;
+constexpr double kSizeHalfDigit = 0.5;
+constexpr double kSizePoints = 1;
+// Section 4: in practice, in windows of 7x7 and 9x9. Abstract, sections 1 and 5: without a window.
+constexpr double kPracticeRate = 20;
+// Abstract and section 1: at 320x240. Section 4: four times as fast there.
+constexpr double kSmallRate = 80;
+constexpr double kSmallSpeedUp = 4;
+constexpr double kWholeHalfDigit = 0.5;
+// Sections 3.1 and 5: banks needed with calibration; section 3.1: for matching itself.
+constexpr double kBanks = 8;
+constexpr double kBanksOfMatching = 6;
+
+constexpr const char* kOf[] = {"the core alone", "the whole computer"};
+
+std::string window_key(int window) { return fmt::format("matcher.window={}", window); }
+std::string square(int n) { return fmt::format("{}x{}", n, n); }
+
+// A case for each window, of the core alone and of the whole computer.
+std::vector<Case> of_windows(double printed, const std::vector<int>& windows, const std::string& preset,
+                             const std::vector<std::string>& more) {
+  std::vector<Case> cases;
+  for (const bool camera : {false, true}) {
+    for (const int window : windows) {
+      std::vector<std::string> sets = {window_key(window)};
+      sets.insert(sets.end(), more.begin(), more.end());
+      cases.push_back({square(window) + ", " + kOf[camera ? 1 : 0], printed, {{preset, sets, camera}}});
+    }
+  }
+  return cases;
+}
+
+Claim table1() {
+  Claim claim = {"table1",
+                 "Table 1",
+                 "frames per second against the window, 80 disparities",
+                 Quantity::kRate,
+                 {Relation::kWithinPercent, kRatePercent, ""},
+                 kTable1HalfDigit,
+                 {}};
+  for (const auto& [window, rate] : kTable1) {
+    claim.cases.push_back({square(window),
+                           rate,
+                           {{kBoard, {window_key(window), "matcher.filter=none"}, false},
+                            {kBoard, {window_key(window)}, false}}});
+  }
+  return claim;
+}
+
+std::string disparities_key(int disparities) { return fmt::format("matcher.disparities={}", disparities); }
+
+Claim table2_size() {
+  Claim claim = {"table2_size",
+                 "Table 2",
+                 "circuit size against the disparities, 7x7",
+                 Quantity::kSlices,
+                 {Relation::kWithin, kSizePoints, "percentage point"},
+                 kSizeHalfDigit,
+                 {}};
+  for (const explore::PrintedArea& row : explore::table_2()) {
+    claim.cases.push_back({fmt::format("{} disparities", row.core.disparities),
+                           row.slices_percent,
+                           {{kBoard, {disparities_key(row.core.disparities)}, false}}});
+  }
+  return claim;
+}
+
+Claim table2_rate() {
+  Claim claim = {"table2_rate",
+                 "Table 2",
+                 "frames per second against the disparities, 7x7",
+                 Quantity::kRate,
+                 {Relation::kWithinPercent, kRatePercent, ""},
+                 kTable1HalfDigit,
+                 {}};
+  for (const explore::PrintedArea& row : explore::table_2()) {
+    claim.cases.push_back(
+        {fmt::format("{} disparities", row.core.disparities),
+         kTable2Rate,
+         {{kBoard, {disparities_key(row.core.disparities), "matcher.filter=none"}, false}}});
+  }
+  return claim;
+}
+
+Claim table2_constant() {
+  Claim claim = {"table2_constant",
+                 "sec. 4",
+                 "frames per second do not change with the disparities",
+                 Quantity::kSpread,
+                 {Relation::kWithin, kTable1HalfDigit, "frames/s"},
+                 0,
+                 {}};
+  Case rows = {"80, 160 and 200 disparities", 0, {}};
+  for (const Case& row : table2_rate().cases) rows.runs.push_back(row.runs.front());
+  claim.cases.push_back(rows);
+  return claim;
+}
+
+Claim practice() {
+  return {"practice",
+          "sec. 4",
+          "20 frames per second in practice, at 7x7 and 9x9",
+          Quantity::kRate,
+          {Relation::kAtLeast, kWholeHalfDigit, "frames/s"},
+          kWholeHalfDigit,
+          of_windows(kPracticeRate, {7, 9}, kBoard, {})};
+}
+
+Claim any_window() {
+  return {"any_window",
+          "abstract, sec. 1, 5",
+          "20 frames per second, with up to 200 disparities",
+          Quantity::kRate,
+          {Relation::kAtLeast, kWholeHalfDigit, "frames/s"},
+          kWholeHalfDigit,
+          of_windows(kPracticeRate, {5, 7, 9}, kBoard, {disparities_key(200)})};
+}
+
+Claim small() {
+  return {"small",
+          "abstract, sec. 1",
+          "80 frames per second at 320x240",
+          Quantity::kRate,
+          {Relation::kAtLeast, kWholeHalfDigit, "frames/s"},
+          kWholeHalfDigit,
+          of_windows(kSmallRate, {5, 7, 9}, "fpl2003-qvga", {})};
+}
+
+Claim small_speed_up() {
+  Claim claim = {"small_speed_up",
+                 "sec. 4",
+                 "four times as fast at 320x240, at 7x7 and 9x9",
+                 Quantity::kSpeedUp,
+                 {Relation::kWithinPercent, kRatePercent, ""},
+                 0,
+                 of_windows(kSmallSpeedUp, {7, 9}, "fpl2003-qvga", {})};
+  for (Case& one : claim.cases) {
+    BoardRun large = one.runs.front();
+    large.preset = kBoard;
+    one.runs.push_back(large);
+  }
+  return claim;
+}
+
+Claim banks() {
+  return {"banks",
+          "sec. 3.1, 5",
+          "at least eight memory banks, the core alone",
+          Quantity::kBanksProved,
+          {Relation::kAtLeast, 0, ""},
+          0,
+          {{"the core alone, every allocation", kBanks, {{kBoard, {}, false}}}}};
+}
+
+Claim banks_of_matching() {
+  return {"banks_of_matching",
+          "sec. 3.1",
+          "six memory banks for matching itself",
+          Quantity::kBanksProved,
+          {Relation::kAtLeast, 0, ""},
+          0,
+          {{"the core alone, every allocation", kBanksOfMatching, {{"fpl2003-no-calibration", {}, false}}}}};
+}
+
+std::string key(const std::string& buffer, const std::string& bank) {
+  return fmt::format("allocation.{}={}", buffer, bank);
+}
+std::string key(const std::string& buffer, const std::string& first, const std::string& second) {
+  return key(buffer, fmt::format("[{}, {}]", first, second));
+}
+
+// The whole computer with some allocations: of each number of banks the best, as `allocate` finds it in some
+// minutes. Banks that are not named are those of the board.
+Claim banks_of_computer() {
+  const std::vector<std::vector<std::string>> placed = {
+      {},
+      {key("disparity", "bank4", "bank4"), key("left_lut", "bank5"), key("right_lut", "bank6")},
+      {key("disparity", "bank1", "bank3"), key("left_lut", "bank4"), key("right_lut", "bank5")},
+      {key("left_image", "bank0", "bank0"), key("right_image", "bank1", "bank1"),
+       key("disparity", "bank2", "bank2"), key("left_lut", "bank3"), key("right_lut", "bank4")}};
+  Case some = {"the whole computer, some allocations", kBanks, {}};
+  for (const auto& sets : placed) some.runs.push_back({kBoard, sets, true});
+  return {"banks_of_computer",
+          "sec. 3.1, 5",
+          "at least eight memory banks, the whole computer",
+          Quantity::kBanksFound,
+          {Relation::kAtLeast, 0, ""},
+          0,
+          {some}};
+}
+
+}  // namespace
+
+std::string unit_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kRate:
+    case Quantity::kSpread:
+      return "frames/s";
+    case Quantity::kSlices:
+      return "% of the slices";
+    case Quantity::kSpeedUp:
+      return "times";
+    case Quantity::kBanksProved:
+    case Quantity::kBanksFound:
+      break;
+  }
+  return "banks";
+}
+
+std::vector<Claim> claims() {
+  return {table1(), table2_size(),    table2_rate(), table2_constant(),   practice(),         any_window(),
+          small(),  small_speed_up(), banks(),       banks_of_matching(), banks_of_computer()};
+}
+
+}  // namespace stereotlm::paper

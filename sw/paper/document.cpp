@@ -1,0 +1,351 @@
+#include "sw/paper/document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "models/area/area.h"
+#include "platform/board_yaml.h"
+
+namespace stereotlm::paper {
+namespace {
+
+constexpr const char* kHead =
+    "# The paper's figures beside the model's\n\n"
+    "Written by `stereotlm paper`. The paper: Y. Miyajima and T. Maruyama, \"A Real-Time Stereo Vision\n"
+    "System with FPGA\", FPL 2003, LNCS 2778, pp. 448-457. `claims.csv` has every row below, `table1.csv`,\n"
+    "`table2.csv` and `banks.csv` what the figures show, all with every digit.\n\n"
+    "- *paper* is the printed value, *model* what the simulation (of the area: the count) gives, *bound*\n"
+    "  what the analytic bound allows at most, without a simulation.\n"
+    "- A case is confirmed if its rule holds between both values; a claim if all of its cases are, in part\n"
+    "  if some are. \"At least the printed value less 0.5\" takes a printed 20 for anything that rounds to "
+    "it\n"
+    "  or is more.\n"
+    "- *The core alone* is fed by an ideal host; *the whole computer* has free-running cameras at 29.97 Hz,\n"
+    "  capture boards, PCI bus and driver, and its rate is that between the first and the last of 13\n"
+    "  deliveries (of so few frames it can be a little above the bound, which holds for long runs).\n"
+    "- *MHz* is the clock at which the core alone would give what is printed, over the range that is\n"
+    "  printed so; the cycles of a frame do not depend on the clock.\n";
+
+std::string three(double value) { return fmt::format("{:.3f}", value); }
+
+// As the paper prints it: 10.0 in Table 1, 80 elsewhere.
+std::string printed_text(const Claim& claim, double printed) {
+  const bool has_decimals = claim.half_digit > 0 && claim.half_digit < 0.5;
+  return fmt::format("{:.{}f}", printed, has_decimals ? 1 : 0);
+}
+
+std::string modelled_text(const Claim& claim, double modelled) {
+  const bool is_count = claim.quantity == Quantity::kBanksProved || claim.quantity == Quantity::kBanksFound;
+  return is_count ? fmt::format("{:.0f}", modelled) : three(modelled);
+}
+
+// "of its own", where there is one: in points where the printed value is a percentage.
+std::string deviation_text(const Claim& claim, const Case& one, const CaseFinding& finding) {
+  if (claim.quantity == Quantity::kSlices)
+    return fmt::format("{:+.2f} points", finding.modelled - one.printed);
+  const auto percent = deviation_percent(claim, one, finding);
+  return percent ? fmt::format("{:+.2f} %", *percent) : "";
+}
+
+std::string confirmed_text(const ClaimFinding& found) {
+  const auto confirmed = std::count_if(found.cases.begin(), found.cases.end(), [](const CaseFinding& one) {
+    return one.verdict == Verdict::kConfirmed;
+  });
+  return fmt::format("{} of {}", confirmed, found.cases.size());
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string overview(const Findings& findings) {
+  std::string text = "\n| the paper says | where | cases confirmed | verdict |\n|---|---|---|---|\n";
+  for (const ClaimFinding& found : findings.claims) {
+    text += fmt::format("| {} | {} | {} | **{}** |\n", found.claim.says, found.claim.place,
+                        confirmed_text(found), text_of(found.verdict));
+  }
+  return text;
+}
+
+// The cases of a claim, and how to get their numbers again.
+std::string cases_text(const ClaimFinding& found) {
+  const Claim& claim = found.claim;
+  const bool has_bound = claim.quantity == Quantity::kRate;
+  std::string text = fmt::format("\nRule: {}. In {}.\n\n| case | paper | model |", text_of(claim.rule),
+                                 unit_of(claim.quantity));
+  text += std::string(has_bound ? " bound, limited by |" : "") + " deviation |" +
+          (has_bound ? " MHz |" : "") + " verdict |\n|---|---|---|---|---|" + (has_bound ? "---|---|" : "") +
+          '\n';
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const Case& one = claim.cases[i];
+    const CaseFinding& finding = found.cases[i];
+    text += fmt::format("| {} | {} | {} |", one.name, printed_text(claim, one.printed),
+                        modelled_text(claim, finding.modelled));
+    if (has_bound) {
+      text += fmt::format(" {}, {} |", three(finding.runs.front().bound), finding.runs.front().limited_by);
+    }
+    text += fmt::format(" {} |", deviation_text(claim, one, finding));
+    if (has_bound) {
+      const auto clock = clock_for(claim, one, finding);
+      text += clock ? fmt::format(" {:.2f} .. {:.2f} |", clock->least_mhz, clock->most_mhz) : " |";
+    }
+    text += fmt::format(" {} |\n", text_of(finding.verdict));
+  }
+  text += "\n```console\n";
+  std::vector<std::string> said;  // each once
+  for (const Case& one : claim.cases) {
+    for (const std::string& command : commands_of(claim, one)) {
+      if (std::find(said.begin(), said.end(), command) != said.end()) continue;
+      text += "$ " + command + '\n';
+      said.push_back(command);
+    }
+  }
+  return text + "```\n";
+}
+
+std::string table1_remarks(const ClaimFinding& found) {
+  ClockRange others = {0, std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    if (found.cases[i].verdict != Verdict::kConfirmed) continue;
+    const ClockRange clock = *clock_for(found.claim, found.claim.cases[i], found.cases[i]);
+    others.least_mhz = std::max(others.least_mhz, clock.least_mhz);
+    others.most_mhz = std::min(others.most_mhz, clock.most_mhz);
+  }
+  std::string text =
+      "\nMethod: the core alone with its eight banks, 640x480, 80 disparities, no filter, 40 MHz (Table 2\n"
+      "prints that clock). `table1.csv` has the rates with the filter `log7` too.\n";
+  if (others.least_mhz > others.most_mhz) return text;
+  text += fmt::format("The rows that agree are those of one clock, {:.2f} .. {:.2f} MHz.\n", others.least_mhz,
+                      others.most_mhz);
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const Case& one = found.claim.cases[i];
+    const CaseFinding& finding = found.cases[i];
+    if (finding.verdict == Verdict::kConfirmed) continue;
+    const ClockRange clock = *clock_for(found.claim, one, finding);
+    text += fmt::format("\nThe row of {} deviates by {:.1f} %. Reasons to doubt the printed {:.1f}:\n\n",
+                        one.name, std::abs(*deviation_percent(found.claim, one, finding)), one.printed);
+    if (clock.least_mhz > others.most_mhz || clock.most_mhz < others.least_mhz) {
+      text += fmt::format(
+          "- It needs {:.2f} .. {:.2f} MHz, which the rows that agree exclude. The table is of one circuit, "
+          "and\n"
+          "  at their clock it would print {:.1f} here. Another pipeline or border would move all rows.\n",
+          clock.least_mhz, clock.most_mhz, finding.modelled);
+    }
+    if (one.printed - found.claim.half_digit > finding.runs.front().bound) {
+      text += fmt::format(
+          "- It is above what the paper's own rule allows at 40 MHz, one pixel a cycle and {} reads of "
+          "each:\n"
+          "  {:.3f}, the bound. Table 2 prints the same number beside 40 MHz.\n",
+          one.name.substr(0, one.name.find('x')), finding.runs.front().bound);
+    }
+  }
+  return text;
+}
+
+std::string table2_remarks(const ClaimFinding& found) {
+  double worst = 0;
+  for (std::size_t i = 0; i < found.cases.size(); ++i)
+    worst = std::max(worst, std::abs(found.cases[i].modelled - found.claim.cases[i].printed));
+  return fmt::format(
+      "\nMethod: adders, registers and memories are counted from the structure (`stereotlm bounds` lists\n"
+      "them); one constant, {:g} slices for each place of a LUT and its flip-flop, is fitted to these rows.\n"
+      "The largest error is {:.2f} points; a printed whole percentage stands for half a point to each "
+      "side.\n\n"
+      "That validates that slices grow with the disparities as counted, and no more: three rows, whole\n"
+      "percentages, one window, one filter, one fetch. How the area grows with the window, what the filter,\n"
+      "the queues or line buffers cost, LUTs, flip-flops, block RAMs and multipliers are counted and "
+      "compared\n"
+      "with nothing. What all modules have in common goes into the constant. Nothing is placed or routed.\n",
+      area::kSlicesPerLutEquivalent, worst);
+}
+
+// The rate of the cameras of a claim's boards.
+double camera_hz(const Claim& claim) {
+  const BoardRun& run = claim.cases.back().runs.front();
+  return platform::load_board(run.preset, run.sets).cameras.frame_rate_hz;
+}
+
+std::string practice_remarks(const ClaimFinding& found) {
+  std::string text =
+      "\nThe paper calls the rates of Table 1 calculated, from the clock that CAD reports, and says this of\n"
+      "practice; it gives no other clock. What the core alone would need:\n\n";
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const Case& one = found.claim.cases[i];
+    const BoardRun& run = one.runs.front();
+    if (run.camera) continue;
+    const double mhz = platform::load_board(run.preset, run.sets).fpga.clock_mhz;
+    text += fmt::format("- {}: {:.2f} MHz for {:.0f} frames a second\n", one.name,
+                        one.printed * mhz / found.cases[i].modelled, one.printed);
+  }
+  const double hz = camera_hz(found.claim);
+  return text + fmt::format(
+                    "\nWith cameras that run freely at {:g} Hz and two buffers a side, deliveries lock to a "
+                    "fraction of the\n"
+                    "camera's rate: 2 in 3 are {:.2f} a second, 3 in 5 {:.2f}. So a computer of this kind "
+                    "shows \"20\"\n"
+                    "wherever a pair takes its core between 1 and 1.5 camera frames.\n",
+                    hz, hz * 2 / 3, hz * 3 / 5);
+}
+
+std::string any_window_remarks(const ClaimFinding& found) {
+  return found.verdict == Verdict::kInPart
+             ? "\nIt depends on the window, which the paper does not name here.\n"
+             : "";
+}
+
+std::string small_remarks(const ClaimFinding& found) {
+  const double hz = camera_hz(found.claim);
+  std::string text = any_window_remarks(found);
+  if (hz >= found.claim.cases.front().printed) return text;
+  return text +
+         fmt::format(
+             "Of the whole computer the cameras are the limit, whatever the matcher: at {:g} Hz they have no "
+             "more\n"
+             "pictures to give. The paper names no faster ones; the number can only be the circuit's.\n",
+             hz);
+}
+
+std::string small_speed_up_remarks(const ClaimFinding& found) {
+  std::string text = "\nRates, 320x240 and 640x480:\n\n";
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    text += fmt::format("- {}: {} and {} frames/s\n", found.claim.cases[i].name,
+                        three(found.cases[i].runs.at(0).rate), three(found.cases[i].runs.at(1).rate));
+  }
+  return text;
+}
+
+std::string bank_rows_text(const Findings& findings, const std::string& claim) {
+  std::string text =
+      "\n| banks | allocations, all simulated | best frames/s | bound | reached by | one of them |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const BankRow& row : findings.banks) {
+    if (row.of != claim) continue;
+    text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", row.banks, *row.allocations,
+                        three(row.measured.rate), three(row.measured.bound), *row.reached_by, row.allocation);
+  }
+  return text;
+}
+
+std::string banks_remarks(const Findings& findings, const ClaimFinding& found) {
+  const auto fewest = static_cast<int>(found.cases.front().modelled);
+  const auto printed = static_cast<int>(found.claim.cases.front().printed);
+  const BankRow* witness = nullptr;
+  const BankRow* fewer = nullptr;
+  std::uint64_t below = 0;
+  for (const BankRow& row : findings.banks) {
+    if (row.of != found.claim.name) continue;
+    if (row.banks == fewest) witness = &row;
+    if (row.banks >= fewest) continue;
+    below += *row.allocations;
+    if (fewer == nullptr || row.measured.rate > fewer->measured.rate) fewer = &row;
+  }
+  std::string text = bank_rows_text(findings, found.claim.name);
+  text += fmt::format("\n- Witness: {} banks give the best rate of all, {} frames/s: {}.\n", fewest,
+                      three(witness->measured.rate), witness->allocation);
+  if (fewer != nullptr) {
+    text += fmt::format(
+        "- Certificate: none of the {} allocations to fewer banks that fit gives more than {}. Each of them "
+        "is\n"
+        "  known: a frame leaves nothing behind for the next, every way in which the buffers of one frame "
+        "share\n"
+        "  banks was simulated, and an allocation is a sum of such frames.\n",
+        below, three(fewer->measured.rate));
+  }
+  const char* const against = fewest < printed ? "fewer than" : fewest == printed ? "just" : "more than";
+  text += fmt::format("- So the frame rate of the core needs {} banks, {} the paper's {}.\n", fewest, against,
+                      printed);
+  if (found.claim.name != "banks") return text;
+  return text +
+         "\nWhat that leaves out: here pictures appear in their buffers, and results go, in no time; and in "
+         "the\n"
+         "model host and circuit share a bank cycle by cycle. Where a bank belongs to one of them as a "
+         "whole\n"
+         "until it is handed over, no buffer that the host fills or empties may lie beside one that the "
+         "circuit\n"
+         "uses meanwhile. That is a reason for more banks, but not one of the frame rate of the core.\n";
+}
+
+std::string banks_of_computer_remarks(const Findings& findings, const ClaimFinding& found) {
+  std::string text =
+      "\n| banks | frames/s between deliveries | from power-up | bound | allocation "
+      "|\n|---|---|---|---|---|\n";
+  for (const BankRow& row : findings.banks) {
+    if (row.of != found.claim.name) continue;
+    text += fmt::format("| {} | {} | {} | {} | {} |\n", row.banks, three(row.measured.rate),
+                        three(row.measured.delivered.value_or(0)), three(row.measured.bound), row.allocation);
+  }
+  const auto found_banks = static_cast<int>(found.cases.front().modelled);
+  const auto printed = static_cast<int>(found.claim.cases.front().printed);
+  text +=
+      found_banks < printed
+          ? fmt::format("\n{} banks give what {} give: so {} are not needed; for that a witness is enough.\n",
+                        found_banks, printed, printed)
+          : fmt::format("\nNone of these gives with fewer banks what {} give: that decides nothing.\n",
+                        printed);
+  return text +
+         "What was run here, one allocation for each number of banks, is no certificate: how few banks would "
+         "do,\n"
+         "and what the best with 5 or 6 gives, takes all allocations. They are tried, in some minutes, by\n"
+         "`stereotlm allocate fpl2003 --banks 8 --out banks.db`.\n";
+}
+
+std::string remarks(const Findings& findings, const ClaimFinding& found) {
+  const std::string& name = found.claim.name;
+  if (name == "table1") return table1_remarks(found);
+  if (name == "table2_size") return table2_remarks(found);
+  if (name == "table2_rate") return "\nThe printed value is that of the row 7x7 of Table 1: see there.\n";
+  if (name == "practice") return practice_remarks(found);
+  if (name == "any_window") return any_window_remarks(found);
+  if (name == "small") return small_remarks(found);
+  if (name == "small_speed_up") return small_speed_up_remarks(found);
+  if (name == "banks_of_computer") return banks_of_computer_remarks(findings, found);
+  return found.claim.quantity == Quantity::kBanksProved ? banks_remarks(findings, found) : "";
+}
+
+// Below the claim that it shows.
+std::string figure_text(const std::string& claim) {
+  if (claim == "table1") return "\n![frames per second against the window](table1.png)\n";
+  if (claim == "table2_size") return "\n![slices against the disparities](table2.png)\n";
+  if (claim == "banks_of_computer") return "\n![best frames per second against the banks](banks.png)\n";
+  return "";
+}
+
+}  // namespace
+
+std::string document(const Findings& findings) {
+  std::string text = kHead + overview(findings);
+  for (const ClaimFinding& found : findings.claims) {
+    text += fmt::format("\n## {} ({})\n\n**{}** (cases: {}).\n", capitalised(found.claim.says),
+                        found.claim.place, text_of(found.verdict), confirmed_text(found));
+    text += cases_text(found) + remarks(findings, found) + figure_text(found.claim.name);
+  }
+  return text;
+}
+
+std::string summary(const Findings& findings) {
+  std::string text = fmt::format("{:<72} {:>9}  {}\n", "the paper", "confirmed", "verdict");
+  std::string others;
+  for (const ClaimFinding& found : findings.claims) {
+    text += fmt::format("{:<72} {:>9}  {}\n", found.claim.place + ": " + found.claim.says,
+                        confirmed_text(found), text_of(found.verdict));
+    for (std::size_t i = 0; i < found.cases.size(); ++i) {
+      if (found.cases[i].verdict == Verdict::kConfirmed) continue;
+      const Case& one = found.claim.cases[i];
+      std::string line = fmt::format("  {:<17} {:<37} {:>7} {:>9}  {:>9}", found.claim.name, one.name,
+                                     printed_text(found.claim, one.printed),
+                                     modelled_text(found.claim, found.cases[i].modelled),
+                                     deviation_text(found.claim, one, found.cases[i]));
+      others += line.erase(line.find_last_not_of(' ') + 1) + '\n';
+    }
+  }
+  if (others.empty()) return text;
+  return text + fmt::format("{:<57} {:>7} {:>9}  {:>9}\n", "not confirmed", "paper", "model", "deviation") +
+         others;
+}
+
+}  // namespace stereotlm::paper

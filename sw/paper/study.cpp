@@ -1,0 +1,313 @@
+#include "sw/paper/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "platform/board_rules.h"
+#include "platform/board_yaml.h"
+#include "sw/explore/allocation_run.h"
+#include "sw/explore/allocation_search.h"
+#include "sw/explore/knobs.h"
+#include "sw/report/temporary_folder.h"
+
+namespace stereotlm::paper {
+namespace {
+
+using platform::BoardConfig;
+
+// A rate is a quotient; what two of them differ by then is not a difference.
+constexpr double kRounding = 1e-9;
+
+bool reaches(double rate, double best) { return rate >= best * (1 - kRounding); }
+
+int banks_of(const BoardConfig& board) {
+  std::vector<std::string> names;
+  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.bank);
+  std::sort(names.begin(), names.end());
+  return static_cast<int>(std::unique(names.begin(), names.end()) - names.begin());
+}
+
+std::string identity_of(const BoardRun& run) {
+  std::string text = run.preset + (run.camera ? " camera" : " preloaded");
+  for (const std::string& set : run.sets) text += ' ' + set;
+  return text;
+}
+
+// The board as a command line has it: "fpl2003 --set matcher.window=7".
+std::string words_of(const BoardRun& run) {
+  std::string text = run.preset;
+  for (const std::string& set : run.sets) {
+    const bool is_plain = set.find_first_of(" []{}") == std::string::npos;
+    text += is_plain ? fmt::format(" --set {}", set) : fmt::format(" --set '{}'", set);
+  }
+  return text;
+}
+
+// All different runs of the claims, those of the core or those of the computer.
+class Runs {
+ public:
+  Runs(const std::vector<Claim>& claims, bool camera) : run_{camera, 0, ""} {
+    for (const Claim& claim : claims) {
+      if (claim.quantity == Quantity::kBanksProved) continue;
+      for (const Case& one : claim.cases) {
+        for (const BoardRun& run : one.runs) {
+          if (run.camera != camera || !numbers_.emplace(identity_of(run), boards_.size()).second) continue;
+          boards_.push_back(platform::load_board(run.preset, run.sets));
+        }
+      }
+    }
+  }
+
+  std::size_t size() const { return boards_.size(); }
+  explore::BoardPoints points() const { return {boards_, run_}; }
+
+  Measured of(const BoardRun& run, explore::Batch& batch) const {
+    const std::size_t number = numbers_.at(identity_of(run));
+    const explore::StoredRow& row = batch.row_of(points().point(number));
+    const bool camera = run_.camera;
+    if (camera &&
+        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0)
+      throw std::runtime_error(fmt::format("{}: captures lose pixels", command_of(run)));
+    const std::string bound = camera ? "bound.system" : "bound.core";
+    Measured measured;
+    measured.rate = row.real(camera ? "frames_per_second.steady" : "frames_per_second.core");
+    if (camera) measured.delivered = row.real("frames_per_second.system");
+    measured.bound = row.real(bound);
+    measured.limited_by = row.text(bound + "_limited_by");
+    measured.slices_percent = row.real("area.slices_percent");
+    measured.banks = banks_of(boards_[number]);
+    return measured;
+  }
+
+ private:
+  explore::PointRun run_;
+  std::vector<BoardConfig> boards_;
+  std::map<std::string, std::size_t> numbers_;
+};
+
+// How far all searches and runs are.
+class Count {
+ public:
+  Count(std::uint64_t total, const Means& means) : total_(total), means_(means) {}
+  // Of the part that goes on now.
+  bool go_on(std::uint64_t done) const {
+    return means_.go_on(before_ + done, std::max(total_, before_ + done));
+  }
+  void end_part(std::uint64_t done) { before_ += done; }
+
+ private:
+  std::uint64_t before_ = 0;
+  std::uint64_t total_;
+  const Means& means_;
+};
+
+// The best of every number of banks, of the core alone; false if it was ended.
+bool search(const Claim& claim, const BoardRun& run, const Means& means, Count& count,
+            std::vector<BankRow>& rows) {
+  const BoardConfig board = platform::load_board(run.preset, run.sets);
+  const explore::PointRun alone = {false, 0, ""};
+  const std::uint64_t frames = explore::frames_of(alone, board);
+  const auto bound = [&](const BoardConfig& one) { return means.bound(one, frames); };
+  explore::AllocationSearch search(board, static_cast<int>(board.banks.size()), alone,
+                                   [&](const BoardConfig& one) { return bound(one).core; });
+  const report::TemporaryFolder folder;
+  explore::SweepOptions sweep;
+  sweep.store = (folder.path() / "allocations.db").string();
+  sweep.version = means.version;
+  sweep.jobs = means.jobs;
+  std::uint64_t simulated = 0;
+  const bool is_whole =
+      explore::simulate(search, means.evaluate, sweep, [&](std::uint64_t done, std::uint64_t) {
+        simulated = done;
+        return count.go_on(done);
+      });
+  if (!is_whole) return false;
+  count.end_part(simulated);
+  for (const explore::BestPlacement& best : search.best()) {
+    if (best.known != best.placements) {
+      throw std::logic_error(
+          fmt::format("{} banks: {} of {} allocations are known", best.banks, best.known, best.placements));
+    }
+    const BoardConfig one = explore::placed(board, best.witness);
+    BankRow row;
+    row.of = claim.name;
+    row.banks = best.banks;
+    row.allocations = best.placements;
+    row.reached_by = best.reached_by;
+    row.measured.rate = best.frames_per_second;
+    row.measured.bound = bound(one).core;
+    row.measured.limited_by = bound(one).core_limited_by;
+    row.measured.banks = best.banks;
+    row.allocation = explore::allocation_text(one);
+    row.command = commands_of(claim, claim.cases.front()).front();
+    rows.push_back(row);
+  }
+  return true;
+}
+
+// The fewest of the rows of a claim that reach the best of them all.
+int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
+  double best = 0;
+  int fewest = 0;
+  for (const BankRow& row : rows) {
+    if (row.of == claim) best = std::max(best, row.measured.rate);
+  }
+  for (const BankRow& row : rows) {
+    if (row.of == claim && reaches(row.measured.rate, best) && (fewest == 0 || row.banks < fewest))
+      fewest = row.banks;
+  }
+  return fewest;
+}
+
+// The fewest banks of the runs that reach the rate of the first.
+int fewest_banks(const std::vector<Measured>& runs) {
+  int fewest = runs.front().banks;
+  for (const Measured& run : runs) {
+    if (reaches(run.rate, runs.front().rate)) fewest = std::min(fewest, run.banks);
+  }
+  return fewest;
+}
+
+double spread(const std::vector<Measured>& runs) {
+  const auto by_rate = [](const Measured& a, const Measured& b) { return a.rate < b.rate; };
+  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), by_rate);
+  return most->rate - least->rate;
+}
+
+double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
+                      const std::vector<BankRow>& banks) {
+  switch (claim.quantity) {
+    case Quantity::kRate:
+      return runs.at(0).rate;
+    case Quantity::kSlices:
+      return runs.at(0).slices_percent;
+    case Quantity::kSpread:
+      return spread(runs);
+    case Quantity::kSpeedUp:
+      return runs.at(0).rate / runs.at(1).rate;
+    case Quantity::kBanksProved:
+      return fewest_banks(banks, claim.name);
+    case Quantity::kBanksFound:
+      break;
+  }
+  return fewest_banks(runs);
+}
+
+Verdict verdict_of_case(const Claim& claim, const Case& one, double modelled) {
+  const bool is_proved = claim.quantity == Quantity::kBanksProved;
+  if (!is_proved && claim.quantity != Quantity::kBanksFound)
+    return verdict_of(claim.rule, one.printed, modelled);
+  return verdict_of_need(static_cast<int>(one.printed), static_cast<int>(modelled), is_proved);
+}
+
+// The chosen allocations of a case, as rows of their own.
+void add_chosen(const Claim& claim, const Case& one, const std::vector<Measured>& runs,
+                std::vector<BankRow>& rows) {
+  for (std::size_t i = runs.size(); i-- > 0;) {
+    const BoardConfig board = platform::load_board(one.runs[i].preset, one.runs[i].sets);
+    BankRow row;
+    row.of = claim.name;
+    row.banks = runs[i].banks;
+    row.measured = runs[i];
+    row.allocation = explore::allocation_text(board);
+    row.command = command_of(one.runs[i]);
+    rows.push_back(row);
+  }
+}
+
+}  // namespace
+
+const ClaimFinding& Findings::of(const std::string& claim) const {
+  for (const ClaimFinding& finding : claims) {
+    if (finding.claim.name == claim) return finding;
+  }
+  throw std::out_of_range(fmt::format("claim = {}: not among those that were studied", claim));
+}
+
+std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means) {
+  const Runs runs_of[] = {{claims, false}, {claims, true}};
+  Count count(runs_of[0].size() + runs_of[1].size(), means);
+  Findings findings;
+  for (const Claim& claim : claims) {
+    if (claim.quantity != Quantity::kBanksProved) continue;
+    if (!search(claim, claim.cases.front().runs.front(), means, count, findings.banks)) return std::nullopt;
+  }
+  explore::Batch batches[2];
+  for (const int i : {0, 1}) {
+    const bool is_whole =
+        batches[i].run(runs_of[i].points(), means.evaluate, means.version, means.jobs,
+                       [&](const explore::SweepCounts& counts) { return count.go_on(counts.done()); });
+    if (!is_whole) return std::nullopt;
+    count.end_part(runs_of[i].size());
+  }
+  for (const Claim& claim : claims) {
+    ClaimFinding found = {claim, {}, Verdict::kOpen};
+    std::vector<Verdict> verdicts;
+    for (const Case& one : claim.cases) {
+      CaseFinding finding;
+      if (claim.quantity != Quantity::kBanksProved) {
+        for (const BoardRun& run : one.runs) {
+          const int i = run.camera ? 1 : 0;
+          finding.runs.push_back(runs_of[i].of(run, batches[i]));
+        }
+      }
+      finding.modelled = modelled_value(claim, finding.runs, findings.banks);
+      finding.verdict = verdict_of_case(claim, one, finding.modelled);
+      if (claim.quantity == Quantity::kBanksFound) add_chosen(claim, one, finding.runs, findings.banks);
+      verdicts.push_back(finding.verdict);
+      found.cases.push_back(std::move(finding));
+    }
+    found.verdict = verdict_of_all(verdicts);
+    findings.claims.push_back(std::move(found));
+  }
+  return findings;
+}
+
+std::string command_of(const BoardRun& run) {
+  const explore::PointRun point_run = {run.camera, 0, ""};
+  const std::uint64_t frames = explore::frames_of(point_run, platform::load_board(run.preset, run.sets));
+  return fmt::format("stereotlm run {}{} --timing-only --frames {}", words_of(run),
+                     run.camera ? "" : " --source preloaded", frames);
+}
+
+std::vector<std::string> commands_of(const Claim& claim, const Case& one) {
+  const BoardRun& first = one.runs.front();
+  switch (claim.quantity) {
+    case Quantity::kRate:
+      return {command_of(first)};
+    case Quantity::kSlices:
+      return {fmt::format("stereotlm bounds {}", words_of(first))};
+    case Quantity::kBanksProved:
+      return {fmt::format("stereotlm allocate {} --source preloaded --banks {} --out banks.db",
+                          words_of(first), platform::load_board(first.preset, first.sets).banks.size())};
+    case Quantity::kSpread:
+    case Quantity::kSpeedUp:
+    case Quantity::kBanksFound:
+      break;
+  }
+  std::vector<std::string> all;
+  for (const BoardRun& run : one.runs) all.push_back(command_of(run));
+  return all;
+}
+
+std::optional<ClockRange> clock_for(const Claim& claim, const Case& one, const CaseFinding& finding) {
+  const BoardRun& run = one.runs.front();
+  if (claim.quantity != Quantity::kRate || run.camera) return std::nullopt;
+  const double mhz = platform::load_board(run.preset, run.sets).fpga.clock_mhz;
+  const double mhz_for_a_frame = mhz / finding.modelled;  // its cycles do not depend on the clock
+  return ClockRange{(one.printed - claim.half_digit) * mhz_for_a_frame,
+                    (one.printed + claim.half_digit) * mhz_for_a_frame};
+}
+
+std::optional<double> deviation_percent(const Claim& claim, const Case& one, const CaseFinding& finding) {
+  const bool counts_banks =
+      claim.quantity == Quantity::kBanksProved || claim.quantity == Quantity::kBanksFound;
+  if (counts_banks || one.printed == 0) return std::nullopt;
+  return 100 * (finding.modelled / one.printed - 1);
+}
+
+}  // namespace stereotlm::paper

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "sw/paper/document.h"
+
+namespace stereotlm::paper {
+namespace {
+
+std::string cell(double value) { return fmt::format("{}", value); }
+std::string cell(const std::optional<double>& value) { return value ? cell(*value) : ""; }
+std::string cell(const std::optional<std::uint64_t>& value) { return value ? fmt::format("{}", *value) : ""; }
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char each : text) quoted += each == '"' ? std::string("\"\"") : std::string(1, each);
+  return quoted + '"';
+}
+
+template <typename... Cells>
+std::string row(const Cells&... cells) {
+  std::string text;
+  ((text += (text.empty() ? "" : ",") + cell(cells)), ...);
+  return text + '\n';
+}
+
+std::string command_text(const Claim& claim, const Case& one) {
+  std::string text;
+  for (const std::string& command : commands_of(claim, one)) text += (text.empty() ? "" : " && ") + command;
+  return text;
+}
+
+// The number that a case is named by: "7x7", "80 disparities".
+std::string leading_number(const std::string& name) {
+  return name.substr(0, name.find_first_not_of("0123456789"));
+}
+
+std::string table1(const Findings& findings) {
+  const ClaimFinding& found = findings.of("table1");
+  std::string text =
+      "window,paper_frames_per_second,model_frames_per_second,bound_frames_per_second,limited_by,"
+      "deviation_percent,rule,verdict,clock_mhz_least,clock_mhz_most,model_log7_frames_per_second,command\n";
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const Case& one = found.claim.cases[i];
+    const CaseFinding& finding = found.cases[i];
+    const Measured& run = finding.runs.front();
+    const auto clock = clock_for(found.claim, one, finding);
+    text +=
+        row(leading_number(one.name), one.printed, finding.modelled, run.bound, run.limited_by,
+            deviation_percent(found.claim, one, finding), text_of(found.claim.rule), text_of(finding.verdict),
+            clock->least_mhz, clock->most_mhz, finding.runs.at(1).rate, command_text(found.claim, one));
+  }
+  return text;
+}
+
+std::string table2(const Findings& findings) {
+  const ClaimFinding& size = findings.of("table2_size");
+  const ClaimFinding& rate = findings.of("table2_rate");
+  std::string text =
+      "disparities,paper_slices_percent,paper_slices_percent_least,paper_slices_percent_most,"
+      "model_slices_percent,error_points,size_rule,size_verdict,paper_frames_per_second,"
+      "model_frames_per_second,bound_frames_per_second,limited_by,deviation_percent,rate_rule,rate_verdict,"
+      "size_command,rate_command\n";
+  for (std::size_t i = 0; i < size.cases.size(); ++i) {
+    const Case& area = size.claim.cases[i];
+    const Case& speed = rate.claim.cases[i];
+    const Measured& run = rate.cases[i].runs.front();
+    text +=
+        row(leading_number(area.name), area.printed, area.printed - size.claim.half_digit,
+            area.printed + size.claim.half_digit, size.cases[i].modelled,
+            size.cases[i].modelled - area.printed, text_of(size.claim.rule), text_of(size.cases[i].verdict),
+            speed.printed, rate.cases[i].modelled, run.bound, run.limited_by,
+            deviation_percent(rate.claim, speed, rate.cases[i]), text_of(rate.claim.rule),
+            text_of(rate.cases[i].verdict), command_text(size.claim, area), command_text(rate.claim, speed));
+  }
+  return text;
+}
+
+std::string banks(const Findings& findings) {
+  std::string text =
+      "claim,banks,allocations,frames_per_second,delivered_frames_per_second,bound_frames_per_second,"
+      "limited_by,reached_by,allocation,command\n";
+  for (const BankRow& one : findings.banks) {
+    text +=
+        row(one.of, fmt::format("{}", one.banks), one.allocations, one.measured.rate, one.measured.delivered,
+            one.measured.bound, one.measured.limited_by, one.reached_by, one.allocation, one.command);
+  }
+  return text;
+}
+
+std::string all_claims(const Findings& findings) {
+  std::string text =
+      "claim,place,says,case,unit,paper,model,bound,limited_by,deviation_percent,rule,verdict,"
+      "clock_mhz_least,clock_mhz_most,claim_verdict,command\n";
+  for (const ClaimFinding& found : findings.claims) {
+    for (std::size_t i = 0; i < found.cases.size(); ++i) {
+      const Case& one = found.claim.cases[i];
+      const CaseFinding& finding = found.cases[i];
+      const bool is_rate = found.claim.quantity == Quantity::kRate;
+      const auto clock = clock_for(found.claim, one, finding);
+      const auto of_clock = [&](double ClockRange::*mhz) {
+        return clock ? std::optional<double>((*clock).*mhz) : std::nullopt;
+      };
+      text += row(found.claim.name, found.claim.place, found.claim.says, one.name,
+                  unit_of(found.claim.quantity), one.printed, finding.modelled,
+                  is_rate ? std::optional<double>(finding.runs.front().bound) : std::nullopt,
+                  is_rate ? finding.runs.front().limited_by : std::string(),
+                  deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
+                  text_of(finding.verdict), of_clock(&ClockRange::least_mhz), of_clock(&ClockRange::most_mhz),
+                  text_of(found.verdict), command_text(found.claim, one));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> file_names() {
+  std::vector<std::string> names = {"table1.csv", "table2.csv", "banks.csv", "claims.csv"};
+  for (const char* figure : kFigures) {
+    for (const char* ending : {".png", ".svg"}) names.push_back(std::string(figure) + ending);
+  }
+  return names;
+}
+
+std::map<std::string, std::string> tables(const Findings& findings) {
+  return {{"table1.csv", table1(findings)},
+          {"table2.csv", table2(findings)},
+          {"banks.csv", banks(findings)},
+          {"claims.csv", all_claims(findings)}};
+}
+
+}  // namespace stereotlm::paper

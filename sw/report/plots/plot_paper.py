@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""The figures of stereotlm paper, from its tables: the paper's Tables 1 and 2 and its number of banks."""
+
+import argparse
+import csv
+import os
+
+from command import tell
+from drawing import BOUND_WIDTH, QUIET, Sheet, line_handle, pale, ticks_at
+
+MODEL = "#0072B2"
+PAPER = "#D55E00"
+SECOND = "#009E73"
+
+
+def read(folder, name):
+    with open(os.path.join(folder, f"{name}.csv"), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def numbers(rows, column):
+    return [float(row[column]) for row in rows]
+
+
+def paper_handle():
+    return (line_handle(PAPER, "D", "", markersize=5, markerfacecolor="white", markeredgewidth=1.3), "printed in the paper")
+
+
+def bound_handle():
+    return (line_handle(pale(MODEL), None, linewidth=BOUND_WIDTH), "bound")
+
+
+def paper_points(axes, xs, ys):
+    axes.plot(xs, ys, color=PAPER, marker="D", linestyle="", markersize=5, markerfacecolor="white",
+              markeredgewidth=1.3, zorder=4)
+
+
+def model_line(axes, xs, ys, color=MODEL, **look):
+    axes.plot(xs, ys, color=color, marker="o", markeredgecolor="white", markeredgewidth=0.6, zorder=3, **look)
+
+
+def table1(folder):
+    """Frames per second over the window, and the deviation below."""
+    rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
+    xs = [int(row["window"]) for row in rows]
+    tolerance = float(rows[0]["rule"].split()[1])
+    sheet = Sheet()
+    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"), bound_handle()])
+    sheet.note("Table 1: 640x480, 80 disparities, no filter, 40 MHz. Below: model less paper, with the rule "
+               f"({rows[0]['rule']}) shaded; the bar is what rounding to the printed digit leaves open.")
+    rates, deviations = sheet.rows([2.7, 1.5])
+    bounds, values = numbers(rows, "bound_frames_per_second"), numbers(rows, "model_frames_per_second")
+    printed = numbers(rows, "paper_frames_per_second")
+    rates.plot(xs, bounds, color=pale(MODEL), linewidth=BOUND_WIDTH, solid_capstyle="butt", zorder=1.5)
+    model_line(rates, xs, values)
+    paper_points(rates, xs, printed)
+    rates.set_ylim(0, max(printed + bounds) * 1.08)
+    rates.set_ylabel("frames/s")
+    deviations.axhspan(-tolerance, tolerance, color="#EEEEEE", zorder=1)
+    deviations.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
+    percents = numbers(rows, "deviation_percent")
+    halves = [5 / value for value in printed]  # half of the last printed digit, 0.05, in percent
+    for x, percent, half, row in zip(xs, percents, halves, rows):
+        color = MODEL if row["verdict"] == "confirmed" else PAPER
+        deviations.errorbar(x, percent, yerr=half, color=color, marker="o", markersize=5, capsize=3, linewidth=1,
+                            zorder=3)
+        if row["verdict"] != "confirmed":
+            deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points", fontsize=8)
+    deviations.set_ylabel("deviation, %")
+    most = max(abs(percent) + half for percent, half in zip(percents, halves))
+    deviations.set_ylim(-1.15 * most, 1.15 * most)
+    deviations.set_xlabel("window n, pixels (of n x n)")
+    ticks_at(deviations.xaxis, xs)
+    return sheet
+
+
+def table2(folder):
+    """Slices over the disparities, printed with what rounding leaves open, and the error below."""
+    rows = sorted(read(folder, "table2"), key=lambda row: int(row["disparities"]))
+    xs = [int(row["disparities"]) for row in rows]
+    tolerance = float(rows[0]["size_rule"].split()[1])
+    printed, values = numbers(rows, "paper_slices_percent"), numbers(rows, "model_slices_percent")
+    least, most = numbers(rows, "paper_slices_percent_least"), numbers(rows, "paper_slices_percent_most")
+    below = [value - low for value, low in zip(printed, least)]
+    above = [high - value for value, high in zip(printed, most)]
+    sheet = Sheet()
+    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
+    sheet.note(f"Table 2: window 7x7, XC2V6000. Below: model less paper, with the rule ({rows[0]['size_rule']}) shaded; "
+               "the bars are what rounding to whole percents leaves open.")
+    sizes, errors = sheet.rows([2.5, 1.5])
+    model_line(sizes, xs, values)
+    sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
+                   markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
+    sizes.set_ylim(0, max(most + values) * 1.08)
+    sizes.set_ylabel("slices, %")
+    errors.axhspan(-tolerance, tolerance, color="#EEEEEE", zorder=1)
+    errors.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
+    errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="", marker="o",
+                    markersize=5, capsize=3, linewidth=1, zorder=3)
+    errors.set_ylim(-1.8 * tolerance, 1.8 * tolerance)
+    errors.set_ylabel("error, points")
+    errors.set_xlabel("disparities D")
+    ticks_at(errors.xaxis, xs)
+    return sheet
+
+
+def banks(folder):
+    """The best frame rate over the number of banks: what every allocation has shown, and the runs of the computer."""
+    rows = read(folder, "banks")
+    printed = {row["claim"]: float(row["paper"]) for row in read(folder, "claims")}
+    computer = [row for row in rows if row["claim"] == "banks_of_computer"]
+    sheet = Sheet()
+    sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"), bound_handle(),
+                  (line_handle(SECOND, "^", ""), "the whole computer, one allocation each"),
+                  (line_handle(PAPER, None, (0, (4, 2))), "banks that the paper says are needed")])
+    sheet.note("640x480, 7x7, 80 disparities, 40 MHz. Below each number of banks: how many allocations to so many fit; the "
+               "rate of each is known, and none is higher. Triangles need not be the best that there is.")
+    panels = sheet.columns(2, 2.8, 0.75, bottom=0.72)
+    for axes, claim, heading in zip(panels, ("banks", "banks_of_matching"),
+                                    ("with calibration", "without calibration")):
+        every = [row for row in rows if row["claim"] == claim]
+        xs = [int(row["banks"]) for row in every]
+        axes.plot(xs, numbers(every, "bound_frames_per_second"), color=pale(MODEL), linewidth=BOUND_WIDTH,
+                  solid_capstyle="butt", zorder=1.5)
+        model_line(axes, xs, numbers(every, "frames_per_second"))
+        axes.axvline(printed[claim], color=PAPER, linewidth=1.2, linestyle=(0, (4, 2)), zorder=1.2)
+        axes.set_title(heading, fontsize=9.5)
+        axes.set_xticks(xs, [f"{row['banks']}\n({row['allocations']})" for row in every])
+        axes.set_xlim(min(xs) - 0.5, max(xs) + 0.5)
+    panels[0].plot([int(row["banks"]) for row in computer], numbers(computer, "frames_per_second"), color=SECOND,
+                   marker="^", linestyle="", markersize=5.5, zorder=2.8)
+    panels[0].set_ylim(0, max(numbers(rows, "bound_frames_per_second")) * 1.12)
+    panels[0].set_ylabel("frames/s")
+    sheet.figure.text(0.5, panels[0].get_position().y0 - 0.52 / sheet.figure.get_size_inches()[1],
+                      "banks that the allocation uses (allocations)", ha="center", va="center", fontsize=9.5)
+    return sheet
+
+
+FIGURES = {"table1": table1, "table2": table2, "banks": banks}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
+    parser.add_argument("tables", metavar="DIR", help="a folder that stereotlm paper has written")
+    parser.add_argument("--out", metavar="DIR", required=True, help="an existing folder, into which the pictures go")
+    options = parser.parse_args()
+    for name, draw in FIGURES.items():
+        sheet = draw(options.tables)
+        for ending, data in ((".png", sheet.png()), (".svg", sheet.svg())):
+            with open(os.path.join(options.out, name + ending), "wb") as file:
+                file.write(data)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (OSError, KeyError, ValueError) as error:
+        tell("error", str(error))
+        raise SystemExit(1) from None

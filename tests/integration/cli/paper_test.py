@@ -1,0 +1,219 @@
+"""paper: its numbers are those of the other commands, its verdicts follow from them; figures, and what is refused."""
+
+import csv
+import json
+import re
+import shlex
+import signal
+import subprocess
+import time
+
+import program
+from program import ProgramTest, read_png, run
+
+TABLES = ["table1.csv", "table2.csv", "banks.csv", "claims.csv"]
+FIGURES = ["table1", "table2", "banks"]
+FILES = sorted(["paper.md", *TABLES] + [name + ending for name in FIGURES for ending in (".png", ".svg")])
+
+
+class Paper(ProgramTest):
+    """One run for all of them: it takes some seconds."""
+
+    files = None
+    said = ""
+
+    def setUp(self):
+        super().setUp()
+        if Paper.files is None:
+            Paper.said = self.succeeds(run("paper", "--out", self.out))
+            Paper.files = self.result()
+
+    def table(self, name):
+        return list(csv.DictReader(self.files[name + ".csv"].decode().splitlines()))
+
+    def claim(self, name):
+        rows = [row for row in self.table("claims") if row["claim"] == name]
+        self.assertTrue(rows, name)
+        return rows
+
+    def rates(self, command):
+        """stats.json of a command that the report names."""
+        words = shlex.split(command)
+        self.assertEqual(words[:2], ["stereotlm", "run"])
+        folder = self.folder / "one"
+        self.succeeds(run(*words[1:], "--out", folder))
+        return json.loads((folder / "stats.json").read_text())
+
+    def test_writes_a_report_its_tables_and_its_figures(self):
+        self.assertEqual(sorted(self.files), FILES)
+        self.assertRegex(self.said, r"\S+: 11 files\n$")
+
+    def test_rates_are_those_of_the_commands(self):
+        rows = self.claim("table1")
+        for row in [rows[0], rows[4], self.claim("small")[0]]:
+            stats = self.rates(row["command"])
+            self.assertEqual(float(row["model"]), stats["frames_per_second"]["core"])
+            self.assertEqual(float(row["bound"]), stats["bound"]["core"])
+            self.assertEqual(row["limited_by"], stats["bound"]["core_limited_by"])
+        for row in [self.claim("practice")[2], self.claim("small")[4]]:
+            self.assertIn("the whole computer", row["case"])
+            stats = self.rates(row["command"])
+            self.assertEqual(float(row["model"]), stats["frames_per_second"]["steady"])
+            self.assertEqual(float(row["bound"]), stats["bound"]["system"])
+
+    def test_tables_agree_with_the_claims(self):
+        for row, claim in zip(self.table("table1"), self.claim("table1")):
+            self.assertEqual(row["model_frames_per_second"], claim["model"])
+            self.assertEqual(row["verdict"], claim["verdict"])
+            self.assertEqual(claim["case"], f"{row['window']}x{row['window']}")
+        for row, size, rate in zip(self.table("table2"), self.claim("table2_size"), self.claim("table2_rate")):
+            self.assertEqual(row["model_slices_percent"], size["model"])
+            self.assertEqual(row["model_frames_per_second"], rate["model"])
+            self.assertEqual(size["case"], f"{row['disparities']} disparities")
+
+    def test_areas_are_those_of_bounds(self):
+        for row in self.table("table2"):
+            said = self.succeeds(run(*shlex.split(row["size_command"])[1:]))
+            self.assertIn(f"({float(row['model_slices_percent']):.2f} %)", said)
+
+    def test_banks_are_those_of_allocate(self):
+        for claim in ("banks", "banks_of_matching"):
+            rows = [row for row in self.table("banks") if row["claim"] == claim]
+            words = shlex.split(rows[0]["command"])
+            self.assertEqual(words[:2] + words[-2:], ["stereotlm", "allocate", "--out", "banks.db"])
+            said = self.succeeds(run(*words[1:-1], self.folder / f"{claim}.db"))
+            for row in rows:
+                line = rf"\n +{row['banks']} +{row['allocations']} +\d+ +{float(row['frames_per_second']):.3f} " \
+                       rf"+{float(row['bound_frames_per_second']):.3f} +{row['reached_by']}  {row['allocation']}\n"
+                self.assertRegex(said, line)
+
+    def test_a_run_of_the_computer_uses_the_banks_that_it_is_said_to(self):
+        rows = [row for row in self.table("banks") if row["claim"] == "banks_of_computer"]
+        self.assertEqual([row["banks"] for row in rows], ["5", "6", "7", "8"])
+        for row in rows[1:3]:
+            stats = self.rates(row["command"])
+            self.assertEqual(float(row["frames_per_second"]), stats["frames_per_second"]["steady"])
+            self.assertEqual(float(row["delivered_frames_per_second"]), stats["frames_per_second"]["system"])
+            self.assertEqual(sum(bank["reads"] + bank["writes"] > 0 for bank in stats["banks"]), int(row["banks"]))
+
+    def test_verdicts_follow_from_the_values(self):
+        by_claim = {}
+        for row in self.table("claims"):
+            printed, modelled, rule = float(row["paper"]), float(row["model"]), row["rule"]
+            within = re.match(r"within ([\d.]+) (.*)$", rule)
+            at_least = re.match(r"at least the printed value(?: less ([\d.]+) .*)?$", rule)
+            if within:
+                most = float(within[1]) * (printed / 100 if within[2] == "%" else 1)
+                holds = abs(printed - modelled) <= most
+            else:
+                self.assertTrue(at_least, rule)
+                holds = modelled >= printed - float(at_least[1] or 0)
+            self.assertEqual(row["verdict"], "confirmed" if holds else "not confirmed", row)
+            by_claim.setdefault(row["claim"], []).append((holds, row["claim_verdict"]))
+        for name, cases in by_claim.items():
+            held = [holds for holds, _ in cases]
+            expected = "confirmed" if all(held) else "in part" if any(held) else "not confirmed"
+            self.assertEqual({verdict for _, verdict in cases}, {expected}, name)
+
+    def test_table_1_without_a_filter_is_met_but_for_7x7(self):
+        for row in self.table("table1"):
+            printed, modelled = float(row["paper_frames_per_second"]), float(row["model_frames_per_second"])
+            deviation = 100 * (modelled / printed - 1)
+            self.assertAlmostEqual(float(row["deviation_percent"]), deviation, 9)
+            self.assertIn("matcher.filter=none", row["command"])
+            if row["window"] == "7":
+                self.assertAlmostEqual(deviation, -1.6, delta=0.05)
+                self.assertEqual(row["verdict"], "not confirmed")
+            else:
+                self.assertLessEqual(abs(deviation), 0.35)
+                self.assertEqual(row["verdict"], "confirmed")
+        report = self.files["paper.md"].decode()
+        self.assertIn("The row of 7x7 deviates by 1.6 %. Reasons to doubt the printed 18.9:", report)
+
+    def test_table_2_is_met_within_a_point(self):
+        rows = self.table("table2")
+        self.assertEqual([row["disparities"] for row in rows], ["80", "160", "200"])
+        for row in rows:
+            error = float(row["model_slices_percent"]) - float(row["paper_slices_percent"])
+            self.assertLessEqual(abs(error), 1)
+            self.assertAlmostEqual(float(row["error_points"]), error, 9)
+            self.assertEqual(row["size_verdict"], "confirmed")
+
+    def test_eight_banks_are_settled_by_witness_and_certificate(self):
+        rows = [row for row in self.table("banks") if row["claim"] == "banks"]
+        best = max(float(row["frames_per_second"]) for row in rows)
+        fewest = min(int(row["banks"]) for row in rows if float(row["frames_per_second"]) == best)
+        self.assertEqual([fewest], [int(row["model"]) for row in self.claim("banks")])
+        report = self.files["paper.md"].decode()
+        witness = next(row for row in rows if int(row["banks"]) == fewest)
+        self.assertIn(f"- Witness: {fewest} banks give the best rate of all, {best:.3f} frames/s: {witness['allocation']}.", report)
+        fewer = [row for row in rows if int(row["banks"]) < fewest]
+        self.assertIn(f"none of the {sum(int(row['allocations']) for row in fewer)} allocations to fewer banks that fit gives "
+                      f"more than {max(float(row['frames_per_second']) for row in fewer):.3f}.", report)
+
+    def test_the_summary_has_the_verdicts_of_the_table(self):
+        for row in self.table("claims"):
+            self.assertRegex(self.said, rf"(?m)^{re.escape(row['place'] + ': ' + row['says'])} +\d of \d  {row['claim_verdict']}$")
+
+    def test_the_report_names_every_case(self):
+        report = self.files["paper.md"].decode()
+        for row in self.table("claims"):
+            self.assertIn(f"| {row['case']} |", report)
+            for command in row["command"].split(" && "):
+                self.assertIn(f"\n$ {command}\n", report)
+        for name in FIGURES:
+            self.assertIn(f"({name}.png)", report)
+
+    def test_figures_are_not_blank(self):
+        for name in FIGURES:
+            path = self.file(name + ".png", self.files[name + ".png"])
+            width, height, channels, rows = read_png(path)
+            self.assertGreater(width, 1000)
+            colors = {bytes(row[x : x + channels]) for row in rows for x in range(0, width * channels, channels)}
+            self.assertGreater(len(colors), 20)
+            self.assertGreater(height, 500)
+            self.assertIn("</svg>", self.files[name + ".svg"].decode())
+
+    def test_is_written_again_over_itself_and_leaves_other_files(self):
+        self.out.mkdir()
+        (self.out / "run").write_text("script")
+        (self.out / "paper.md").write_text("old")
+        self.succeeds(run("paper", "--out", self.out))
+        written = self.result()
+        self.assertEqual(written.pop("run"), b"script")
+        self.assertEqual(written, self.files)
+
+
+class Interrupted(ProgramTest):
+    def test_leaves_nothing_behind(self):
+        with subprocess.Popen([program.PROGRAM, "paper", "--out", self.out], stderr=subprocess.PIPE, text=True) as process:
+            while process.poll() is None and not (self.out / ".partial").exists():
+                time.sleep(0.01)
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=300), 130)
+            self.assertEqual(process.stderr.read(), "stereotlm: note: interrupted: nothing was written\n")
+        self.assertFalse(self.out.exists())
+
+
+class Refusals(ProgramTest):
+    def test_a_folder_is_needed(self):
+        self.refused_in_one_line(run("paper"), "error: --out: missing: the folder to write")
+
+    def test_no_board_and_no_other_option(self):
+        self.refused_in_one_line(run("paper", "fpl2003", "--out", self.out), "fpl2003")
+        self.refused(run("paper", "--out", self.out, "--set", "matcher.window=7"), "--set")
+        self.assertFalse(self.out.exists())
+
+    def test_files_of_somebody_else(self):
+        self.out.mkdir()
+        (self.out / "table1.csv").write_text("mine")
+        self.refused_in_one_line(run("paper", "--out", self.out), f"--out {self.out}: ", "holds 'table1.csv' but no paper.md")
+        self.assertEqual((self.out / "table1.csv").read_text(), "mine")
+
+    def test_what_is_no_folder(self):
+        self.refused_in_one_line(run("paper", "--out", self.left), "not a folder")
+
+
+if __name__ == "__main__":
+    program.main()

@@ -1,0 +1,106 @@
+#include "sw/paper/document.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace stereotlm::paper {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// What the simulation has given, where every claim is as the paper says.
+Findings as_printed() {
+  Findings findings;
+  for (const Claim& claim : claims()) {
+    ClaimFinding found = {claim, {}, Verdict::kConfirmed};
+    for (const Case& one : claim.cases) {
+      Measured measured;
+      measured.rate = measured.bound = one.printed;
+      measured.limited_by = "matcher";
+      found.cases.push_back(
+          {one.printed, std::vector<Measured>(one.runs.size(), measured), Verdict::kConfirmed});
+    }
+    if (claim.quantity == Quantity::kBanksProved) {
+      BankRow row;
+      row.of = claim.name;
+      row.banks = static_cast<int>(claim.cases.front().printed);
+      row.allocations = row.reached_by = 1;
+      findings.banks.push_back(row);
+    }
+    findings.claims.push_back(found);
+  }
+  return findings;
+}
+
+CaseFinding& row_of(Findings& findings, const std::string& claim, std::size_t number) {
+  for (ClaimFinding& found : findings.claims) {
+    if (found.claim.name == claim) return found.cases.at(number);
+  }
+  throw std::out_of_range(claim);
+}
+
+void refute(Findings& findings, const std::string& claim, std::size_t number, double modelled) {
+  CaseFinding& found = row_of(findings, claim, number);
+  found.modelled = found.runs.front().rate = found.runs.front().bound = modelled;
+  found.verdict = Verdict::kNotConfirmed;
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t longest = 0;
+  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  return longest;
+}
+
+TEST(Document, DoubtsNoRowThatAgrees) { EXPECT_THAT(document(as_printed()), Not(HasSubstr("doubt"))); }
+
+TEST(Document, DoubtsARowThatNeedsAnotherClockThanTheOthers) {
+  Findings findings = as_printed();
+  refute(findings, "table1", 4, 18.6);  // 7x7, printed 18.9
+  const std::string text = document(findings);
+  EXPECT_THAT(text, HasSubstr("The row of 7x7 deviates by 1.6 %. Reasons to doubt the printed 18.9:"));
+  EXPECT_THAT(text, HasSubstr("- It needs 40.54 .. 40.75 MHz, which the rows that agree exclude."));
+  EXPECT_THAT(text, HasSubstr("at their clock it would print 18.6 here"));
+  EXPECT_THAT(text, HasSubstr("one pixel a cycle and 7 reads of each:\n  18.600, the bound."));
+}
+
+TEST(Document, HasNoSuchReasonWhereTheClocksAgree) {
+  Findings findings = as_printed();
+  refute(findings, "table1", 4, 18.85);
+  EXPECT_THAT(document(findings), Not(HasSubstr("which the rows that agree exclude")));
+  EXPECT_THAT(document(findings), Not(HasSubstr("the paper's own rule")));
+}
+
+TEST(Document, SaysWhatTheBanksShow) {
+  Findings findings = as_printed();
+  EXPECT_THAT(document(findings), HasSubstr("needs 8 banks, just the paper's 8."));
+  EXPECT_THAT(document(findings), HasSubstr("None of these gives with fewer banks what 8 give"));
+  row_of(findings, "banks_of_computer", 0).modelled = 7;
+  EXPECT_THAT(document(findings), HasSubstr("7 banks give what 8 give: so 8 are not needed"));
+}
+
+TEST(Document, SummaryFitsIntoAHundredColumns) {
+  Findings findings = as_printed();
+  for (ClaimFinding& found : findings.claims) {
+    found.verdict = Verdict::kNotConfirmed;
+    for (CaseFinding& one : found.cases) one.verdict = Verdict::kNotConfirmed;
+  }
+  EXPECT_LE(longest_line(summary(findings)), 100U);
+}
+
+TEST(Document, SummaryListsWhatIsNotConfirmed) {
+  Findings findings = as_printed();
+  EXPECT_THAT(summary(findings), Not(HasSubstr("not confirmed")));
+  refute(findings, "table1", 4, 18.6);
+  EXPECT_THAT(summary(findings), HasSubstr("5 of 6"));
+  EXPECT_THAT(summary(findings), HasSubstr("18.9    18.600    -1.59 %\n"));
+}
+
+TEST(Document, TablesQuoteWhatHasCommas) {
+  EXPECT_THAT(tables(as_printed()).at("claims.csv"), HasSubstr(",\"abstract, sec. 1\","));
+}
+
+}  // namespace
+}  // namespace stereotlm::paper

@@ -1,0 +1,216 @@
+#include "sw/paper/study.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <stdexcept>
+
+#include "platform/board_rules.h"
+
+namespace stereotlm::paper {
+namespace {
+
+using platform::BoardConfig;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+// Made up: 420 / window frames a second, a tenth less in a computer, and half of it if a table and results
+// share a bank.
+double made_up_rate(const BoardConfig& board, bool camera) {
+  const double rate = 420.0 / board.matcher.window * (camera ? 0.9 : 1);
+  return board.allocation.left_lut == board.allocation.disparity[0] ? rate / 2 : rate;
+}
+
+explore::Figures made_up(const explore::Point& point) {
+  const double rate = made_up_rate(*point.board, point.run.camera);
+  explore::Figures figures;
+  figures.values = {{"frames_per_second.core", rate},
+                    {"bound.core", rate + 1},
+                    {"bound.core_limited_by", std::string("matcher")},
+                    {"area.slices_percent", point.board->matcher.disparities / 4.0}};
+  if (point.run.camera) {
+    figures.values.push_back({"frames_per_second.steady", rate});
+    figures.values.push_back({"frames_per_second.system", rate - 1});
+    figures.values.push_back({"bound.system", rate + 2});
+    figures.values.push_back({"bound.system_limited_by", std::string("camera")});
+    const std::int64_t lost = point.board->matcher.window == 9 ? 1 : 0;
+    figures.values.push_back({"cameras.left.dropped_pixels", lost});
+    figures.values.push_back({"cameras.right.dropped_pixels", std::int64_t{0}});
+  }
+  return figures;
+}
+
+Means means() {
+  Means means;
+  means.evaluate = made_up;
+  means.version = "0";
+  means.go_on = [](std::uint64_t, std::uint64_t) { return true; };
+  return means;
+}
+
+BoardRun run_of(const std::string& set, bool camera = false) { return {"fpl2003", {set}, camera}; }
+
+Claim claim_of(Quantity quantity, double printed, const std::vector<BoardRun>& runs) {
+  return {"one", "here", "so", quantity, {Relation::kWithin, 1, ""}, 0.5, {{"only", printed, runs}}};
+}
+
+CaseFinding only(const Claim& claim) { return study({claim}, means()).value().of("one").cases.at(0); }
+
+TEST(Study, TakesTheRateOfTheFirstRunWithItsBound) {
+  const CaseFinding found =
+      only(claim_of(Quantity::kRate, 61, {run_of("matcher.window=7"), run_of("matcher.window=5")}));
+  EXPECT_EQ(found.modelled, 60);
+  EXPECT_EQ(found.verdict, Verdict::kConfirmed);
+  EXPECT_EQ(found.runs.at(0).bound, 61);
+  EXPECT_EQ(found.runs.at(0).limited_by, "matcher");
+  EXPECT_EQ(found.runs.at(1).rate, 84);
+}
+
+TEST(Study, TakesOfTheComputerTheRateBetweenDeliveries) {
+  const CaseFinding found = only(claim_of(Quantity::kRate, 56, {run_of("matcher.window=7", true)}));
+  EXPECT_EQ(found.modelled, 54);
+  EXPECT_EQ(found.verdict, Verdict::kNotConfirmed);
+  EXPECT_EQ(found.runs.at(0).delivered, 53);
+  EXPECT_EQ(found.runs.at(0).bound, 56);
+  EXPECT_EQ(found.runs.at(0).limited_by, "camera");
+}
+
+TEST(Study, ComparesRatesAndAreas) {
+  const std::vector<BoardRun> two = {run_of("matcher.window=5"), run_of("matcher.window=7")};
+  EXPECT_EQ(only(claim_of(Quantity::kSpeedUp, 1, two)).modelled, 84.0 / 60);
+  EXPECT_EQ(only(claim_of(Quantity::kSpread, 0, two)).modelled, 24);
+  EXPECT_EQ(only(claim_of(Quantity::kSlices, 21, {run_of("matcher.disparities=80")})).modelled, 20);
+}
+
+TEST(Study, FindsTheFewestBanksThatReachTheFirstRun) {
+  const BoardRun all = {"fpl2003", {}, true};
+  const BoardRun seven = {"fpl2003", {"allocation.disparity=[bank4, bank4]"}, true};
+  const BoardRun slow = {"fpl2003", {"allocation.left_lut=bank4", "allocation.right_lut=bank5"}, true};
+  Claim claim = claim_of(Quantity::kBanksFound, 8, {all, seven, slow});
+  EXPECT_EQ(only(claim).modelled, 7);
+  EXPECT_EQ(only(claim).verdict, Verdict::kNotConfirmed);
+  claim.cases[0].runs.erase(claim.cases[0].runs.begin() + 1);
+  EXPECT_EQ(only(claim).modelled, 8);
+  EXPECT_EQ(only(claim).verdict, Verdict::kOpen);
+}
+
+TEST(Study, HasARowForEachAllocationOfTheComputer) {
+  const BoardRun all = {"fpl2003", {}, true};
+  const BoardRun seven = {"fpl2003", {"allocation.disparity=[bank4, bank4]"}, true};
+  const Findings found = study({claim_of(Quantity::kBanksFound, 8, {all, seven})}, means()).value();
+  ASSERT_EQ(found.banks.size(), 2U);
+  EXPECT_EQ(found.banks[0].banks, 7);
+  EXPECT_EQ(found.banks[0].allocations, std::nullopt);
+  EXPECT_EQ(found.banks[0].command,
+            "stereotlm run fpl2003 --set 'allocation.disparity=[bank4, bank4]' --timing-only --frames 13");
+  EXPECT_THAT(found.banks[0].allocation, HasSubstr("disparity bank4 bank4, left_lut bank6"));
+  EXPECT_EQ(found.banks[1].banks, 8);
+}
+
+// The core of a board whose frames are independent: a cycle for each buffer beside another one in its bank.
+explore::Figures made_up_frame(const explore::Point& point) {
+  std::map<std::string, int> buffers;
+  for (const platform::Buffer& buffer : platform::buffers(point.board->allocation)) ++buffers[buffer.bank];
+  std::int64_t cycles = 1'000'000;
+  for (const auto& [bank, count] : buffers) cycles += 1'000 * (count - 1);
+  explore::Figures figures;
+  figures.values = {{"cycles", cycles}, {"frames_per_second.core", 40e6 / static_cast<double>(cycles)}};
+  return figures;
+}
+
+TEST(Study, ProvesHowFewBanksReachTheBestRate) {
+  Means proving = means();
+  proving.evaluate = made_up_frame;
+  proving.bound = [](const BoardConfig&, std::uint64_t) {
+    platform::Bound bound;
+    bound.core = 40;
+    bound.core_limited_by = "matcher";
+    return bound;
+  };
+  const BoardRun run = {"fpl2003-no-calibration", {}, false};
+  const Findings found = study({claim_of(Quantity::kBanksProved, 6, {run})}, proving).value();
+  // Two pictures and a result in banks of their own.
+  EXPECT_EQ(found.of("one").cases.at(0).modelled, 3);
+  EXPECT_EQ(found.of("one").verdict, Verdict::kNotConfirmed);
+  ASSERT_EQ(found.banks.size(), 6U);
+  EXPECT_EQ(found.banks[2].banks, 3);
+  EXPECT_EQ(found.banks[2].allocations, 90U);
+  EXPECT_EQ(found.banks[2].measured.bound, 40);
+  EXPECT_LT(found.banks[1].measured.rate, found.banks[2].measured.rate);
+  EXPECT_EQ(found.banks[2].measured.rate, found.banks[5].measured.rate);
+}
+
+TEST(Study, SimulatesWhatIsAskedForTwiceOnce) {
+  Means counting = means();
+  std::uint64_t total = 0;
+  counting.go_on = [&total](std::uint64_t, std::uint64_t of) {
+    total = of;
+    return true;
+  };
+  Claim other = claim_of(Quantity::kSlices, 20, {run_of("matcher.window=5")});
+  other.name = "other";
+  study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=5"), run_of("matcher.window=7")}), other},
+        counting);
+  EXPECT_EQ(total, 2U);
+}
+
+TEST(Study, EndsWithoutFindingsIfItIsToldTo) {
+  Means ending = means();
+  ending.go_on = [](std::uint64_t, std::uint64_t) { return false; };
+  EXPECT_FALSE(study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=5")})}, ending).has_value());
+}
+
+TEST(Study, RefusesRatesOfCapturesThatLosePixels) {
+  EXPECT_THAT([] { only(claim_of(Quantity::kRate, 61, {run_of("matcher.window=9", true)})); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("--set matcher.window=9")));
+}
+
+TEST(Study, SaysWhyABoardCannotBeSimulated) {
+  Means failing = means();
+  failing.evaluate = [](const explore::Point&) -> explore::Figures { throw std::runtime_error("burnt"); };
+  EXPECT_THAT([&] { study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=9")})}, failing); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("burnt")));
+}
+
+TEST(Study, HasNoFindingOfAnotherName) { EXPECT_THROW(Findings().of("nothing"), std::out_of_range); }
+
+TEST(Study, CommandsAreThoseOfWhatTheNumberIsMadeOf) {
+  const std::vector<BoardRun> two = {run_of("matcher.window=5"), run_of("matcher.window=7", true)};
+  const auto commands = [&](Quantity quantity) {
+    const Claim claim = claim_of(quantity, 1, two);
+    return commands_of(claim, claim.cases[0]);
+  };
+  const std::string core =
+      "stereotlm run fpl2003 --set matcher.window=5 --source preloaded --timing-only --frames 2";
+  EXPECT_THAT(commands(Quantity::kRate), ElementsAre(core));
+  EXPECT_THAT(commands(Quantity::kSpeedUp),
+              ElementsAre(core, "stereotlm run fpl2003 --set matcher.window=7 --timing-only --frames 13"));
+  EXPECT_THAT(commands(Quantity::kSlices), ElementsAre("stereotlm bounds fpl2003 --set matcher.window=5"));
+  EXPECT_THAT(commands(Quantity::kBanksProved),
+              ElementsAre("stereotlm allocate fpl2003 --set matcher.window=5 --source preloaded --banks 8 "
+                          "--out banks.db"));
+}
+
+TEST(Study, ClocksGiveWhatIsPrinted) {
+  Claim claim = claim_of(Quantity::kRate, 61, {run_of("matcher.window=7")});
+  const auto clock = clock_for(claim, claim.cases[0], only(claim));
+  ASSERT_TRUE(clock.has_value());
+  EXPECT_DOUBLE_EQ(clock->least_mhz, 40 * 60.5 / 60);
+  EXPECT_DOUBLE_EQ(clock->most_mhz, 40 * 61.5 / 60);
+  claim.cases[0].runs[0].camera = true;
+  EXPECT_FALSE(clock_for(claim, claim.cases[0], {}).has_value());
+  claim.quantity = Quantity::kSpeedUp;
+  claim.cases[0].runs[0].camera = false;
+  EXPECT_FALSE(clock_for(claim, claim.cases[0], {}).has_value());
+}
+
+TEST(Study, DeviationIsThatOfTheModelFromThePaper) {
+  Claim claim = claim_of(Quantity::kRate, 80, {run_of("matcher.window=7")});
+  EXPECT_DOUBLE_EQ(*deviation_percent(claim, claim.cases[0], only(claim)), -25);
+  claim.cases[0].printed = 0;
+  EXPECT_FALSE(deviation_percent(claim, claim.cases[0], only(claim)).has_value());
+}
+
+}  // namespace
+}  // namespace stereotlm::paper
