@@ -299,14 +299,12 @@ void add_allocate(CLI::App& program, Action& action) {
   };
   options->add_to(add_command(
       program, "allocate", "Find the best allocation of the buffers to banks, and prove it", parsed,
-      "Every different way to place the buffers in at most N banks is tried: placements that differ only by "
-      "an\n"
-      "exchange of banks that are alike count as one, and those whose bound is below the best rate of as "
-      "many\n"
-      "banks are not simulated, or not to the end. For each number of banks: how many placements fit, the "
-      "best\n"
-      "frame rate beside its bound, how many reach it, and one that does. An allocation with which captures\n"
-      "lose pixels does not count. DB is continued: after an interruption, give the same command."));
+      "Every different way to place the buffers in at most N banks is tried: placements that differ only\n"
+      "by an exchange of banks that are alike count as one, and those whose bound is below the best rate\n"
+      "of as many banks are not simulated, or not to the end. For each number of banks: how many\n"
+      "placements fit, the best frame rate beside its bound, how many reach it, and one that does. An\n"
+      "allocation with which captures lose pixels does not count. DB is continued: after an interruption,\n"
+      "give the same command."));
 }
 
 }  // namespace stereotlm::cli
