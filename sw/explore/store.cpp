@@ -113,7 +113,8 @@ void Store::create() {
   }
   check_layout(database_);
   if (journal_of(database_) != "wal") wait_for_writers(database_);
-  database_.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+  database_.execute(
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA wal_autocheckpoint = 16384");
 }
 
 void Store::read_columns() {

@@ -3,19 +3,17 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/mman.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <deque>
 #include <map>
 #include <memory>
-#include <new>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "sw/explore/shared_state.h"
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"
 #include "sw/explore/worker.h"
@@ -25,24 +23,6 @@ namespace {
 
 constexpr std::uint64_t kMostOfAnOrder = 16;  // points
 constexpr int kLookMs = 100;
-
-// A flag in memory that forked processes share.
-class SharedFlag {
- public:
-  SharedFlag() {
-    void* const page =
-        mmap(nullptr, sizeof(std::atomic<bool>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (page == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap");
-    flag_ = new (page) std::atomic<bool>(false);
-  }
-  ~SharedFlag() { munmap(flag_, sizeof *flag_); }
-  SharedFlag(const SharedFlag&) = delete;
-  SharedFlag& operator=(const SharedFlag&) = delete;
-  std::atomic<bool>& operator*() const { return *flag_; }
-
- private:
-  std::atomic<bool>* flag_;
-};
 
 // A worker that dies while it is written to is seen by what it does not say.
 class IgnoredSigpipe {
@@ -72,7 +52,7 @@ class Sweep {
     const std::uint64_t jobs = std::min<std::uint64_t>(options_.jobs, counts_.total);
     for (std::uint64_t job = 0; job < jobs; ++job) start_worker(job);
     while (is_busy()) {
-      if (!go_on(counts_)) *stop_ = true;
+      if (!go_on(counts_)) shared_.stop() = true;
       wait();
     }
     workers_.clear();
@@ -89,13 +69,13 @@ class Sweep {
 
   void start_worker(std::size_t place) {
     if (place >= workers_.size()) workers_.resize(place + 1);
-    workers_[place] = std::make_unique<Worker>(points_, evaluate_, options_, *stop_);
+    workers_[place] = std::make_unique<Worker>(points_, evaluate_, options_, shared_);
     give_order(*workers_[place]);
   }
 
   // The next points, if there are any: what a dead worker has left first.
   void give_order(Worker& worker) {
-    if (*stop_) return;
+    if (shared_.stop()) return;
     if (!left_.empty()) {
       worker.send(left_.front());
       left_.pop_front();
@@ -176,7 +156,7 @@ class Sweep {
   const Evaluate& evaluate_;
   const SweepOptions& options_;
   IgnoredSigpipe ignored_sigpipe_;
-  SharedFlag stop_;
+  SharedState shared_;
   SweepCounts counts_;
   std::uint64_t next_ = 0;                        // of this shard's points, not handed out yet
   std::deque<WorkOrder> left_;                    // of dead workers

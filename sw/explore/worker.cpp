@@ -83,9 +83,11 @@ StoredPoint row_of(const Point& point) {
 // The work itself, in the process of the worker.
 class PointRunner {
  public:
-  PointRunner(const Points& points, const Evaluate& evaluate, const SweepOptions& options)
+  PointRunner(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
+              const SharedState& shared)
       : points_(points),
         evaluate_(evaluate),
+        shared_(shared),
         conditions_(points.conditions()),
         store_(options.store, options.version, options.patience) {
     if (!options.known.empty()) known_.emplace(options.known, options.version);
@@ -116,19 +118,21 @@ class PointRunner {
         row = failed_point(point, error.what());
       }
     }
+    const SharedState::Turn turn(shared_);
     return store_.add(row) ? end : PointEnd::kKnown;
   }
 
  private:
   const Points& points_;
   const Evaluate& evaluate_;
+  const SharedState& shared_;
   Conditions conditions_;
   Store store_;
   std::optional<FinishedStore> known_;
 };
 
 [[noreturn]] void be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-                            const std::atomic<bool>& stop, pid_t parent, int from, int to) {
+                            const SharedState& shared, pid_t parent, int from, int to) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it has ended before that
   // A terminal's Ctrl-C goes to all processes; the one that hands out the work decides what it means.
@@ -136,11 +140,11 @@ class PointRunner {
   signal(SIGTERM, SIG_DFL);
   Report report;
   try {
-    PointRunner runner(points, evaluate, options);
+    PointRunner runner(points, evaluate, options, shared);
     WorkOrder order;
     while (read_all(from, &order, sizeof order)) {
       for (std::uint64_t i = 0; i < order.count; ++i) {
-        report.end = stop ? PointEnd::kNotBegun : runner.run(order.first + i * order.step);
+        report.end = shared.stop() ? PointEnd::kNotBegun : runner.run(order.first + i * order.step);
         if (!write_all(to, &report, sizeof report)) _exit(1);
       }
     }
@@ -169,7 +173,7 @@ StoredPoint failed_point(const Point& point, const std::string& reason) {
 }
 
 Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-               const std::atomic<bool>& stop) {
+               const SharedState& shared) {
   std::array<int, 2> orders{};
   std::array<int, 2> reports{};
   if (pipe2(orders.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
@@ -181,7 +185,7 @@ Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOption
   if (pid_ == 0) {
     close(orders[1]);
     close(reports[0]);
-    be_worker(points, evaluate, options, stop, parent, orders[0], reports[1]);
+    be_worker(points, evaluate, options, shared, parent, orders[0], reports[1]);
   }
   close(orders[0]);
   close(reports[1]);

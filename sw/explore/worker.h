@@ -2,12 +2,12 @@
 
 #include <sys/types.h>
 
-#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "sw/explore/points.h"
+#include "sw/explore/shared_state.h"
 #include "sw/explore/store.h"
 #include "sw/explore/sweep.h"
 
@@ -29,10 +29,9 @@ StoredPoint failed_point(const Point& point, const std::string& reason);
 // A process that does points one after another, and tells how each has ended. It ends with this process.
 class Worker {
  public:
-  // Forks; `stop`, in memory that the processes share, makes it begin no further point. Throws
-  // std::system_error.
+  // Forks. Throws std::system_error.
   Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-         const std::atomic<bool>& stop);
+         const SharedState& shared);
   // Ends it if it still works.
   ~Worker();
   Worker(const Worker&) = delete;
