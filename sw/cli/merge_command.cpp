@@ -38,8 +38,9 @@ int merge(const MergeOptions& options) {
     refuse(error.what());
   }
   explore::Database merged(options.out.text, explore::Database::Access::kRead);
-  print(fmt::format("{}: {} points of {} databases\n", options.out.text,
-                    merged.number("SELECT count(*) FROM points"), options.inputs.text.size()));
+  const std::size_t inputs = options.inputs.text.size();
+  print(fmt::format("{}: {} points of {} database{}\n", options.out.text,
+                    merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
   return kDone;
 }
 
