@@ -87,7 +87,8 @@ TEST(KnobSteps, TurnAllBanksIntoAnotherKind) {
   const BoardConfig board = board_with({});
   EXPECT_THAT(texts_of("ssram.banks.*.kind", board),
               ElementsAre("zbt_pipelined -> zbt_flow_through", "zbt_pipelined -> sync_burst"));
-  for (const auto& bank : steps_of("ssram.banks.*.kind", board)[1].board.banks) {
+  const BoardConfig burst = steps_of("ssram.banks.*.kind", board)[1].board;
+  for (const auto& bank : burst.banks) {
     EXPECT_EQ(bank.kind, memory::BankKind::kSyncBurst);
     EXPECT_EQ(bank.turnaround_cycles, 2);
   }
