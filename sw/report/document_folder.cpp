@@ -28,7 +28,8 @@ DocumentFolder::DocumentFolder(const fs::path& dir, const std::string& document,
   if (dir_.empty()) throw std::runtime_error("folder '': must be named");
   if (!dir_.has_filename()) dir_ = dir_.parent_path();
   try {
-    create_missing();
+    created_.create(dir_);
+    if (!fs::is_directory(dir_)) refuse("not a folder");
     check_content();
     const fs::path aside = dir_ / kAside;
     fs::remove_all(aside);
@@ -46,19 +47,6 @@ DocumentFolder::DocumentFolder(const fs::path& dir, const std::string& document,
 }
 
 DocumentFolder::~DocumentFolder() { discard(); }
-
-void DocumentFolder::create_missing() {
-  std::vector<fs::path> missing;
-  for (fs::path path = dir_; fs::symlink_status(path).type() == fs::file_type::not_found;
-       path = path.parent_path()) {
-    missing.push_back(path);
-  }
-  std::reverse(missing.begin(), missing.end());
-  for (const fs::path& path : missing) {
-    if (fs::create_directory(path)) created_.push_back(path);
-  }
-  if (!fs::is_directory(dir_)) refuse("not a folder");
-}
 
 void DocumentFolder::check_content() const {
   const bool is_ours = is_file(dir_ / document_);
@@ -95,7 +83,7 @@ void DocumentFolder::commit(const std::map<std::string, std::string>& contents) 
   } catch (const std::system_error& error) {
     refuse("the files cannot be written: " + error.code().message());
   }
-  created_.clear();
+  created_.keep();
   discard();
 }
 
@@ -103,8 +91,7 @@ void DocumentFolder::discard() noexcept {
   std::error_code ignored;
   if (owns_aside_) fs::remove_all(dir_ / kAside, ignored);
   owns_aside_ = false;
-  for (auto path = created_.rbegin(); path != created_.rend(); ++path) fs::remove(*path, ignored);
-  created_.clear();
+  created_.remove();
 }
 
 void DocumentFolder::refuse(const std::string& found) const {

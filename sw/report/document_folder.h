@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sw/report/created_folders.h"
+
 namespace stereotlm::report {
 
 // A folder into which a document and its files go, beside whatever else it holds, which stays. It is as it
@@ -27,16 +29,15 @@ class DocumentFolder {
   void commit(const std::map<std::string, std::string>& contents);
 
  private:
-  void create_missing();
   void check_content() const;
   void discard() noexcept;
   [[noreturn]] void refuse(const std::string& found) const;
 
   std::filesystem::path dir_;
   std::string document_;
-  std::vector<std::string> names_;              // the document last
-  std::vector<std::filesystem::path> created_;  // DIR and parents that were missing, outermost first
-  bool owns_aside_ = false;                     // DIR/.partial is ours to remove
+  std::vector<std::string> names_;  // the document last
+  CreatedFolders created_;          // DIR and parents that were missing
+  bool owns_aside_ = false;         // DIR/.partial is ours to remove
 };
 
 }  // namespace stereotlm::report

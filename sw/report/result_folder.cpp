@@ -98,7 +98,8 @@ ResultFolder::ResultFolder(const fs::path& dir) : dir_(dir.empty() ? dir : fs::a
   if (dir_.empty()) throw std::runtime_error("result folder '': must be named");
   if (!dir_.has_filename()) dir_ = dir_.parent_path();
   try {
-    create_missing();
+    created_.create(dir_);
+    if (!fs::is_directory(dir_)) refuse("not a folder");
     lock();
     check_content();
     start_aside();
@@ -112,19 +113,6 @@ ResultFolder::ResultFolder(const fs::path& dir) : dir_(dir.empty() ? dir : fs::a
 }
 
 ResultFolder::~ResultFolder() { discard(); }
-
-void ResultFolder::create_missing() {
-  std::vector<fs::path> missing;
-  for (fs::path path = dir_; fs::symlink_status(path).type() == fs::file_type::not_found;
-       path = path.parent_path()) {
-    missing.push_back(path);
-  }
-  std::reverse(missing.begin(), missing.end());
-  for (const fs::path& path : missing) {
-    if (fs::create_directory(path)) created_.push_back(path);
-  }
-  if (!fs::is_directory(dir_)) refuse("not a folder");
-}
 
 void ResultFolder::lock() {
   lock_ = open(dir_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -216,10 +204,8 @@ void ResultFolder::discard() noexcept {
   std::error_code ignored;
   if (owns_aside_) fs::remove_all(dir_ / kAside, ignored);
   owns_aside_ = false;
-  if (!committed_) {
-    for (auto path = created_.rbegin(); path != created_.rend(); ++path) fs::remove(*path, ignored);
-  }
-  created_.clear();
+  if (committed_) created_.keep();
+  created_.remove();
   if (lock_ >= 0) close(lock_);
   lock_ = -1;
 }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sw/report/created_folders.h"
+
 namespace stereotlm::report {
 
 // The name of a frame's disparities in a result folder: "frames/000000.png".
@@ -41,7 +43,6 @@ class ResultFolder {
   void commit();
 
  private:
-  void create_missing();
   void lock();
   void check_content() const;
   void start_aside();
@@ -49,7 +50,7 @@ class ResultFolder {
   [[noreturn]] void refuse(const std::string& found) const;
 
   std::filesystem::path dir_;
-  std::vector<std::filesystem::path> created_;  // DIR and parents that were missing, outermost first
+  CreatedFolders created_;  // DIR and parents that were missing
   std::set<std::string> added_;
   int lock_ = -1;            // descriptor of DIR
   bool owns_aside_ = false;  // DIR/.partial is ours to remove
