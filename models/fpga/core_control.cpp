@@ -26,22 +26,35 @@ void CoreControl::start_frame(const FrameLatencies& latencies) {
   result_.start_frame();
 }
 
-void CoreControl::count(const Decision& decision, memory::PortMask granted, std::uint64_t cycles) {
-  using memory::Port;
-  const auto is_granted = [granted](Port port) { return (granted & memory::mask_of(port)) != 0; };
-  left_.count(decision.left, is_granted(Port::kLeftLut), is_granted(Port::kLeftPixel), cycles);
-  right_.count(decision.right, is_granted(Port::kRightLut), is_granted(Port::kRightPixel), cycles);
-  result_.count(decision.result, is_granted(Port::kResult), cycles);
+CoreControl::Counts CoreControl::counts() const {
+  Counts counts;
+  for (std::size_t port = 0; port < counts.size(); ++port)
+    counts[port] = port_cycles(static_cast<memory::Port>(port));
+  return counts;
 }
 
-void CoreControl::skip_columns(std::uint64_t columns) {
-  // What is written in the meantime is what has left.
-  if (match_.word_leaves()) result_.skip_words(columns / 4);
-  if (!match_.draining()) {
-    left_.skip_columns(columns);
-    right_.skip_columns(columns);
-  }
+CoreControl::Counts CoreControl::difference(const Counts& after, const Counts& before) {
+  Counts difference;
+  for (std::size_t port = 0; port < difference.size(); ++port)
+    difference[port] = after[port].since(before[port]);
+  return difference;
+}
+
+void CoreControl::count(const Counts& counts, std::uint64_t times) {
+  using memory::index_of;
+  using memory::Port;
+  left_.count(counts[index_of(Port::kLeftLut)], counts[index_of(Port::kLeftPixel)], times);
+  right_.count(counts[index_of(Port::kRightLut)], counts[index_of(Port::kRightPixel)], times);
+  result_.count(counts[index_of(Port::kResult)], times);
+}
+
+void CoreControl::skip_to(const State& state, std::uint64_t columns, std::uint64_t words) {
+  const std::uint64_t slots =
+      match_.draining() ? 0 : columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
+  left_.skip_to(state.left, slots);
+  right_.skip_to(state.right, slots);
   match_.skip_columns(columns);
+  result_.skip_to(state.rest >> 8U, words);
 }
 
 const PortCycles& CoreControl::port_cycles(memory::Port port) const {

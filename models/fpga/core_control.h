@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/lane_control.h"
+#include "models/fpga/row_profile.h"
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/memory_config.h"
 
@@ -55,6 +57,7 @@ class MatchControl {
     if (columns_ >= geometry_.result_delay_columns) return left;
     return std::min(left, geometry_.result_delay_columns - columns_);
   }
+  // As if they had been consumed.
   void skip_columns(std::uint64_t columns) {
     (draining() ? drain_left_ : slots_left_) -=
         columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
@@ -88,17 +91,22 @@ class ResultControl {
     return written_ == 0 || frame_done() ? Intent::kIdle : Intent::kStarved;
   }
   void commit(Intent intent, bool granted, bool word_enters) {
-    count(intent, granted, 1);
+    cycles_.count(intent, granted);
     queued_ += int{word_enters} - int{granted};
     written_ += std::uint64_t{granted};
     most_queued_ = std::max(most_queued_, queued_);
   }
-  void count(Intent intent, bool granted, std::uint64_t cycles) { cycles_.count(intent, granted, cycles); }
+  // Cycles beside those committed.
+  void count(const PortCycles& cycles, std::uint64_t times) { cycles_.count(cycles, times); }
 
   std::uint64_t state() const {
     return static_cast<std::uint64_t>(queued_) | std::uint64_t{written_ != 0} << 8U;
   }
-  void skip_words(std::uint64_t words) { written_ += words; }
+  // As if cycles had been committed in which so many words are written and that lead to this state.
+  void skip_to(std::uint64_t state, std::uint64_t words) {
+    queued_ = static_cast<int>(state & 0xffU);
+    written_ += words;
+  }
 
   // Of this frame.
   std::uint64_t words_written() const { return written_; }
@@ -171,8 +179,12 @@ class CoreControl {
     host_cycles_.count(Intent::kIdle, false, ~cycles + 1);  // may become negative until they are counted
     count_host(true, granted, cycles);
   }
-  // So many cycles like this one, beside those committed.
-  void count(const Decision& decision, memory::PortMask granted, std::uint64_t cycles);
+  // Over all frames, of the core's own ports.
+  using Counts = std::array<PortCycles, kCorePortCount>;
+  Counts counts() const;
+  static Counts difference(const Counts& after, const Counts& before);
+  // Cycles beside those committed.
+  void count(const Counts& counts, std::uint64_t times);
 
   // After four columns: all that the next cycles depend on, but for the arbiters, and the slots not yet taken.
   struct State {
@@ -185,8 +197,9 @@ class CoreControl {
     }
   };
   State state() const { return {left_.state(), right_.state(), match_.state() | result_.state() << 8U}; }
-  // As if the last columns had come so many times again: the state is the same.
-  void skip_columns(std::uint64_t columns);
+  // As if cycles had been committed in which the matcher consumes so many columns, none of which changes its own
+  // state, and so many words of results are written, and that lead to this state.
+  void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   const MatchControl& match() const { return match_; }
   const ResultControl& result() const { return result_; }
   // The last word of the frame has been written.

@@ -5,9 +5,6 @@
 namespace stereotlm::fpga {
 namespace {
 
-// A longer period is not looked for: what is recorded of it would grow with the frame.
-constexpr std::size_t kLongestPeriodCycles = std::size_t{1} << 16U;
-
 constexpr bool has(memory::PortMask mask, memory::Port port) { return (mask & memory::mask_of(port)) != 0; }
 
 }  // namespace
@@ -23,7 +20,7 @@ void CoreTiming::start_frame(const FrameLatencies& latencies) {
   rows_.start_frame(control_);
   left_ = {};
   right_ = {};
-  tracking_ = false;
+  forget();
 }
 
 void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern& left,
@@ -38,8 +35,15 @@ void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern&
 }
 
 void CoreTiming::begin_routing() {
-  tracking_ = false;
+  stepped_.reset();
   look_at_entries();
+}
+
+void CoreTiming::forget() {
+  stepped_.reset();
+  known_.clear();
+  left_alike_to_ = 0;
+  right_alike_to_ = 0;
 }
 
 void CoreTiming::look_at_entries() {
@@ -51,6 +55,7 @@ void CoreTiming::look_at_entries() {
 void CoreTiming::look_at_entries(Side& side, memory::Port port, LaneControl& lane) {
   if (side.looks) return;
   side.looks = true;
+  forget();
   const std::uint64_t passed = side.pattern->invalid_before(lane.handled());
   std::uint64_t marks = 0;
   for (std::uint64_t slot = lane.handled(); slot < lane.taken(); ++slot)
@@ -60,8 +65,7 @@ void CoreTiming::look_at_entries(Side& side, memory::Port port, LaneControl& lan
 }
 
 memory::PortMask CoreTiming::step(std::uint64_t cycle, bool host_requests) {
-  return step(cycle, host_requests, [this](const CoreControl::Decision& decision, memory::PortMask granted) {
-    if (tracking_) period_.push_back({decision, granted});
+  return step(cycle, host_requests, [this](const CoreControl::Decision&, memory::PortMask granted) {
     const auto valid = [granted](memory::Port lut, const LaneControl& lane, const Side& side) {
       const SlotCursor& slot = lane.next_slot();
       return has(granted, lut) && (!side.looks || side.pattern->entry_valid(slot.column(), slot.row()));
@@ -75,80 +79,96 @@ std::uint64_t CoreTiming::run_ahead(std::uint64_t cycle, std::uint64_t end) {
   while (cycle < end && !control_.frame_done()) {
     step(cycle, false);
     ++cycle;
-    if (four_columns_) cycle = repeat(cycle, end);
+    if (four_columns_) cycle = skip_known(cycle, end);
   }
   return cycle;
 }
 
-// After four columns. The beginning moves on after 1, 2, 4, .. groups of them (Brent, 1980), so that a period of any
-// length is found once nothing disturbs it any more.
-std::uint64_t CoreTiming::repeat(std::uint64_t cycle, std::uint64_t end) {
-  const State state{control_.state(), arbitration_.state(cycle)};
-  const bool drains = control_.match().draining();
-  const bool undisturbed = tracking_ && control_.match().state() == beginning_.phase &&
-                           (drains || (control_.left().taken() < beginning_.left_alike_to &&
-                                       control_.right().taken() < beginning_.right_alike_to));
-  if (!undisturbed || period_.size() > kLongestPeriodCycles) {
-    patience_ = 1;
-    begin_period(state, cycle);
-    return cycle;
+// After four columns.
+std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
+  // The route of the host may make another bank a shared one.
+  if (arbitration_.is_routed(memory::Port::kHost)) return cycle;
+  if (known_.is_full()) forget();
+  if (stepped_) end_group(cycle);
+  if (!look_at_slots()) return cycle;
+  Progress left = room(cycle, end);
+  KnownGroups::Group* group = &known_.at(state(cycle));
+  if (group->next != nullptr) {
+    Progress skipped;
+    group = &known_.walk(*group, left, skipped, control_, arbitration_);
+    if (skipped.cycles == 0) return cycle;
+    cycle += skipped.cycles;
+    left.take(skipped);
+    control_.count_host(false, false, skipped.cycles);
+    control_.skip_to(group->begin->control, skipped.columns, skipped.words);
+    arbitration_.skip_to(group->begin->arbitration, cycle, skipped.cycles);
   }
-  if (!(state == beginning_.state)) {
-    if (++groups_ == patience_) {
-      patience_ *= 2;
-      begin_period(state, cycle);
-    }
-    return cycle;
-  }
-  const std::uint64_t cycles = cycle - beginning_.cycle;
-  const std::uint64_t columns = control_.match().columns() - beginning_.columns;
-  const std::uint64_t times = std::min((end - cycle) / cycles, times_alike(columns));
-  if (times > 0) {
-    arbitration_.repeat(cycles, times);
-    for (const Cycle& past : period_) control_.count(past.decision, past.granted, times);
-    control_.count_host(false, false, cycles * times);
-    control_.skip_columns(columns * times);
-    cycle += cycles * times;
-  }
-  patience_ = 1;
-  begin_period(state, cycle);
+  if (group->next == nullptr) begin_group(*group, left, cycle);
   return cycle;
 }
 
-void CoreTiming::begin_period(const State& state, std::uint64_t cycle) {
-  tracking_ = true;
-  groups_ = 0;
-  period_.clear();
-  arbitration_.begin_period();
-  beginning_ = {state,
-                cycle,
-                control_.match().state(),
-                control_.match().columns(),
-                alike_to(control_.left(), left_),
-                alike_to(control_.right(), right_)};
+// Whether the slots next to be taken are known to make the same accesses for a while. Where another stretch of them
+// begins, no group is known any more.
+bool CoreTiming::look_at_slots() {
+  if (control_.match().draining()) return true;
+  const auto is_behind = [](const LaneControl& lane, std::uint64_t alike_to) {
+    return lane.taken() >= alike_to;
+  };
+  const LaneControl& left = control_.left();
+  const LaneControl& right = control_.right();
+  if (left.next_slot().done() || right.next_slot().done()) return false;
+  if (is_behind(left, left_alike_to_) || is_behind(right, right_alike_to_)) {
+    forget();
+    left_alike_to_ = alike_to(left, left_);
+    right_alike_to_ = alike_to(right, right_);
+  }
+  return true;
 }
 
 std::uint64_t CoreTiming::alike_to(const LaneControl& lane, const Side& side) const {
-  if (lane.next_slot().done()) return lane.taken();
   const SlotPattern& pattern = side.looks ? *side.pattern : all_valid_;
   return pattern.alike_until(lane.next_slot().frame_column()) *
          static_cast<std::uint64_t>(control_.geometry().slots_per_column);
 }
 
-// How often the last columns can come again before something is different, or a row of results is whole.
-std::uint64_t CoreTiming::times_alike(std::uint64_t columns) const {
-  const MatchControl& match = control_.match();
-  std::uint64_t times = match.columns_alike() / columns;
-  if (match.word_leaves())
-    times = std::min(times, (rows_.next_words() - control_.result().words_written() - 1) / (columns / 4));
-  if (match.draining()) return times;
-  const std::uint64_t slots = columns * static_cast<std::uint64_t>(control_.geometry().slots_per_column);
+// How far the core can come before something is different, or a row of results is whole.
+Progress CoreTiming::room(std::uint64_t cycle, std::uint64_t end) const {
+  const bool drains = control_.match().draining();
   // The slot behind the last one taken counts too: a port decides by it.
-  const auto times_of = [slots](std::uint64_t alike_to, const LaneControl& lane) {
-    return (alike_to - 1 - lane.taken()) / slots;
+  const auto slots = [drains](const LaneControl& lane, std::uint64_t alike_to) {
+    return drains ? 0 : alike_to - 1 - lane.taken();
   };
-  return std::min({times, times_of(beginning_.left_alike_to, control_.left()),
-                   times_of(beginning_.right_alike_to, control_.right())});
+  return {end - cycle, control_.match().columns_alike(), slots(control_.left(), left_alike_to_),
+          slots(control_.right(), right_alike_to_),
+          rows_.next_words() - control_.result().words_written() - 1};
+}
+
+void CoreTiming::begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle) {
+  stepped_ = {&group, room, progress(cycle), control_.match().state(), control_.counts()};
+  arbitration_.begin_recording();
+}
+
+// It is known now, unless something became different on the way.
+void CoreTiming::end_group(std::uint64_t cycle) {
+  const Stepped stepped = *stepped_;
+  stepped_.reset();
+  Progress progress = this->progress(cycle);
+  progress.take(stepped.begin);
+  const bool is_alike =
+      progress.columns <= stepped.room.columns && progress.left_slots <= stepped.room.left_slots &&
+      progress.right_slots <= stepped.room.right_slots && control_.match().state() == stepped.match_state;
+  if (!is_alike) return;
+  KnownGroups::Group& group = *stepped.group;
+  group.progress = progress;
+  group.counts = CoreControl::difference(control_.counts(), stepped.counts);
+  group.decided = arbitration_.take_recorded();
+  group.next = &known_.at(state(cycle));
+}
+
+// Since the frame began, or some other cycle.
+Progress CoreTiming::progress(std::uint64_t cycle) const {
+  return {cycle, control_.match().columns(), control_.left().taken(), control_.right().taken(),
+          control_.result().words_written()};
 }
 
 std::uint64_t CoreTiming::earliest_last_write(std::uint64_t cycle) const {

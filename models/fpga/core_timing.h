@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <optional>
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/known_groups.h"
 #include "models/fpga/row_recorder.h"
 #include "models/fpga/slot_pattern.h"
 #include "models/memory/arbitration.h"
@@ -20,13 +21,12 @@ struct EntriesRead {
 // The cycles of the core: control and arbitration, stepped together. Plain C++, no SystemC.
 //
 // A frame can be stepped cycle by cycle, while whoever steps it moves the data; or it runs ahead by itself. Then what
-// repeats is not stepped again: where the state after four columns of the matcher is what it was some columns before,
-// and the slots to come make the same accesses as those in between, everything happens again and again, exactly, until
-// that ends. Of a pixel port that is alone on its bank it does not matter which entries are valid: a slot that needs an
+// has come before is not stepped again: what four columns of the matcher do depends on the state before them, as long
+// as the slots to come make the same accesses (KnownGroups). Of a pixel port that is alone on its bank it does not matter which entries are valid: a slot that needs an
 // access takes the cycle of one that passes. Running ahead, all are taken for valid then, and the counts are put right
 // in the end.
 //
-// While rows are recorded the cycles around the end of each are stepped: at most so many more as two periods have.
+// While rows are recorded the cycles around the end of each are stepped.
 class CoreTiming {
  public:
   // `arbitration` outlives it. Throws std::invalid_argument if the configuration has problems.
@@ -71,26 +71,13 @@ class CoreTiming {
   const CoreControl& control() const { return control_; }
 
  private:
-  struct State {
-    CoreControl::State control;
-    memory::Arbitration::State arbitration{};
-
-    friend bool operator==(const State& a, const State& b) {
-      return a.control == b.control && a.arbitration == b.arbitration;
-    }
-  };
-  // Where a period may have begun.
-  struct Beginning {
-    State state;
-    std::uint64_t cycle = 0;
-    std::uint64_t phase = 0;          // of the matcher
-    std::uint64_t columns = 0;        // that the matcher has consumed
-    std::uint64_t left_alike_to = 0;  // slots of the frame that make the accesses of those next to be taken
-    std::uint64_t right_alike_to = 0;
-  };
-  struct Cycle {
-    CoreControl::Decision decision;
-    memory::PortMask granted;
+  // A group that is being stepped, to be known from then on.
+  struct Stepped {
+    KnownGroups::Group* group;
+    Progress room;
+    Progress begin;
+    std::uint64_t match_state;
+    CoreControl::Counts counts;
   };
 
   // The table of one side, and its pixel port.
@@ -101,10 +88,17 @@ class CoreTiming {
 
   void look_at_entries();
   void look_at_entries(Side& side, memory::Port port, LaneControl& lane);
-  std::uint64_t repeat(std::uint64_t cycle, std::uint64_t end);
-  void begin_period(const State& state, std::uint64_t cycle);
+  void forget();
+  std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
+  bool look_at_slots();
   std::uint64_t alike_to(const LaneControl& lane, const Side& side) const;
-  std::uint64_t times_alike(std::uint64_t columns) const;
+  Progress room(std::uint64_t cycle, std::uint64_t end) const;
+  void begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle);
+  void end_group(std::uint64_t cycle);
+  Progress progress(std::uint64_t cycle) const;
+  KnownGroups::State state(std::uint64_t cycle) const {
+    return {control_.state(), arbitration_.state(cycle)};
+  }
 
   CoreControl control_;
   RowRecorder rows_;
@@ -114,11 +108,11 @@ class CoreTiming {
   Side right_;
   bool four_columns_ = false;  // the last cycle completed them
 
-  bool tracking_ = false;
-  Beginning beginning_;
-  std::uint64_t groups_ = 0;    // of four columns, since the beginning
-  std::uint64_t patience_ = 1;  // groups after which the beginning is moved; doubled each time
-  std::vector<Cycle> period_;   // since the beginning
+  KnownGroups known_;
+  std::optional<Stepped> stepped_;
+  // Slots of the frame that make the accesses of those for which the groups are known; 0: none are.
+  std::uint64_t left_alike_to_ = 0;
+  std::uint64_t right_alike_to_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -77,11 +77,14 @@ class SlotCursor {
     column_ = 0;
     ++strip_row_;
   }
-  void skip_columns(std::uint64_t columns) {
-    left_ -= columns * static_cast<std::uint64_t>(slots_per_column_);
-    const std::uint64_t column = static_cast<std::uint64_t>(column_) + columns;
-    strip_row_ += static_cast<int>(column / static_cast<std::uint64_t>(width_));
+  void advance(std::uint64_t slots) {
+    left_ -= slots;
+    const std::uint64_t slot = static_cast<std::uint64_t>(k_) + slots;
+    const std::uint64_t column =
+        static_cast<std::uint64_t>(column_) + slot / static_cast<std::uint64_t>(slots_per_column_);
+    k_ = static_cast<int>(slot % static_cast<std::uint64_t>(slots_per_column_));
     column_ = static_cast<int>(column % static_cast<std::uint64_t>(width_));
+    strip_row_ += static_cast<int>(column / static_cast<std::uint64_t>(width_));
   }
 
  private:

@@ -18,6 +18,15 @@ class PortCycles {
   void count(Intent intent, bool granted, std::uint64_t cycles = 1) {
     cycles_[granted ? kGranted : static_cast<std::size_t>(intent)] += cycles;
   }
+  // Those of other cycles, `times` times.
+  void count(const PortCycles& others, std::uint64_t times) {
+    for (std::size_t kind = 0; kind < cycles_.size(); ++kind) cycles_[kind] += others.cycles_[kind] * times;
+  }
+  PortCycles since(const PortCycles& before) const {
+    PortCycles since = *this;
+    since.count(before, ~std::uint64_t{0});
+    return since;
+  }
 
   std::uint64_t granted() const { return cycles_[kGranted]; }
   std::uint64_t stalled() const { return of(Intent::kRequest); }
@@ -75,7 +84,8 @@ class LaneControl {
   // `lut_granted`, `pixel_granted`: the request was granted. `entry_valid`: of the table entry that the LUT
   // port has just read; without effect otherwise. `consumes`: the matcher consumes a slot in this cycle.
   void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid, bool consumes) {
-    count(decision, lut_granted, pixel_granted, 1);
+    lut_cycles_.count(decision.lut, lut_granted);
+    pixel_cycles_.count(decision.pixel, pixel_granted);
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
     const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
     // What enters in cycle c is seen from cycle c + latency on.
@@ -98,13 +108,12 @@ class LaneControl {
   void correct_passes(std::uint64_t cycles, std::uint64_t marks) {
     pixel_cycles_.count(Intent::kRequest, true, ~cycles + 1);
     pixel_cycles_.count(Intent::kPass, false, cycles);
-    const std::uint64_t place = handled_ % kMostSlots;
-    marks_ = place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
+    marks_ = from_handled_on(marks);
   }
-  // So many cycles like this one, beside those committed.
-  void count(Decision decision, bool lut_granted, bool pixel_granted, std::uint64_t cycles) {
-    lut_cycles_.count(decision.lut, lut_granted, cycles);
-    pixel_cycles_.count(decision.pixel, pixel_granted, cycles);
+  // Cycles beside those committed.
+  void count(const PortCycles& lut, const PortCycles& pixel, std::uint64_t times) {
+    lut_cycles_.count(lut, times);
+    pixel_cycles_.count(pixel, times);
   }
 
   // All that the lane does next depends on, but for the slots that it has not taken yet.
@@ -126,14 +135,17 @@ class LaneControl {
                 std::uint64_t{arrived_entries_ != 0} << 33U,
             rotated & kept};
   }
-  // As if the last columns that the matcher has consumed had come so many times again: the state is the same.
-  void skip_columns(std::uint64_t columns) {
-    const std::uint64_t slots = columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
-    const std::uint64_t places = slots % kMostSlots;
-    if (places != 0) marks_ = marks_ << places | marks_ >> (kMostSlots - places);
-    for (std::uint64_t* count : {&taken_, &handled_, &consumed_, &arrived_entries_, &arrived_pixels_})
-      *count += slots;
-    next_slot_.skip_columns(columns);
+  // As if cycles had been committed in which the matcher consumes so many slots and that lead to this state.
+  void skip_to(const State& state, std::uint64_t slots) {
+    const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state.counts >> bit & 0xffU); };
+    const std::uint64_t taken_before = taken_;
+    consumed_ += slots;
+    taken_ = behind_consumed(0);
+    handled_ = behind_consumed(8);
+    arrived_entries_ = behind_consumed(16);
+    arrived_pixels_ = behind_consumed(24);
+    marks_ = from_handled_on(state.marks);
+    next_slot_.advance(taken_ - taken_before);
   }
 
   // Slots of this frame that it has taken, and of these those that the pixel port has handled.
@@ -149,6 +161,11 @@ class LaneControl {
  private:
   static constexpr std::uint64_t kMostSlots = kLaneFifoRule.max;
 
+  // Bit 0 is that of the slot which the pixel port handles next.
+  std::uint64_t from_handled_on(std::uint64_t marks) const {
+    const std::uint64_t place = handled_ % kMostSlots;
+    return place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
+  }
   Intent take_intent() const {
     if (next_slot_.done()) return Intent::kIdle;
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;

@@ -288,6 +288,7 @@ void StereoCore::finish_frame(std::uint64_t now_ps) {
 
 void StereoCore::route_host(const HostRoute& route) {
   host_route_ = route;
+  burst_is_moved_ = false;
   if (!route.bank) {
     if (!host_is_routed_) return;
     host_is_routed_ = false;

@@ -159,7 +159,8 @@ class StereoCore : public sc_core::sc_module {
   bool serves_host_beside_frame() const;
   void serve_beside_frame();
   void serve_alone(std::uint64_t now_ps);
-  bool move_burst();
+  void move_burst();
+  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps);
   void serve_in_step(std::uint64_t first_cycle);
   void count_served(std::uint64_t end_cycle, bool in_frame);
   void finish_cycles(std::uint64_t end_cycle);
@@ -227,6 +228,7 @@ class StereoCore : public sc_core::sc_module {
     std::uint64_t cycles;  // from it on
     memory::BankArbiter::Outcome outcome;
   };
+  bool burst_is_moved_ = false;  // of the local bus: its data is where it belongs, its words are only counted
   std::vector<Served> served_;
   std::size_t served_bank_ = 0;
   sc_core::sc_event start_event_{"start_event"};

@@ -214,15 +214,16 @@ bool StereoCore::serves_host_beside_frame() const {
 // Its words, cycle by cycle.
 void StereoCore::serve_beside_frame() {
   const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
+  move_burst();
+  cycle_ = timing_.run_ahead(cycle_, first);  // without the host, whose route would keep it from skipping
   join_host();
-  cycle_ = timing_.run_ahead(cycle_, first);
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   for (const std::uint64_t last = cycle_ + kHostCycles; cycle_ < last && !control().frame_done(); ++cycle_) {
     const std::uint64_t edge = clock_.edge_ps(cycle_);
     const PortMask granted = timing_.step(cycle_, local_bus_.requests(edge));
     if ((granted & kHostPort) == 0) continue;
-    crossbar_.grant(kHostPort);
-    if (!access_host(cycle_, Clock::to_time(std::max(edge, now) - now))) continue;
+    serve_word(cycle_, edge, now);
+    if (local_bus_.word_waits()) continue;
     ++cycle_;
     break;
   }
@@ -242,8 +243,8 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   served_bank_ = bank;
   // The first cycle that is not decided yet: a word that the frame has refused to its end asks on from there.
   std::uint64_t cycle = state_ == State::kRunning ? 0 : cycle_;
-  const bool is_moved = nobody_else_starts() && move_burst();
-  if (is_moved && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
+  move_burst();
+  if (burst_is_moved_ && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
     serve_in_step(cycle);
   }
   while (local_bus_.word_waits()) {
@@ -264,29 +265,33 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
     }
     const auto outcome = arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);
     served_.push_back({cycle, 1, outcome});
-    if (arbitration.grants(bank, outcome)) {
-      if (is_moved) {
-        local_bus_.count_granted(1, edge, clock_.edge_ps(cycle + host_read_latency_));
-      } else {
-        crossbar_.grant(kHostPort);
-        access_host(cycle, Clock::to_time(std::max(edge, now_ps) - now_ps));
-      }
-    }
+    if (arbitration.grants(bank, outcome)) serve_word(cycle, edge, now_ps);
     ++cycle;
   }
   if (state_ != State::kRunning) count_served(UINT64_MAX, false);
 }
 
-// The data of a burst that has just begun. False if its bank does not grant direct access.
-bool StereoCore::move_burst() {
+// The data of a burst that has just begun, if nobody can start a frame before its end and its bank grants direct
+// access.
+void StereoCore::move_burst() {
   const std::uint64_t bytes = host_route_.end - host_route_.first;
-  if (local_bus_.words_left() * 4 != bytes) return false;
+  if (burst_is_moved_ || !nobody_else_starts() || local_bus_.words_left() * 4 != bytes) return;
   unsigned char* const words = crossbar_.direct(host_route_.first, bytes);
-  if (words == nullptr) return false;
+  if (words == nullptr) return;
   local_bus_.move_words(words);
   if (host_route_.write) crossbar_.changes(host_route_.first, bytes);
   crossbar_.count_direct(*host_route_.bank, bytes / 4);
-  return true;
+  burst_is_moved_ = true;
+}
+
+// The next word of the burst, granted in a cycle.
+void StereoCore::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps) {
+  if (burst_is_moved_) {
+    local_bus_.count_granted(1, edge_ps, clock_.edge_ps(cycle + host_read_latency_));
+  } else {
+    crossbar_.grant(kHostPort);
+    access_host(cycle, Clock::to_time(std::max(edge_ps, now_ps) - now_ps));
+  }
 }
 
 // A word in each cycle, until the end of the burst, from this one on.

@@ -1,5 +1,7 @@
 #include "models/memory/arbitration.h"
 
+#include <algorithm>
+
 namespace stereotlm::memory {
 namespace {
 
@@ -74,8 +76,8 @@ void Arbitration::count_alone() const {
     for (std::size_t port = 0; port < kPortCount; ++port)
       cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
   }
-  for (std::size_t ports = 0; ports < alone_cycles_.size(); ++ports)
-    alone_before_period_[ports] -= alone_cycles_[ports];
+  for (std::size_t ports = 0; recording_ && ports < alone_cycles_.size(); ++ports)
+    alone_before_recording_[ports] -= alone_cycles_[ports];
   alone_cycles_ = {};
   for (std::size_t port = 0; port < kPortCount; ++port) {
     const std::uint64_t grants = cycles[port] - taken_back_[port];
@@ -105,7 +107,7 @@ PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
     BankArbiter& arbiter = *shared->arbiter;
     const BankArbiter::Outcome outcome = arbiter.decide(cycle, asking, writes_);
     arbiter.count(cycle, outcome);
-    if (recording_) shared->period.push_back(outcome);
+    if (recording_) shared->recorded.push_back(outcome);
     granted = static_cast<PortMask>(granted | arbiter.granted_in(outcome));
   }
   return granted;
@@ -117,18 +119,40 @@ Arbitration::State Arbitration::state(std::uint64_t cycle) const {
   return state;
 }
 
-void Arbitration::begin_period() {
+void Arbitration::begin_recording() {
   recording_ = true;
-  alone_before_period_ = alone_cycles_;
-  for (std::size_t i = 0; i < shared_bank_count_; ++i) shared_banks_[i].period.clear();
+  alone_before_recording_ = alone_cycles_;
+  for (std::size_t i = 0; i < shared_bank_count_; ++i) shared_banks_[i].recorded.clear();
 }
 
-void Arbitration::repeat(std::uint64_t period_cycles, std::uint64_t times) {
+Arbitration::Decided Arbitration::take_recorded() {
   recording_ = false;
-  for (std::size_t ports = 0; ports < alone_cycles_.size(); ++ports)
-    alone_cycles_[ports] += times * (alone_cycles_[ports] - alone_before_period_[ports]);
+  Decided decided;
+  for (std::size_t ports = 1; ports < alone_cycles_.size(); ++ports) {
+    const std::uint64_t cycles = alone_cycles_[ports] - alone_before_recording_[ports];
+    if (cycles != 0) decided.alone.push_back({ports, cycles});
+  }
+  for (std::size_t bank = 0; bank < shared_bank_count_; ++bank) {
+    std::vector<BankArbiter::Outcome>& recorded = shared_banks_[bank].recorded;
+    std::sort(recorded.begin(), recorded.end());
+    for (auto first = recorded.begin(); first != recorded.end();) {
+      const auto last = std::upper_bound(first, recorded.end(), *first);
+      decided.shared.push_back({bank, *first, static_cast<std::uint64_t>(last - first)});
+      first = last;
+    }
+  }
+  return decided;
+}
+
+void Arbitration::skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles) {
   for (std::size_t i = 0; i < shared_bank_count_; ++i)
-    shared_banks_[i].arbiter->repeat(period_cycles, shared_banks_[i].period, times);
+    shared_banks_[i].arbiter->skip_to(state[i], cycle, cycles);
+}
+
+void Arbitration::count_skipped(const Decided& decided, std::uint64_t times) {
+  for (const auto& [ports, cycles] : decided.alone) alone_cycles_[ports] += cycles * times;
+  for (const auto& [bank, outcome, cycles] : decided.shared)
+    shared_banks_[bank].arbiter->count_skipped(outcome, cycles * times);
 }
 
 void Arbitration::begin_counting(std::uint64_t first_cycle) {

@@ -21,6 +21,7 @@ class Arbitration {
   // The port has nothing to request any more.
   void unroute(Port port);
   std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
+  bool is_routed(Port port) const { return is_routed(index_of(port)); }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
@@ -54,11 +55,27 @@ class Arbitration {
   // are 0.
   using State = std::array<std::uint32_t, kPortCount>;
   State state(std::uint64_t cycle) const;
-  // From here on a period is recorded, until repeat() or a change of routes.
-  void begin_period();
-  // What has happened since begin_period(), in `period_cycles` cycles, happens `times` times again; the state is the
-  // same as at begin_period().
-  void repeat(std::uint64_t period_cycles, std::uint64_t times);
+  // What was decided in some cycles.
+  struct Decided {
+    struct Shared {
+      std::size_t bank;  // of the shared ones
+      BankArbiter::Outcome outcome;
+      std::uint64_t cycles;
+    };
+    struct Alone {
+      std::size_t ports;  // granted, a mask
+      std::uint64_t cycles;
+    };
+    std::vector<Shared> shared;
+    std::vector<Alone> alone;
+  };
+  // From here on decisions are recorded, until take_recorded() or a change of routes, which drops them.
+  void begin_recording();
+  Decided take_recorded();
+  // As if so many cycles had been arbitrated that lead to this state from `cycle` on: their decisions are told by
+  // count_skipped().
+  void skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles);
+  void count_skipped(const Decided& decided, std::uint64_t times);
 
   // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
   // counting has ended; their uncounted_accesses() always. Until then the grants of a port that is alone may
@@ -79,7 +96,7 @@ class Arbitration {
   struct SharedBank {
     BankArbiter* arbiter = nullptr;
     PortMask ports = 0;
-    std::vector<BankArbiter::Outcome> period;  // recorded
+    std::vector<BankArbiter::Outcome> recorded;
   };
 
   bool is_routed(std::size_t port) const { return (routed_ >> port & 1U) != 0; }
@@ -97,7 +114,7 @@ class Arbitration {
   PortMask alone_ = 0;
   using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
   mutable AloneCycles alone_cycles_{};
-  mutable AloneCycles alone_before_period_{};                   // only the difference to alone_cycles_ counts
+  mutable AloneCycles alone_before_recording_{};                // only the difference to alone_cycles_ counts
   mutable std::array<std::uint64_t, kPortCount> taken_back_{};  // of the alone_cycles_
   mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those taken back
   std::array<SharedBank, kPortCount> shared_banks_{};

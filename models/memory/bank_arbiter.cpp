@@ -39,18 +39,21 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
   }
 }
 
-void BankArbiter::repeat(std::uint64_t period_cycles, const std::vector<Outcome>& outcomes,
-                         std::uint64_t times) {
-  const std::uint64_t cycles = period_cycles * times;
-  for (std::uint64_t& ready : ready_cycle_) ready += cycles;
-  if (!counting_) {
-    for (const Outcome outcome : outcomes)
-      uncounted_accesses_ += times * std::uint64_t{outcome % kKinds != kTurning};
-    return;
-  }
-  for (const Outcome outcome : outcomes) outcomes_[outcome] += times;
+void BankArbiter::skip_to(std::uint32_t state, std::uint64_t cycle, std::uint64_t cycles) {
+  place_ = state & 0xffU;
+  ready_cycle_ = {cycle + (state >> 8U & 0xffU), cycle + (state >> 16U)};
+  if (!counting_) return;
   next_uncounted_cycle_ += cycles;
-  idle_cycles_ += (period_cycles - outcomes.size()) * times;
+  idle_cycles_ += cycles;
+}
+
+void BankArbiter::count_skipped(Outcome outcome, std::uint64_t cycles) {
+  if (counting_) {
+    outcomes_[outcome] += cycles;
+    idle_cycles_ -= cycles;
+  } else if (outcome % kKinds != kTurning) {
+    uncounted_accesses_ += cycles;
+  }
 }
 
 void BankArbiter::begin_counting(std::uint64_t first_cycle) {

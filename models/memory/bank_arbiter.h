@@ -75,9 +75,10 @@ class BankArbiter {
     };
     return static_cast<std::uint32_t>(place_) | wait(ready_cycle_[0]) << 8U | wait(ready_cycle_[1]) << 16U;
   }
-  // The last `period_cycles` cycles, of which `outcomes` had requests, happen `times` times again; the state at
-  // the end of each is that at its beginning.
-  void repeat(std::uint64_t period_cycles, const std::vector<Outcome>& outcomes, std::uint64_t times);
+  // As if the last of the cycles decided lay so many cycles later, and the decisions in between, counted by
+  // count_skipped(), led to this state from `cycle` on.
+  void skip_to(std::uint32_t state, std::uint64_t cycle, std::uint64_t cycles);
+  void count_skipped(Outcome outcome, std::uint64_t cycles);
 
   // Only the cycles from `first_cycle` on, up to but not including `end_cycle`, are counted in stats(); of
   // the others only the accesses, in uncounted_accesses().

@@ -240,7 +240,7 @@ TEST(CoreTiming, IsStoppedInTheMiddleWithTheCountsOfTheSteps) {
 
 // Both to the end of a frame, with bursts of the host in between.
 void run_beside_host(test::SplitMix64& random, const Setting& setting, Timing& stepped, Timing& ahead) {
-  for (int bursts = random.between(0, 6); bursts > 0; --bursts) {
+  for (int bursts = random.mostly_small(0, 6, 100); bursts > 0; --bursts) {
     Burst burst;
     burst.cycle = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 500, 5000));
     burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));

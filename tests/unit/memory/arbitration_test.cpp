@@ -167,13 +167,15 @@ TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
     // Until it comes back to where it was.
     for (int tries = 0; tries < 20; ++tries) {
       const Arbitration::State before = repeats.state(cycle);
-      repeats.begin_period();
+      repeats.begin_recording();
       step(repeats, cycle);
       step(steps, cycle);
       cycle += period.size();
       if (!(repeats.state(cycle) == before)) continue;
       const auto times = static_cast<std::uint64_t>(random.between(1, 5));
-      repeats.repeat(period.size(), times);
+      const Arbitration::Decided decided = repeats.take_recorded();
+      repeats.count_skipped(decided, times);
+      repeats.skip_to(before, cycle + times * period.size(), times * period.size());
       for (std::uint64_t i = 0; i < times; ++i) step(steps, cycle + i * period.size());
       cycle += times * period.size();
       ++repeated;
@@ -200,12 +202,14 @@ TEST(Arbitration, RepeatsAPeriodInWhichSomebodyAsksForTheArbiters) {
   arbitration.route(Port::kLeftPixel, 0, false);
   arbitration.begin_counting(0);
   for (std::uint64_t cycle = 0; cycle < 3; ++cycle) arbitration.arbitrate(cycle, kLeft);
-  arbitration.begin_period();
+  const Arbitration::State state = arbitration.state(3);
+  arbitration.begin_recording();
   arbitration.arbitrate(3, kLeft);
   EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 4U);
   arbitration.arbitrate(4, kLeft);
   arbitration.arbitrate(5, kNone);
-  arbitration.repeat(3, 5);
+  arbitration.count_skipped(arbitration.take_recorded(), 5);
+  arbitration.skip_to(state, 21, 15);
   arbitration.end_counting(21);
   EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 3U + 6 * 2);
   EXPECT_EQ(arbitration.arbiters()[0].stats().idle_cycles, 6U);

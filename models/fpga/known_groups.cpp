@@ -1,0 +1,88 @@
+#include "models/fpga/known_groups.h"
+
+#include <algorithm>
+
+namespace stereotlm::fpga {
+
+std::uint64_t Progress::times_in(const Progress& room) const {
+  std::uint64_t times = room.cycles / cycles;
+  if (columns != 0) times = std::min(times, room.columns / columns);
+  if (left_slots != 0) times = std::min(times, room.left_slots / left_slots);
+  if (right_slots != 0) times = std::min(times, room.right_slots / right_slots);
+  if (words != 0) times = std::min(times, room.words / words);
+  return times;
+}
+
+void Progress::add(const Progress& other, std::uint64_t times) {
+  cycles += other.cycles * times;
+  columns += other.columns * times;
+  left_slots += other.left_slots * times;
+  right_slots += other.right_slots * times;
+  words += other.words * times;
+}
+
+std::size_t KnownGroups::Hash::operator()(const State& state) const {
+  std::uint64_t hash = 0;
+  const auto mix = [&hash](std::uint64_t word) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15U;
+    hash ^= hash >> 32U;
+  };
+  for (const LaneControl::State& lane : {state.control.left, state.control.right}) {
+    mix(lane.counts);
+    mix(lane.marks);
+  }
+  mix(state.control.rest);
+  for (const std::uint32_t word : state.arbitration) mix(word);
+  return hash;
+}
+
+KnownGroups::Group& KnownGroups::at(const State& state) {
+  const auto [entry, is_new] = groups_.try_emplace(state);
+  if (is_new) entry->second.begin = &entry->first;
+  return entry->second;
+}
+
+void KnownGroups::take(Group& group, std::uint64_t times) {
+  if (group.times == 0) walked_.push_back(&group);
+  group.times += times;
+}
+
+// Where the walk comes back to a group that it has passed, it goes round as often as there is room. The group to come
+// back to moves on after 1, 2, 4, .. steps (Brent, 1980), so that a ring of any length is found.
+KnownGroups::Group& KnownGroups::walk(Group& first, Progress room, Progress& progress, CoreControl& control,
+                                      memory::Arbitration& arbitration) {
+  Group* group = &first;
+  const Group* mark = group;
+  Progress since_mark;
+  std::uint64_t steps = 0;
+  std::uint64_t patience = 1;
+  while (group->next != nullptr && group->progress.fits(room)) {
+    take(*group, 1);
+    room.take(group->progress);
+    progress.add(group->progress);
+    since_mark.add(group->progress);
+    group = group->next;
+    ++steps;
+    if (group == mark) {
+      const std::uint64_t times = since_mark.times_in(room);
+      if (times == 0) continue;
+      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) take(*group, times);
+      room.take(since_mark, times);
+      progress.add(since_mark, times);
+    } else if (steps == patience) {
+      mark = group;
+      since_mark = {};
+      steps = 0;
+      patience *= 2;
+    }
+  }
+  for (Group* const walked : walked_) {
+    control.count(walked->counts, walked->times);
+    arbitration.count_skipped(walked->decided, walked->times);
+    walked->times = 0;
+  }
+  walked_.clear();
+  return *group;
+}
+
+}  // namespace stereotlm::fpga
