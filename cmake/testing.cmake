@@ -10,6 +10,18 @@ set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test program
 
 option(STEREOTLM_SLOW_TESTS "Build the tests with the label slow" ON)
 
+# The headers that take longest to read, once for all test programs of a kind. The sources include what they use all
+# the same: to see that they do, configure with CMAKE_DISABLE_PRECOMPILE_HEADERS.
+function(stereotlm_precompile_headers name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(GENERATE OUTPUT ${source} CONTENT "")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stereotlm_warnings)
+  target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS} -fpch-preprocess)  # as ccache needs it
+  target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+endfunction()
+
 # stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label...] [TIMEOUT seconds] [SYSTEMC])
 # One test program; ctest runs each of its cases in a process of its own, because SystemC elaborates once per
 # process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails it.
@@ -26,13 +38,15 @@ function(stereotlm_add_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stereotlm_warnings)
-  target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS})
+  target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS} -fpch-preprocess)
   set(environment)
   if(arg_SYSTEMC)
     target_link_libraries(${name} PRIVATE stereotlm_systemc_test_main)
+    target_precompile_headers(${name} REUSE_FROM stereotlm_systemc_test_headers)
     set(environment ENVIRONMENT ${STEREOTLM_SYSTEMC_ENVIRONMENT})
   else()
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
+    target_precompile_headers(${name} REUSE_FROM stereotlm_test_headers)
   endif()
   gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${environment}
     DISCOVERY_TIMEOUT 60)

@@ -14,12 +14,6 @@ namespace {
 
 using kernels::RectificationTable;
 
-// How often each side's ports access memory in a frame.
-struct Accesses {
-  std::uint64_t lut = 0;
-  std::uint64_t pixel = 0;
-};
-
 // How many slots fetch each row of the image, per column.
 std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) {
   std::vector<std::uint64_t> fetches(static_cast<std::size_t>(geometry.height));
@@ -32,10 +26,11 @@ std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) 
   return fetches;
 }
 
-Accesses accesses_of(const fpga::FrameGeometry& geometry, const std::optional<RectificationTable>& table) {
+PortAccesses accesses_of(const fpga::FrameGeometry& geometry,
+                         const std::optional<RectificationTable>& table) {
   const auto width = static_cast<std::uint64_t>(geometry.width);
   const std::vector<std::uint64_t> fetches = fetches_of_rows(geometry);
-  Accesses accesses;
+  PortAccesses accesses;
   for (std::size_t row = 0; row < fetches.size(); ++row) {
     if (!table) {
       accesses.pixel += fetches[row] * width;
@@ -67,17 +62,6 @@ int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
   return list[frame % list.size()].bank;
 }
 
-// The two sides.
-struct FrameAccesses {
-  Accesses left;
-  Accesses right;
-};
-
-FrameAccesses accesses_of(const BoardConfig& board, const Tables& tables) {
-  const fpga::FrameGeometry geometry(core_config(board));
-  return {accesses_of(geometry, tables.left), accesses_of(geometry, tables.right)};
-}
-
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
                                         std::uint64_t frame) {
   const fpga::FrameGeometry geometry(core_config(board));
@@ -90,7 +74,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     const char* name;
     int image;
     std::optional<int> lut;
-    Accesses accesses;
+    PortAccesses accesses;
   };
   const auto lut_bank = [](const std::optional<BufferPlace>& place) {
     return place ? std::optional<int>(place->bank) : std::nullopt;
@@ -149,8 +133,13 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
 
 }  // namespace
 
+FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
+  const fpga::FrameGeometry geometry(core_config(board));
+  return {accesses_of(geometry, tables.left), accesses_of(geometry, tables.right)};
+}
+
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame) {
-  return frame_bounds(board, accesses_of(board, tables), frame);
+  return frame_bounds(board, frame_accesses(board, tables), frame);
 }
 
 std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures) {
@@ -195,9 +184,12 @@ void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& boun
 }
 
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames) {
+  return core_bound(board, frame_accesses(board, tables), frames);
+}
+
+Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames) {
   if (frames == 0) throw std::invalid_argument("frames = 0: a bound of no frames");
   const std::uint64_t period = allocation_period_frames(board);
-  const FrameAccesses accesses = accesses_of(board, tables);
   std::uint64_t total = 0;
   ResourceBound slowest;
   for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
@@ -214,10 +206,9 @@ Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t f
   return bound;
 }
 
-double least_delivery_s(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from) {
   const BufferLayout layout = layout_buffers(board);
-  const FrameAccesses accesses = accesses_of(board, tables);
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;  // of a picture too
   const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t one_by_one = 0;

@@ -10,6 +10,20 @@
 
 namespace stereotlm::platform {
 
+// How often each side's ports access memory in a frame: what bounds need of the tables, the same for every
+// allocation of a board's buffers.
+struct PortAccesses {
+  std::uint64_t lut = 0;
+  std::uint64_t pixel = 0;
+};
+struct FrameAccesses {
+  PortAccesses left;
+  PortAccesses right;
+};
+
+// Throws std::invalid_argument if the board has problems.
+FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
+
 // The fewest cycles that one resource of the core needs for a frame, pipeline latency included. No run can be
 // faster:
 //   port P      one slot or word a cycle. For the port that takes the slots of a side (of its table, or if it
@@ -55,12 +69,13 @@ struct FrameBegin {
 // bank has one access a cycle for what the core reads and writes, for the results that are read back, and for
 // the pairs that can only come once the core has begun with a frame before (all but the first of each
 // buffer). Throws std::invalid_argument if the board has problems.
-double least_delivery_s(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from);
 
 // Frames per second that frames 0..frames-1 cannot exceed, and the resource that limits the slowest of them
 // (of equal ones the last in the order above). Throws std::invalid_argument if the board has problems, or
 // there are no frames.
+Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames);
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames);
 
 }  // namespace stereotlm::platform

@@ -36,6 +36,7 @@ using explore::Placement;
 using platform::BoardConfig;
 
 constexpr double kDefaultKeepPercent = 99;
+constexpr const char* kGoesOn = "interrupted: the same command goes on where this one has ended";
 
 struct AllocateOptions {
   BoardOptions board;
@@ -118,42 +119,46 @@ std::string rate_text(double rate) { return fmt::format("{:.3f}", rate); }
 
 std::string table(const Context& context, const std::vector<BestPlacement>& all) {
   const bool camera = context.search.run().camera;
-  std::string text =
-      fmt::format("{:>5} {:>12} {:>10} {:>14}", "banks", "allocations", "simulated", "best frames/s");
+  std::string text = fmt::format("{:>5} {:>12} {:>10} {:>14} {:>10}", "banks", "allocations", "simulated",
+                                 "best frames/s", "bound");
   if (camera) text += fmt::format(" {:>8}", "steady");
-  text += fmt::format(" {:>10} {:>10}  one of them\n", "bound", "reached by");
+  text += fmt::format(" {:>10}  one of them\n", "reached by");
   for (const BestPlacement& best : all) {
     text += fmt::format("{:>5} {:>12} {:>10}", best.banks, best.placements, best.known + best.given_up);
     if (best.reached_by == 0) {
-      text += fmt::format(" {:>14}\n", "all lose pixels");
+      text += fmt::format(" {:>14}\n", best.failed == 0 ? "all lose pixels" : "none");
       continue;
     }
     const BoardConfig one = explore::placed(context.board, best.witness);
-    text += fmt::format(" {:>14.3f}", best.frames_per_second);
+    text += fmt::format(" {:>14.3f} {:>10.3f}", best.frames_per_second, context.bound(one));
     if (camera) text += fmt::format(" {:>8.3f}", best.outcome.steady.value_or(0));
-    text += fmt::format(" {:>10.3f} {:>10}  {}\n", context.bound(one), best.reached_by,
-                        explore::allocation_text(one));
+    text += fmt::format(" {:>10}  {}\n", best.reached_by, explore::allocation_text(one));
   }
   return text;
 }
 
 // Runs the best of each number of banks with pixels, each frame with another pair, fed by an ideal host: all
-// have to give the same disparities, and the cycles that were found.
+// have to give the same disparities, and the cycles that were found. Says how many do; nothing once interrupted.
 std::string check_pixels(const Context& context, const platform::Tables& tables,
                          const std::vector<BestPlacement>& all) {
   ScenePairs pairs(context.board);
   const std::uint64_t frames = platform::allocation_period_frames(context.board);
   std::string first;
+  const Placement* first_witness = nullptr;
   std::size_t checked = 0;
   for (const BestPlacement& best : all) {
+    if (interrupted()) return "";
     if (best.reached_by == 0) continue;
     const auto run =
         simulation::simulate_pixels(explore::placed(context.board, best.witness), tables, pairs, frames);
-    if (checked++ == 0) first = run.disparities_sha256;
+    if (checked++ == 0) {
+      first = run.disparities_sha256;
+      first_witness = &best.witness;
+    }
     if (run.disparities_sha256 != first) {
       throw std::runtime_error(fmt::format("the disparities of {} differ from those of {}",
                                            text_of(context.board, best.witness),
-                                           text_of(context.board, all.front().witness)));
+                                           text_of(context.board, *first_witness)));
     }
     if (!context.search.run().camera && run.cycles != best.outcome.cycles) {
       throw std::runtime_error(fmt::format("{}: {} cycles with pixels, {} found",
@@ -161,15 +166,17 @@ std::string check_pixels(const Context& context, const platform::Tables& tables,
                                            best.outcome.cycles));
     }
   }
+  if (checked == 0) return "";
   return fmt::format("The disparities of these {} allocations are the same, pixel by pixel, in {} frames.\n",
                      checked, frames);
 }
 
 // What has been shown.
 std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
-  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& best) { return best.reached_by == 0; }),
-            all.end());
-  if (all.empty()) return "No allocation keeps all pixels.\n";
+  const auto is_out = [](const BestPlacement& best) { return best.reached_by == 0; };
+  const bool holds_buffers_only = !all.empty() && is_out(all.front());
+  all.erase(std::remove_if(all.begin(), all.end(), is_out), all.end());
+  if (all.empty()) return "No allocation counts.\n";
   const auto rate = [](const BestPlacement& best) { return best.frames_per_second; };
   const auto by_rate = [&](const auto& a, const auto& b) { return rate(a) < rate(b); };
   const auto top = std::max_element(all.begin(), all.end(), by_rate);
@@ -179,15 +186,37 @@ std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
     text += fmt::format(": the best with fewer gives {}",
                         rate_text(rate(*std::max_element(all.begin(), top, by_rate))));
   } else {
-    text += ", the fewest that hold the buffers";
+    text += holds_buffers_only ? ", the fewest of which an allocation counts"
+                               : ", the fewest that hold the buffers";
   }
   text += ".\n";
   const auto kept = std::find_if(all.begin(), all.end(), [&](const BestPlacement& best) {
-    return rate(best) >= rate(*top) * keep_percent / 100;
+    return rate(best) * 100 >= rate(*top) * keep_percent;
   });
   return text +
          fmt::format("{:g} % of it is kept with {} banks ({} frames/s, {:.2f} %), and not with fewer.\n",
                      keep_percent, kept->banks, rate_text(rate(*kept)), 100 * rate(*kept) / rate(*top));
+}
+
+// What does not count though it was tried.
+std::string out_text(const Context& context, const std::vector<BestPlacement>& all,
+                     const std::string& store) {
+  std::uint64_t losing = 0;
+  std::uint64_t failed = 0;
+  for (const BestPlacement& best : all) {
+    losing += best.losing;
+    failed += best.failed;
+  }
+  std::string text;
+  if (losing > 0)
+    text += fmt::format("{} of those simulated to the end lose pixels, and do not count.\n", losing);
+  if (failed > 0) {
+    text += fmt::format(
+        "{} could not be simulated, and do not count. The first:\n  {}\nTo try again:\n"
+        "  sqlite3 {} \"DELETE FROM points WHERE status = 'failed'\"\n",
+        failed, context.search.first_failure(), store);
+  }
+  return text;
 }
 
 // What was tried, and why that is all.
@@ -210,20 +239,29 @@ std::string space_text(const Context& context, int banks) {
                     "frames/s: {} frames, from time 0 to the last delivery, without losing a pixel; steady: "
                     "between the first and the last\n",
                     explore::frames_of(search.run(), context.board))
-              : "a frame leaves arbiters or banks in another state: each allocation is a run of a turn of "
-                "its lists\n";
+              : "a frame leaves arbiters or banks in another state: each allocation is a run of the first "
+                "turn of its lists\n";
   return text +
          "an allocation whose bound is below the best rate of as many banks was not simulated, or not to its "
          "end\n";
 }
 
+AllocationSearch search_of(const BoardConfig& board, int banks, const explore::PointRun& run,
+                           const AllocationSearch::BoundOf& bound) {
+  try {
+    return AllocationSearch(board, banks, run, bound);
+  } catch (const std::length_error& error) {
+    refuse(fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike",
+                       banks, error.what()));
+  }
+}
+
 // How many more banks it takes.
-std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run,
-                        const AllocationSearch::BoundOf& bound) {
+std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run) {
   const auto most = static_cast<int>(board.banks.size());
+  const auto no_bound = [](const BoardConfig&) { return 0.0; };
   while (++banks <= most) {
-    if (AllocationSearch(board, banks, run, bound).fitting() > 0)
-      return fmt::format("; with {} some do", banks);
+    if (search_of(board, banks, run, no_bound).fitting() > 0) return fmt::format("; with {} some do", banks);
   }
   return "";
 }
@@ -244,17 +282,18 @@ int allocate(const AllocateOptions& options) {
   const platform::Tables tables = tables_of(*board, calibration);
   const explore::PointRun run = {options.camera, 0, calibration ? sha256_of(calibration->tables) : ""};
   const std::uint64_t frames = explore::frames_of(run, *board);
+  const platform::FrameAccesses accesses = platform::frame_accesses(*board, tables);
   const platform::FrameBegin first = {0, options.camera ? simulation::first_start_s(*board, tables) : 0};
   const auto rate_from = [&](const BoardConfig& one, const platform::FrameBegin& begin) {
-    return static_cast<double>(frames) / platform::least_delivery_s(one, tables, frames, begin);
+    return static_cast<double>(frames) / platform::least_delivery_s(one, accesses, frames, begin);
   };
   const AllocationSearch::BoundOf bound = [&](const BoardConfig& one) {
-    return options.camera ? rate_from(one, first) : platform::core_bound(one, tables, frames).core;
+    return options.camera ? rate_from(one, first) : platform::core_bound(one, accesses, frames).core;
   };
-  AllocationSearch search(*board, *options.banks, run, bound);
+  AllocationSearch search = search_of(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {
     refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", *options.banks,
-                       search.placements(), fewest_text(*board, *options.banks, run, bound)));
+                       search.placements(), fewest_text(*board, *options.banks, run)));
   }
   try {
     const explore::StoreLock lock(sweep.store);
@@ -278,14 +317,18 @@ int allocate(const AllocateOptions& options) {
   const bool is_whole = explore::simulate(search, evaluate, sweep, go_on);
   progress.erase();
   if (!is_whole) {
-    say("note", "interrupted: the same command goes on where this one has ended");
+    say("note", kGoesOn);
     return kInterrupted;
   }
   const Context context = {search, *board, bound};
   const std::vector<BestPlacement> all = search.best();
   const std::string pixels = check_pixels(context, tables, all);
+  if (interrupted()) {
+    say("note", kGoesOn);
+    return kInterrupted;
+  }
   print(space_text(context, *options.banks) + table(context, all) + certificate(all, options.keep_percent) +
-        pixels);
+        out_text(context, all, sweep.store) + pixels);
   return kDone;
 }
 

@@ -30,11 +30,13 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
       find.reset();
       continue;
     }
-    if (find.text(0) != "ok") {
-      throw std::runtime_error(
-          fmt::format("{}: an allocation could not be simulated: {}", path, find.text(1)));
-    }
     AllocationOutcome outcome;
+    if (find.text(0) != "ok") {
+      outcome.failure = find.text(1);
+      search.record(number, outcome);
+      find.reset();
+      continue;
+    }
     const auto behind_last_write = static_cast<std::uint64_t>(point.board->fpga.pipeline_latency_cycles);
     outcome.cycles = static_cast<std::uint64_t>(find.integer(2)) + point.run.frames * behind_last_write;
     outcome.frames_per_second = find.real(3);
@@ -62,18 +64,6 @@ bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOpt
     before += numbers.size();
   }
   return true;
-}
-
-std::string allocation_text(const platform::BoardConfig& board) {
-  std::string text;
-  std::string last;
-  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) {
-    const std::string name = buffer.key.substr(buffer.key.find('.') + 1);
-    if (name != last) text += (text.empty() ? "" : ", ") + name;
-    text += ' ' + buffer.bank;
-    last = name;
-  }
-  return text;
 }
 
 }  // namespace stereotlm::explore

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "platform/board_rules.h"
+#include "sw/explore/allocations.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -33,7 +34,9 @@ AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_
       by_frames_(!run.camera && frames_are_independent(board)),
       turn_frames_(platform::allocation_period_frames(board)) {
   for_each_placement(board, most_banks, [this](const Placement& placement) {
-    ++placements_;
+    if (++placements_ > kMostPlacements) {
+      throw std::length_error(fmt::format("more than {} different allocations", kMostPlacements));
+    }
     if (!fits(board_, placement)) return;
     fitting_.push_back(placement);
     for (std::uint64_t frame = 0; by_frames_ && frame < turn_frames_; ++frame) {
@@ -59,8 +62,9 @@ Point AllocationSearch::point(std::size_t number) const {
 
 void AllocationSearch::record(std::size_t number, const AllocationOutcome& outcome) {
   if (!by_frames_ && !outcome.loses_pixels && outcome.frames_per_second > bounds_[number] * (1 + kRounding)) {
-    throw std::logic_error(fmt::format("allocation {}: {} frames/s, above its bound of {}", number,
-                                       outcome.frames_per_second, bounds_[number]));
+    throw std::logic_error(fmt::format("{}: {} frames/s, above its bound of {}",
+                                       allocation_text(*point(number).board), outcome.frames_per_second,
+                                       bounds_[number]));
   }
   outcomes_.at(number) = outcome;
 }
@@ -102,7 +106,7 @@ double AllocationSearch::rate_to_reach(std::size_t number) const {
 std::map<int, double> AllocationSearch::best_rates() const {
   std::map<int, double> best;
   for (std::size_t place = 0; place < fitting_.size() && !by_frames_; ++place) {
-    if (!outcomes_[place] || outcomes_[place]->loses_pixels) continue;
+    if (!outcomes_[place] || outcomes_[place]->loses_pixels || !outcomes_[place]->failure.empty()) continue;
     double& rate = best[banks_used(fitting_[place])];
     rate = std::max(rate, outcomes_[place]->frames_per_second);
   }
@@ -119,7 +123,9 @@ AllocationOutcome AllocationSearch::outcome_of(std::size_t placement) const {
   AllocationOutcome sum;
   for (std::uint64_t frame = 0; frame < turn_frames_; ++frame) {
     const std::string key = key_of(board_of_frame(board_, fitting_[placement], frame));
-    sum.cycles += outcomes_.at(frame_numbers_.at(key)).value().cycles;
+    const AllocationOutcome& one = outcomes_.at(frame_numbers_.at(key)).value();
+    if (!one.failure.empty()) return one;
+    sum.cycles += one.cycles;
   }
   sum.frames_per_second =
       board_.fpga.clock_mhz * 1e6 * static_cast<double>(turn_frames_) / static_cast<double>(sum.cycles);
@@ -136,8 +142,8 @@ std::vector<BestPlacement> AllocationSearch::best() const {
     if (!is_known(place)) continue;
     ++best.known;
     const AllocationOutcome outcome = outcome_of(place);
-    if (outcome.loses_pixels) {
-      ++best.losing;
+    if (outcome.loses_pixels || !outcome.failure.empty()) {
+      ++(outcome.failure.empty() ? best.losing : best.failed);
       continue;
     }
     if (best.reached_by == 0 || outcome.frames_per_second > best.frames_per_second) {
@@ -151,6 +157,14 @@ std::vector<BestPlacement> AllocationSearch::best() const {
   std::vector<BestPlacement> all;
   for (const auto& [banks, best] : found) all.push_back(best);
   return all;
+}
+
+std::string AllocationSearch::first_failure() const {
+  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
+    if (!outcomes_[number] || outcomes_[number]->failure.empty()) continue;
+    return fmt::format("{}: {}", allocation_text(*point(number).board), outcomes_[number]->failure);
+  }
+  return "";
 }
 
 }  // namespace stereotlm::explore

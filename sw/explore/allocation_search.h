@@ -19,6 +19,7 @@ struct AllocationOutcome {
   double frames_per_second = 0;  // of the core alone, or delivered by time 0 .. last delivery
   std::optional<double> steady;  // of a computer, between the first and the last delivery
   bool loses_pixels = false;     // of a computer: a capture has dropped some
+  std::string failure;           // what a run has ended with that could not be simulated; the rest is empty
 };
 
 // The best of the placements that use so many banks.
@@ -27,8 +28,9 @@ struct BestPlacement {
   std::uint64_t placements = 0;  // that use so many banks and fit
   std::uint64_t known = 0;       // of them, those whose frame rate has been simulated
   std::uint64_t given_up = 0;    // of the others, those whose run was given up
-  std::uint64_t losing = 0;      // of these, those that lose pixels: they are out of the competition
-  std::uint64_t reached_by = 0;  // how many reach the best; 0: all lose pixels, and what follows is empty
+  std::uint64_t losing = 0;      // of those known, those that lose pixels ..
+  std::uint64_t failed = 0;      // .. and those whose run has failed: they are out of the competition
+  std::uint64_t reached_by = 0;  // how many reach the best; 0: all are out, and what follows is empty
   double frames_per_second = 0;
   AllocationOutcome outcome;  // of its run; where frames are simulated one by one only the cycles, of a turn
   Placement witness;          // the first that reaches it
@@ -46,7 +48,11 @@ class AllocationSearch {
   // Frames per second that a run of the board cannot exceed without losing pixels.
   using BoundOf = std::function<double(const platform::BoardConfig& board)>;
 
-  // most_banks: 1..banks of the board. run: of every point; its frames are 0 (see frames_of()).
+  // Of more different placements, fitting or not, there is no search.
+  static constexpr std::uint64_t kMostPlacements = 5'000'000;
+
+  // most_banks: 1..banks of the board. run: of every point; its frames are 0 (see frames_of()). Throws
+  // std::length_error if there are too many placements.
   AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
                    const BoundOf& bound);
 
@@ -75,6 +81,8 @@ class AllocationSearch {
   // For each number of banks that some placement fits into, the fewest first. Once next() has come to its
   // end.
   std::vector<BestPlacement> best() const;
+  // The first board whose run has failed, if any: "ALLOCATION: what it has ended with".
+  std::string first_failure() const;
 
  private:
   AllocationOutcome outcome_of(std::size_t placement) const;  // known

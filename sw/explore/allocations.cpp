@@ -142,4 +142,16 @@ BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement,
   return result;
 }
 
+std::string allocation_text(const platform::BoardConfig& board) {
+  std::string text;
+  std::string last;
+  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) {
+    const std::string name = buffer.key.substr(buffer.key.find('.') + 1);
+    if (name != last) text += (text.empty() ? "" : ", ") + name;
+    text += ' ' + buffer.bank;
+    last = name;
+  }
+  return text;
+}
+
 }  // namespace stereotlm::explore

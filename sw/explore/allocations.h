@@ -38,4 +38,7 @@ bool frames_are_independent(const platform::BoardConfig& board);
 platform::BoardConfig board_of_frame(const platform::BoardConfig& board, const Placement& placement,
                                      std::uint64_t frame);
 
+// "left_image bank0 bank1, .., right_lut bank0"
+std::string allocation_text(const platform::BoardConfig& board);
+
 }  // namespace stereotlm::explore

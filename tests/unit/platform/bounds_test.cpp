@@ -331,8 +331,8 @@ TEST(LeastDelivery, IsWhenTheFramesAreDoneOneAfterAnother) {
   const BoardConfig board = small_board();
   const Tables tables = identity_tables(board);
   const auto cycles = static_cast<double>(2 * largest(board, tables, 0) + largest(board, tables, 1));
-  EXPECT_NEAR(least_delivery_s(board, tables, 3, {0, 0.5}), 0.5 + cycles * kCycle, 1e-12);
-  EXPECT_NEAR(least_delivery_s(board, tables, 5, {2, 1.5}), 1.5 + cycles * kCycle, 1e-12);
+  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 3, {0, 0.5}), 0.5 + cycles * kCycle, 1e-12);
+  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 5, {2, 1.5}), 1.5 + cycles * kCycle, 1e-12);
 }
 
 // Of 100 frames, or the last 10 of them: what the core reads and writes, results read back, and all pairs but the first.
@@ -346,7 +346,7 @@ TEST(LeastDelivery, CountsWhatTheHostMovesInABank) {
     const uint64_t frames = 100 - from;
     const uint64_t cycles = frames * (kReads + 2 * kWords) + (frames - 1) * kWords;
     ASSERT_GT(cycles, frames * largest(board, tables, 0));
-    EXPECT_NEAR(least_delivery_s(board, tables, 100, {from, 0.25}),
+    EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 100, {from, 0.25}),
                 0.25 + static_cast<double>(cycles) * kCycle, 1e-12);
   }
 }

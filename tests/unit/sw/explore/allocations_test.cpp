@@ -216,7 +216,7 @@ TEST_F(ComputerSearch, FindsTheBestThatLosesNoPixelsAndLeavesOutWhatABoundRulesO
         search.record_given_up(number);
         ++given_up;
       } else {
-        search.record(number, {1000, rate_of(board), rate_of(board) + 1, loses(board)});
+        search.record(number, {1000, rate_of(board), rate_of(board) + 1, loses(board), ""});
       }
     }
     EXPECT_LE(simulated + search.most_left(), search.size());
@@ -239,8 +239,8 @@ TEST_F(ComputerSearch, FindsTheBestThatLosesNoPixelsAndLeavesOutWhatABoundRulesO
 
 TEST_F(ComputerSearch, RefusesARateAboveItsBound) {
   const std::size_t number = search.next().front();
-  EXPECT_THROW(search.record(number, {1000, 100, 100, false}), std::logic_error);
-  search.record(number, {1000, 100, 100, true});  // moves fewer words than the bound counts
+  EXPECT_THROW(search.record(number, {1000, 100, 100, false, ""}), std::logic_error);
+  search.record(number, {1000, 100, 100, true, ""});  // moves fewer words than the bound counts
 }
 
 TEST(AllocationPoints, AreThoseOfTheirNumbers) {
