@@ -126,6 +126,21 @@ class WorkedValues(DiffTest):
         self.assertEqual(longest[3], "+4480")
         self.assertEqual(int(rows[-1][1] or rows[-1][0]), 479)
 
+    def test_keep_rows_that_take_as_long_and_stall_at_another_port(self):
+        # Either table beside every left picture.
+        c = self.folder / "c"
+        self.write_timing(c, "--set", "matcher.filter=none", "--set", "allocation.right_lut=bank0")
+        rows = [re.fullmatch(r"(\d+)(?:\.\.(\d+))? (\S+) \S+ (\S+) (\S+) 0 0 0", line) for line in self.lines(a=self.b, b=c)]
+        rows = [row.groups() for row in rows if row]
+        (longest,) = (row for row in rows if int(row[1] or row[0]) - int(row[0]) > 400)
+        self.assertEqual(longest[2], "0")
+        b, c = (json.loads((folder / "stats.json").read_text()) for folder in (self.b, c))
+        self.assertEqual(sum(int(row[2]) for row in rows), c["cycles"] - b["cycles"])
+        for port in (0, 1):
+            stalls = c["ports"][port]["stall_cycles"] - b["ports"][port]["stall_cycles"]
+            self.assertEqual(sum(int(row[3 + port]) for row in rows), stalls)
+            self.assertGreater(abs(stalls), 2_000_000)
+
     def test_are_in_the_table_for_other_programs(self):
         path = self.folder / "rows.csv"
         self.lines("--csv", path)
@@ -284,8 +299,13 @@ class Camera(DiffTest):
             self.assertIn(f"pci, bridge, cameras and latency: only in {name}", lines)
             self.assertIn("source camera preloaded" if name == "A" else "source preloaded camera", lines)
 
-    def write_small_sequence(self, folder):
-        self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, *PRELOADED, "--sequence", self.pairs, "--out", folder))
+    def test_says_that_no_frame_is_in_both(self):
+        self.camera(self.a, "--frames", "1")
+        self.write_small_sequence(self.b, "--frames", "1")
+        self.assertEqual(self.lines()[-1], "disparities: not compared: no camera frame is in both")
+
+    def write_small_sequence(self, folder, *options):
+        self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, *PRELOADED, "--sequence", self.pairs, *options, "--out", folder))
 
 
 class Sources(DiffTest):
