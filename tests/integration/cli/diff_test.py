@@ -212,7 +212,7 @@ class Frames(DiffTest):
         self.assertFalse([line for line in lines if line.startswith("they part")])
         path = self.folder / "rows.csv"
         self.refused_in_one_line(self.diff("--csv", path), f"--csv: rows cannot be compared: {sizes}")
-        self.assertEqual([p.name for p in self.folder.glob("rows*")], [])
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "b", "left.pgm", "right.pgm"})
 
 
 class Disparities(DiffTest):
@@ -481,6 +481,13 @@ class Usage(DiffTest):
         for name in ("rows.txt", "stats.json", ""):
             self.refused_in_one_line(self.diff("--csv", name), f"--csv '{name}': must end in .csv")
 
+    def test_a_table_leaves_other_files_alone(self):
+        self.write(self.a)
+        self.file("rows.csv.part", b"precious")
+        self.lines("--csv", self.folder / "rows.csv", b=self.a)
+        self.assertEqual((self.folder / "rows.csv.part").read_bytes(), b"precious")
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "rows.csv", "rows.csv.part", "left.pgm", "right.pgm"})
+
     def test_a_table_that_cannot_be_written(self):
         self.write(self.a)
         path = self.folder / "none" / "rows.csv"
@@ -500,7 +507,7 @@ class Interrupted(DiffTest):
         status, out = terminal.finish()
         self.assertEqual((status, out), (130, ""))
         self.assertEqual(shown(terminal.text), ["stereotlm: note: interrupted: nothing is compared", ""])
-        self.assertEqual([p.name for p in self.folder.glob("rows*")], [])
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "left.pgm", "right.pgm"})
 
 
 if __name__ == "__main__":
