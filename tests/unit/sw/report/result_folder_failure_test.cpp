@@ -85,7 +85,7 @@ TEST(ResultFolderFailure, ACommitThatFailsPutsTheEarlierResultBack) {
     folder.add("stats.json", "new");
     fs::create_directory(scratch.path() / "stats.json");  // no file can take the name of a folder
     EXPECT_THAT(test::message_of([&] { folder.commit(); }),
-                HasSubstr("the result cannot be moved into place: Is a directory"));
+                HasSubstr("the new files cannot be moved into place: Is a directory"));
   }
   EXPECT_EQ(test::read_file(scratch.path() / "config.yaml"), "old");
   EXPECT_EQ(test::read_file(scratch.path() / "run.json"), "old");
