@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import re
 import shlex
 import signal
@@ -246,6 +247,12 @@ class Refusals(ProgramTest):
         (self.out / "table1.csv").write_text("mine")
         self.refused_in_one_line(run("paper", "--out", self.out), f"--out {self.out}: ", "holds 'table1.csv' but no paper.md")
         self.assertEqual((self.out / "table1.csv").read_text(), "mine")
+
+    def test_no_place_for_temporary_files(self):
+        place = {**os.environ, "TMPDIR": "/nonexistent"}
+        self.refused_in_one_line(run("paper", "--out", self.out, env=place), "error: TMPDIR = /nonexistent: must be a folder\n")
+        self.assertFalse(self.out.exists())
+        self.assertEqual(len(self.refused(run("paper", "--out", self.left, env=place), "TMPDIR = ", "not a folder")), 2)
 
     def test_what_is_no_folder(self):
         self.refused_in_one_line(run("paper", "--out", self.left), "not a folder")
