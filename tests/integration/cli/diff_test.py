@@ -370,7 +370,7 @@ class Inputs(DiffTest):
         found = hashlib.sha256(other.read_bytes()).hexdigest()
         self.refused_in_one_line(
             self.diff(),
-            f"error: RUN '{self.b}': --left '{other}': SHA-256 {found}: must be that of the file of the run, {recorded}",
+            f"error: B '{self.b}': --left '{other}': SHA-256 {found}: must be that of the file of the run, {recorded}",
         )
 
     def test_that_are_missing_are_refused(self):
@@ -378,22 +378,23 @@ class Inputs(DiffTest):
         self.right.unlink()
         lines = self.refused(self.diff(b=self.a))
         self.assertEqual(len(lines), 4)  # both, in both
-        self.assertIn(f"RUN '{self.a}': --right '{self.right}': cannot be read: No such file or directory", lines[0])
-        self.assertIn(f"RUN '{self.a}': --truth '{self.right}': cannot be read: No such file or directory", lines[1])
+        for name, (right, truth) in (("A", lines[:2]), ("B", lines[2:])):
+            self.assertIn(f"error: {name} '{self.a}': --right '{self.right}': cannot be read: No such file or directory", right)
+            self.assertIn(f"error: {name} '{self.a}': --truth '{self.right}': cannot be read: No such file or directory", truth)
 
     def test_that_are_more_than_the_run_had_are_refused(self):
         pairs = self.sequence(2)
         self.succeeds(self.run_with("--sequence", pairs, "--out", self.a))
         for side in ("left", "right"):
             shutil.copy(pairs / f"{side}_000.png", pairs / f"{side}_100.png")
-        for line in self.refused(self.diff(b=self.a)):
-            self.assertIn(f"RUN '{self.a}': --sequence '{pairs}': 3 pairs: must be those of the run, 2", line)
+        for name, line in zip("AB", self.refused(self.diff(b=self.a)), strict=True):
+            self.assertIn(f"error: {name} '{self.a}': --sequence '{pairs}': 3 pairs: must be those of the run, 2", line)
 
     def test_that_do_not_fit_to_the_board_any_more_are_refused(self):
         self.write(self.a)
         self.change(self.a / "config.yaml", f"width: {WIDTH}", "width: 64")
-        for line in self.refused(self.diff(b=self.a)):
-            self.assertIn(f"RUN '{self.a}': --", line)
+        for name, line in zip("AB", self.refused(self.diff(b=self.a)), strict=True):
+            self.assertIn(f"error: {name} '{self.a}': --", line)
             self.assertIn(f"{WIDTH}x{HEIGHT} pixels: must be as large as the board's images, 64x{HEIGHT}", line)
 
 
@@ -417,17 +418,17 @@ class Folders(DiffTest):
 
     def test_with_other_figures_fail(self):
         self.change(self.b / "stats.json", '"frames": 1', '"frames": 2')
-        self.failed(self.diff(), f"RUN '{self.b}': run again it has other figures: /frames: recorded 2, again 1\n")
+        self.failed(self.diff(), f"B '{self.b}': run again it has other figures: /frames: recorded 2, again 1\n")
         self.change(self.b / "stats.json", '"cycles": ', '"cycles": 1')
         self.failed(self.diff(), "other figures: /cycles: recorded 1", ", and 1 more\n")
 
     def test_with_figures_that_run_has_not_written_so_fail(self):
         self.change(self.b / "stats.json", '"schema": 1', '"schema":  1')
-        self.failed(self.diff(), f"RUN '{self.b}': its stats.json is not as run has written it\n")
+        self.failed(self.diff(), f"B '{self.b}': its stats.json is not as run has written it\n")
 
     def test_with_another_board_fail(self):
         self.change(self.b / "config.yaml", "window: 7", "window: 5")
-        self.failed(self.diff(), f"RUN '{self.b}': run again it has other figures: ")
+        self.failed(self.diff(), f"B '{self.b}': run again it has other figures: ")
 
     def test_of_another_version_name_both(self):
         version = json.loads((self.b / "run.json").read_text())["version"]
