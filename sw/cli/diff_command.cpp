@@ -58,8 +58,8 @@ struct DiffOptions {
 
 int diff(const DiffOptions& options) {
   Problems problems;
-  const auto a = load_recorded_run(options.a.text, problems);
-  const auto b = load_recorded_run(options.b.text, problems);
+  const auto a = load_recorded_run("A", options.a.text, problems);
+  const auto b = load_recorded_run("B", options.b.text, problems);
   problems.check();
   for (const RecordedRun& run : {std::cref(*a), std::cref(*b)}) open_again(run, problems);
   const DiffLimits limits(*a, *b);

@@ -21,6 +21,7 @@
 #include "sw/cli/interrupt.h"
 #include "sw/cli/progress.h"
 #include "sw/cli/streams.h"
+#include "sw/cli/temporary_files.h"
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
@@ -289,6 +290,7 @@ int explain(const ExplainOptions& options) {
   Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  temporary_folder(problems);  // there can be one
   problems.check();
   const platform::Tables tables = tables_of(*board, calibration);
   catch_interrupts();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,12 +19,12 @@
 #include "sw/cli/progress.h"
 #include "sw/cli/python_script.h"
 #include "sw/cli/streams.h"
+#include "sw/cli/temporary_files.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
 #include "sw/report/document_folder.h"
-#include "sw/report/temporary_folder.h"
 #include "sw/report/whole_file.h"
 #include "sw/simulation/simulate_point.h"
 
@@ -63,18 +64,18 @@ std::optional<paper::Findings> study() {
   };
   means.version = kVersion;
   means.jobs = std::max(1U, std::thread::hardware_concurrency());
-  means.go_on = [&progress](std::uint64_t done, std::uint64_t total) {
-    progress.show([&](double) { return fmt::format("{}/{} boards simulated", done, total); });
+  means.go_on = [&progress](std::uint64_t done, std::uint64_t most_left) {
+    progress.show(
+        [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });
     return !interrupted();
   };
   return paper::study(paper::claims(), means);
 }
 
-// Adds the pictures of the tables; false if it was interrupted.
-bool draw(std::map<std::string, std::string>& files) {
-  const report::TemporaryFolder folder;
-  for (const auto& [name, bytes] : files) report::write_whole_file(folder.path() / name, bytes);
-  const auto end = run_script(kScript, {"--out=" + folder.path().string(), "--", folder.path().string()});
+// Adds the pictures of the tables; false if it was interrupted. `folder`: for temporary files.
+bool draw(const std::filesystem::path& folder, std::map<std::string, std::string>& files) {
+  for (const auto& [name, bytes] : files) report::write_whole_file(folder / name, bytes);
+  const auto end = run_script(kScript, {"--out=" + folder.string(), "--", folder.string()});
   if (interrupted()) return false;
   if (end.status != 0) {
     throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,
@@ -83,24 +84,27 @@ bool draw(std::map<std::string, std::string>& files) {
   for (const char* figure : paper::kFigures) {
     for (const char* ending : {".png", ".svg"}) {
       const std::string name = std::string(figure) + ending;
-      files[name] = report::read_whole_file(folder.path() / name);
+      files[name] = report::read_whole_file(folder / name);
     }
   }
   return true;
 }
 
 int compare_with_paper(const PaperOptions& options) {
+  Problems problems;
+  const auto drawings = temporary_folder(problems);
   std::unique_ptr<report::DocumentFolder> folder;
   try {
     folder =
         std::make_unique<report::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
   } catch (const std::runtime_error& error) {
-    refuse(fmt::format("--out {}: {}", options.out.text, error.what()));
+    problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
   }
+  problems.check();
   catch_interrupts();
   const auto findings = study();
   auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
-  if (!findings || !draw(files)) {
+  if (!findings || !draw(drawings->path(), files)) {
     say("note", "interrupted: nothing was written");
     return kInterrupted;
   }

@@ -107,8 +107,12 @@ media::Truth truth_of(const report::RunOptions& options, const platform::BoardCo
 
 }  // namespace
 
-std::optional<RecordedRun> load_recorded_run(const std::string& folder, Problems& problems) {
+std::string name_of(const RecordedRun& run) { return fmt::format("{} '{}'", run.argument, run.folder); }
+
+std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
+                                             Problems& problems) {
   RecordedRun run;
+  run.argument = argument;
   run.folder = folder;
   bool is_right = true;
   const auto attempt = [&](const std::string& what, const std::function<void()>& step) {
@@ -145,7 +149,7 @@ std::optional<RecordedRun> load_recorded_run(const std::string& folder, Problems
   read("stats.json", run.stats_json, [&] { check_figures(run.stats_json); });
   if (!is_right) return std::nullopt;
   for (const RecordedFile& input : inputs_of(run.options))
-    attempt(fmt::format("RUN '{}': {} ", folder, input.option), [&] { check_input(input); });
+    attempt(fmt::format("{}: {} ", name_of(run), input.option), [&] { check_input(input); });
   if (!is_right) return std::nullopt;
   return run;
 }
@@ -175,7 +179,7 @@ RunInput open_again(const RecordedRun& run, Problems& problems) {
     calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
   attempt("", [&] { input.tables = tables_of(run.board, calibration); });
   if (run.options.truth) attempt("--truth ", [&] { input.truth = truth_of(run.options, run.board); });
-  if (!found.empty()) problems.add(fmt::format("RUN '{}': {}", run.folder, found.in_one_line()));
+  if (!found.empty()) problems.add(fmt::format("{}: {}", name_of(run), found.in_one_line()));
   return input;
 }
 

@@ -98,7 +98,7 @@ std::optional<Rerun::Frame> Rerun::next() {
     check_figures(message->substr(1));
     return std::nullopt;
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("RUN '{}': {}", run_.folder, error.what()));
+    throw std::runtime_error(fmt::format("{}: {}", name_of(run_), error.what()));
   }
 }
 

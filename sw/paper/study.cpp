@@ -92,62 +92,93 @@ class Runs {
 // How far all searches and runs are.
 class Count {
  public:
-  Count(std::uint64_t total, const Means& means) : total_(total), means_(means) {}
-  // Of the part that goes on now.
-  bool go_on(std::uint64_t done) const {
-    return means_.go_on(before_ + done, std::max(total_, before_ + done));
+  // most: boards of all of them.
+  Count(std::uint64_t most, const Means& means) : after_(most), means_(means) {}
+  // most: boards of the part that begins, as they were counted.
+  void begin_part(std::uint64_t most) { after_ -= most; }
+  // Of the part that goes on.
+  bool go_on(std::uint64_t done, std::uint64_t most_left) const {
+    return means_.go_on(before_ + done, most_left + after_);
   }
   void end_part(std::uint64_t done) { before_ += done; }
 
  private:
   std::uint64_t before_ = 0;
-  std::uint64_t total_;
+  std::uint64_t after_;  // at most
   const Means& means_;
 };
 
-// The best of every number of banks, of the core alone; false if it was ended.
-bool search(const Claim& claim, const BoardRun& run, const Means& means, Count& count,
-            std::vector<BankRow>& rows) {
-  const BoardConfig board = platform::load_board(run.preset, run.sets);
-  const explore::PointRun alone = {false, 0, ""};
-  const std::uint64_t frames = explore::frames_of(alone, board);
-  const auto bound = [&](const BoardConfig& one) { return means.bound(one, frames); };
-  explore::AllocationSearch search(board, static_cast<int>(board.banks.size()), alone,
-                                   [&](const BoardConfig& one) { return bound(one).core; });
-  const report::TemporaryFolder folder;
-  explore::SweepOptions sweep;
-  sweep.store = (folder.path() / "allocations.db").string();
-  sweep.version = means.version;
-  sweep.jobs = means.jobs;
-  std::uint64_t simulated = 0;
-  const bool is_whole =
-      explore::simulate(search, means.evaluate, sweep, [&](std::uint64_t done, std::uint64_t) {
-        simulated = done;
-        return count.go_on(done);
-      });
-  if (!is_whole) return false;
-  count.end_part(simulated);
-  for (const explore::BestPlacement& best : search.best()) {
-    if (best.known != best.placements) {
-      throw std::logic_error(
-          fmt::format("{} banks: {} of {} allocations are known", best.banks, best.known, best.placements));
-    }
-    const BoardConfig one = explore::placed(board, best.witness);
-    BankRow row;
-    row.of = claim.name;
-    row.banks = best.banks;
-    row.allocations = best.placements;
-    row.reached_by = best.reached_by;
-    row.measured.rate = best.frames_per_second;
-    row.measured.bound = bound(one).core;
-    row.measured.limited_by = bound(one).core_limited_by;
-    row.measured.banks = best.banks;
-    row.allocation = explore::allocation_text(one);
-    row.command = commands_of(claim, claim.cases.front()).front();
-    rows.push_back(row);
+// For the best of every number of banks, of the core alone.
+class BankSearch {
+ public:
+  BankSearch(const Claim& claim, const Means& means)
+      : claim_(claim),
+        means_(means),
+        board_(load(claim.cases.front().runs.front())),
+        frames_(explore::frames_of(kAlone, board_)),
+        search_(board_, static_cast<int>(board_.banks.size()), kAlone,
+                [this](const BoardConfig& one) { return bound(one).core; }),
+        most_(search_.most_left()) {}
+
+  // Boards, at most.
+  std::uint64_t most() const { return most_; }
+
+  // False if it was ended.
+  bool simulate(Count& count) {
+    const report::TemporaryFolder folder;
+    explore::SweepOptions sweep;
+    sweep.store = (folder.path() / "allocations.db").string();
+    sweep.version = means_.version;
+    sweep.jobs = means_.jobs;
+    std::uint64_t simulated = 0;
+    count.begin_part(most_);
+    const bool is_whole =
+        explore::simulate(search_, means_.evaluate, sweep, [&](std::uint64_t done, std::uint64_t most_left) {
+          simulated = done;
+          return count.go_on(done, most_left);
+        });
+    count.end_part(simulated);
+    return is_whole;
   }
-  return true;
-}
+
+  // Once it is simulated.
+  std::vector<BankRow> rows() const {
+    std::vector<BankRow> rows;
+    for (const explore::BestPlacement& best : search_.best()) {
+      if (best.known != best.placements) {
+        throw std::logic_error(
+            fmt::format("{} banks: {} of {} allocations are known", best.banks, best.known, best.placements));
+      }
+      const BoardConfig one = explore::placed(board_, best.witness);
+      BankRow row;
+      row.of = claim_.name;
+      row.banks = best.banks;
+      row.allocations = best.placements;
+      row.reached_by = best.reached_by;
+      row.measured.rate = best.frames_per_second;
+      row.measured.bound = bound(one).core;
+      row.measured.limited_by = bound(one).core_limited_by;
+      row.measured.banks = best.banks;
+      row.allocation = explore::allocation_text(one);
+      row.command = commands_of(claim_, claim_.cases.front()).front();
+      rows.push_back(row);
+    }
+    return rows;
+  }
+
+ private:
+  inline static const explore::PointRun kAlone = {false, 0, ""};
+
+  static BoardConfig load(const BoardRun& run) { return platform::load_board(run.preset, run.sets); }
+  platform::Bound bound(const BoardConfig& one) const { return means_.bound(one, frames_); }
+
+  const Claim& claim_;
+  const Means& means_;
+  BoardConfig board_;
+  std::uint64_t frames_;
+  explore::AllocationSearch search_;
+  std::uint64_t most_;
+};
 
 // The fewest of the rows of a claim that reach the best of them all.
 int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
@@ -230,17 +261,25 @@ const ClaimFinding& Findings::of(const std::string& claim) const {
 
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means) {
   const Runs runs_of[] = {{claims, false}, {claims, true}};
-  Count count(runs_of[0].size() + runs_of[1].size(), means);
-  Findings findings;
+  std::uint64_t most = runs_of[0].size() + runs_of[1].size();
+  std::vector<BankSearch> searches;
   for (const Claim& claim : claims) {
-    if (claim.quantity != Quantity::kBanksProved) continue;
-    if (!search(claim, claim.cases.front().runs.front(), means, count, findings.banks)) return std::nullopt;
+    if (claim.quantity == Quantity::kBanksProved) most += searches.emplace_back(claim, means).most();
+  }
+  Count count(most, means);
+  Findings findings;
+  for (BankSearch& search : searches) {
+    if (!search.simulate(count)) return std::nullopt;
+    const std::vector<BankRow> rows = search.rows();
+    findings.banks.insert(findings.banks.end(), rows.begin(), rows.end());
   }
   explore::Batch batches[2];
   for (const int i : {0, 1}) {
-    const bool is_whole =
-        batches[i].run(runs_of[i].points(), means.evaluate, means.version, means.jobs,
-                       [&](const explore::SweepCounts& counts) { return count.go_on(counts.done()); });
+    count.begin_part(runs_of[i].size());
+    const bool is_whole = batches[i].run(runs_of[i].points(), means.evaluate, means.version, means.jobs,
+                                         [&](const explore::SweepCounts& counts) {
+                                           return count.go_on(counts.done(), counts.total - counts.done());
+                                         });
     if (!is_whole) return std::nullopt;
     count.end_part(runs_of[i].size());
   }

@@ -62,7 +62,8 @@ struct Means {
   std::function<platform::Bound(const platform::BoardConfig& board, std::uint64_t frames)> bound;
   std::string version;
   unsigned jobs = 1;
-  std::function<bool(std::uint64_t done, std::uint64_t total)> go_on;  // several times a second
+  // Several times a second: of the boards of all searches and runs, those that are done and those that are left at most.
+  std::function<bool(std::uint64_t done, std::uint64_t most_left)> go_on;
 };
 
 // Simulates what the claims are about. Nothing if `go_on` has ended it. Throws std::runtime_error if a board

@@ -155,12 +155,17 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
 }
 
 std::string rows_table(const RowComparison& rows) {
-  if (!rows.parting()) return "";
-  const RowComparison::Parting& parting = *rows.parting();
-  std::string text = fmt::format("they part in frame {}, row {}: whole after {} cycles in A, {} in B\n",
-                                 parting.frame, parting.row, parting.cycles_a, parting.cycles_b);
+  std::string text;
+  if (const auto& parting = rows.parting()) {
+    text = fmt::format("they part in frame {}, row {}: whole after {} cycles in A, {} in B\n", parting->frame,
+                       parting->row, parting->cycles_a, parting->cycles_b);
+  } else if (const auto& first = rows.other_stalls()) {
+    text = fmt::format(
+        "every row is whole after as many cycles in both; stalls are others from frame {}, row {}\n",
+        first->frame, first->row);
+  }
   const std::vector<RowComparison::Range> ranges = rows.ranges(kMostLines);
-  if (ranges.empty()) return text;  // what one frame costs another one gains
+  if (ranges.empty()) return text;  // nothing, or what one frame costs another one gains
   text += fmt::format("{:>43}stall cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
   for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
     text += fmt::format(" {:>11}", memory::kPortNames[port]);
@@ -195,6 +200,7 @@ std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vec
 }
 
 std::string pixels_line(const PixelComparison& pixels) {
+  if (pixels.frames() == 0) return "disparities: not compared: no camera frame is in both\n";
   const std::string frames = fmt::format("{} frame{}", pixels.frames(), pixels.frames() == 1 ? "" : "s");
   if (!pixels.first()) return fmt::format("disparities: the same, pixel for pixel, in {}\n", frames);
   const PixelComparison::First& first = *pixels.first();

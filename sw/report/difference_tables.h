@@ -31,13 +31,14 @@ inline constexpr std::size_t kMostLines = 10;
 std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
                          const std::vector<std::uint64_t>& cycles_b);
 
-// Where they part, and what it costs or gains in which rows: RowComparison::ranges(), at most kMostLines.
+// Where they part, in cycles or else in stalls, and what it costs or gains in which rows: RowComparison::ranges(), at
+// most kMostLines.
 std::string rows_table(const RowComparison& rows);
 
 // Sorted by what they differ, most first.
 std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b);
 
-// One line.
+// One line, also if no frame was compared.
 std::string pixels_line(const PixelComparison& pixels);
 
 }  // namespace stereotlm::report

@@ -30,6 +30,13 @@ class RowComparison {
   };
   const std::optional<Parting>& parting() const { return parting_; }
 
+  // The first row with other stalls of its own.
+  struct OtherStalls {
+    std::uint64_t frame = 0;
+    std::size_t row = 0;
+  };
+  const std::optional<OtherStalls>& other_stalls() const { return other_stalls_; }
+
   // Rows one below the other, summed over the frames, B - A.
   struct Range {
     std::size_t first_row = 0;
@@ -39,8 +46,10 @@ class RowComparison {
     std::int64_t most = 0;                                    // of one row
     std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // of all its rows
   };
-  // From the top, those whose rows all take the same more or less; where these are more than `most_ranges`, so many of
-  // the same height instead. Those of rows that take the same in both are left out: the others sum up to the whole.
+  // From the top, those whose rows all have the same cycles and stalls more or less; where these are more than
+  // `most_ranges`, those whose rows all take as many cycles more or less, or else so many of the same height. Left out
+  // are those of rows that take as long in both, without stalls in all that one of them has more: the others sum up to
+  // the whole, in cycles and in stalls.
   std::vector<Range> ranges(std::size_t most_ranges) const;
 
  private:
@@ -50,10 +59,14 @@ class RowComparison {
   };
 
   Range range(std::size_t first_row, std::size_t last_row) const;
+  // Of rows that `is_same` as the one above.
+  template <typename IsSame>
+  std::vector<Range> runs_of(const IsSame& is_same) const;
 
   std::uint64_t frames_ = 0;
   std::vector<Row> rows_;  // sums over the frames, B - A
   std::optional<Parting> parting_;
+  std::optional<OtherStalls> other_stalls_;
 };
 
 }  // namespace stereotlm::report

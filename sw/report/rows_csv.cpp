@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <system_error>
 
@@ -11,47 +9,55 @@
 #include "sw/report/row_comparison.h"
 
 namespace stereotlm::report {
+namespace {
 
-RowsCsv::RowsCsv(const std::filesystem::path& path) : path_(path), aside_(path.string() + ".part") {
-  if (std::filesystem::is_directory(path))
-    throw std::runtime_error(fmt::format("'{}': is a folder", path.string()));
-  errno = 0;
-  file_.open(aside_, std::ios::binary | std::ios::trunc);
-  if (!file_) {
-    throw std::runtime_error(fmt::format("'{}': cannot be written: {}", path.string(), std::strerror(errno)));
-  }
-  file_ << "frame,row,a_cycles,b_cycles";
+std::string head() {
+  std::string text = "frame,row,a_cycles,b_cycles";
   for (const char* run : {"a", "b"}) {
     for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      file_ << fmt::format(",{}_{}_stall_cycles", run, memory::kPortNames[port]);
+      text += fmt::format(",{}_{}_stall_cycles", run, memory::kPortNames[port]);
   }
-  file_ << '\n';
+  return text + '\n';
 }
 
-RowsCsv::~RowsCsv() {
-  std::error_code ignored;
-  if (file_.is_open()) std::filesystem::remove(aside_, ignored);
+}  // namespace
+
+RowsCsv::RowsCsv(const std::filesystem::path& path) : path_(path) {
+  if (std::filesystem::is_directory(path)) refuse("is a folder");
+  try {
+    file_ = std::make_unique<ReplacedFile>(path);
+    file_->write(head());
+  } catch (const std::system_error& error) {
+    refuse("cannot be written: " + error.code().message());
+  }
 }
 
 void RowsCsv::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
   const fpga::RowProfile alone_a = rows_alone(a);
   const fpga::RowProfile alone_b = rows_alone(b);
+  std::string lines;
   for (std::size_t row = 0; row < a.size(); ++row) {
-    file_ << fmt::format("{},{},{},{},{},{}\n", frame_, row, alone_a[row].cycles, alone_b[row].cycles,
+    lines += fmt::format("{},{},{},{},{},{}\n", frame_, row, alone_a[row].cycles, alone_b[row].cycles,
                          fmt::join(alone_a[row].stalls, ","), fmt::join(alone_b[row].stalls, ","));
   }
   ++frame_;
+  try {
+    file_->write(lines);
+  } catch (const std::system_error& error) {
+    refuse("cannot be written: " + error.code().message());
+  }
 }
 
 void RowsCsv::commit() {
-  file_.close();
-  std::error_code error;
-  if (file_) std::filesystem::rename(aside_, path_, error);
-  if (!file_ || error) {
-    std::error_code ignored;
-    std::filesystem::remove(aside_, ignored);
-    throw std::runtime_error(fmt::format("'{}': cannot be written", path_.string()));
+  try {
+    file_->commit();
+  } catch (const std::system_error& error) {
+    refuse("cannot be written: " + error.code().message());
   }
+}
+
+void RowsCsv::refuse(const std::string& cause) const {
+  throw std::runtime_error(fmt::format("'{}': {}", path_.string(), cause));
 }
 
 }  // namespace stereotlm::report

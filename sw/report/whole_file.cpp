@@ -10,57 +10,14 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "sw/report/new_file.h"
+#include "sw/report/replaced_file.h"
+
 namespace stereotlm::report {
-namespace {
-
-[[noreturn]] void fail(int error, const std::filesystem::path& path) {
-  throw std::system_error(error, std::generic_category(), path.string());
-}
-
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& path, int flags)
-      : path_(path), value_(open(path.c_str(), flags, 0666)) {
-    if (value_ < 0) fail(errno, path);
-  }
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  void write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(value_, bytes.data(), bytes.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) fail(errno, path_);
-      if (count == 0) fail(ENOSPC, path_);
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    }
-  }
-
-  // File systems that have nothing to sync answer EINVAL or ENOTSUP.
-  void sync() {
-    if (fsync(value_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno, path_);
-  }
-
-  void close() {
-    const int closed = ::close(value_);
-    value_ = -1;
-    if (closed != 0 && errno != EINTR) fail(errno, path_);
-  }
-
- private:
-  const std::filesystem::path& path_;
-  int value_;
-};
-
-}  // namespace
 
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
-  Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
+  NewFile file(path);
   file.write(bytes);
-  file.sync();
   file.close();
 }
 
@@ -81,15 +38,21 @@ std::string read_whole_file(const std::filesystem::path& path) {
 }
 
 void replace_file(const std::filesystem::path& path, std::string_view bytes) {
-  const std::filesystem::path aside = path.string() + ".part";
-  std::filesystem::remove(aside);
-  write_whole_file(aside, bytes);
-  std::filesystem::rename(aside, path);
+  ReplacedFile file(path);
+  file.write(bytes);
+  file.commit();
 }
 
 void sync_folder(const std::filesystem::path& folder) {
-  Descriptor opened(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  opened.sync();
+  const auto fail = [&folder](int error) {
+    throw std::system_error(error, std::generic_category(), folder.string());
+  };
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) fail(errno);
+  const int error = fsync(descriptor) == 0 ? 0 : errno;
+  close(descriptor);
+  // File systems that have nothing to sync answer EINVAL or ENOTSUP.
+  if (error != 0 && error != EINVAL && error != ENOTSUP) fail(error);
 }
 
 }  // namespace stereotlm::report

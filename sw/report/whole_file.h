@@ -13,7 +13,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
 // The whole content. Throws std::runtime_error that names the path and the cause if it is no regular file that can be read.
 std::string read_whole_file(const std::filesystem::path& path);
 
-// Writes aside (path.part) and renames: the file is there whole, or as it was. Throws std::system_error.
+// With ReplacedFile: the file is there whole, or as it was. Throws std::system_error.
 void replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 // Makes the names in a folder durable. Throws std::system_error.

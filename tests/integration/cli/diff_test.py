@@ -126,6 +126,21 @@ class WorkedValues(DiffTest):
         self.assertEqual(longest[3], "+4480")
         self.assertEqual(int(rows[-1][1] or rows[-1][0]), 479)
 
+    def test_keep_rows_that_take_as_long_and_stall_at_another_port(self):
+        # Either table beside every left picture.
+        c = self.folder / "c"
+        self.write_timing(c, "--set", "matcher.filter=none", "--set", "allocation.right_lut=bank0")
+        rows = [re.fullmatch(r"(\d+)(?:\.\.(\d+))? (\S+) \S+ (\S+) (\S+) 0 0 0", line) for line in self.lines(a=self.b, b=c)]
+        rows = [row.groups() for row in rows if row]
+        (longest,) = (row for row in rows if int(row[1] or row[0]) - int(row[0]) > 400)
+        self.assertEqual(longest[2], "0")
+        b, c = (json.loads((folder / "stats.json").read_text()) for folder in (self.b, c))
+        self.assertEqual(sum(int(row[2]) for row in rows), c["cycles"] - b["cycles"])
+        for port in (0, 1):
+            stalls = c["ports"][port]["stall_cycles"] - b["ports"][port]["stall_cycles"]
+            self.assertEqual(sum(int(row[3 + port]) for row in rows), stalls)
+            self.assertGreater(abs(stalls), 2_000_000)
+
     def test_are_in_the_table_for_other_programs(self):
         path = self.folder / "rows.csv"
         self.lines("--csv", path)
@@ -197,7 +212,7 @@ class Frames(DiffTest):
         self.assertFalse([line for line in lines if line.startswith("they part")])
         path = self.folder / "rows.csv"
         self.refused_in_one_line(self.diff("--csv", path), f"--csv: rows cannot be compared: {sizes}")
-        self.assertEqual([p.name for p in self.folder.glob("rows*")], [])
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "b", "left.pgm", "right.pgm"})
 
 
 class Disparities(DiffTest):
@@ -284,8 +299,13 @@ class Camera(DiffTest):
             self.assertIn(f"pci, bridge, cameras and latency: only in {name}", lines)
             self.assertIn("source camera preloaded" if name == "A" else "source preloaded camera", lines)
 
-    def write_small_sequence(self, folder):
-        self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, *PRELOADED, "--sequence", self.pairs, "--out", folder))
+    def test_says_that_no_frame_is_in_both(self):
+        self.camera(self.a, "--frames", "1")
+        self.write_small_sequence(self.b, "--frames", "1")
+        self.assertEqual(self.lines()[-1], "disparities: not compared: no camera frame is in both")
+
+    def write_small_sequence(self, folder, *options):
+        self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, *PRELOADED, "--sequence", self.pairs, *options, "--out", folder))
 
 
 class Sources(DiffTest):
@@ -350,7 +370,7 @@ class Inputs(DiffTest):
         found = hashlib.sha256(other.read_bytes()).hexdigest()
         self.refused_in_one_line(
             self.diff(),
-            f"error: RUN '{self.b}': --left '{other}': SHA-256 {found}: must be that of the file of the run, {recorded}",
+            f"error: B '{self.b}': --left '{other}': SHA-256 {found}: must be that of the file of the run, {recorded}",
         )
 
     def test_that_are_missing_are_refused(self):
@@ -358,22 +378,23 @@ class Inputs(DiffTest):
         self.right.unlink()
         lines = self.refused(self.diff(b=self.a))
         self.assertEqual(len(lines), 4)  # both, in both
-        self.assertIn(f"RUN '{self.a}': --right '{self.right}': cannot be read: No such file or directory", lines[0])
-        self.assertIn(f"RUN '{self.a}': --truth '{self.right}': cannot be read: No such file or directory", lines[1])
+        for name, (right, truth) in (("A", lines[:2]), ("B", lines[2:])):
+            self.assertIn(f"error: {name} '{self.a}': --right '{self.right}': cannot be read: No such file or directory", right)
+            self.assertIn(f"error: {name} '{self.a}': --truth '{self.right}': cannot be read: No such file or directory", truth)
 
     def test_that_are_more_than_the_run_had_are_refused(self):
         pairs = self.sequence(2)
         self.succeeds(self.run_with("--sequence", pairs, "--out", self.a))
         for side in ("left", "right"):
             shutil.copy(pairs / f"{side}_000.png", pairs / f"{side}_100.png")
-        for line in self.refused(self.diff(b=self.a)):
-            self.assertIn(f"RUN '{self.a}': --sequence '{pairs}': 3 pairs: must be those of the run, 2", line)
+        for name, line in zip("AB", self.refused(self.diff(b=self.a)), strict=True):
+            self.assertIn(f"error: {name} '{self.a}': --sequence '{pairs}': 3 pairs: must be those of the run, 2", line)
 
     def test_that_do_not_fit_to_the_board_any_more_are_refused(self):
         self.write(self.a)
         self.change(self.a / "config.yaml", f"width: {WIDTH}", "width: 64")
-        for line in self.refused(self.diff(b=self.a)):
-            self.assertIn(f"RUN '{self.a}': --", line)
+        for name, line in zip("AB", self.refused(self.diff(b=self.a)), strict=True):
+            self.assertIn(f"error: {name} '{self.a}': --", line)
             self.assertIn(f"{WIDTH}x{HEIGHT} pixels: must be as large as the board's images, 64x{HEIGHT}", line)
 
 
@@ -397,17 +418,17 @@ class Folders(DiffTest):
 
     def test_with_other_figures_fail(self):
         self.change(self.b / "stats.json", '"frames": 1', '"frames": 2')
-        self.failed(self.diff(), f"RUN '{self.b}': run again it has other figures: /frames: recorded 2, again 1\n")
+        self.failed(self.diff(), f"B '{self.b}': run again it has other figures: /frames: recorded 2, again 1\n")
         self.change(self.b / "stats.json", '"cycles": ', '"cycles": 1')
         self.failed(self.diff(), "other figures: /cycles: recorded 1", ", and 1 more\n")
 
     def test_with_figures_that_run_has_not_written_so_fail(self):
         self.change(self.b / "stats.json", '"schema": 1', '"schema":  1')
-        self.failed(self.diff(), f"RUN '{self.b}': its stats.json is not as run has written it\n")
+        self.failed(self.diff(), f"B '{self.b}': its stats.json is not as run has written it\n")
 
     def test_with_another_board_fail(self):
         self.change(self.b / "config.yaml", "window: 7", "window: 5")
-        self.failed(self.diff(), f"RUN '{self.b}': run again it has other figures: ")
+        self.failed(self.diff(), f"B '{self.b}': run again it has other figures: ")
 
     def test_of_another_version_name_both(self):
         version = json.loads((self.b / "run.json").read_text())["version"]
@@ -461,6 +482,13 @@ class Usage(DiffTest):
         for name in ("rows.txt", "stats.json", ""):
             self.refused_in_one_line(self.diff("--csv", name), f"--csv '{name}': must end in .csv")
 
+    def test_a_table_leaves_other_files_alone(self):
+        self.write(self.a)
+        self.file("rows.csv.part", b"precious")
+        self.lines("--csv", self.folder / "rows.csv", b=self.a)
+        self.assertEqual((self.folder / "rows.csv.part").read_bytes(), b"precious")
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "rows.csv", "rows.csv.part", "left.pgm", "right.pgm"})
+
     def test_a_table_that_cannot_be_written(self):
         self.write(self.a)
         path = self.folder / "none" / "rows.csv"
@@ -480,7 +508,7 @@ class Interrupted(DiffTest):
         status, out = terminal.finish()
         self.assertEqual((status, out), (130, ""))
         self.assertEqual(shown(terminal.text), ["stereotlm: note: interrupted: nothing is compared", ""])
-        self.assertEqual([p.name for p in self.folder.glob("rows*")], [])
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "left.pgm", "right.pgm"})
 
 
 if __name__ == "__main__":

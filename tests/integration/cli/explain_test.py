@@ -1,5 +1,6 @@
 """explain: what limits a board, and what each knob does, compared with runs."""
 
+import os
 import re
 
 import program
@@ -101,6 +102,10 @@ class Explain(ProgramTest):
         self.refused(run("explain"), "BOARD: missing")
         self.refused_in_one_line(run("explain", "fpl2003", "--source", "x"), "--source = x")
         self.refused_in_one_line(run("explain", "fpl2003", "--set", "matcher.window=4"), "matcher.window = 4")
+
+    def test_no_place_for_temporary_files(self):
+        place = {**os.environ, "TMPDIR": str(self.left)}
+        self.refused_in_one_line(run("explain", "fpl2003", env=place), f"error: TMPDIR = {self.left}: must be a folder")
 
 
 if __name__ == "__main__":

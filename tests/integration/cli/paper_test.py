@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import re
 import shlex
 import signal
@@ -184,16 +185,52 @@ class Paper(ProgramTest):
         self.assertEqual(written, self.files)
 
 
-class Interrupted(ProgramTest):
-    def test_leaves_nothing_behind(self):
-        with subprocess.Popen([program.PROGRAM, "paper", "--out", self.out], stderr=subprocess.PIPE, text=True) as process:
-            while process.poll() is None and not (self.out / ".partial").exists():
-                time.sleep(0.01)
-            time.sleep(0.3)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=300), 130)
-            self.assertEqual(process.stderr.read(), "stereotlm: note: interrupted: nothing was written\n")
+class Meanwhile(ProgramTest):
+    """What happens while it runs."""
+
+    def begin(self):
+        """A process that has begun."""
+        process = subprocess.Popen([program.PROGRAM, "paper", "--out", self.out], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        while process.poll() is None and not (self.out / ".partial" / "new").exists():
+            time.sleep(0.01)
+        return process
+
+    def end(self, process):
+        self.addCleanup(process.wait)
+        return process.wait(timeout=300), process.stderr.read()
+
+    def test_an_interrupt_leaves_nothing_behind(self):
+        process = self.begin()
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(self.end(process), (130, "stereotlm: note: interrupted: nothing was written\n"))
         self.assertFalse(self.out.exists())
+
+    def test_a_second_one_into_the_folder_is_refused(self):
+        process = self.begin()
+        self.refused_in_one_line(run("paper", "--out", self.out), f"'{self.out}': in use by another run")
+        self.assertEqual(self.end(process), (0, ""))
+        self.assertEqual(sorted(self.result()), FILES)
+
+    def test_what_comes_into_its_way_leaves_the_earlier_files(self):
+        self.out.mkdir()
+        for name in ("paper.md", "table1.csv"):
+            (self.out / name).write_text("old")
+        process = self.begin()
+        (self.out / "banks.csv").mkdir()
+        status, errors = self.end(process)
+        self.assertEqual((status, errors), (1, f"stereotlm: error: folder '{self.out}': holds 'banks.csv', which is no file\n"))
+        self.assertEqual(self.result(), {"paper.md": b"old", "table1.csv": b"old"})
+
+    def test_a_kill_is_cleaned_up_after(self):
+        process = self.begin()
+        process.kill()
+        self.end(process)
+        self.assertTrue((self.out / ".partial").exists())
+        self.succeeds(run("paper", "--out", self.out))
+        self.assertEqual(sorted(self.result()), FILES)
 
 
 class Refusals(ProgramTest):
@@ -210,6 +247,12 @@ class Refusals(ProgramTest):
         (self.out / "table1.csv").write_text("mine")
         self.refused_in_one_line(run("paper", "--out", self.out), f"--out {self.out}: ", "holds 'table1.csv' but no paper.md")
         self.assertEqual((self.out / "table1.csv").read_text(), "mine")
+
+    def test_no_place_for_temporary_files(self):
+        place = {**os.environ, "TMPDIR": "/nonexistent"}
+        self.refused_in_one_line(run("paper", "--out", self.out, env=place), "error: TMPDIR = /nonexistent: must be a folder\n")
+        self.assertFalse(self.out.exists())
+        self.assertEqual(len(self.refused(run("paper", "--out", self.left, env=place), "TMPDIR = ", "not a folder")), 2)
 
     def test_what_is_no_folder(self):
         self.refused_in_one_line(run("paper", "--out", self.left), "not a folder")

@@ -1,33 +1,15 @@
 #include "tests/unit/platform/board_files.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "platform/board_yaml.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::platform::testing {
 namespace {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "board_test_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string without(std::string text, const std::string& part) {
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at)) {
@@ -36,22 +18,17 @@ std::string without(std::string text, const std::string& part) {
   return text;
 }
 
-std::string write_board(const TemporaryFolder& folder, const std::string& text) {
-  const std::filesystem::path file = folder.path() / "board.yaml";
-  std::ofstream(file, std::ios::binary) << text;
-  return file.string();
-}
-
 }  // namespace
 
 BoardConfig load_text(const std::string& text, const std::vector<std::string>& sets) {
-  const TemporaryFolder folder;
-  return load_board(write_board(folder, text), sets);
+  const test::ScratchFolder folder;
+  return load_board(test::write_file(folder.path() / "board.yaml", text), sets);
 }
 
 std::string refusal_of(const std::string& text, const std::vector<std::string>& sets) {
-  const TemporaryFolder folder;
-  return without(refusal_of_board(write_board(folder, text), sets), folder.path().string() + '/');
+  const test::ScratchFolder folder;
+  return without(refusal_of_board(test::write_file(folder.path() / "board.yaml", text), sets),
+                 folder.path().string() + '/');
 }
 
 std::string refusal_of_board(const std::string& board, const std::vector<std::string>& sets) {

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
+#include <vector>
 
 #include "platform/board_rules.h"
 
@@ -119,7 +121,7 @@ explore::Figures made_up_frame(const explore::Point& point) {
   return figures;
 }
 
-TEST(Study, ProvesHowFewBanksReachTheBestRate) {
+Means proving_means() {
   Means proving = means();
   proving.evaluate = made_up_frame;
   proving.bound = [](const BoardConfig&, std::uint64_t) {
@@ -128,6 +130,11 @@ TEST(Study, ProvesHowFewBanksReachTheBestRate) {
     bound.core_limited_by = "matcher";
     return bound;
   };
+  return proving;
+}
+
+TEST(Study, ProvesHowFewBanksReachTheBestRate) {
+  const Means proving = proving_means();
   const BoardRun run = {"fpl2003-no-calibration", {}, false};
   const Findings found = study({claim_of(Quantity::kBanksProved, 6, {run})}, proving).value();
   // Two pictures and a result in banks of their own.
@@ -144,8 +151,8 @@ TEST(Study, ProvesHowFewBanksReachTheBestRate) {
 TEST(Study, SimulatesWhatIsAskedForTwiceOnce) {
   Means counting = means();
   std::uint64_t total = 0;
-  counting.go_on = [&total](std::uint64_t, std::uint64_t of) {
-    total = of;
+  counting.go_on = [&total](std::uint64_t done, std::uint64_t most_left) {
+    total = done + most_left;
     return true;
   };
   Claim other = claim_of(Quantity::kSlices, 20, {run_of("matcher.window=5")});
@@ -153,6 +160,38 @@ TEST(Study, SimulatesWhatIsAskedForTwiceOnce) {
   study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=5"), run_of("matcher.window=7")}), other},
         counting);
   EXPECT_EQ(total, 2U);
+}
+
+TEST(Study, CountsTheBoardsOfAllSearchesAndRuns) {
+  const BoardRun run = {"fpl2003-no-calibration", {}, false};
+  Claim first = claim_of(Quantity::kBanksProved, 6, {run});
+  Claim second = first;
+  second.name = "two";
+  Claim rate = claim_of(Quantity::kRate, 61, {run_of("matcher.window=5"), run_of("matcher.window=7", true)});
+  rate.name = "rate";
+  Means counting = proving_means();
+  counting.evaluate = [](const explore::Point& point) {
+    return point.board->allocation.left_lut ? made_up(point) : made_up_frame(point);
+  };
+  struct Progress {
+    std::uint64_t done, most_left;
+  };
+  std::vector<Progress> all;
+  counting.go_on = [&all](std::uint64_t done, std::uint64_t most_left) {
+    all.push_back({done, most_left});
+    return true;
+  };
+  ASSERT_TRUE(study({first, rate, second}, counting).has_value());
+  EXPECT_EQ(all.back().most_left, 0U);
+  EXPECT_GT(all.back().done, 2U);
+  EXPECT_EQ(all.back().done % 2, 0U) << "two searches that are the same, and two runs";
+  // Where frames are simulated one by one the boards are known from the start.
+  for (const Progress& progress : all) EXPECT_EQ(progress.done + progress.most_left, all.back().done);
+  std::vector<std::uint64_t> left;
+  for (const Progress& progress : all) {
+    if (left.empty() || progress.most_left != left.back()) left.push_back(progress.most_left);
+  }
+  EXPECT_TRUE(std::is_sorted(left.rbegin(), left.rend()));
 }
 
 TEST(Study, EndsWithoutFindingsIfItIsToldTo) {

@@ -131,12 +131,13 @@ TEST(RowsTable, SaysWhereTheyPartAndWhatItCosts) {
   EXPECT_EQ(rows_table(rows), "");
   rows.add(rows_of({10, 20, 30, 40}, 0), rows_of({10, 25, 40, 48}, 3));
   const auto lines = lines_of(rows_table(rows));
-  ASSERT_EQ(lines.size(), 5U);
+  ASSERT_EQ(lines.size(), 6U);
   EXPECT_EQ(lines[0], "they part in frame 0, row 1: whole after 20 cycles in A, 25 in B");
   EXPECT_EQ(words(lines[1]), "stall cycles of");
   EXPECT_EQ(words(lines[2]), "rows difference each row left_lut right_lut left_pixel right_pixel result");
-  EXPECT_EQ(words(lines[3]), "1..2 +10 +5 0 0 0 0 0");
-  EXPECT_EQ(words(lines[4]), "3 -2 -2 0 0 0 0 0");
+  EXPECT_EQ(words(lines[3]), "0 0 0 0 0 0 0 +3");
+  EXPECT_EQ(words(lines[4]), "1..2 +10 +5 0 0 0 0 0");
+  EXPECT_EQ(words(lines[5]), "3 -2 -2 0 0 0 0 0");
 }
 
 TEST(RowsTable, HasBandsOfManyRows) {
@@ -161,6 +162,19 @@ TEST(RowsTable, OnlyNamesTheRowWhereFramesMakeUpForEachOther) {
   EXPECT_EQ(rows_table(rows), "they part in frame 0, row 0: whole after 10 cycles in A, 20 in B\n");
 }
 
+TEST(RowsTable, HasRowsOfWhichOnlyTheStallsAreOthers) {
+  RowComparison rows;
+  rows.add(rows_of({10, 20}, 0), rows_of({10, 20}, 0));
+  rows.add(rows_of({10, 20}, 0), {{10, {0, 0, 0, 0, 0}}, {20, {0, 0, 0, 0, 4}}});
+  const auto lines = lines_of(rows_table(rows));
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[0],
+            "every row is whole after as many cycles in both; stalls are others from frame 1, row 1");
+  EXPECT_EQ(words(lines[3]), "1 0 0 0 0 0 0 +4");
+  rows.add({{10, {0, 0, 0, 0, 0}}, {20, {0, 0, 0, 0, 4}}}, rows_of({10, 20}, 0));
+  EXPECT_EQ(rows_table(rows), lines[0] + '\n') << "what one frame loses another one gains";
+}
+
 TEST(BlameTable, IsSortedByWhatItDiffers) {
   const std::vector<platform::BlameRow> a = {{"left_lut", "bank0", "host", 10},
                                              {"result", "bank1", "host", 5}};
@@ -174,6 +188,10 @@ TEST(BlameTable, IsSortedByWhatItDiffers) {
   EXPECT_EQ(words(lines[2]), "left_lut on bank0 to host 10 15 +5");
   EXPECT_THAT(blame_table(b, a), HasSubstr("-90\n"));
   EXPECT_EQ(blame_table(a, a), "");
+}
+
+TEST(PixelsLine, SaysThatNoFrameIsInBoth) {
+  EXPECT_EQ(pixels_line(PixelComparison()), "disparities: not compared: no camera frame is in both\n");
 }
 
 TEST(PixelsLine, SaysHowManyDifferAndWhereTheFirstIs) {

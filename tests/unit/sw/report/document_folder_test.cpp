@@ -72,9 +72,43 @@ TEST_F(DocumentFolderTest, RefusesAFileInItsPlace) {
 }
 
 TEST_F(DocumentFolderTest, CleansAwayWhatAKilledOneHasLeft) {
-  test::write_file(out_ / ".partial" / "a.csv", "half");
+  test::write_file(out_ / ".partial/new/a.csv", "half");
+  test::write_file(out_ / "a.csv", "old, but for its document");
   write();
   EXPECT_EQ(test::read_file(out_ / "a.csv"), "1");
+  EXPECT_FALSE(fs::exists(out_ / ".partial"));
+}
+
+TEST_F(DocumentFolderTest, RefusesASecondRunIntoTheFolder) {
+  {
+    DocumentFolder first(out_, "doc.md", {"a.csv", "a.png"});
+    EXPECT_EQ(refusal(), "folder '" + out_.string() + "': in use by another run");
+    first.commit(kContents);
+  }
+  EXPECT_EQ(test::read_file(out_ / "a.csv"), "1");
+  EXPECT_NO_THROW(write());
+}
+
+TEST_F(DocumentFolderTest, WritesNothingWhereSomethingOfItsNamesHasComeMeanwhile) {
+  test::write_file(out_ / "doc.md", "old");
+  {
+    DocumentFolder folder(out_, "doc.md", {"a.csv", "a.png"});
+    fs::create_directory(out_ / "a.png");
+    EXPECT_THAT(test::message_of([&] { folder.commit(kContents); }),
+                HasSubstr("holds 'a.png', which is no file"));
+  }
+  EXPECT_EQ(test::read_file(out_ / "doc.md"), "old");
+  EXPECT_FALSE(fs::exists(out_ / "a.csv"));
+  EXPECT_FALSE(fs::exists(out_ / ".partial"));
+  fs::remove(out_ / "a.png");
+  fs::remove(out_ / "doc.md");
+  {
+    DocumentFolder folder(out_, "doc.md", {"a.csv", "a.png"});
+    test::write_file(out_ / "a.csv", "mine");
+    EXPECT_THAT(test::message_of([&] { folder.commit(kContents); }),
+                HasSubstr("holds 'a.csv' but no doc.md"));
+  }
+  EXPECT_EQ(test::read_file(out_ / "a.csv"), "mine");
 }
 
 TEST_F(DocumentFolderTest, RefusesAPartialFolderOfSomebodyElse) {

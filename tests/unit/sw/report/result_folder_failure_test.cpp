@@ -2,15 +2,14 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 
 #include "sw/report/result_folder.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
@@ -24,26 +23,6 @@ using ::testing::HasSubstr;
 std::string refusal(const fs::path& dir) {
   return test::message_of([&] { const ResultFolder folder(dir); });
 }
-
-// No file can grow beyond `bytes` until the end of the object: write() stores a part, then fails with EFBIG.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit = {bytes, before_.rlim_max};
-    if (setrlimit(RLIMIT_FSIZE, &limit) != 0) throw std::runtime_error("no limit on file sizes");
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
 
 TEST(ResultFolderFailure, RefusesAFileAndWhatLiesBelowOne) {
   const test::ScratchFolder scratch;
@@ -73,7 +52,7 @@ TEST(ResultFolderFailure, RefusesAFolderWithoutPermission) {
 TEST(ResultFolderFailure, RefusesAFolderThatTakesNoBytes) {
   const test::ScratchFolder scratch;
   {
-    const FileSizeLimit limit(0);
+    const test::FileSizeLimit limit(0);
     EXPECT_THAT(refusal(scratch.path() / "out"), HasSubstr("cannot be written to: File too large"));
   }
   EXPECT_TRUE(fs::is_empty(scratch.path())) << "it changed nothing";
@@ -83,7 +62,7 @@ TEST(ResultFolderFailure, AFileThatDoesNotFitLeavesTheEarlierResultIntact) {
   const test::ScratchFolder scratch;
   test::write_file(scratch.path() / "run.json", "old");
   {
-    const FileSizeLimit limit(1000);
+    const test::FileSizeLimit limit(1000);
     ResultFolder folder(scratch.path());
     folder.add("run.json", std::string(1000, 'x'));
     EXPECT_EQ(
@@ -106,7 +85,7 @@ TEST(ResultFolderFailure, ACommitThatFailsPutsTheEarlierResultBack) {
     folder.add("stats.json", "new");
     fs::create_directory(scratch.path() / "stats.json");  // no file can take the name of a folder
     EXPECT_THAT(test::message_of([&] { folder.commit(); }),
-                HasSubstr("the result cannot be moved into place: Is a directory"));
+                HasSubstr("the new files cannot be moved into place: Is a directory"));
   }
   EXPECT_EQ(test::read_file(scratch.path() / "config.yaml"), "old");
   EXPECT_EQ(test::read_file(scratch.path() / "run.json"), "old");

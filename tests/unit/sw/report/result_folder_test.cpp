@@ -141,9 +141,8 @@ TEST_F(ResultFolderTest, RefusesWhatOnlyLooksLikeAResult) {
 
 TEST_F(ResultFolderTest, CleansWhatAKilledRunLeft) {
   test::write_file(out_ / ".partial/new/frames/000000.png", "half");
-  test::write_file(out_ / ".partial/earlier/stats.json", "older");
   test::write_file(out_ / ".partial/probe", "");
-  test::write_file(out_ / "stats.json", "moved before run.json was");
+  test::write_file(out_ / "stats.json", "old");
   ResultFolder folder(out_);
   EXPECT_THAT(names_in(out_), ElementsAre(".partial", ".partial/new", "stats.json"));
   folder.add("run.json", "new");

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <iterator>
 #include <string>
 
 #include "sw/report/whole_file.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::report {
@@ -15,6 +17,10 @@ constexpr const char* kHead =
     "frame,row,a_cycles,b_cycles,a_left_lut_stall_cycles,a_right_lut_stall_cycles,a_left_pixel_stall_cycles,"
     "a_right_pixel_stall_cycles,a_result_stall_cycles,b_left_lut_stall_cycles,b_right_lut_stall_cycles,"
     "b_left_pixel_stall_cycles,b_right_pixel_stall_cycles,b_result_stall_cycles\n";
+
+std::ptrdiff_t files_in(const test::ScratchFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+}
 
 TEST(RowsCsv, HasALineForEachFrameAndRow) {
   const test::ScratchFolder folder;
@@ -29,7 +35,7 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
                                        "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
                                        "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
                                        "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
-  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  EXPECT_EQ(files_in(folder), 1);
 }
 
 TEST(RowsCsv, LeavesTheFileAsItWasWithoutCommit) {
@@ -38,7 +44,17 @@ TEST(RowsCsv, LeavesTheFileAsItWasWithoutCommit) {
   test::write_file(path, "before");
   { const RowsCsv csv(path); }
   EXPECT_EQ(read_whole_file(path), "before");
-  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  EXPECT_EQ(files_in(folder), 1);
+}
+
+TEST(RowsCsv, LeavesFilesOfOtherNamesAlone) {
+  const test::ScratchFolder folder;
+  const auto other = test::write_file(folder.path() / "rows.csv.part", "precious");
+  RowsCsv csv(folder.path() / "rows.csv");
+  EXPECT_EQ(read_whole_file(other), "precious");
+  csv.commit();
+  EXPECT_EQ(read_whole_file(other), "precious");
+  EXPECT_EQ(files_in(folder), 2);
 }
 
 TEST(RowsCsv, NamesAFileThatCannotBeWritten) {
@@ -51,14 +67,29 @@ TEST(RowsCsv, NamesAFileThatCannotBeWritten) {
 }
 
 TEST(RowsCsv, SaysThatTheDiskIsFull) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
-  std::filesystem::create_symlink("/dev/full", path.string() + ".part");
-  RowsCsv csv(path);
-  EXPECT_EQ(test::message_of([&] { csv.commit(); }), "'" + path.string() + "': cannot be written");
-  EXPECT_FALSE(std::filesystem::exists(path));
-  EXPECT_FALSE(std::filesystem::is_symlink(path.string() + ".part"));
+  const std::string message = "'" + path.string() + "': cannot be written: File too large";
+  {
+    const test::FileSizeLimit limit(1000);
+    RowsCsv csv(path);
+    EXPECT_EQ(test::message_of([&] { csv.add(fpga::RowProfile(100), fpga::RowProfile(100)); }), message);
+    const test::FileSizeLimit none(0);
+    EXPECT_EQ(test::message_of([&] { const RowsCsv other(path); }), message);
+  }
+  EXPECT_EQ(files_in(folder), 0);
+}
+
+TEST(RowsCsv, SaysThatTheFileCannotBeReplaced) {
+  const test::ScratchFolder folder;
+  const auto path = folder.path() / "rows.csv";
+  {
+    RowsCsv csv(path);
+    std::filesystem::create_directory(path);
+    EXPECT_EQ(test::message_of([&] { csv.commit(); }),
+              "'" + path.string() + "': cannot be written: Is a directory");
+  }
+  EXPECT_EQ(files_in(folder), 1);
 }
 
 }  // namespace
