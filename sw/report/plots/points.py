@@ -10,14 +10,10 @@ import sqlite3
 import urllib.parse
 
 APPLICATION_ID = 0x53544C4D
-LAYOUT = 1
+LAYOUT = 2
 
 # What is neither a key of the board or the run nor a figure.
 ADMINISTRATION = {"hash", "status", "reason", "version", "config"}
-FIGURES = re.compile(
-    r"(board|fidelity|frames|cycles|frame_cycles)$|(area|banks|ports|bound|frames_per_second|latency_ms|accuracy)\."
-    r"|pci\.(clocks$|busy_clocks$|masters\.)|bridge\.(dma_words|local_clocks|local_busy_clocks)$"
-    r"|cameras\.(left|right)\.")
 
 MOST_NAMED = 12  # values in an error
 
@@ -34,10 +30,6 @@ class Unusable(Exception):
     def __init__(self, *lines):
         super().__init__("; ".join(lines))
         self.lines = lines
-
-
-def is_key(column):
-    return column not in ADMINISTRATION and not FIGURES.match(column)
 
 
 def natural(value):
@@ -86,7 +78,7 @@ class Points:
     """The points of a database that have figures, in the order of their hashes; all of one state of the database.
 
     path: as given; total: rows of table points; left_out: {reason in words: rows}; names: of all columns;
-    hashes: of the points here; varied: the keys that differ between them.
+    keys: those of them that are keys of the board or the run; hashes: of the points here; varied: the keys that differ between them.
     """
 
     def __init__(self, path):
@@ -95,6 +87,8 @@ class Points:
         self._database = self._open()
         try:
             self.names = [row[0] for row in self._rows("SELECT name FROM pragma_table_info('points') ORDER BY cid")]
+            keys = {row[0] for row in self._rows("SELECT name FROM keys")}
+            self.keys = [name for name in self.names if name in keys]
             self.total = self._rows("SELECT count(*) FROM points")[0][0]
             self.left_out = dict(self._rows("SELECT status, count(*) FROM points WHERE status <> 'ok' GROUP BY status "
                                             "ORDER BY status DESC"))
@@ -139,13 +133,12 @@ class Points:
         condition, values = self._condition, []
         for text in only:
             key, equals, wanted = text.partition("=")
-            keys = [name for name in self.names if is_key(name)]
-            there = self._rows(f"SELECT DISTINCT {quoted(key)} FROM points") if key in keys else []
+            there = self._rows(f"SELECT DISTINCT {quoted(key)} FROM points") if key in self.keys else []
             same = [value for (value,) in there if text_of(value) == wanted]
             if not equals:
                 problems.append(f"--only = {text}: must be KEY=VALUE")
-            elif key not in keys:
-                problems.append(f"--only = {text}: {unknown('key', key, keys)}")
+            elif key not in self.keys:
+                problems.append(f"--only = {text}: {unknown('key', key, self.keys)}")
             elif not same:
                 known = sorted((value for (value,) in there), key=natural)[:MOST_NAMED]
                 values_there = ", ".join(map(text_of, known))
@@ -233,14 +226,13 @@ class Points:
                           "ORDER BY 3 DESC, 1, 2 LIMIT 3")
 
     def _varied(self):
-        keys = [name for name in self.names if is_key(name)]
         counts = []
-        for start in range(0, len(keys), 400):  # fewer than SQLite allows in a row
+        for start in range(0, len(self.keys), 400):  # fewer than SQLite allows in a row
             asked = ", ".join(f"count(DISTINCT {name}), count({name})"
-                              for name in map(quoted, keys[start : start + 400]))
+                              for name in map(quoted, self.keys[start : start + 400]))
             counts += self._rows(f"SELECT {asked} FROM points WHERE {self._condition}", *self._values)[0]
         points = len(self.hashes)
-        varied = [key for key, distinct, there in zip(keys, counts[::2], counts[1::2])
+        varied = [key for key, distinct, there in zip(self.keys, counts[::2], counts[1::2])
                   if distinct > 1 or (distinct == 1 and there < points)]
         return self._without_frames(self._one_for_all_banks(varied))
 
