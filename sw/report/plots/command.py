@@ -4,6 +4,7 @@ Exit status: 0 done; 2 refused before anything was drawn; 1 failed after that; 1
 """
 
 import argparse
+import contextlib
 import os
 import shutil
 import signal
@@ -45,7 +46,8 @@ except ImportError as error:
 
 FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]
 ENDINGS = [".png", ".svg", ".csv"]
-ASIDE = ".partial"
+ASIDE = ".partial"  # in it NEW, and while they are replaced EARLIER
+NEW, EARLIER = "new", "earlier"
 RULE = "must be empty or hold only files that plot writes"
 
 
@@ -61,6 +63,7 @@ class Folder:
     def __init__(self, path):
         self.path = path
         self.aside = os.path.join(path, ASIDE)
+        self.new, self.earlier = (os.path.join(self.aside, name) for name in (NEW, EARLIER))
         self.created = []
 
     def problem(self):
@@ -72,13 +75,23 @@ class Folder:
                 return "not a folder"
             foreign = foreign_entry(self.path, ignored=ASIDE)
             if not foreign and os.path.lexists(self.aside):
-                foreign = ASIDE
-                if os.path.isdir(self.aside) and not os.path.islink(self.aside):
-                    inside = foreign_entry(self.aside)
-                    foreign = inside and f"{ASIDE}/{inside}"
+                foreign = self._foreign_aside()
         except OSError as error:
             return f"cannot be read: {error.strerror}"
         return f"holds '{foreign}': {RULE}" if foreign else ""
+
+    def _foreign_aside(self):
+        """The first entry of its own folder that no killed process has left there."""
+        if not is_folder(self.aside):
+            return ASIDE
+        for name in sorted(os.listdir(self.aside)):
+            path = os.path.join(self.aside, name)
+            if name not in (NEW, EARLIER) or not is_folder(path):
+                return f"{ASIDE}/{name}"
+            inside = foreign_entry(path)
+            if inside:
+                return f"{ASIDE}/{name}/{inside}"
+        return None
 
     def start(self):
         """Creates what is missing and proves that it can be written to: OSError."""
@@ -93,18 +106,28 @@ class Folder:
         if os.path.isdir(self.aside):
             shutil.rmtree(self.aside)
         os.mkdir(self.aside)
+        os.mkdir(self.new)
 
     def commit(self, files, replaced):
-        """files: {name: bytes}; replaced: names of earlier files that go."""
+        """files: {name: bytes}; replaced: names of earlier files that go. OSError: all is as it was."""
         for name, data in files.items():
-            with open(os.path.join(self.aside, name), "wb") as file:
+            with open(os.path.join(self.new, name), "wb") as file:
                 file.write(data)
-        for name in files:
-            os.replace(os.path.join(self.aside, name), os.path.join(self.path, name))
-        for name in set(replaced) - set(files):
-            if os.path.lexists(os.path.join(self.path, name)):
-                os.remove(os.path.join(self.path, name))
-        os.rmdir(self.aside)
+        moved = []
+        try:
+            os.mkdir(self.earlier)
+            for name in replaced:
+                if is_file(os.path.join(self.path, name)):
+                    move(name, self.path, self.earlier, moved)
+            for name in files:
+                move(name, self.new, self.path, moved)
+        except OSError as error:
+            for source, target in reversed(moved):
+                with contextlib.suppress(OSError):
+                    os.rename(target, source)
+            raise OSError(f"--out {self.path}: the figures cannot be moved into place: {error.strerror}: "
+                          f"'{error.filename2 or error.filename}'") from None
+        shutil.rmtree(self.aside, ignore_errors=True)
         self.created = []
 
     def discard(self):
@@ -117,12 +140,27 @@ class Folder:
                 pass
 
 
+def is_file(path):
+    """A symbolic link is neither a file nor a folder."""
+    return os.path.lexists(path) and stat.S_ISREG(os.lstat(path).st_mode)
+
+
+def is_folder(path):
+    return os.path.isdir(path) and not os.path.islink(path)
+
+
+def move(name, source, target, moved):
+    """moved: gets the paths, to undo it."""
+    paths = [os.path.join(folder, name) for folder in (source, target)]
+    os.rename(*paths)
+    moved.append(paths)
+
+
 def foreign_entry(folder, ignored=None):
     """The first entry that plot does not write."""
     for name in sorted(os.listdir(folder)):
         figure, ending = os.path.splitext(name)
-        is_file = stat.S_ISREG(os.lstat(os.path.join(folder, name)).st_mode)
-        if name != ignored and not (figure in FIGURES and ending in ENDINGS and is_file):
+        if name != ignored and not (figure in FIGURES and ending in ENDINGS and is_file(os.path.join(folder, name))):
             return name
     return None
 

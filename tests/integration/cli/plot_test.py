@@ -377,6 +377,37 @@ class Columns(PlotTest):
         return [path]
 
 
+class Replaced(PlotTest):
+    """The files of an earlier result."""
+
+    def test_stay_when_a_new_one_cannot_be_moved_into_place(self):
+        store = self.sweep(ALLOCATIONS)
+        self.out.mkdir()
+        earlier = {name: name.encode() for name in ("banks.csv", "banks.png", "states.svg", "window.csv")}
+        for name, data in earlier.items():
+            (self.out / name).write_bytes(data)
+        process = subprocess.Popen([program.PROGRAM, "plot", str(store), "--out", str(self.out)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        end = time.monotonic() + 60
+        while not (self.out / ".partial" / "new").exists() and time.monotonic() < end:
+            time.sleep(0.005)
+        (self.out / "use.png").mkdir()
+        out, errors = process.communicate(timeout=120)
+        self.assertEqual((process.returncode, out), (1, ""))
+        self.assertEqual(errors, f"stereotlm: error: --out {self.out}: the figures cannot be moved into place: Is a directory: "
+                                 f"'{self.out}/use.png'\n")
+        self.assertEqual(self.result(), earlier)
+        self.assertEqual(sorted(os.listdir(self.out)), sorted([*earlier, "use.png"]))
+
+    def test_what_a_killed_process_has_left_goes(self):
+        store = self.sweep(SMALL_BOARD + "vary: {matcher.window: [3, 5]}\n")
+        for name in ("new", "earlier"):
+            (self.out / ".partial" / name).mkdir(parents=True)
+            (self.out / ".partial" / name / "window.png").write_bytes(b"")
+        self.succeeds(self.script("plot_window.py", store, "--out", self.out))
+        self.assertEqual(sorted(os.listdir(self.out)), sorted("window" + ending for ending in ENDINGS))
+
+
 class Refusals(PlotTest):
     def setUp(self):
         super().setUp()
