@@ -11,7 +11,7 @@ import signal
 import stat
 import sys
 
-from points import Points, Unusable
+from points import MOST_NAMED, Points, Unusable
 
 # plot_all.py speaks as the program does.
 NAME = "stereotlm" if os.path.basename(sys.argv[0]) == "plot_all.py" else os.path.basename(sys.argv[0])
@@ -215,9 +215,10 @@ def start(folder):
 
 
 def draw_all(points, options, figures):
-    """The files of all figures that apply, and a line about each."""
+    """The files of all figures that apply, a line about each, and what their font has no characters for."""
     files = {}
     said = []
+    boxed = set()
     for name, draw in figures.items():
         try:
             drawing = draw(points, options)
@@ -226,16 +227,18 @@ def draw_all(points, options, figures):
             continue
         files.update({name + ending: data for ending, data in drawing.files.items()})
         said.append(f"{name:<12} {drawing.said}")
-    return files, said
+        boxed |= drawing.boxed
+    return files, said, boxed
 
 
 def run(description, figures, arguments, check):
     options = parse(arguments, description, check is not None)
     points, folder = prepare(options, check or (lambda points, options: []))
+    lines = about_points(points)
     on_interrupt(folder.discard)
     try:
         start(folder)
-        files, said = draw_all(points, options, figures)
+        files, said, boxed = draw_all(points, options, figures)
         if not files:
             raise Refused([" ".join(line.split()) for line in said])
         on_interrupt(None)  # all or nothing
@@ -243,12 +246,19 @@ def run(description, figures, arguments, check):
     except BaseException:
         folder.discard()
         raise
-    head = f"{options.database}: {len(points.hashes)} of {points.total} points"
-    lines = [head + (f"; left out: {points.left_out_text()}" if points.left_out_text() else "")]
-    lines += [f"  {count} {status}: {reason}" for status, reason, count in points.why_left_out()]
+    if boxed:
+        texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each) for each in sorted(boxed)[:MOST_NAMED])
+        tell("note", f"the font of the figures lacks {texts}: boxes in PNG; SVG and CSV have the text")
     lines += said
     lines.append(f"{options.out}: {len(files)} files: a picture, a drawing and the data of each figure that is drawn")
     say(lines)
+
+
+def about_points(points):
+    left_out = points.left_out_text()
+    head = f"{points.path}: {len(points.hashes)} of {points.total} points"
+    return [head + (f"; left out: {left_out}" if left_out else ""),
+            *(f"  {count} {status}: {reason}" for status, reason, count in points.why_left_out())]
 
 
 def say(lines):
@@ -269,7 +279,7 @@ def main(description, figures, check=None):
     try:
         run(description, figures, sys.argv[1:], check)
         return
-    except Refused as refused:
+    except (Refused, Unusable) as refused:
         for line in refused.lines:
             tell("error", line)
         sys.exit(2)

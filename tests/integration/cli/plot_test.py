@@ -248,6 +248,49 @@ class Figures(PlotTest):
         self.assertEqual(len(self.curves(self.out / "window.svg")), 2)
         self.assertEqual(len(self.curves(self.out / "window.svg", "5.5")), 2)
 
+    def test_mark_points_that_lose_pixels(self):
+        """Where the host comes last and its captures share banks with the core, most words of a picture come too late."""
+        plan = """
+board: fpl2003
+run: {source: camera, frames: 7}
+set: {allocation.left_image: [bank0, bank0], allocation.right_image: [bank1, bank1]}
+vary:
+  fpga.priority: [[host, result, left_pixel, right_pixel, left_lut, right_lut],
+                  [result, left_pixel, right_pixel, left_lut, right_lut, host]]
+  matcher.window: [7, 9]
+"""
+        store = self.sweep(plan)
+        rows, _ = self.database(store)
+        losing = {key for key, row in rows.items() if row["cameras.left.dropped_pixels"]}
+        self.assertEqual(len(losing), 2)
+        self.succeeds(run("plot", store, "--out", self.out))
+        for name in ("window", "states", "stalls", "use", "pareto"):
+            self.assertIn("2 of the points lose pixels: the pictures that they match are not whole.",
+                          self.texts(self.out / f"{name}.svg"), name)
+        for name in ("window", "pareto"):
+            self.assertIn("loses pixels", self.texts(self.out / f"{name}.svg"))
+            table = self.table(name)
+            self.is_from(store, table, "front")
+            self.assertEqual({row["hash"] for row in table if int(row["cameras.left.dropped_pixels"])}, losing)
+        self.succeeds(run("plot", store, "--out", self.out, "--only", "fpga.priority=[host, "
+                          "result, left_pixel, right_pixel, left_lut, right_lut]"))
+        self.assertNotIn("loses pixels", self.texts(self.out / "window.svg"))
+
+    def test_take_no_allocation_that_loses_pixels_for_the_best(self):
+        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "frames_per_second.core", "bound.core",
+                  "cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
+        rows = [("made", "camera", lut, "[bank1]", rate, 13, *lost)
+                for lut, rate, lost in (("bank1", 8, (0, 0)), ("bank0", 12, (0, 5)), ("bank2", 10, (0, 0)))]
+        store = self.folder / "losing.db"
+        make_database(store, header, rows)
+        self.succeeds(self.script("plot_banks.py", store, "--out", self.out))
+        (curve,) = self.curves(self.out / "banks.svg")
+        (_, one), (_, two) = curve
+        make_database(self.folder / "whole.db", header, [row for row in rows if row[2] != "bank0"])
+        self.succeeds(self.script("plot_banks.py", self.folder / "whole.db", "--out", self.out))
+        (curve,) = self.curves(self.out / "banks.svg")
+        self.assertAlmostEqual(one - two, curve[0][1] - curve[1][1], places=3)
+
     def test_with_more_combinations_than_lines(self):
         header = ["name", "run.source", "matcher.window", "fpga.clock_mhz", "fpga.arbitration", "frames_per_second.core",
                   "bound.core"]
@@ -377,6 +420,89 @@ class Columns(PlotTest):
         return [path]
 
 
+class WhatCannotBeDrawn(PlotTest):
+    """Of a database that somebody has changed: what is wrong is named by point, value and rule."""
+
+    def setUp(self):
+        super().setUp()
+        self.store = self.sweep(ALLOCATIONS + "  matcher.disparities: [4, 8]\n")
+        self.hash = sorted(self.database(self.store)[0])[1]
+
+    def change(self, sql, *values):
+        connection = sqlite3.connect(self.store)
+        connection.execute(sql, values)
+        connection.commit()
+        connection.close()
+
+    def test_is_refused(self):
+        whole = self.store.read_bytes()
+        for figure, column, value, found in (
+                ("disparities", "matcher.disparities", "'x'", "x"), ("disparities", "frames_per_second.core", "NULL", "absent"),
+                ("disparities", "bound.core", "9e999", "inf"), ("disparities", "area.slices_percent", "'x'", "x"),
+                ("banks", "frames_per_second.core", "'x'", "x"), ("banks", "area.block_rams_percent", "-9e999", "-inf"),
+                ("states", "frames_per_second.core", "NULL", "absent"), ("states", "ports.result.idle_cycles", "NULL", "absent"),
+                ("states", "ports.host.grants", "'x'", "x"), ("states", "frames", "9e999", "inf"),
+                ("stalls", "ports.left_lut.stall_cycles", "NULL", "absent"), ("stalls", "frames", "''", ""),
+                ("use", "banks.bank3.utilization", "'x'", "x"), ("use", "frames_per_second.core", "9e999", "inf"),
+                ("pareto", "frames_per_second.core", "-9e999", "-inf"),
+                ("pareto", "frames_per_second.core", "1.7e308", "1.7e+308"), ("pareto", "area.slices", "'x'", "x"),
+                ("pareto", "area.multipliers_percent", "'x'", "x")):
+            with self.subTest(figure=figure, column=column, value=value):
+                self.change(f"UPDATE points SET {reader.quoted(column)} = {value} WHERE hash = ?", self.hash)
+                process = self.script(f"plot_{figure}.py", self.store, "--out", self.out)
+                self.refused_in_one_line(process, f"plot_{figure}.py: error: {figure} not drawn: point {self.hash}: "
+                                                  f"{column} = {found}: {reader.NUMBER}\n")
+                self.store.write_bytes(whole)
+
+    def test_is_refused_as_an_axis(self):
+        self.change('UPDATE points SET "area.luts" = 9e999 WHERE hash = ?', self.hash)
+        process = run("plot", self.store, "--out", self.out, "--pareto", "area.luts:min,bound.core:max")
+        self.refused_in_one_line(process, f"--pareto = area.luts:min,bound.core:max: point {self.hash}: area.luts = inf: "
+                                          f"{reader.NUMBER}\n")
+
+    def test_of_no_frames(self):
+        self.change("UPDATE points SET frames = 0 WHERE hash = ?", self.hash)
+        self.refused_in_one_line(self.script("plot_states.py", self.store, "--out", self.out),
+                                 f"states not drawn: point {self.hash}: frames = 0: must be 1 or more\n")
+
+    def test_of_blame(self):
+        self.change("UPDATE blame SET cycles = 'x'")
+        process = self.script("plot_stalls.py", self.store, "--out", self.out)
+        self.refused_in_one_line(process)
+        self.assertRegex(process.stderr, r"stalls not drawn: blame of point [0-9a-f]{64}: \w+, bank\d, \w+: cycles = x: must be a "
+                                         r"number from -1e\+100 to 1e\+100\n$")
+
+    def test_of_text_that_is_none(self):
+        self.change("UPDATE points SET \"fpga.device\" = CAST(x'ff' AS TEXT) WHERE hash = ?", self.hash)
+        process = run("plot", self.store, "--out", self.out, "--only", "fpga.device=xc2v6000")
+        self.refused_in_one_line(process, f"{self.store}: Could not decode to UTF-8")
+
+    def test_is_left_out_where_a_point_need_not_have_it(self):
+        self.change('UPDATE points SET "frames_per_second.core" = NULL WHERE hash = ?', self.hash)
+        said = self.succeeds(run("plot", self.store, "--out", self.out))
+        self.assertIn("\npareto       47 points", said)
+        self.assertIn(f"\nbanks        not drawn: point {self.hash}: frames_per_second.core = absent: {reader.NUMBER}\n", said)
+        self.assertIn("fpl2003, source preloaded: 47 of 48 points of points.db; not shown: 1 without these figures.",
+                      self.texts(self.out / "pareto.svg"))
+
+
+class Names(PlotTest):
+    def test_of_digits_that_are_no_decimals(self):
+        store = self.sweep(SMALL_BOARD + 'vary: {matcher.window: [3, 5], name: ["\N{SUPERSCRIPT TWO}", "b", '
+                           '"\N{ARABIC-INDIC DIGIT TWO}"]}\n')
+        process = run("plot", store, "--out", self.out)
+        self.assertIn("window       6 points, 3 lines\n", self.succeeds(process))
+        self.assertEqual(process.stderr, "")
+
+    def test_that_the_font_lacks_are_told_once(self):
+        store = self.sweep(SMALL_BOARD + 'vary: {matcher.window: [3, 5], name: ["\u65e5\u672c board", "b"]}\n')
+        process = run("plot", store, "--out", self.out)
+        self.assertIn("window       4 points, 2 lines\n", self.succeeds(process))
+        self.assertEqual(process.stderr, "stereotlm: note: the font of the figures lacks '\u65e5\u672c': boxes in PNG; SVG and "
+                                         "CSV have the text\n")
+        self.assertIn("(b, \u65e5\u672c board)", " ".join(self.texts(self.out / "window.svg")))
+
+
 class Replaced(PlotTest):
     """The files of an earlier result."""
 
@@ -406,6 +532,28 @@ class Replaced(PlotTest):
             (self.out / ".partial" / name / "window.png").write_bytes(b"")
         self.succeeds(self.script("plot_window.py", store, "--out", self.out))
         self.assertEqual(sorted(os.listdir(self.out)), sorted("window" + ending for ending in ENDINGS))
+
+
+class Studies(PlotTest):
+    def test_of_fetch_takes_for_fitting_what_plot_does(self):
+        """Neither too many slices, block RAMs nor multipliers."""
+        results = pathlib.Path(__file__).resolve().parents[3] / "results"
+        (self.folder / "results" / "fetch").mkdir(parents=True)
+        (self.folder / "sw").symlink_to(results.parent / "sw")
+        for script in ("study.py", "fetch/report.py"):
+            shutil.copy(results / script, self.folder / "results" / script)
+        core = self.folder / "core.db"
+        header = ["name", "run.source", "matcher.window", "matcher.disparities", "matcher.fetch", "frames_per_second.core",
+                  "area.slices_percent", "area.block_rams", "area.block_rams_percent", "area.multipliers_percent"]
+        make_database(core, header, [
+            ("made", "preloaded", 7, disparities, fetch, 18, *area) for fetch in ("column", "line_buffer")
+            for disparities, area in ((80, (50, 9, 10, 0)), (120, (70, 9, 100, 100)), (160, (80, 9, 101, 0)),
+                                      (200, (90, 9, 50, 101)), (240, (101, 9, 50, 0)))])
+        computer = self.sweep("board: fpl2003\nrun: {source: camera, frames: 3}\nvary: {matcher.fetch: [column, line_buffer]}\n")
+        report = [PYTHON, "-B", str(self.folder / "results" / "fetch" / "report.py"), str(core), str(computer)]
+        self.succeeds(subprocess.run(report, capture_output=True, text=True, timeout=120, check=False))
+        self.assertIn("| 7x7 | 18.00 | 18.00 | 1.0 | 50.0 | 50.0 | 9 | 9 | 120 | 120 |\n",
+                      (self.folder / "results" / "fetch" / "README.md").read_text())
 
 
 class Refusals(PlotTest):
@@ -438,7 +586,8 @@ class Refusals(PlotTest):
              "--only = frames_per_second.core=3: unknown key frames_per_second.core",
              "--pareto = frames_per_sec.core:max,matcher.fetch:min: unknown column frames_per_sec.core; nearest: "
              "frames_per_second.core",
-             "--pareto = frames_per_sec.core:max,matcher.fetch:min: column matcher.fetch is no number: column"])
+             f"--pareto = frames_per_sec.core:max,matcher.fetch:min: point {0:064}: matcher.fetch = column: "
+             + reader.NUMBER])
         self.assertEqual(
             self.refused_at(self.store, "--out", self.out, "--only", "matcher.window=3", "--only",
                             "matcher.fetch=line_buffer"),
