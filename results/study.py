@@ -1,11 +1,16 @@
 """What the studies share: the points of a sweep's database, tables, and figures whose bytes depend on the data alone."""
 import csv
+import pathlib
 import sqlite3
+import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "sw" / "report" / "plots"))
+from points import Points  # noqa: E402
 
 
 def points(database, **columns):
@@ -19,6 +24,12 @@ def points(database, **columns):
         return [dict(zip(columns, row)) for row in connection.execute(f"SELECT {names} FROM points ORDER BY hash")]
     finally:
         connection.close()
+
+
+def fitting(database):
+    """The hashes of the points that fit into their FPGA, by the rule of the program's figures."""
+    found = Points(database)
+    return set(found.hashes) - {found.hashes[place] for place in found.too_large()}
 
 
 def only(found, **values):

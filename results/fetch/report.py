@@ -24,7 +24,7 @@ def core_table(found):
 
 def most(found, window, fetch):
     fits = [point["disparities"] for point in found
-            if point["window"] == window and point["fetch"] == fetch and point["slices"] <= 100]
+            if point["window"] == window and point["fetch"] == fetch and point["fits"]]
     return max(fits, default="none")
 
 
@@ -82,8 +82,12 @@ of *rectified* pictures are kept, and the memories are still read pixel by pixel
 
 
 def main():
-    core = study.points(sys.argv[1], window="matcher.window", disparities="matcher.disparities", fetch="matcher.fetch",
-                        rate="frames_per_second.core", slices="area.slices_percent", block_rams="area.block_rams")
+    core = study.points(sys.argv[1], hash="hash", window="matcher.window", disparities="matcher.disparities",
+                        fetch="matcher.fetch", rate="frames_per_second.core", slices="area.slices_percent",
+                        block_rams="area.block_rams")
+    fitting = study.fitting(sys.argv[1])
+    for point in core:
+        point["fits"] = point["hash"] in fitting
     computer = study.points(sys.argv[2], fetch="matcher.fetch", window="matcher.window", rate_hz="cameras.frame_rate_hz",
                             core="frames_per_second.core", steady="frames_per_second.steady", bound="bound.system",
                             limited_by="bound.system_limited_by", p50_ms="latency_ms.capture_to_host.p50",

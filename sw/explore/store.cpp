@@ -16,7 +16,7 @@ namespace stereotlm::explore {
 namespace {
 
 constexpr int kApplicationId = 0x53544C4D;  // "STLM"
-constexpr int kLayout = 1;
+constexpr int kLayout = 2;
 
 // The columns that every database has, in front.
 constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
@@ -33,6 +33,7 @@ void create_tables(Database& database, const std::vector<std::string>& further_c
   database.execute(
       "CREATE TABLE blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
       "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID");
+  database.execute("CREATE TABLE keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID");
 }
 
 void check_layout(Database& database) {
@@ -71,11 +72,31 @@ bool finds(Statement& find, const std::string& hash) {
   return found;
 }
 
-std::vector<std::string> columns_of(const Database& database) {
+// The first column of what a query gives.
+std::vector<std::string> names_of(const Database& database, const std::string& sql) {
   std::vector<std::string> names;
-  Statement statement(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
+  Statement statement(database, sql);
   while (statement.step()) names.push_back(statement.text(0));
   return names;
+}
+
+std::vector<std::string> columns_of(const Database& database) {
+  return names_of(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
+}
+
+void insert_key(const Database& database, const std::string& name) {
+  Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
+  insert.bind(1, name);
+  insert.run();
+}
+
+// What a point has in further columns, in the order of insertion().
+std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
+  std::vector<const platform::BoardValue*> values;
+  for (const auto* part : {&point.keys, &point.figures}) {
+    for (const platform::BoardValue& value : *part) values.push_back(&value);
+  }
+  return values;
 }
 
 std::string insert_sql(const std::vector<std::string>& columns) {
@@ -132,7 +153,7 @@ bool Store::add(const StoredPoint& point) {
     int place = 0;
     for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
       insert.bind(++place, text);
-    for (const platform::BoardValue& value : point.values) insert.bind(++place, value);
+    for (const platform::BoardValue* value : further_values(point)) insert.bind(++place, *value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
     for (const StoredBlame& row : point.blame) {
@@ -154,22 +175,28 @@ bool Store::add(const StoredPoint& point) {
 
 void Store::add_columns(const StoredPoint& point) {
   const auto is_known = [this](const platform::BoardValue& value) { return columns_.count(value.path) > 0; };
-  if (std::all_of(point.values.begin(), point.values.end(), is_known)) return;
+  const auto are_known = [&](const std::vector<platform::BoardValue>& values) {
+    return std::all_of(values.begin(), values.end(), is_known);
+  };
+  if (are_known(point.keys) && are_known(point.figures)) return;
   read_columns();  // another process may have added them
-  for (const platform::BoardValue& value : point.values) {
-    if (is_known(value)) continue;
-    database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
-    columns_.insert(value.path);
+  for (const auto* values : {&point.keys, &point.figures}) {
+    for (const platform::BoardValue& value : *values) {
+      if (is_known(value)) continue;
+      database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
+      if (values == &point.keys) insert_key(database_, value.path);
+      columns_.insert(value.path);
+    }
   }
 }
 
 Statement& Store::insertion(const StoredPoint& point) {
   std::string signature;
-  for (const platform::BoardValue& value : point.values) signature += value.path + '\n';
+  for (const platform::BoardValue* value : further_values(point)) signature += value->path + '\n';
   std::unique_ptr<Statement>& statement = insertions_[signature];
   if (!statement) {
     std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
-    for (const platform::BoardValue& value : point.values) columns.push_back(value.path);
+    for (const platform::BoardValue* value : further_values(point)) columns.push_back(value->path);
     statement = std::make_unique<Statement>(database_, insert_sql(columns));
   }
   statement->clear_bindings();
@@ -222,6 +249,7 @@ class Reader {
   explicit Reader(const std::string& path) : database_(path, Database::Access::kRead) {
     check_layout(database_);
     columns_ = columns_of(database_);
+    keys_ = names_of(database_, "SELECT name FROM keys");
     points_.emplace(database_, "SELECT * FROM points ORDER BY hash");
     blame_.emplace(database_, fmt::format("SELECT {} FROM blame WHERE hash = ? ORDER BY hash, port, bank, by",
                                           kBlameColumns));
@@ -230,6 +258,7 @@ class Reader {
 
   const std::string& path() const { return database_.path(); }
   const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<std::string>& keys() const { return keys_; }  // those of the columns that are
   bool at_end() const { return !has_point_; }
   const std::string& hash() const { return hash_; }
   void next() {
@@ -246,6 +275,7 @@ class Reader {
  private:
   Database database_;
   std::vector<std::string> columns_;
+  std::vector<std::string> keys_;
   std::optional<Statement> points_;
   std::optional<Statement> blame_;
   bool has_point_ = false;
@@ -277,6 +307,12 @@ std::vector<std::string> all_columns(const std::vector<std::unique_ptr<Reader>>&
   std::vector<std::string> columns(names.begin(), names.end());
   std::sort(columns.begin(), columns.end(), is_before);
   return columns;
+}
+
+void copy_keys(const std::vector<std::unique_ptr<Reader>>& readers, Database& out) {
+  std::set<std::string> keys;
+  for (const auto& reader : readers) keys.insert(reader->keys().begin(), reader->keys().end());
+  for (const std::string& key : keys) insert_key(out, key);
 }
 
 // Copies all points, each once.
@@ -343,6 +379,7 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
     std::vector<std::string> columns = all_columns(readers);
     create_tables(database, columns);
     columns.insert(columns.begin(), kFirstColumns.begin(), kFirstColumns.end());
+    copy_keys(readers, database);
     copy_points(readers, database, columns);
     database.execute("COMMIT");
   } catch (...) {

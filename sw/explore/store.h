@@ -28,13 +28,15 @@ struct StoredPoint {
   std::string status;  // "ok"; "impossible": no such board; "failed": the run has ended with an error
   std::string reason;  // unless it is ok
   std::string config;  // the board in full
-  std::vector<platform::BoardValue> values;  // a column each: keys of the board and the run, then figures
+  std::vector<platform::BoardValue> keys;     // of the board and the run: a column each
+  std::vector<platform::BoardValue> figures;  // a column each, with other paths than the keys
   std::vector<StoredBlame> blame;
 };
 
 // Results of points in an SQLite file: table `points` with a row and table `blame` with further rows for
-// each. A point is there whole or not at all, whatever ends the process. Several processes may add points at
-// the same time. Member functions throw DatabaseError. Not to be used across fork().
+// each; table `keys` names the columns of `points` that are keys of a board or a run. A point is there whole
+// or not at all, whatever ends the process. Several processes may add points at the same time. Member
+// functions throw DatabaseError. Not to be used across fork().
 class Store {
  public:
   // Opens the file, or makes it. All its points are of one version of the program.

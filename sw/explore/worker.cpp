@@ -65,10 +65,9 @@ struct Report {
 void take_figures(Figures figures, StoredPoint& row) {
   for (platform::BoardValue& figure : figures.values) {
     const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
-    if (std::any_of(row.values.begin(), row.values.end(), is_key)) figure.path += ".counted";
+    if (std::any_of(row.keys.begin(), row.keys.end(), is_key)) figure.path += ".counted";
   }
-  row.values.insert(row.values.end(), std::make_move_iterator(figures.values.begin()),
-                    std::make_move_iterator(figures.values.end()));
+  row.figures = std::move(figures.values);
   row.blame = std::move(figures.blame);
 }
 
@@ -76,7 +75,7 @@ StoredPoint row_of(const Point& point) {
   StoredPoint row;
   row.hash = point.hash;
   row.config = point.yaml;
-  row.values = point.values;
+  row.keys = point.values;
   return row;
 }
 

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <optional>
+#include <variant>
 
+#include "platform/board_yaml.h"
 #include "sw/paper/document.h"
 
 namespace stereotlm::paper {
 namespace {
 
 std::string cell(double value) { return fmt::format("{}", value); }
+std::string cell(std::int64_t value) { return fmt::format("{}", value); }
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : ""; }
 std::string cell(const std::optional<std::uint64_t>& value) { return value ? fmt::format("{}", *value) : ""; }
 std::string cell(const std::string& text) {
@@ -30,6 +35,29 @@ std::string command_text(const Claim& claim, const Case& one) {
   return text;
 }
 
+// What a table says of the boards that it is about: a column for each of these keys.
+constexpr std::array kBoardKeys = {"image.width",         "image.height",   "matcher.window",
+                                   "matcher.disparities", "matcher.filter", "fpga.clock_mhz",
+                                   "fpga.device"};
+
+std::string board_header() {
+  std::string text;
+  for (const char* const key : kBoardKeys) text += std::string(",") + key;
+  return text + '\n';
+}
+
+// Of the board of a run, as the end of a row.
+std::string with_board(std::string row, const BoardRun& run) {
+  row.pop_back();  // its end of the line
+  const auto values = platform::values_of(platform::load_board(run.preset, run.sets));
+  for (const char* const key : kBoardKeys) {
+    const auto is_it = [key](const platform::BoardValue& value) { return value.path == key; };
+    const auto found = std::find_if(values.begin(), values.end(), is_it);
+    row += ',' + std::visit([](const auto& value) { return cell(value); }, found->value);
+  }
+  return row + '\n';
+}
+
 // The number that a case is named by: "7x7", "80 disparities".
 std::string leading_number(const std::string& name) {
   return name.substr(0, name.find_first_not_of("0123456789"));
@@ -38,17 +66,21 @@ std::string leading_number(const std::string& name) {
 std::string table1(const Findings& findings) {
   const ClaimFinding& found = findings.of("table1");
   std::string text =
-      "window,paper_frames_per_second,model_frames_per_second,bound_frames_per_second,limited_by,"
-      "deviation_percent,rule,verdict,clock_mhz_least,clock_mhz_most,model_log7_frames_per_second,command\n";
+      "window,paper_frames_per_second,paper_half_digit,model_frames_per_second,bound_frames_per_second,"
+      "limited_by,deviation_percent,rule,tolerance_percent,verdict,clock_mhz_least,clock_mhz_most,"
+      "model_log7_frames_per_second,command" +
+      board_header();
   for (std::size_t i = 0; i < found.cases.size(); ++i) {
     const Case& one = found.claim.cases[i];
     const CaseFinding& finding = found.cases[i];
     const Measured& run = finding.runs.front();
     const auto clock = clock_for(found.claim, one, finding);
-    text +=
-        row(leading_number(one.name), one.printed, finding.modelled, run.bound, run.limited_by,
-            deviation_percent(found.claim, one, finding), text_of(found.claim.rule), text_of(finding.verdict),
-            clock->least_mhz, clock->most_mhz, finding.runs.at(1).rate, command_text(found.claim, one));
+    text += with_board(
+        row(leading_number(one.name), one.printed, found.claim.half_digit, finding.modelled, run.bound,
+            run.limited_by, deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
+            found.claim.rule.tolerance, text_of(finding.verdict), clock->least_mhz, clock->most_mhz,
+            finding.runs.at(1).rate, command_text(found.claim, one)),
+        one.runs.front());
   }
   return text;
 }
@@ -58,20 +90,22 @@ std::string table2(const Findings& findings) {
   const ClaimFinding& rate = findings.of("table2_rate");
   std::string text =
       "disparities,paper_slices_percent,paper_slices_percent_least,paper_slices_percent_most,"
-      "model_slices_percent,error_points,size_rule,size_verdict,paper_frames_per_second,"
-      "model_frames_per_second,bound_frames_per_second,limited_by,deviation_percent,rate_rule,rate_verdict,"
-      "size_command,rate_command\n";
+      "model_slices_percent,error_points,size_rule,size_tolerance_points,size_verdict,"
+      "paper_frames_per_second,model_frames_per_second,bound_frames_per_second,limited_by,"
+      "deviation_percent,rate_rule,rate_verdict,size_command,rate_command" +
+      board_header();
   for (std::size_t i = 0; i < size.cases.size(); ++i) {
     const Case& area = size.claim.cases[i];
     const Case& speed = rate.claim.cases[i];
     const Measured& run = rate.cases[i].runs.front();
-    text +=
+    text += with_board(
         row(leading_number(area.name), area.printed, area.printed - size.claim.half_digit,
             area.printed + size.claim.half_digit, size.cases[i].modelled,
-            size.cases[i].modelled - area.printed, text_of(size.claim.rule), text_of(size.cases[i].verdict),
-            speed.printed, rate.cases[i].modelled, run.bound, run.limited_by,
+            size.cases[i].modelled - area.printed, text_of(size.claim.rule), size.claim.rule.tolerance,
+            text_of(size.cases[i].verdict), speed.printed, rate.cases[i].modelled, run.bound, run.limited_by,
             deviation_percent(rate.claim, speed, rate.cases[i]), text_of(rate.claim.rule),
-            text_of(rate.cases[i].verdict), command_text(size.claim, area), command_text(rate.claim, speed));
+            text_of(rate.cases[i].verdict), command_text(size.claim, area), command_text(rate.claim, speed)),
+        area.runs.front());
   }
   return text;
 }
@@ -79,19 +113,21 @@ std::string table2(const Findings& findings) {
 std::string banks(const Findings& findings) {
   std::string text =
       "claim,banks,allocations,frames_per_second,delivered_frames_per_second,bound_frames_per_second,"
-      "limited_by,reached_by,allocation,command\n";
+      "limited_by,reached_by,allocation,command" +
+      board_header();
   for (const BankRow& one : findings.banks) {
-    text +=
+    text += with_board(
         row(one.of, fmt::format("{}", one.banks), one.allocations, one.measured.rate, one.measured.delivered,
-            one.measured.bound, one.measured.limited_by, one.reached_by, one.allocation, one.command);
+            one.measured.bound, one.measured.limited_by, one.reached_by, one.allocation, one.command),
+        findings.of(one.of).claim.cases.front().runs.front());
   }
   return text;
 }
 
 std::string all_claims(const Findings& findings) {
   std::string text =
-      "claim,place,says,case,unit,paper,model,bound,limited_by,deviation_percent,rule,verdict,"
-      "clock_mhz_least,clock_mhz_most,claim_verdict,command\n";
+      "claim,place,says,case,unit,paper,half_digit,model,bound,limited_by,deviation_percent,rule,tolerance,"
+      "verdict,clock_mhz_least,clock_mhz_most,claim_verdict,command\n";
   for (const ClaimFinding& found : findings.claims) {
     for (std::size_t i = 0; i < found.cases.size(); ++i) {
       const Case& one = found.claim.cases[i];
@@ -102,12 +138,12 @@ std::string all_claims(const Findings& findings) {
         return clock ? std::optional<double>((*clock).*mhz) : std::nullopt;
       };
       text += row(found.claim.name, found.claim.place, found.claim.says, one.name,
-                  unit_of(found.claim.quantity), one.printed, finding.modelled,
+                  unit_of(found.claim.quantity), one.printed, found.claim.half_digit, finding.modelled,
                   is_rate ? std::optional<double>(finding.runs.front().bound) : std::nullopt,
                   is_rate ? finding.runs.front().limited_by : std::string(),
                   deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
-                  text_of(finding.verdict), of_clock(&ClockRange::least_mhz), of_clock(&ClockRange::most_mhz),
-                  text_of(found.verdict), command_text(found.claim, one));
+                  found.claim.rule.tolerance, text_of(finding.verdict), of_clock(&ClockRange::least_mhz),
+                  of_clock(&ClockRange::most_mhz), text_of(found.verdict), command_text(found.claim, one));
     }
   }
   return text;

@@ -14,7 +14,8 @@ class Rows:
     """The points of a figure, from its top, with their names. Of many: those that stall most, or some of all rates."""
 
     def __init__(self, points, most_stalled=False):
-        stalls = [cycles / frames for cycles, frames in zip(points.stall_cycles(), points.column("frames"))]
+        stalls = [cycles / frames for cycles, frames in zip(points.stall_cycles(), points.frames())]
+        points.need_numbers(["frames_per_second.core"])
         rates = points.column("frames_per_second.core")
         chosen = sorted(range(len(rates)), key=lambda place: (rates[place], points.hashes[place]))
         self.note = ""
@@ -65,6 +66,7 @@ class Rows:
 
 def used_ports(points, places):
     """Ports that do something in one of these points."""
+    points.need_numbers([f"ports.{port}.{count}" for port in PORTS for count in ("grants", "stall_cycles")])
     return [port for port in PORTS
             if any(points.column(f"ports.{port}.{count}")[place]
                    for place in places for count in ("grants", "stall_cycles"))]

@@ -4,13 +4,14 @@ Exit status: 0 done; 2 refused before anything was drawn; 1 failed after that; 1
 """
 
 import argparse
+import contextlib
 import os
 import shutil
 import signal
 import stat
 import sys
 
-from points import Points, Unusable
+from points import MOST_NAMED, Points, Unusable
 
 # plot_all.py speaks as the program does.
 NAME = "stereotlm" if os.path.basename(sys.argv[0]) == "plot_all.py" else os.path.basename(sys.argv[0])
@@ -45,7 +46,8 @@ except ImportError as error:
 
 FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]
 ENDINGS = [".png", ".svg", ".csv"]
-ASIDE = ".partial"
+ASIDE = ".partial"  # in it NEW, and while they are replaced EARLIER
+NEW, EARLIER = "new", "earlier"
 RULE = "must be empty or hold only files that plot writes"
 
 
@@ -61,6 +63,7 @@ class Folder:
     def __init__(self, path):
         self.path = path
         self.aside = os.path.join(path, ASIDE)
+        self.new, self.earlier = (os.path.join(self.aside, name) for name in (NEW, EARLIER))
         self.created = []
 
     def problem(self):
@@ -72,13 +75,23 @@ class Folder:
                 return "not a folder"
             foreign = foreign_entry(self.path, ignored=ASIDE)
             if not foreign and os.path.lexists(self.aside):
-                foreign = ASIDE
-                if os.path.isdir(self.aside) and not os.path.islink(self.aside):
-                    inside = foreign_entry(self.aside)
-                    foreign = inside and f"{ASIDE}/{inside}"
+                foreign = self._foreign_aside()
         except OSError as error:
             return f"cannot be read: {error.strerror}"
         return f"holds '{foreign}': {RULE}" if foreign else ""
+
+    def _foreign_aside(self):
+        """The first entry of its own folder that no killed process has left there."""
+        if not is_folder(self.aside):
+            return ASIDE
+        for name in sorted(os.listdir(self.aside)):
+            path = os.path.join(self.aside, name)
+            if name not in (NEW, EARLIER) or not is_folder(path):
+                return f"{ASIDE}/{name}"
+            inside = foreign_entry(path)
+            if inside:
+                return f"{ASIDE}/{name}/{inside}"
+        return None
 
     def start(self):
         """Creates what is missing and proves that it can be written to: OSError."""
@@ -93,18 +106,28 @@ class Folder:
         if os.path.isdir(self.aside):
             shutil.rmtree(self.aside)
         os.mkdir(self.aside)
+        os.mkdir(self.new)
 
     def commit(self, files, replaced):
-        """files: {name: bytes}; replaced: names of earlier files that go."""
+        """files: {name: bytes}; replaced: names of earlier files that go. OSError: all is as it was."""
         for name, data in files.items():
-            with open(os.path.join(self.aside, name), "wb") as file:
+            with open(os.path.join(self.new, name), "wb") as file:
                 file.write(data)
-        for name in files:
-            os.replace(os.path.join(self.aside, name), os.path.join(self.path, name))
-        for name in set(replaced) - set(files):
-            if os.path.lexists(os.path.join(self.path, name)):
-                os.remove(os.path.join(self.path, name))
-        os.rmdir(self.aside)
+        moved = []
+        try:
+            os.mkdir(self.earlier)
+            for name in replaced:
+                if is_file(os.path.join(self.path, name)):
+                    move(name, self.path, self.earlier, moved)
+            for name in files:
+                move(name, self.new, self.path, moved)
+        except OSError as error:
+            for source, target in reversed(moved):
+                with contextlib.suppress(OSError):
+                    os.rename(target, source)
+            raise OSError(f"--out {self.path}: the figures cannot be moved into place: {error.strerror}: "
+                          f"'{error.filename2 or error.filename}'") from None
+        shutil.rmtree(self.aside, ignore_errors=True)
         self.created = []
 
     def discard(self):
@@ -117,12 +140,27 @@ class Folder:
                 pass
 
 
+def is_file(path):
+    """A symbolic link is neither a file nor a folder."""
+    return os.path.lexists(path) and stat.S_ISREG(os.lstat(path).st_mode)
+
+
+def is_folder(path):
+    return os.path.isdir(path) and not os.path.islink(path)
+
+
+def move(name, source, target, moved):
+    """moved: gets the paths, to undo it."""
+    paths = [os.path.join(folder, name) for folder in (source, target)]
+    os.rename(*paths)
+    moved.append(paths)
+
+
 def foreign_entry(folder, ignored=None):
     """The first entry that plot does not write."""
     for name in sorted(os.listdir(folder)):
         figure, ending = os.path.splitext(name)
-        is_file = stat.S_ISREG(os.lstat(os.path.join(folder, name)).st_mode)
-        if name != ignored and not (figure in FIGURES and ending in ENDINGS and is_file):
+        if name != ignored and not (figure in FIGURES and ending in ENDINGS and is_file(os.path.join(folder, name))):
             return name
     return None
 
@@ -177,9 +215,10 @@ def start(folder):
 
 
 def draw_all(points, options, figures):
-    """The files of all figures that apply, and a line about each."""
+    """The files of all figures that apply, a line about each, and what their font has no characters for."""
     files = {}
     said = []
+    boxed = set()
     for name, draw in figures.items():
         try:
             drawing = draw(points, options)
@@ -188,16 +227,18 @@ def draw_all(points, options, figures):
             continue
         files.update({name + ending: data for ending, data in drawing.files.items()})
         said.append(f"{name:<12} {drawing.said}")
-    return files, said
+        boxed |= drawing.boxed
+    return files, said, boxed
 
 
 def run(description, figures, arguments, check):
     options = parse(arguments, description, check is not None)
     points, folder = prepare(options, check or (lambda points, options: []))
+    lines = about_points(points)
     on_interrupt(folder.discard)
     try:
         start(folder)
-        files, said = draw_all(points, options, figures)
+        files, said, boxed = draw_all(points, options, figures)
         if not files:
             raise Refused([" ".join(line.split()) for line in said])
         on_interrupt(None)  # all or nothing
@@ -205,12 +246,19 @@ def run(description, figures, arguments, check):
     except BaseException:
         folder.discard()
         raise
-    head = f"{options.database}: {len(points.hashes)} of {points.total} points"
-    lines = [head + (f"; left out: {points.left_out_text()}" if points.left_out_text() else "")]
-    lines += [f"  {count} {status}: {reason}" for status, reason, count in points.why_left_out()]
+    if boxed:
+        texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each) for each in sorted(boxed)[:MOST_NAMED])
+        tell("note", f"the font of the figures lacks {texts}: boxes in PNG; SVG and CSV have the text")
     lines += said
     lines.append(f"{options.out}: {len(files)} files: a picture, a drawing and the data of each figure that is drawn")
     say(lines)
+
+
+def about_points(points):
+    left_out = points.left_out_text()
+    head = f"{points.path}: {len(points.hashes)} of {points.total} points"
+    return [head + (f"; left out: {left_out}" if left_out else ""),
+            *(f"  {count} {status}: {reason}" for status, reason, count in points.why_left_out())]
 
 
 def say(lines):
@@ -231,7 +279,7 @@ def main(description, figures, check=None):
     try:
         run(description, figures, sys.argv[1:], check)
         return
-    except Refused as refused:
+    except (Refused, Unusable) as refused:
         for line in refused.lines:
             tell("error", line)
         sys.exit(2)

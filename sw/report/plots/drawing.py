@@ -2,13 +2,17 @@
 
 import csv
 import io
+import re
 import textwrap
+import warnings
 
 import matplotlib
+from matplotlib import font_manager
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
 WIDTH = 7.2  # inches
@@ -19,13 +23,18 @@ NOTE_CHARACTERS = 132
 CHARACTER, HANDLE = 0.071, 0.6  # inches: of the legend
 INK = "#222222"
 QUIET = "#666666"
-TOO_LARGE = "#000000"
+# Marks of points that cannot be built, or whose results are not whole.
+MARK = {"color": "#000000", "linestyle": "", "zorder": 3.5}
+TOO_LARGE = {**MARK, "marker": "x", "markersize": 4.5, "label": "more area than the FPGA has"}
+LOSES_PIXELS = {**MARK, "marker": "+", "markersize": 6.5, "label": "loses pixels"}
+
+FONT = "DejaVu Sans"
 
 # A bound is wide and pale behind what is measured, so that it is seen where both are equal.
 BOUND_WIDTH = 5.5
 
 SETTINGS = {
-    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 9, "axes.labelsize": 9.5,
+    "font.family": "sans-serif", "font.sans-serif": [FONT], "font.size": 9, "axes.labelsize": 9.5,
     "xtick.labelsize": 9, "ytick.labelsize": 9, "legend.fontsize": 8.5,
     "axes.edgecolor": QUIET, "axes.labelcolor": INK, "text.color": INK, "xtick.color": INK, "ytick.color": INK,
     "axes.linewidth": 0.8, "axes.spines.top": False, "axes.spines.right": False,
@@ -75,9 +84,10 @@ class Drawing:
     """A figure that is drawn: its pictures, its table and what to say about it."""
 
     def __init__(self, sheet, header, rows, said):
-        """header, rows: of the table; said: how many points it shows."""
+        """header, rows: of the table; said: how many points it shows. boxed: see Sheet.boxed()."""
         self.files = {".png": sheet.png(), ".svg": sheet.svg(), ".csv": table(header, rows)}
         self.said = said
+        self.boxed = sheet.boxed()
 
 
 def table(header, rows):
@@ -179,8 +189,18 @@ class Sheet:
 
     def _bytes(self, kind, metadata):
         out = io.BytesIO()
-        self.figure.savefig(out, format=kind, dpi=DPI, metadata=metadata)
+        with warnings.catch_warnings():
+            for message in (r"Glyph \d+ ", "Matplotlib currently does not support"):  # see boxed()
+                warnings.filterwarnings("ignore", message)
+            self.figure.savefig(out, format=kind, dpi=DPI, metadata=metadata)
         return out.getvalue()
+
+    def boxed(self):
+        """Parts of its texts that the font has no characters for: a PNG has boxes there."""
+        known = font_manager.get_font(font_manager.findfont(FONT)).get_charmap()
+        texts = {text.get_text() for text in self.figure.findobj(Text)}
+        unknown = re.escape("".join({each for text in texts for each in text if ord(each) not in known} - {"\n"}))
+        return {part for text in texts for part in re.findall(f"[{unknown}]+", text)} if unknown else set()
 
 
 def legend_columns(texts):
@@ -192,6 +212,10 @@ def legend_columns(texts):
 
 def line_handle(color, marker, dashes="-", **look):
     return Line2D([], [], color=color, marker=marker, linestyle=dashes, **look)
+
+
+def mark_handle(mark):
+    return (Line2D([], [], **mark), mark["label"])
 
 
 def ticks_at(axis, values):

@@ -1,8 +1,9 @@
 """Figures of frame rates as lines over one column."""
 
-from drawing import BOUND_WIDTH, Drawing, Sheet, bound_of, line_handle, pale, scale, ticks_at, title
+from drawing import (BOUND_WIDTH, LOSES_PIXELS, Drawing, Sheet, bound_of, line_handle, mark_handle, pale, scale, ticks_at,
+                     title)
 from families import GRAY, Families
-from points import counted, natural
+from points import LOST_PIXELS, counted, natural
 
 RATE_HEIGHT = 2.7
 MORE_HEIGHT = 2.1
@@ -11,40 +12,57 @@ MORE_HEIGHT = 2.1
 class Panel:
     """One column over x, its bound behind it, and `beside` it another measured one, thin and dotted.
 
-    limit: of the column, a line if it is near, with its meaning; listed: further columns for the table.
+    limit: of the column, a line if it is near, with its meaning; listed: further columns for the table; partial: some
+    points have no such figure.
     """
 
-    def __init__(self, column, height, beside=None, limit=None, listed=()):
+    def __init__(self, column, height, beside=None, limit=None, listed=(), partial=False):
         self.column, self.height, self.beside, self.limit, self.listed = column, height, beside, limit, listed
+        self.partial = partial
         self.bound = bound_of(column)
 
     def drawn(self):
         return [each for each in (self.column, self.bound, self.beside) if each]
+
+    def need_numbers(self, points, places):
+        values = points.column(self.column)
+        points.need_numbers(self.drawn(), [place for place in places if not self.partial or values[place] is not None])
 
 
 def rate_panels(points):
     """The core's frame rate, and that of the whole computer if the database has any."""
     panels = [Panel("frames_per_second.core", RATE_HEIGHT)]
     if any(value is not None for value in points.column("frames_per_second.steady")):
-        panels.append(Panel("frames_per_second.steady", RATE_HEIGHT, beside="frames_per_second.system"))
+        panels.append(Panel("frames_per_second.steady", RATE_HEIGHT, beside="frames_per_second.system",
+                            listed=LOST_PIXELS, partial=True))
     return panels
 
 
 def draw(points, x, x_keys, panels, best=False):
-    """x: a column; x_keys: the keys behind it; best: points of a family share x, and its line goes through the best."""
+    """x: a column; x_keys: the keys behind it; best: points of a family share x, and its line goes through the best.
+
+    Who loses pixels is not the best.
+    """
     xs = points.column(x)
-    places = [place for place, value in enumerate(xs) if value is not None]
+    places = points.places_with(x)
+    points.need_numbers([x], places)
+    for panel in panels:
+        panel.need_numbers(points, places)
+    losing = [place for place in points.losing_pixels() if xs[place] is not None]
     drawn = [each for panel in panels for each in panel.drawn()]
     families = Families(points, places, x, x_keys, drawn)
     sheet = Sheet()
     for group in families.legend:
         sheet.legend([(line_handle(look.color, look.marker, look.dashes), text) for text, look in group])
-    sheet.legend(handles(families, panels, best))
-    for text in (families.note, above_note(points, places, panels), points.size_note(places), points.note(len(places))):
+    sheet.legend([*handles(families, panels, best), *([mark_handle(LOSES_PIXELS)] if losing else [])])
+    for text in (families.note, points.pixels_note(places), above_note(points, places, panels), points.size_note(places),
+                 points.note(len(places))):
         sheet.note(text)
     for axes, panel in zip(sheet.rows([panel.height for panel in panels]), panels):
         for family in families.all:
-            FamilyDrawing(points, family, xs, panel, families.as_points, best).draw(axes)
+            FamilyDrawing(points, family, xs, panel, families.as_points, set(losing) if best else None).draw(axes)
+        if panel.bound:
+            mark(axes, [(xs[place], points.column(panel.column)[place]) for place in losing])
         values = [points.column(each)[place] for each in panel.drawn() for place in places]
         scale(axes, "y", title(panel.column), values)
         draw_limit(axes, panel, values)
@@ -84,10 +102,16 @@ def above_note(points, places, panels):
             values, bounds = points.column(panel.column), points.column(panel.bound)
             above = [place for place in places if values[place] is not None and values[place] > bounds[place]]
             if above:
-                frames = points.column("frames")
+                frames = points.frames()
                 return (f"{len(above)} steady rates are above their bounds, which hold for long runs: they are of "
                         f"{min(frames[place] for place in above)} frames, from the first delivered to the last.")
     return ""
+
+
+def mark(axes, points):
+    points = [point for point in points if None not in point]
+    if points:
+        axes.plot(*zip(*points), **LOSES_PIXELS)
 
 
 def draw_limit(axes, panel, values):
@@ -99,13 +123,13 @@ def draw_limit(axes, panel, values):
 
 
 class FamilyDrawing:
-    """One family in one panel."""
+    """One family in one panel. not_best: places through which the line of the best does not go; None: it is of all."""
 
-    def __init__(self, points, family, xs, panel, as_points, best):
+    def __init__(self, points, family, xs, panel, as_points, not_best):
         self.values = points.column(panel.column)
         self.bounds = points.column(panel.bound) if panel.bound else None
         self.beside = points.column(panel.beside) if panel.beside else None
-        self.xs, self.look, self.as_points, self.best = xs, family.look, as_points, best
+        self.xs, self.look, self.as_points, self.not_best = xs, family.look, as_points, not_best
         self.places = sorted((place for place in family.places if self.values[place] is not None),
                              key=lambda place: xs[place])
 
@@ -115,15 +139,15 @@ class FamilyDrawing:
             if self.bounds:
                 self._ticks(axes, self.places)
             return
-        if self.best:
+        if self.not_best is not None:
             self._dots(axes, 3)
         if self.bounds:
-            places = self._line_places(self.bounds)
+            places = self._line_places(self.bounds, self.places)
             self._plot(axes, places, self.bounds, color=pale(self.look.color), linewidth=BOUND_WIDTH,
                        solid_capstyle="butt", zorder=1.5)
             if len(places) == 1:
                 self._ticks(axes, places)
-        places = self._line_places(self.values)
+        places = self._line_places(self.values, [each for each in self.places if each not in (self.not_best or ())])
         if self.beside:
             self._plot(axes, places, self.beside, color=self.look.color, linewidth=0.8, linestyle=":",
                        marker=self.look.marker, markersize=3.5, markerfacecolor="white", zorder=2)
@@ -141,10 +165,10 @@ class FamilyDrawing:
         self._plot(axes, places, self.bounds, color=pale(self.look.color), marker="_", linestyle="", markersize=12,
                    markeredgewidth=4, zorder=1.5)
 
-    def _line_places(self, values):
-        """One place for each x: the only one, or the one with the greatest value."""
+    def _line_places(self, values, places):
+        """One of these places for each x: the only one, or the one with the greatest value."""
         greatest = {}
-        for place in self.places:
+        for place in places:
             x = self.xs[place]
             if x not in greatest or values[place] > values[greatest[x]]:
                 greatest[x] = place

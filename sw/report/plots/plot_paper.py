@@ -22,6 +22,18 @@ def numbers(rows, column):
     return [float(row[column]) for row in rows]
 
 
+def image_of(row):
+    return f"{row['image.width']}x{row['image.height']}"
+
+
+def window_of(row):
+    return "{0}x{0}".format(row["matcher.window"])
+
+
+def filter_of(row):
+    return "no filter" if row["matcher.filter"] == "none" else f"filter {row['matcher.filter']}"
+
+
 def paper_handle():
     return (line_handle(PAPER, "D", "", markersize=5, markerfacecolor="white", markeredgewidth=1.3), "printed in the paper")
 
@@ -43,11 +55,12 @@ def table1(folder):
     """Frames per second over the window, and the deviation below."""
     rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
     xs = [int(row["window"]) for row in rows]
-    tolerance = float(rows[0]["rule"].split()[1])
+    board, tolerance = rows[0], float(rows[0]["tolerance_percent"])
     sheet = Sheet()
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"), bound_handle()])
-    sheet.note("Table 1: 640x480, 80 disparities, no filter, 40 MHz. Below: model less paper, with the rule "
-               f"({rows[0]['rule']}) shaded; the bar is what rounding to the printed digit leaves open.")
+    sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, {filter_of(board)}, "
+               f"{board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule ({board['rule']}) shaded; the bar is "
+               "what rounding to the printed digit leaves open.")
     rates, deviations = sheet.rows([2.7, 1.5])
     bounds, values = numbers(rows, "bound_frames_per_second"), numbers(rows, "model_frames_per_second")
     printed = numbers(rows, "paper_frames_per_second")
@@ -59,7 +72,7 @@ def table1(folder):
     deviations.axhspan(-tolerance, tolerance, color="#EEEEEE", zorder=1)
     deviations.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     percents = numbers(rows, "deviation_percent")
-    halves = [5 / value for value in printed]  # half of the last printed digit, 0.05, in percent
+    halves = [100 * half / value for half, value in zip(numbers(rows, "paper_half_digit"), printed)]
     for x, percent, half, row in zip(xs, percents, halves, rows):
         color = MODEL if row["verdict"] == "confirmed" else PAPER
         deviations.errorbar(x, percent, yerr=half, color=color, marker="o", markersize=5, capsize=3, linewidth=1,
@@ -78,15 +91,15 @@ def table2(folder):
     """Slices over the disparities, printed with what rounding leaves open, and the error below."""
     rows = sorted(read(folder, "table2"), key=lambda row: int(row["disparities"]))
     xs = [int(row["disparities"]) for row in rows]
-    tolerance = float(rows[0]["size_rule"].split()[1])
+    board, tolerance = rows[0], float(rows[0]["size_tolerance_points"])
     printed, values = numbers(rows, "paper_slices_percent"), numbers(rows, "model_slices_percent")
     least, most = numbers(rows, "paper_slices_percent_least"), numbers(rows, "paper_slices_percent_most")
     below = [value - low for value, low in zip(printed, least)]
     above = [high - value for value, high in zip(printed, most)]
     sheet = Sheet()
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
-    sheet.note(f"Table 2: window 7x7, XC2V6000. Below: model less paper, with the rule ({rows[0]['size_rule']}) shaded; "
-               "the bars are what rounding to whole percents leaves open.")
+    sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less paper, with the rule "
+               f"({board['size_rule']}) shaded; the bars are what rounding to whole percents leaves open.")
     sizes, errors = sheet.rows([2.5, 1.5])
     model_line(sizes, xs, values)
     sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
@@ -109,11 +122,13 @@ def banks(folder):
     rows = read(folder, "banks")
     printed = {row["claim"]: float(row["paper"]) for row in read(folder, "claims")}
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]
+    board = rows[0]
     sheet = Sheet()
     sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"), bound_handle(),
                   (line_handle(SECOND, "^", ""), "the whole computer, one allocation each"),
                   (line_handle(PAPER, None, (0, (4, 2))), "banks that the paper says are needed")])
-    sheet.note("640x480, 7x7, 80 disparities, 40 MHz. Below each number of banks: how many allocations to so many fit; the "
+    sheet.note(f"{image_of(board)}, {window_of(board)}, {board['matcher.disparities']} disparities, "
+               f"{board['fpga.clock_mhz']} MHz. Below each number of banks: how many allocations to so many fit; the "
                "rate of each is known, and none is higher. Triangles need not be the best that there is.")
     panels = sheet.columns(2, 2.8, 0.75, bottom=0.72)
     for axes, claim, heading in zip(panels, ("banks", "banks_of_matching"),

@@ -4,9 +4,9 @@
 import re
 
 import command
-from drawing import TOO_LARGE, Drawing, Sheet, bound_of, line_handle, pale, scale, title
+from drawing import LOSES_PIXELS, TOO_LARGE, Drawing, Sheet, bound_of, line_handle, mark_handle, pale, scale, title
 from families import COLORS
-from points import Unusable, counted, short_names, text_of
+from points import LOST_PIXELS, Unusable, counted, short_names, text_of
 
 DEFAULT = "area.slices:min,frames_per_second.core:max"
 SENSES = {"min": "less is better", "max": "more is better"}
@@ -54,33 +54,36 @@ def draw(points, options):
     places = [place for place, pair in enumerate(zip(points.column(x), points.column(y))) if None not in pair]
     if not places:
         raise Unusable(f"no point has both {x} and {y}")
+    points.need_numbers([x, y], places)
     xs = [points.column(x)[place] for place in places]
     ys = [points.column(y)[place] for place in places]
     front = front_of(xs, ys, (x_sense, y_sense))
     corners = list(dict.fromkeys((xs[place], ys[place]) for place in front))
     bounds = {axis: points.column(bound_of(column)) for axis, column in (("x", x), ("y", y)) if bound_of(column)}
+    points.need_numbers(filter(None, (bound_of(x), bound_of(y))), [places[at] for at in front])
 
     sheet = Sheet()
     handles = [(line_handle(FRONT, "o"), "Pareto front"), (line_handle(OTHER, "o", ""), "other points")]
     if bounds:
         handles.append((line_handle(pale(FRONT), "_", "", markersize=12, markeredgewidth=4),
                         "bound of a point of the front"))
-    fitting = pairs_that_fit(points, x, y, places)
-    too_large = [pair for pair in dict.fromkeys(zip(xs, ys)) if pair not in fitting]
-    if too_large:
-        handles.append((line_handle(TOO_LARGE, "x", "", markersize=4.5), "more area than the FPGA has"))
+    marks = [(mark, pairs_with_only(marked, places, xs, ys))
+             for mark, marked in ((TOO_LARGE, points.too_large()), (LOSES_PIXELS, points.losing_pixels()))]
+    handles += [mark_handle(mark) for mark, pairs in marks if pairs]
     sheet.legend(handles)
     names = [name(points, [places[at] for at in front if (xs[at], ys[at]) == corner]) for corner in corners]
     for number, text in enumerate(names[:MOST_NAMED], 1):
         sheet.list_entry(number, text)
     if len(names) > MOST_NAMED:
         sheet.note(f"{len(names) - MOST_NAMED} more of the front are in the table.")
+    sheet.note(points.pixels_note(places))
     sheet.note(points.size_note(places))
     sheet.note(points.note(len(places)))
     (axes,) = sheet.rows([3.6])
     axes.plot(xs, ys, "o", color=OTHER, markersize=4, alpha=0.7, markeredgewidth=0, zorder=2)
-    axes.plot([pair[0] for pair in too_large], [pair[1] for pair in too_large], "x", color=TOO_LARGE, markersize=4.5,
-              zorder=3.5)
+    for mark, pairs in marks:
+        if pairs:
+            axes.plot(*zip(*pairs), **mark)
     draw_front(axes, corners, xs, ys, axes_of)
     for axis, column in bounds.items():
         for at in front:
@@ -93,17 +96,19 @@ def draw(points, options):
         scale(axes, which, title(column), [*(points.column(column)[place] for place in places), *limits], SENSES[sense])
 
     of_front = {place: number for number, place in enumerate(front)}
-    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *filter(None, (bound_of(x), bound_of(y)))]))
+    lost = [each for each in LOST_PIXELS if each in points.names]
+    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *filter(None, (bound_of(x), bound_of(y))), *lost]))
     order = sorted(range(len(places)), key=lambda at: (of_front.get(at, len(front)), points.hashes[places[at]]))
     rows = [[*(points.column(each)[places[at]] for each in columns), int(at in of_front)] for at in order]
     said = f"{counted(len(places), 'point')}, {len(front)} of them on the front"
     return Drawing(sheet, [*columns, "front"], rows, said)
 
 
-def pairs_that_fit(points, x, y, places):
-    """Where there is a point that fits into the FPGA."""
-    fitting = set(places) - set(points.too_large())
-    return {(points.column(x)[place], points.column(y)[place]) for place in fitting}
+def pairs_with_only(these, places, xs, ys):
+    """Where there are points, and no others than these."""
+    these, pairs = set(these), list(zip(xs, ys))
+    others = {pair for place, pair in zip(places, pairs) if place not in these}
+    return [pair for pair in dict.fromkeys(pairs) if pair not in others]
 
 
 def draw_front(axes, corners, xs, ys, axes_of):

@@ -22,8 +22,9 @@ def draw(points, _):
     sheet = Sheet()
     sheet.legend([(Patch(color=COLORS[by]), by if by == TURNAROUND else f"lost to {by}") for by in blamed])
     sheet.note(rows.note)
+    sheet.note(points.pixels_note(rows.places))
     sheet.note(points.note(len(rows.places), rows.left_out))
-    frames = points.column("frames")
+    frames = points.frames()
     for axes, port in zip(sheet.columns(len(stalled), rows.height, rows.left()), stalled):
         for place, center in zip(rows.places, rows.centers):
             at = 0

@@ -21,11 +21,13 @@ STATES = [
 def draw(points, _):
     rows = bars.Rows(points)
     ports = bars.used_ports(points, rows.places)
+    points.need_numbers([f"ports.{port}.{count}" for port in ports for count, _, _ in STATES])
     sheet = Sheet()
     sheet.legend([(Patch(color=color), name) for _, name, color in STATES])
     sheet.note(rows.note)
+    sheet.note(points.pixels_note(rows.places))
     sheet.note(points.note(len(rows.places), rows.left_out))
-    frames = points.column("frames")
+    frames = points.frames()
     for axes, port in zip(sheet.columns(len(ports), rows.height, rows.left()), ports):
         for place, center in zip(rows.places, rows.centers):
             at = 0

@@ -14,9 +14,12 @@ def draw(points, _):
     columns = sorted((name for name in points.names if name.startswith("banks.") and name.endswith(".utilization")),
                      key=natural)
     banks = [name.split(".")[1] for name in columns]
+    for name in columns:
+        points.need_numbers([name], points.places_with(name))
     sheet = Sheet()
     sheet.note(rows.note)
     sheet.note("Of the cycles in which the core works on a frame, those in which the bank serves an access.")
+    sheet.note(points.pixels_note(rows.places))
     sheet.note(points.note(len(rows.places), rows.left_out))
     (axes,) = sheet.columns(1, rows.height, rows.left(), top=0.1, bottom=0.5, right=0.3)
     percent = [[None if (use := points.column(name)[place]) is None else 100 * use for name in columns]

@@ -1,4 +1,5 @@
-"""Reads the database of stereotlm sweep: `points`, a column for each key and each figure of stats.json, and `blame`.
+"""Reads the database of stereotlm sweep: `points`, a column for each key and each figure of stats.json, `keys`, which
+names those that are keys, and `blame`.
 
 Anything that cannot be drawn is said with its reason: Unusable.
 """
@@ -10,14 +11,10 @@ import sqlite3
 import urllib.parse
 
 APPLICATION_ID = 0x53544C4D
-LAYOUT = 1
+LAYOUT = 2
 
 # What is neither a key of the board or the run nor a figure.
 ADMINISTRATION = {"hash", "status", "reason", "version", "config"}
-FIGURES = re.compile(
-    r"(board|fidelity|frames|cycles|frame_cycles)$|(area|banks|ports|bound|frames_per_second|latency_ms|accuracy)\."
-    r"|pci\.(clocks$|busy_clocks$|masters\.)|bridge\.(dma_words|local_clocks|local_busy_clocks)$"
-    r"|cameras\.(left|right)\.")
 
 MOST_NAMED = 12  # values in an error
 
@@ -26,6 +23,9 @@ BANKS_USED = "banks_used"
 
 PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
 TURNAROUND = "turnaround"
+LOST_PIXELS = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
+LARGEST = 1e100  # greater numbers overflow when their axis is laid out
+NUMBER = f"must be a number from {-LARGEST:g} to {LARGEST:g}"
 
 
 class Unusable(Exception):
@@ -36,26 +36,26 @@ class Unusable(Exception):
         self.lines = lines
 
 
-def is_key(column):
-    return column not in ADMINISTRATION and not FIGURES.match(column)
-
-
 def natural(value):
     """A key to sort values by: numbers by size and in front, texts with the numbers in them by size, none last."""
     if value is None:
         return (2, [])
     if isinstance(value, (int, float)):
         return (0, value)
-    parts = re.split(r"(\d+)", value)
-    return (1, [(int(part), "") if part.isdigit() else (-1, part) for part in parts])
+    parts = re.split(r"(\d+)", str(value))  # every other one is a number
+    return (1, [(int(part), "") if place % 2 else (-1, part) for place, part in enumerate(parts)])
 
 
 def text_of(value):
     if value is None:
         return "absent"
-    if isinstance(value, float) and value == int(value):
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e16:
         return str(int(value))
     return str(value)
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and abs(value) <= LARGEST
 
 
 def counted(number, what):
@@ -68,7 +68,7 @@ def quoted(name):
 
 def banks_of(allocated):
     """The names in the value of one allocation key: "[bank0, bank1]", "bank6" or "none"."""
-    names = re.findall(r"[^\[\], ]+", allocated or "")
+    names = re.findall(r"[^\[\], ]+", str(allocated or ""))
     return {name for name in names if name != "none"}
 
 
@@ -86,21 +86,21 @@ class Points:
     """The points of a database that have figures, in the order of their hashes; all of one state of the database.
 
     path: as given; total: rows of table points; left_out: {reason in words: rows}; names: of all columns;
-    hashes: of the points here; varied: the keys that differ between them.
+    keys: those of them that are keys of the board or the run; hashes: of the points here; varied: the keys that differ
+    between them.
     """
 
     def __init__(self, path):
         self.path = path
         self.name = os.fsencode(os.path.basename(path)).decode(errors="replace")
         self._database = self._open()
-        try:
-            self.names = [row[0] for row in self._rows("SELECT name FROM pragma_table_info('points') ORDER BY cid")]
-            self.total = self._rows("SELECT count(*) FROM points")[0][0]
-            self.left_out = dict(self._rows("SELECT status, count(*) FROM points WHERE status <> 'ok' GROUP BY status "
-                                            "ORDER BY status DESC"))
-            self._select("status = 'ok'", [])
-        except sqlite3.DatabaseError as error:
-            raise Unusable(f"{path}: {error}") from None
+        self.names = [row[0] for row in self._rows("SELECT name FROM pragma_table_info('points') ORDER BY cid")]
+        keys = {row[0] for row in self._rows("SELECT name FROM keys")}
+        self.keys = [name for name in self.names if name in keys]
+        self.total = self._rows("SELECT count(*) FROM points")[0][0]
+        self.left_out = dict(self._rows("SELECT status, count(*) FROM points WHERE status <> 'ok' GROUP BY status "
+                                        "ORDER BY status DESC"))
+        self._select("status = 'ok'", [])
 
     def _select(self, condition, values):
         self._condition, self._values, self._columns = condition, values, {}
@@ -131,7 +131,10 @@ class Points:
         return database
 
     def _rows(self, sql, *values):
-        return self._database.execute(sql, values).fetchall()
+        try:
+            return self._database.execute(sql, values).fetchall()
+        except sqlite3.DatabaseError as error:
+            raise Unusable(f"{self.path}: {error}") from None
 
     def keep(self, only):
         """Leaves out points without these values, "KEY=VALUE" each. What is wrong; if anything, all are kept."""
@@ -139,13 +142,12 @@ class Points:
         condition, values = self._condition, []
         for text in only:
             key, equals, wanted = text.partition("=")
-            keys = [name for name in self.names if is_key(name)]
-            there = self._rows(f"SELECT DISTINCT {quoted(key)} FROM points") if key in keys else []
+            there = self._rows(f"SELECT DISTINCT {quoted(key)} FROM points") if key in self.keys else []
             same = [value for (value,) in there if text_of(value) == wanted]
             if not equals:
                 problems.append(f"--only = {text}: must be KEY=VALUE")
-            elif key not in keys:
-                problems.append(f"--only = {text}: {unknown('key', key, keys)}")
+            elif key not in self.keys:
+                problems.append(f"--only = {text}: {unknown('key', key, self.keys)}")
             elif not same:
                 known = sorted((value for (value,) in there), key=natural)[:MOST_NAMED]
                 values_there = ", ".join(map(text_of, known))
@@ -177,21 +179,38 @@ class Points:
 
     def blame(self, place):
         """The stalls of one point: (port, bank, by, cycles) each."""
-        return self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
+        rows = self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
                           self.hashes[place])
+        for port, bank, by, cycles in rows:
+            if not is_number(cycles):
+                raise Unusable(f"blame of point {self.hashes[place]}: {port}, {bank}, {by}: cycles = {cycles}: {NUMBER}")
+        return rows
 
     def stall_cycles(self):
         """Of every point, over all ports."""
-        return [sum(each) for each in zip(*(self.column(f"ports.{port}.stall_cycles") for port in PORTS))]
+        columns = [f"ports.{port}.stall_cycles" for port in PORTS]
+        self.need_numbers(columns)
+        return [sum(each) for each in zip(*map(self.column, columns))]
 
     def too_large(self):
         """Places of the points that take more of something than the FPGA has."""
-        columns = [self.column(name) for name in self.names if re.fullmatch(r"area\.\w+_percent", name)]
-        return [place for place, values in enumerate(zip(*columns)) if any(value and value > 100 for value in values)]
+        columns = [name for name in self.names if re.fullmatch(r"area\.\w+_percent", name)]
+        for name in columns:
+            self.need_numbers([name], self.places_with(name))
+        return [place for place, shares in enumerate(zip(*map(self.column, columns)))
+                if any(share is not None and share > 100 for share in shares)]
+
+    def losing_pixels(self):
+        """Places of the points whose captures have lost pixels."""
+        return [place for place, values in enumerate(zip(*map(self.column, LOST_PIXELS))) if any(values)]
 
     def size_note(self, places):
         count = len(set(places) & set(self.too_large()))
         return f"{count} of the points take more area than the FPGA has." if count else ""
+
+    def pixels_note(self, places):
+        count = len(set(places) & set(self.losing_pixels()))
+        return f"{count} of the points lose pixels: the pictures that they match are not whole." if count else ""
 
     def varies(self, name):
         return len(set(self.column(name))) > 1
@@ -200,17 +219,39 @@ class Points:
         if not self.varies(name):
             raise Unusable(f"all points have {name} = {text_of(self.column(name)[0])}")
 
+    def places_with(self, name):
+        """Places of the points that have a value of this column."""
+        return [place for place, value in enumerate(self.column(name)) if value is not None]
+
     def number_problem(self, name):
-        """Why a column cannot be drawn as numbers; empty if it can."""
+        """Why a column cannot be drawn as numbers, where there are any; empty if it can."""
         known = [*self.names, BANKS_USED]
         if name not in known:
             return unknown("column", name, [each for each in known if each not in ADMINISTRATION])
-        values = [value for value in self.column(name) if value is not None]
-        if not values:
+        places = self.places_with(name)
+        if not places:
             return f"column {name} is empty"
-        if any(isinstance(value, str) for value in values):
-            return f"column {name} is no number: {values[0]}"
-        return ""
+        return next(filter(None, (self._value_problem(name, place) for place in places)), "")
+
+    def need_numbers(self, names, places=None):
+        """Unusable unless these columns are numbers in the points at these places, by default in all."""
+        for name in names:
+            for place in range(len(self.hashes)) if places is None else places:
+                problem = self._value_problem(name, place)
+                if problem:
+                    raise Unusable(problem)
+
+    def _value_problem(self, name, place):
+        value = self.column(name)[place]
+        return "" if is_number(value) else f"point {self.hashes[place]}: {name} = {text_of(value)}: {NUMBER}"
+
+    def frames(self):
+        """Of every point; Unusable if a point has none."""
+        self.need_numbers(["frames"])
+        for place, frames in enumerate(self.column("frames")):
+            if frames < 1:
+                raise Unusable(f"point {self.hashes[place]}: frames = {text_of(frames)}: must be 1 or more")
+        return self.column("frames")
 
     def left_out_text(self):
         return ", ".join(f"{count} {reason}" for reason, count in self.left_out.items() if count)
@@ -233,14 +274,13 @@ class Points:
                           "ORDER BY 3 DESC, 1, 2 LIMIT 3")
 
     def _varied(self):
-        keys = [name for name in self.names if is_key(name)]
         counts = []
-        for start in range(0, len(keys), 400):  # fewer than SQLite allows in a row
+        for start in range(0, len(self.keys), 400):  # fewer than SQLite allows in a row
             asked = ", ".join(f"count(DISTINCT {name}), count({name})"
-                              for name in map(quoted, keys[start : start + 400]))
+                              for name in map(quoted, self.keys[start : start + 400]))
             counts += self._rows(f"SELECT {asked} FROM points WHERE {self._condition}", *self._values)[0]
         points = len(self.hashes)
-        varied = [key for key, distinct, there in zip(keys, counts[::2], counts[1::2])
+        varied = [key for key, distinct, there in zip(self.keys, counts[::2], counts[1::2])
                   if distinct > 1 or (distinct == 1 and there < points)]
         return self._without_frames(self._one_for_all_banks(varied))
 

@@ -3,8 +3,10 @@
 import csv
 import json
 import os
+import pathlib
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import time
@@ -12,6 +14,7 @@ import time
 import program
 from program import ProgramTest, read_png, run
 
+SCRIPT = pathlib.Path(__file__).resolve().parents[3] / "sw" / "report" / "plots" / "plot_paper.py"
 TABLES = ["table1.csv", "table2.csv", "banks.csv", "claims.csv"]
 FIGURES = ["table1", "table2", "banks"]
 FILES = sorted(["paper.md", *TABLES] + [name + ending for name in FIGURES for ending in (".png", ".svg")])
@@ -101,20 +104,51 @@ class Paper(ProgramTest):
         by_claim = {}
         for row in self.table("claims"):
             printed, modelled, rule = float(row["paper"]), float(row["model"]), row["rule"]
+            tolerance = float(row["tolerance"])
             within = re.match(r"within ([\d.]+) (.*)$", rule)
             at_least = re.match(r"at least the printed value(?: less ([\d.]+) .*)?$", rule)
             if within:
-                most = float(within[1]) * (printed / 100 if within[2] == "%" else 1)
-                holds = abs(printed - modelled) <= most
+                self.assertEqual(float(within[1]), tolerance)
+                holds = abs(printed - modelled) <= tolerance * (printed / 100 if within[2] == "%" else 1)
             else:
                 self.assertTrue(at_least, rule)
-                holds = modelled >= printed - float(at_least[1] or 0)
+                self.assertEqual(float(at_least[1] or 0), tolerance)
+                holds = modelled >= printed - tolerance
             self.assertEqual(row["verdict"], "confirmed" if holds else "not confirmed", row)
             by_claim.setdefault(row["claim"], []).append((holds, row["claim_verdict"]))
         for name, cases in by_claim.items():
             held = [holds for holds, _ in cases]
             expected = "confirmed" if all(held) else "in part" if any(held) else "not confirmed"
             self.assertEqual({verdict for _, verdict in cases}, {expected}, name)
+
+    def texts_drawn(self, name, **changed):
+        """What the figure of a table says whose first rows have other values in these columns."""
+        folder = self.folder / "tables"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        for table in TABLES:
+            (folder / table).write_bytes(self.files[table])
+        rows = [{**row, **changed} for row in self.table(name)]
+        with open(folder / f"{name}.csv", "w", newline="") as file:
+            writer = csv.DictWriter(file, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+        script = ["/usr/bin/python3", "-B", str(SCRIPT), str(folder), "--out", str(folder)]
+        self.succeeds(subprocess.run(script, capture_output=True, text=True, timeout=300, check=False))
+        return (folder / f"{name}.svg").read_text()
+
+    def test_figures_take_numbers_and_boards_from_the_tables(self):
+        self.assertEqual(self.texts_drawn("table1"), self.files["table1.svg"].decode())
+        self.assertIn("640x480, 80 disparities, no filter, 40 MHz.", self.texts_drawn("table1"))
+        self.assertIn("the rule (as it says) shaded", self.texts_drawn("table1", rule="as it says"))
+        self.assertIn("the rule (as it says) shaded", self.texts_drawn("table2", size_rule="as it says"))
+        self.assertNotEqual(self.texts_drawn("table1", paper_half_digit=0.5), self.texts_drawn("table1"))
+        self.assertNotEqual(self.texts_drawn("table1", tolerance_percent=0.5), self.texts_drawn("table1"))
+        self.assertIn("320x480, 80 disparities, filter log7, 41 MHz.", self.texts_drawn("table1", **{
+            "image.width": 320, "matcher.filter": "log7", "fpga.clock_mhz": 41}))
+        self.assertIn("window 9x9, XC2V1000.", self.texts_drawn("table2", **{
+            "matcher.window": 9, "fpga.device": "xc2v1000"}))
+        self.assertIn("640x480, 9x9, 80 disparities, 40 MHz.", self.texts_drawn("banks", **{"matcher.window": 9}))
 
     def test_table_1_without_a_filter_is_met_but_for_7x7(self):
         for row in self.table("table1"):

@@ -19,6 +19,7 @@ PYTHON = "/usr/bin/python3"
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "sw" / "report" / "plots"
 FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]
 ENDINGS = [".png", ".svg", ".csv"]
+LAYOUT = 2
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SCRIPTS))
@@ -48,14 +49,21 @@ vary:
 """
 
 
+# Beginnings of the columns of made databases that are no keys.
+FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left.", "cameras.right.", "ports.")
+
+
 def make_database(path, header, rows):
     """One as sweep makes it, with these columns."""
     connection = sqlite3.connect(path)
     connection.execute(f"PRAGMA application_id = {0x53544C4D}")
-    connection.execute("PRAGMA user_version = 1")
+    connection.execute(f"PRAGMA user_version = {LAYOUT}")
     columns = ["hash", "status", "reason", "version", "config", *header]
     connection.execute(f"CREATE TABLE points({', '.join(map(reader.quoted, columns))})")
     connection.execute("CREATE TABLE blame(hash, port, bank, by, cycles)")
+    connection.execute("CREATE TABLE keys(name)")
+    connection.executemany("INSERT INTO keys VALUES(?)",
+                           [(column,) for column in header if not column.startswith(FIGURES_OF_RUNS)])
     marks = ", ".join("?" * len(columns))
     for number, row in enumerate(rows):
         connection.execute(f"INSERT INTO points VALUES({marks})", (f"{number:064}", "ok", "", "0.1.0", "", *row))
@@ -240,6 +248,49 @@ class Figures(PlotTest):
         self.assertEqual(len(self.curves(self.out / "window.svg")), 2)
         self.assertEqual(len(self.curves(self.out / "window.svg", "5.5")), 2)
 
+    def test_mark_points_that_lose_pixels(self):
+        """Where the host comes last and its captures share banks with the core, most words of a picture come too late."""
+        plan = """
+board: fpl2003
+run: {source: camera, frames: 7}
+set: {allocation.left_image: [bank0, bank0], allocation.right_image: [bank1, bank1]}
+vary:
+  fpga.priority: [[host, result, left_pixel, right_pixel, left_lut, right_lut],
+                  [result, left_pixel, right_pixel, left_lut, right_lut, host]]
+  matcher.window: [7, 9]
+"""
+        store = self.sweep(plan)
+        rows, _ = self.database(store)
+        losing = {key for key, row in rows.items() if row["cameras.left.dropped_pixels"]}
+        self.assertEqual(len(losing), 2)
+        self.succeeds(run("plot", store, "--out", self.out))
+        for name in ("window", "states", "stalls", "use", "pareto"):
+            self.assertIn("2 of the points lose pixels: the pictures that they match are not whole.",
+                          self.texts(self.out / f"{name}.svg"), name)
+        for name in ("window", "pareto"):
+            self.assertIn("loses pixels", self.texts(self.out / f"{name}.svg"))
+            table = self.table(name)
+            self.is_from(store, table, "front")
+            self.assertEqual({row["hash"] for row in table if int(row["cameras.left.dropped_pixels"])}, losing)
+        self.succeeds(run("plot", store, "--out", self.out, "--only", "fpga.priority=[host, "
+                          "result, left_pixel, right_pixel, left_lut, right_lut]"))
+        self.assertNotIn("loses pixels", self.texts(self.out / "window.svg"))
+
+    def test_take_no_allocation_that_loses_pixels_for_the_best(self):
+        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "frames_per_second.core", "bound.core",
+                  "cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
+        rows = [("made", "camera", lut, "[bank1]", rate, 13, *lost)
+                for lut, rate, lost in (("bank1", 8, (0, 0)), ("bank0", 12, (0, 5)), ("bank2", 10, (0, 0)))]
+        store = self.folder / "losing.db"
+        make_database(store, header, rows)
+        self.succeeds(self.script("plot_banks.py", store, "--out", self.out))
+        (curve,) = self.curves(self.out / "banks.svg")
+        (_, one), (_, two) = curve
+        make_database(self.folder / "whole.db", header, [row for row in rows if row[2] != "bank0"])
+        self.succeeds(self.script("plot_banks.py", self.folder / "whole.db", "--out", self.out))
+        (curve,) = self.curves(self.out / "banks.svg")
+        self.assertAlmostEqual(one - two, curve[0][1] - curve[1][1], places=3)
+
     def test_with_more_combinations_than_lines(self):
         header = ["name", "run.source", "matcher.window", "fpga.clock_mhz", "fpga.arbitration", "frames_per_second.core",
                   "bound.core"]
@@ -330,20 +381,33 @@ class ParetoFront(PlotTest):
 
 class Columns(PlotTest):
     def test_are_keys_or_figures(self):
-        said = self.succeeds(run("keys")).splitlines()[1:]
-        keys = [line.split()[0] for line in said if line[0] != " " and not line.startswith("extends ")]
-        self.assertGreater(len(keys), 40)
-        for key in keys:
-            self.assertTrue(reader.is_key(key), key)
-        store = self.sweep(SMALL_BOARD.replace("preloaded", "camera, frames: 2") + "vary: {matcher.window: [3]}\n")
+        load = "pci.load: [{burst_words: 16, interval_us: 50, access_us: 1}]"
+        store = self.sweep(SMALL_BOARD.replace("preloaded", "camera, frames: 2") + f"vary: {{matcher.window: [3], {load}}}\n")
         (row,) = self.database(store)[0].values()
         board = self.file("board.yaml", row["config"].encode())
         self.succeeds(run("run", board, "--timing-only", "--frames", 2, "--out", self.out))
-        for figure in self.paths("", self.stats()):
-            if figure not in ("schema", "bridge.posted_words") and not figure.startswith("blame"):
-                self.assertIn(figure, row)
-                self.assertFalse(reader.is_key(figure), figure)
+        figures = {figure for figure in self.paths("", self.stats()) if figure != "schema" and not figure.startswith("blame")}
         self.assertEqual(self.stats()["frames"], row["frames"])
+        both = "bridge.posted_words"  # what the bridge can hold, and what it has taken
+        self.assertEqual(self.stats()["bridge"]["posted_words"], row[both + ".counted"])
+        self.assertNotEqual(row[both], row[both + ".counted"])
+        self.assertEqual(set(reader.Points(store).keys), set(row) - reader.ADMINISTRATION - (figures - {both})
+                         - {both + ".counted"})
+
+    def test_of_keys_are_those_of_boards_and_runs(self):
+        store = self.sweep(SMALL_BOARD + "vary: {matcher.window: [3]}\n")
+        keys = set(reader.Points(store).keys)
+        said = self.succeeds(run("keys")).splitlines()[1:]
+        known = {line.split()[0] for line in said if line[0] != " " and not line.startswith("extends ")}
+        self.assertGreater(len(known), 40)
+        known = {key for key in known if not key.startswith(("pci.load", "ssram.", "matcher.filter."))}
+        self.assertEqual({key for key in keys if not key.startswith("ssram.banks.bank")}, known | {"run.source", "run.frames"})
+
+    def test_of_figures_make_no_lines(self):
+        store = self.sweep("board: fpl2003\nrun: {source: camera, frames: 5}\nvary: {matcher.window: [5, 7, 9]}\n")
+        taken = [row["bridge.posted_words.counted"] for row in self.database(store)[0].values()]
+        self.assertGreater(len(set(taken)), 1)
+        self.assertIn("3 points, 1 line\n", self.succeeds(self.script("plot_window.py", store, "--out", self.out)))
 
     def paths(self, path, value):
         if isinstance(value, dict):
@@ -354,6 +418,142 @@ class Columns(PlotTest):
                 return []
             return [found for each in value for found in self.paths(f"{path}.{each['name']}", each)]
         return [path]
+
+
+class WhatCannotBeDrawn(PlotTest):
+    """Of a database that somebody has changed: what is wrong is named by point, value and rule."""
+
+    def setUp(self):
+        super().setUp()
+        self.store = self.sweep(ALLOCATIONS + "  matcher.disparities: [4, 8]\n")
+        self.hash = sorted(self.database(self.store)[0])[1]
+
+    def change(self, sql, *values):
+        connection = sqlite3.connect(self.store)
+        connection.execute(sql, values)
+        connection.commit()
+        connection.close()
+
+    def test_is_refused(self):
+        whole = self.store.read_bytes()
+        for figure, column, value, found in (
+                ("disparities", "matcher.disparities", "'x'", "x"), ("disparities", "frames_per_second.core", "NULL", "absent"),
+                ("disparities", "bound.core", "9e999", "inf"), ("disparities", "area.slices_percent", "'x'", "x"),
+                ("banks", "frames_per_second.core", "'x'", "x"), ("banks", "area.block_rams_percent", "-9e999", "-inf"),
+                ("states", "frames_per_second.core", "NULL", "absent"), ("states", "ports.result.idle_cycles", "NULL", "absent"),
+                ("states", "ports.host.grants", "'x'", "x"), ("states", "frames", "9e999", "inf"),
+                ("stalls", "ports.left_lut.stall_cycles", "NULL", "absent"), ("stalls", "frames", "''", ""),
+                ("use", "banks.bank3.utilization", "'x'", "x"), ("use", "frames_per_second.core", "9e999", "inf"),
+                ("pareto", "frames_per_second.core", "-9e999", "-inf"),
+                ("pareto", "frames_per_second.core", "1.7e308", "1.7e+308"), ("pareto", "area.slices", "'x'", "x"),
+                ("pareto", "area.multipliers_percent", "'x'", "x")):
+            with self.subTest(figure=figure, column=column, value=value):
+                self.change(f"UPDATE points SET {reader.quoted(column)} = {value} WHERE hash = ?", self.hash)
+                process = self.script(f"plot_{figure}.py", self.store, "--out", self.out)
+                self.refused_in_one_line(process, f"plot_{figure}.py: error: {figure} not drawn: point {self.hash}: "
+                                                  f"{column} = {found}: {reader.NUMBER}\n")
+                self.store.write_bytes(whole)
+
+    def test_is_refused_as_an_axis(self):
+        self.change('UPDATE points SET "area.luts" = 9e999 WHERE hash = ?', self.hash)
+        process = run("plot", self.store, "--out", self.out, "--pareto", "area.luts:min,bound.core:max")
+        self.refused_in_one_line(process, f"--pareto = area.luts:min,bound.core:max: point {self.hash}: area.luts = inf: "
+                                          f"{reader.NUMBER}\n")
+
+    def test_of_no_frames(self):
+        self.change("UPDATE points SET frames = 0 WHERE hash = ?", self.hash)
+        self.refused_in_one_line(self.script("plot_states.py", self.store, "--out", self.out),
+                                 f"states not drawn: point {self.hash}: frames = 0: must be 1 or more\n")
+
+    def test_of_blame(self):
+        self.change("UPDATE blame SET cycles = 'x'")
+        process = self.script("plot_stalls.py", self.store, "--out", self.out)
+        self.refused_in_one_line(process)
+        self.assertRegex(process.stderr, r"stalls not drawn: blame of point [0-9a-f]{64}: \w+, bank\d, \w+: cycles = x: must be a "
+                                         r"number from -1e\+100 to 1e\+100\n$")
+
+    def test_of_text_that_is_none(self):
+        self.change("UPDATE points SET \"fpga.device\" = CAST(x'ff' AS TEXT) WHERE hash = ?", self.hash)
+        process = run("plot", self.store, "--out", self.out, "--only", "fpga.device=xc2v6000")
+        self.refused_in_one_line(process, f"{self.store}: Could not decode to UTF-8")
+
+    def test_is_left_out_where_a_point_need_not_have_it(self):
+        self.change('UPDATE points SET "frames_per_second.core" = NULL WHERE hash = ?', self.hash)
+        said = self.succeeds(run("plot", self.store, "--out", self.out))
+        self.assertIn("\npareto       47 points", said)
+        self.assertIn(f"\nbanks        not drawn: point {self.hash}: frames_per_second.core = absent: {reader.NUMBER}\n", said)
+        self.assertIn("fpl2003, source preloaded: 47 of 48 points of points.db; not shown: 1 without these figures.",
+                      self.texts(self.out / "pareto.svg"))
+
+
+class Names(PlotTest):
+    def test_of_digits_that_are_no_decimals(self):
+        store = self.sweep(SMALL_BOARD + 'vary: {matcher.window: [3, 5], name: ["\N{SUPERSCRIPT TWO}", "b", '
+                           '"\N{ARABIC-INDIC DIGIT TWO}"]}\n')
+        process = run("plot", store, "--out", self.out)
+        self.assertIn("window       6 points, 3 lines\n", self.succeeds(process))
+        self.assertEqual(process.stderr, "")
+
+    def test_that_the_font_lacks_are_told_once(self):
+        store = self.sweep(SMALL_BOARD + 'vary: {matcher.window: [3, 5], name: ["\u65e5\u672c board", "b"]}\n')
+        process = run("plot", store, "--out", self.out)
+        self.assertIn("window       4 points, 2 lines\n", self.succeeds(process))
+        self.assertEqual(process.stderr, "stereotlm: note: the font of the figures lacks '\u65e5\u672c': boxes in PNG; SVG and "
+                                         "CSV have the text\n")
+        self.assertIn("(b, \u65e5\u672c board)", " ".join(self.texts(self.out / "window.svg")))
+
+
+class Replaced(PlotTest):
+    """The files of an earlier result."""
+
+    def test_stay_when_a_new_one_cannot_be_moved_into_place(self):
+        store = self.sweep(ALLOCATIONS)
+        self.out.mkdir()
+        earlier = {name: name.encode() for name in ("banks.csv", "banks.png", "states.svg", "window.csv")}
+        for name, data in earlier.items():
+            (self.out / name).write_bytes(data)
+        process = subprocess.Popen([program.PROGRAM, "plot", str(store), "--out", str(self.out)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        end = time.monotonic() + 60
+        while not (self.out / ".partial" / "new").exists() and time.monotonic() < end:
+            time.sleep(0.005)
+        (self.out / "use.png").mkdir()
+        out, errors = process.communicate(timeout=120)
+        self.assertEqual((process.returncode, out), (1, ""))
+        self.assertEqual(errors, f"stereotlm: error: --out {self.out}: the figures cannot be moved into place: Is a directory: "
+                                 f"'{self.out}/use.png'\n")
+        self.assertEqual(self.result(), earlier)
+        self.assertEqual(sorted(os.listdir(self.out)), sorted([*earlier, "use.png"]))
+
+    def test_what_a_killed_process_has_left_goes(self):
+        store = self.sweep(SMALL_BOARD + "vary: {matcher.window: [3, 5]}\n")
+        for name in ("new", "earlier"):
+            (self.out / ".partial" / name).mkdir(parents=True)
+            (self.out / ".partial" / name / "window.png").write_bytes(b"")
+        self.succeeds(self.script("plot_window.py", store, "--out", self.out))
+        self.assertEqual(sorted(os.listdir(self.out)), sorted("window" + ending for ending in ENDINGS))
+
+
+class Studies(PlotTest):
+    def test_of_fetch_takes_for_fitting_what_plot_does(self):
+        """Neither too many slices, block RAMs nor multipliers."""
+        results = pathlib.Path(__file__).resolve().parents[3] / "results"
+        (self.folder / "results" / "fetch").mkdir(parents=True)
+        (self.folder / "sw").symlink_to(results.parent / "sw")
+        for script in ("study.py", "fetch/report.py"):
+            shutil.copy(results / script, self.folder / "results" / script)
+        core = self.folder / "core.db"
+        header = ["name", "run.source", "matcher.window", "matcher.disparities", "matcher.fetch", "frames_per_second.core",
+                  "area.slices_percent", "area.block_rams", "area.block_rams_percent", "area.multipliers_percent"]
+        make_database(core, header, [
+            ("made", "preloaded", 7, disparities, fetch, 18, *area) for fetch in ("column", "line_buffer")
+            for disparities, area in ((80, (50, 9, 10, 0)), (120, (70, 9, 100, 100)), (160, (80, 9, 101, 0)),
+                                      (200, (90, 9, 50, 101)), (240, (101, 9, 50, 0)))])
+        computer = self.sweep("board: fpl2003\nrun: {source: camera, frames: 3}\nvary: {matcher.fetch: [column, line_buffer]}\n")
+        report = [PYTHON, "-B", str(self.folder / "results" / "fetch" / "report.py"), str(core), str(computer)]
+        self.succeeds(subprocess.run(report, capture_output=True, text=True, timeout=120, check=False))
+        self.assertIn("| 7x7 | 18.00 | 18.00 | 1.0 | 50.0 | 50.0 | 9 | 9 | 120 | 120 |\n",
+                      (self.folder / "results" / "fetch" / "README.md").read_text())
 
 
 class Refusals(PlotTest):
@@ -386,7 +586,8 @@ class Refusals(PlotTest):
              "--only = frames_per_second.core=3: unknown key frames_per_second.core",
              "--pareto = frames_per_sec.core:max,matcher.fetch:min: unknown column frames_per_sec.core; nearest: "
              "frames_per_second.core",
-             "--pareto = frames_per_sec.core:max,matcher.fetch:min: column matcher.fetch is no number: column"])
+             f"--pareto = frames_per_sec.core:max,matcher.fetch:min: point {0:064}: matcher.fetch = column: "
+             + reader.NUMBER])
         self.assertEqual(
             self.refused_at(self.store, "--out", self.out, "--only", "matcher.window=3", "--only",
                             "matcher.fetch=line_buffer"),
@@ -408,10 +609,10 @@ class Refusals(PlotTest):
         connection.commit()
         self.assertEqual(self.refused_at(other, "--out", self.out), [f"{other}: not a database of stereotlm sweep"])
         connection.execute(f"PRAGMA application_id = {0x53544C4D}")
-        connection.execute("PRAGMA user_version = 2")
+        connection.execute("PRAGMA user_version = 1")
         connection.close()
         self.assertEqual(self.refused_at(other, "--out", self.out),
-                         [f"{other}: its layout is 2, of another version; this version reads 1"])
+                         [f"{other}: its layout is 1, of another version; this version reads {LAYOUT}"])
         empty = self.folder / "empty.db"
         make_database(empty, ["name", "run.source"], [])
         self.assertEqual(self.refused_at(empty, "--out", self.out), [f"{empty}: no point to draw: it is empty"])

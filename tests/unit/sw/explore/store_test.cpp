@@ -26,7 +26,8 @@ StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
           "ok",
           "",
           "name: x\n",
-          {{"image.width", std::int64_t{640}}, {"cycles", cycles}, {"rate", 0.5}},
+          {{"image.width", std::int64_t{640}}},
+          {{"cycles", cycles}, {"rate", 0.5}},
           {{"left_pixel", "bank0", "host", 3}}};
 }
 
@@ -76,7 +77,7 @@ TEST_F(StoreTest, TakesPointsWithOtherFigures) {
   Store store(file("a.db"), kVersion);
   store.add(point("h1"));
   StoredPoint other = point("h2");
-  other.values = {{"frames_per_second.system", 2.5}};
+  other.figures = {{"frames_per_second.system", 2.5}};
   store.add(other);
   store.add(point("h3"));
   EXPECT_THAT(rows(file("a.db"), "SELECT cycles, \"frames_per_second.system\" FROM points ORDER BY hash"),
@@ -89,13 +90,27 @@ TEST_F(StoreTest, MayBeAddedToFromSeveralConnections) {
   one.add(point("h1"));
   two.add(point("h2"));
   StoredPoint wide = point("h3");
-  wide.values.push_back({"new", std::int64_t{1}});
+  wide.keys.push_back({"new", std::int64_t{1}});
   one.add(wide);
   wide.hash = "h4";
   two.add(wide);
   one.add(point("h5"));
   EXPECT_TRUE(two.has("h5"));
   EXPECT_EQ(two.size(), 5U);
+  EXPECT_THAT(rows(file("a.db"), "SELECT name FROM keys"), ElementsAre("image.width", "new"));
+}
+
+TEST_F(StoreTest, SaysWhichColumnsAreKeys) {
+  StoredPoint other = point("h2");
+  other.keys.push_back({"bridge.posted_words", std::int64_t{64}});
+  other.figures.push_back({"bridge.posted_words.counted", std::int64_t{9}});
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  { Store(file("b.db"), kVersion).add(other); }
+  merge_stores({file("a.db"), file("b.db")}, file("ab.db"));
+  EXPECT_THAT(rows(file("a.db"), "SELECT name FROM keys"), ElementsAre("image.width"));
+  for (const char* const name : {"b.db", "ab.db"}) {
+    EXPECT_THAT(rows(file(name), "SELECT name FROM keys"), ElementsAre("bridge.posted_words", "image.width"));
+  }
 }
 
 TEST_F(StoreTest, IsContinued) {
@@ -135,6 +150,14 @@ TEST_F(StoreTest, RefusesFilesThatAreNotItsOwn) {
   }
   EXPECT_EQ(message_of([&] { Store(file("foreign.db"), kVersion); }),
             file("foreign.db") + ": not a database of stereotlm sweep");
+  {
+    Database early(file("early.db"), Database::Access::kCreate);
+    early.execute("PRAGMA application_id = 0x53544C4D; PRAGMA user_version = 1; CREATE TABLE points(hash)");
+  }
+  const std::string other_layout = ": its layout is 1, of another version; this version writes 2";
+  EXPECT_EQ(message_of([&] { Store(file("early.db"), kVersion); }), file("early.db") + other_layout);
+  EXPECT_EQ(message_of([&] { merge_stores({file("early.db")}, file("new.db")); }),
+            file("early.db") + other_layout);
   EXPECT_EQ(read_file(file("text")), std::string(5000, 'x'));
   EXPECT_THAT(message_of([&] { Store(file("none/a.db"), kVersion); }),
               HasSubstr("No such file or directory"));
@@ -142,14 +165,15 @@ TEST_F(StoreTest, RefusesFilesThatAreNotItsOwn) {
 
 TEST_F(StoreTest, KeepsColumnsWhoseNamesAreWordsOfSql) {
   StoredPoint odd = point("h1");
-  odd.values = {{"select \"from\"", "a'b"}};
+  odd.keys = {{"select \"from\"", "a'b"}};
   Store(file("a.db"), kVersion).add(odd);
   EXPECT_THAT(rows(file("a.db"), "SELECT \"select \"\"from\"\"\" FROM points"), ElementsAre("a'b"));
 }
 
 TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
   StoredPoint wide = point("h2");
-  wide.values = {{"banks.bank10.reads", std::int64_t{1}}, {"banks.bank2.reads", std::int64_t{2}}};
+  wide.keys = {{"matcher.window", std::int64_t{7}}};
+  wide.figures = {{"banks.bank10.reads", std::int64_t{1}}, {"banks.bank2.reads", std::int64_t{2}}};
   { Store(file("a.db"), kVersion).add(point("h3")); }
   {
     Store b(file("b.db"), kVersion);
@@ -167,7 +191,8 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
   EXPECT_EQ(read_file(file("ab.db")), read_file(file("all.db")));
   EXPECT_THAT(rows(file("ab.db"), "SELECT hash FROM points"), ElementsAre("h1", "h2", "h3"));
   EXPECT_THAT(rows(file("ab.db"), "SELECT name FROM pragma_table_info('points') WHERE cid > 4"),
-              ElementsAre("banks.bank2.reads", "banks.bank10.reads", "cycles", "image.width", "rate"));
+              ElementsAre("banks.bank2.reads", "banks.bank10.reads", "cycles", "image.width",
+                          "matcher.window", "rate"));
   EXPECT_THAT(rows(file("ab.db"), "SELECT hash, cycles FROM blame"), ElementsAre("h1|3", "h2|3", "h3|3"));
   merge_stores({file("ab.db")}, file("again.db"));
   EXPECT_EQ(read_file(file("again.db")), read_file(file("ab.db")));
