@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -27,6 +28,7 @@ namespace {
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 62U;
 constexpr std::uint64_t kMostFrames = 1'000'000;
 constexpr std::int64_t kMostValues = 1'000'000;  // of one key
+constexpr int kMostRangeDigits = 18;             // of a number of a range, written with all its places
 
 // A decimal number as an integer and a number of digits behind the point.
 struct Decimal {
@@ -47,6 +49,11 @@ std::optional<Decimal> decimal(const YamlNode& node) {
   if (text.size() > kMostDigits) return std::nullopt;
   value.digits = std::stoll(text);
   return value;
+}
+
+// How many digits it has if it is written with so many places.
+int digits_with(const Decimal& value, int places) {
+  return static_cast<int>(std::to_string(std::abs(value.digits)).size()) + places - value.places;
 }
 
 void scale(Decimal& value, int places) {
@@ -300,10 +307,11 @@ class PlanReader {
 
   std::vector<YamlNode> range_of(const std::string& name, const YamlNode& node) {
     if (read_map(name, node, {"from", "to", "step"}, "a range") == nullptr) return {};
-    std::array<Decimal, 3> numbers;
+    constexpr std::array kKeys = {"from", "to", "step"};
+    std::array<Decimal, kKeys.size()> numbers;
     int places = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const char* const key = std::array{"from", "to", "step"}[i];
+      const char* const key = kKeys[i];
       constexpr const char* kRule = "a decimal number of at most 15 digits";
       const YamlNode::Entry* const entry = node.find(key);
       if (entry == nullptr) {
@@ -317,6 +325,14 @@ class PlanReader {
       }
       numbers[i] = *number;
       places = std::max(places, number->places);
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (digits_with(numbers[i], places) > kMostRangeDigits) {
+        report(fmt::format("{}.{}", name, kKeys[i]), node.find(kKeys[i])->value,
+               fmt::format("at most {} digits, with the {} decimal places that the range has",
+                           kMostRangeDigits, places));
+        return {};
+      }
     }
     for (Decimal& number : numbers) scale(number, places);
     const auto& [from, to, step] = numbers;

@@ -284,6 +284,19 @@ TEST(PlanRefusals, AreForRangesThatDoNotEnd) {
               HasSubstr("vary: matcher.disparities.step: missing: a decimal number"));
 }
 
+TEST(PlanRefusals, AreForRangesWhoseNumbersDoNotFit) {
+  EXPECT_THAT(
+      refusals(kBoard + "vary: {fpga.clock_mhz: {from: 1844677, to: 1844677, step: 0.0000000000001}}\n"),
+      ElementsAre(":2:31: vary: fpga.clock_mhz.from = 1844677: at most 18 digits, with the 13 decimal places "
+                  "that the range has"));
+  EXPECT_THAT(refusals(kBoard + "vary: {fpga.clock_mhz: {from: 0, to: 100000, step: 0.0000000000001}}\n"),
+              ElementsAre(HasSubstr(":2:38: vary: fpga.clock_mhz.to = 100000: at most 18 digits")));
+  EXPECT_EQ(
+      plan_of(kBoard + "vary: {fpga.clock_mhz: {from: 99.9999999999999, to: 100, step: 0.0000000000001}}\n")
+          .size(),
+      2U);
+}
+
 TEST(PlanRefusals, AreForCalibrationsThatAreNoFile) {
   for (const std::string file : {"[a.yaml]", "\"\"", "null"}) {
     EXPECT_THAT(refusals(kBoard + "run: {calibration: " + file + "}\n").front(),
