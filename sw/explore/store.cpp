@@ -20,6 +20,7 @@ constexpr int kLayout = 1;
 
 // The columns that every database has, in front.
 constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
+constexpr int kVersionColumn = 3;
 constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 
 void create_tables(Database& database, const std::vector<std::string>& further_columns) {
@@ -232,6 +233,7 @@ class Reader {
   const std::vector<std::string>& columns() const { return columns_; }
   bool at_end() const { return !has_point_; }
   const std::string& hash() const { return hash_; }
+  std::string version() const { return points_->text(kVersionColumn); }
   void next() {
     has_point_ = points_->step();
     hash_ = has_point_ ? points_->text(0) : "";
@@ -270,6 +272,24 @@ std::string whole_text(Reader& reader, const std::vector<std::string>& columns) 
   return text;
 }
 
+// That all points are of one.
+class OneVersion {
+ public:
+  void check(const Reader& reader) {
+    if (path_.empty()) {
+      version_ = reader.version();
+      path_ = reader.path();
+    }
+    if (reader.version() == version_) return;
+    throw DatabaseError(fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix",
+                                    reader.path(), reader.version(), path_, version_));
+  }
+
+ private:
+  std::string version_;
+  std::string path_;  // of the first that was checked
+};
+
 std::vector<std::string> all_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
   std::set<std::string> names;
   for (const auto& reader : readers) names.insert(reader->columns().begin(), reader->columns().end());
@@ -284,16 +304,18 @@ void copy_points(std::vector<std::unique_ptr<Reader>>& readers, Database& out,
                  const std::vector<std::string>& columns) {
   Statement insert(out, insert_sql(columns));
   Statement insert_blame(out, kInsertBlame);
-  std::string version;
+  OneVersion version;
   for (;;) {
     Reader* first = nullptr;
     for (const auto& reader : readers) {
       if (!reader->at_end() && (first == nullptr || reader->hash() < first->hash())) first = reader.get();
     }
     if (first == nullptr) return;
+    version.check(*first);
     const std::string hash = first->hash();
     for (const auto& reader : readers) {
       if (reader.get() == first || reader->at_end() || reader->hash() != hash) continue;
+      version.check(*reader);
       if (whole_text(*reader, columns) != whole_text(*first, columns)) {
         throw DatabaseError(
             fmt::format("{}: holds another result of point {} than {}", reader->path(), hash, first->path()));

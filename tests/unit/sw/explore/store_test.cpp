@@ -201,6 +201,24 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
               HasSubstr("another result of point h1"));
 }
 
+TEST_F(StoreTest, DoesNotMergePointsOfDifferentVersions) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  for (const char* const hash : {"h0", "h1", "h2"}) {
+    const std::string other = file(std::string(hash) + ".db");
+    { Store(other, "1.2.4").add(point(hash)); }
+    const std::string text = message_of([&] { merge_stores({file("a.db"), other}, file("c.db")); });
+    EXPECT_THAT(text, HasSubstr(": they do not mix")) << hash;
+    EXPECT_THAT(text, HasSubstr(other));
+    EXPECT_THAT(text, HasSubstr("version 1.2.4"));
+    EXPECT_FALSE(std::filesystem::exists(file("c.db")));
+  }
+  EXPECT_EQ(message_of([&] {
+              merge_stores({file("a.db"), file("h2.db")}, file("c.db"));
+            }),
+            file("h2.db") + ": holds points of version 1.2.4, and " + file("a.db") +
+                " of version 1.2.3: they do not mix");
+}
+
 // A process that has added a point ends at once: the point is in the journal alone. Whatever ends the merge, its
 // journal may be gone then.
 TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
