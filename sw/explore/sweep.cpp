@@ -113,7 +113,10 @@ class Sweep {
     WorkOrder order = worker.order();
     if (++deaths_[order.first] == kMostDeaths) {
       deaths_.erase(order.first);
-      fail(order.first, fmt::format("its process has ended with {}, {} times", worker.death(), kMostDeaths));
+      fail(order.first,
+           fmt::format("its process has {}, {} times: to try again, delete this row and give the "
+                       "same command",
+                       worker.death(), kMostDeaths));
       order.first += order.step;
       --order.count;
     }

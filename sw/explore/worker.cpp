@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -45,6 +46,8 @@ StoredPoint row_of(const Point& point) {
   return row;
 }
 
+constexpr int kOutOfMemory = 75;  // the exit status of a worker
+
 // The work itself, in the process of the worker.
 class PointRunner {
  public:
@@ -77,6 +80,8 @@ class PointRunner {
       } catch (const EndedBySignal&) {
         throw;
       } catch (const std::system_error&) {
+        throw;
+      } catch (const std::bad_alloc&) {
         throw;
       } catch (const std::exception& error) {
         end = PointEnd::kFailed;
@@ -117,6 +122,8 @@ int be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions
     signal(error.signal(), SIG_DFL);
     raise(error.signal());
     return 1;  // a signal that does not end it
+  } catch (const std::bad_alloc&) {
+    return kOutOfMemory;
   } catch (const std::exception& error) {
     const std::string text = error.what();
     report.is_failure = true;
@@ -156,9 +163,13 @@ std::optional<PointEnd> Worker::receive() {
   Report report;
   if (!read_all(descriptor(), &report, sizeof report)) {
     const int status = process_.wait();
-    death_ = WIFSIGNALED(status)
-                 ? fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                 : fmt::format("exit status {}", WEXITSTATUS(status));
+    if (WIFSIGNALED(status)) {
+      death_ = fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    } else if (WEXITSTATUS(status) == kOutOfMemory) {
+      death_ = "run out of memory";
+    } else {
+      death_ = fmt::format("ended with exit status {}", WEXITSTATUS(status));
+    }
     return std::nullopt;
   }
   if (report.is_failure) {

@@ -40,7 +40,7 @@ class Worker {
   // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with
   // what it could not go on for.
   std::optional<PointEnd> receive();
-  std::string death() const { return death_; }
+  std::string death() const { return death_; }  // "ended with signal 9 (Killed)"
 
  private:
   Pipe orders_;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 
@@ -17,7 +18,7 @@
 namespace stereotlm::simulation {
 namespace {
 
-enum class Kind : std::uint8_t { kMessage, kDone, kFailure };
+enum class Kind : std::uint8_t { kMessage, kDone, kFailure, kOutOfMemory };
 
 struct Header {
   Kind kind = Kind::kDone;
@@ -38,6 +39,9 @@ int be_child(const std::function<void(const Child::Tell&)>& work, int to) {
     work([to](const std::string& message) { send(to, Kind::kMessage, message); });
     send(to, Kind::kDone, "");
     return 0;
+  } catch (const std::bad_alloc&) {
+    send(to, Kind::kOutOfMemory, "");
+    return 1;
   } catch (const std::exception& error) {
     failure = error.what();
   } catch (...) {
@@ -71,6 +75,7 @@ std::optional<std::string> Child::next() {
   std::string text(header.bytes, '\0');
   if (!explore::read_all(messages_.read_end(), text.data(), text.size())) throw_end();
   if (header.kind == Kind::kMessage) return text;
+  if (header.kind == Kind::kOutOfMemory) throw std::bad_alloc();
   if (header.kind == Kind::kFailure) throw std::runtime_error(text);
   return std::nullopt;
 }

@@ -23,7 +23,7 @@ class Child {
   // say.
   bool has_news(std::chrono::milliseconds wait);
   // Waits for the next message; nothing once the work is done. Throws std::runtime_error that says how the child has
-  // failed: what it threw; explore::EndedBySignal if a signal has ended it.
+  // failed: what it threw; explore::EndedBySignal if a signal has ended it; std::bad_alloc if it threw that.
   std::optional<std::string> next();
 
  private:

@@ -284,7 +284,8 @@ class Killed(RobustnessTest):
         self.assertEqual(process.returncode, 0, errors)
         self.assertGreaterEqual(kills, 3 * SLOW_POINTS)
         self.assertIn(f"{SLOW_POINTS} points: 0 ok, 0 impossible, {SLOW_POINTS} failed\n", out)
-        reason = "its process has ended with signal 9 (Killed), 3 times"
+        reason = ("its process has ended with signal 9 (Killed), 3 times: to try again, delete this row and give the "
+                  "same command")
         self.assertIn(f"  {SLOW_POINTS} failed: {reason}\n", out)
         rows = self.query('SELECT reason, config, "matcher.disparities" FROM points WHERE status = \'failed\' ORDER BY 3')
         self.assertEqual([row[2] for row in rows], [10, 20, 30, 40])

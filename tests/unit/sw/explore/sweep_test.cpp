@@ -10,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -208,6 +209,8 @@ TEST_F(SweepTest, ReplacesAWorkerThatDies) {
   EXPECT_EQ(read_file(file("a.db")), expected);
 }
 
+const std::string kAgain = ": to try again, delete this row and give the same command";
+
 // Of 60 points 6 have a board and the window 9.
 TEST_F(SweepTest, MakesARowOfEachPointWhoseWorkersDieAgainAndAgain) {
   const auto dies = [](const Point& point) -> Figures {
@@ -222,7 +225,8 @@ TEST_F(SweepTest, MakesARowOfEachPointWhoseWorkersDieAgainAndAgain) {
     EXPECT_EQ(counts.failed, 12U);
     Database database(file(store), Database::Access::kWrite);
     const std::string killed =
-        "status = 'failed' AND reason = 'its process has ended with signal 9 (Killed), 3 times'";
+        "status = 'failed' AND reason = 'its process has ended with signal 9 (Killed), 3 times" + kAgain +
+        "'";
     EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND " + killed), 6);
     EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE " + killed), 6);
     database.execute("DELETE FROM points WHERE " + killed);
@@ -246,7 +250,27 @@ TEST_F(SweepTest, TakesTheEndOfAProcessOfEvaluateForThatOfTheWorker) {
   EXPECT_EQ(counts.ok, 18U);
   Database database(file("a.db"), Database::Access::kRead);
   EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND reason = "
-                            "'its process has ended with signal 11 (Segmentation fault), 3 times'"),
+                            "'its process has ended with signal 11 (Segmentation fault), 3 times" +
+                            kAgain + "'"),
+            6);
+}
+
+TEST_F(SweepTest, TriesAgainWhereMemoryWasShort) {
+  const std::string once = file("short");
+  const auto runs_out = [&once](const Point& point) {
+    if (point.board->matcher.window == 9) throw std::bad_alloc();
+    if (!std::filesystem::exists(once)) {
+      test::write_file(once, "");
+      throw std::bad_alloc();
+    }
+    return evaluate(point);
+  };
+  const SweepCounts counts = sweep(plan(), runs_out, options("a.db"), always);
+  EXPECT_EQ(counts.ok, 18U);
+  Database database(file("a.db"), Database::Access::kRead);
+  EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND reason = "
+                            "'its process has run out of memory, 3 times" +
+                            kAgain + "'"),
             6);
 }
 

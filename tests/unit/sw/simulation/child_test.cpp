@@ -13,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -134,6 +135,11 @@ TEST(Child, TellsTheSignalApartFromAFailure) {
 TEST(Child, NamesTheStatusWithWhichItEndedTooEarly) {
   Child child([](const Child::Tell& /*tell*/) { _exit(3); });
   EXPECT_EQ(failure_of(child), "the process ended with status 3 before its work was done");
+}
+
+TEST(Child, HandsOnThatMemoryWasShort) {
+  Child child([](const Child::Tell& /*tell*/) { throw std::bad_alloc(); });
+  EXPECT_THROW(child.next(), std::bad_alloc);
 }
 
 pid_t forker = 0;
