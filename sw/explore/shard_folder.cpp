@@ -9,7 +9,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -125,11 +124,8 @@ void ShardFolder::keep_points(const std::string& version) {
     if (entry.path().extension() == ".work" || entry.path().extension() == ".db") stores.push_back(path);
   }
   if (stores.empty()) return;
-  std::optional<StoreLock> lock;
-  if (fs::exists(store_)) {
-    lock.emplace(store_);
-    stores.push_back(store_);
-  }
+  const StoreLock lock(store_);
+  if (fs::file_size(store_) > 0) stores.push_back(store_);
   merge_stores(stores, store_);
 }
 

@@ -1,7 +1,9 @@
 #include "sw/explore/store.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,10 +12,13 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <random>
 #include <utility>
 
 namespace stereotlm::explore {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kApplicationId = 0x53544C4D;  // "STLM"
 constexpr int kLayout = 1;
@@ -347,18 +352,66 @@ void empty_journal(const std::string& path) {
   if (checkpoint.step() && checkpoint.integer(0) != 0) database.fail(SQLITE_BUSY);
 }
 
+// A new file beside a store, that takes its place or goes. Those that processes have left which were killed go too.
+class NewFile {
+ public:
+  explicit NewFile(const std::string& store) {
+    remove_left(store);
+    std::random_device random;
+    int file = -1;
+    do {
+      path_ = fmt::format("{}{}{:08x}{:08x}", store, kMark, random(), random());
+      file = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    } while (file < 0 && errno == EEXIST);
+    if (file < 0) throw DatabaseError(fmt::format("{}: cannot be made: {}", path_, std::strerror(errno)));
+    close(file);
+  }
+  ~NewFile() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  void replace(const std::string& store) {
+    if (std::rename(path_.c_str(), store.c_str()) != 0)
+      throw DatabaseError(fmt::format("{}: cannot be replaced: {}", store, std::strerror(errno)));
+    path_.clear();
+  }
+
+ private:
+  static constexpr const char* kMark = ".merging-";  // and 16 hexadecimal digits: nobody else's name
+
+  static void remove_left(const std::string& store) {
+    const std::string begin = fs::path(store).filename().string() + kMark;
+    const fs::path folder = fs::path(store).parent_path();
+    std::error_code ignored;
+    std::vector<fs::path> left;
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+      const std::string name = entry.path().filename().string();
+      const bool is_ours = name.size() == begin.size() + 16 && name.compare(0, begin.size(), begin) == 0 &&
+                           name.find_first_not_of("0123456789abcdef", begin.size()) == std::string::npos;
+      if (is_ours) left.push_back(entry.path());
+    }
+    for (const fs::path& path : left) fs::remove(path, ignored);
+  }
+
+  std::string path_;
+};
+
 }  // namespace
 
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out) {
-  const std::string aside = out + ".new";
-  std::error_code ignored;
-  std::filesystem::remove(aside, ignored);
-  try {
-    if (std::filesystem::exists(out)) empty_journal(out);
-    std::vector<std::unique_ptr<Reader>> readers;
-    readers.reserve(inputs.size());
-    for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
-    Database database(aside, Database::Access::kCreate);
+  std::error_code none;
+  if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
+  std::vector<std::unique_ptr<Reader>> readers;
+  readers.reserve(inputs.size());
+  for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
+  NewFile file(out);
+  {
+    Database database(file.path(), Database::Access::kWrite);
     database.execute(
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA locking_mode = EXCLUSIVE");
     database.execute("BEGIN");
@@ -367,16 +420,10 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
     columns.insert(columns.begin(), kFirstColumns.begin(), kFirstColumns.end());
     copy_points(readers, database, columns);
     database.execute("COMMIT");
-  } catch (...) {
-    std::filesystem::remove(aside, ignored);
-    throw;
   }
-  for (const char* ending : {"-wal", "-shm"}) std::filesystem::remove(out + ending, ignored);
-  if (std::rename(aside.c_str(), out.c_str()) != 0) {
-    const std::string why = std::strerror(errno);
-    std::filesystem::remove(aside, ignored);
-    throw DatabaseError(fmt::format("{}: cannot be replaced: {}", out, why));
-  }
+  readers.clear();
+  for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);
+  file.replace(out);
 }
 
 }  // namespace stereotlm::explore

@@ -151,6 +151,7 @@ class Refusals(SweepTest):
         self.refused_in_one_line(self.sweep(store=self.left), f"--out {self.left}: not a database")
         self.refused_in_one_line(self.sweep(store=self.folder / "none" / "a.db"), "No such file or directory")
         self.refused_in_one_line(run("merge", self.store, self.left), f"{self.left}: not a database")
+        self.assertFalse(self.store.exists())
         self.assertEqual(self.left.read_bytes()[:2], b"P5")
 
 

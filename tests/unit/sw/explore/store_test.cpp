@@ -16,8 +16,10 @@ namespace {
 
 using test::message_of;
 using test::read_file;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kVersion = "1.2.3";
 
@@ -33,6 +35,12 @@ StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
 class StoreTest : public ::testing::Test {
  protected:
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      found.push_back(entry.path().filename().string());
+    return found;
+  }
   // The rows that a query gives, their columns joined by "|".
   static std::vector<std::string> rows(const std::string& path, const std::string& sql) {
     Database database(path, Database::Access::kRead);
@@ -190,7 +198,7 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
             }),
             file("b.db") + ": holds another result of point h1 than " + file("a.db"));
   EXPECT_FALSE(std::filesystem::exists(file("c.db")));
-  EXPECT_FALSE(std::filesystem::exists(file("c.db.new")));
+  EXPECT_THAT(names(), Not(Contains(HasSubstr("c.db"))));
   { Store(file("d.db"), kVersion).add(point("h1", 7)); }
   StoredPoint blamed = point("h1", 7);
   blamed.blame.front().cycles = 4;
@@ -231,8 +239,10 @@ TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
   }
   waitpid(child, nullptr, 0);
   ASSERT_GT(std::filesystem::file_size(file("a.db-wal")), 0U);
-  std::filesystem::create_directories(file("a.db.new/x"));  // the merge cannot write
-  EXPECT_THAT(message_of([&] { merge_stores({file("a.db")}, file("a.db")); }), HasSubstr("a.db.new: "));
+  EXPECT_THAT(message_of([&] {
+                merge_stores({file("a.db"), file("none.db")}, file("a.db"));
+              }),
+              HasSubstr("none.db: "));
   for (const char* const ending : {"-wal", "-shm"}) std::filesystem::remove(file("a.db") + ending);
   EXPECT_THAT(rows(file("a.db"), "SELECT hash FROM points ORDER BY hash"), ElementsAre("h1", "h2"));
 }
@@ -243,6 +253,30 @@ TEST_F(StoreTest, DoesNotReplaceWhatIsNoStore) {
   EXPECT_THAT(message_of([&] { merge_stores({file("a.db")}, file("notes.txt")); }),
               HasSubstr("notes.txt: not a database"));
   EXPECT_EQ(read_file(file("notes.txt")), "notes");
+}
+
+TEST_F(StoreTest, LeavesFilesOfOthersBesideIt) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  const std::vector<std::string> others = {"a.db.new", "a.db.merging-mine", "a.db.merging-0123456789abcdeX",
+                                           "b.db.merging-0123456789abcdef"};
+  for (const std::string& other : others) test::write_file(file(other), "mine");
+  merge_stores({file("a.db")}, file("a.db"));
+  for (const std::string& other : others) EXPECT_EQ(read_file(file(other)), "mine") << other;
+  EXPECT_EQ(names().size(), others.size() + 1);
+}
+
+TEST_F(StoreTest, RemovesWhatAMergeThatWasKilledHasLeft) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  test::write_file(file("a.db.merging-0123456789abcdef"), "half");
+  merge_stores({file("a.db")}, file("a.db"));
+  EXPECT_THAT(names(), ElementsAre("a.db"));
+}
+
+TEST_F(StoreTest, MergesIntoAnEmptyFile) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  test::write_file(file("b.db"), "");
+  merge_stores({file("a.db")}, file("b.db"));
+  EXPECT_THAT(rows(file("b.db"), "SELECT hash FROM points"), ElementsAre("h1"));
 }
 
 TEST_F(StoreTest, MergesOnlyWhatIsThere) {
