@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <string>
@@ -157,6 +158,21 @@ TEST_F(ShardFolderTest, KeepsThePointsOfAllShards) {
   add(file("expected.work"), "h3");
   merge_stores({file("expected.work")}, file("expected.work"));
   EXPECT_EQ(read_file(store()), read_file(file("expected.work")));
+}
+
+TEST_F(ShardFolderTest, KeepsThePointsOfManyShardsWithFewOpenFiles) {
+  constexpr int kShards = 40;
+  ShardFolder folder(store());
+  folder.lock();
+  folder.begin(three_shards());
+  for (int shard = 0; shard < kShards; ++shard)
+    add(file("shard_" + std::to_string(shard) + ".work"), "h" + std::to_string(shard));
+  rlimit files{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files), 0);
+  files.rlim_cur = 64;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
+  folder.keep_points("1");
+  EXPECT_EQ(Database(store(), Database::Access::kRead).number("SELECT count(*) FROM points"), kShards);
 }
 
 TEST_F(ShardFolderTest, DoesNotMakeAStoreOfNothing) {
