@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -99,6 +100,25 @@ TEST_F(SweepTest, GivesTheSameBytesForAnyNumberOfJobs) {
     EXPECT_EQ(counts.ok, 24U);
     EXPECT_EQ(read_file(file(store)), expected) << jobs;
   }
+}
+
+// A point ends when as many processes work as there are points.
+TEST_F(SweepTest, GivesEachWorkerItsShareAtOnce) {
+  test::write_file(file("eight.yaml"),
+                   "board: fpl2003\nvary: {matcher.disparities: [1, 2, 3, 4, 5, 6, 7, 8]}\n");
+  const std::filesystem::path at_work = file("at_work");
+  std::filesystem::create_directory(at_work);
+  const auto waits = [&at_work](const Point& point) -> Figures {
+    test::write_file(at_work / std::to_string(getpid()), "");
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < end) {
+      const std::filesystem::directory_iterator files(at_work);
+      if (std::distance(begin(files), std::filesystem::end(files)) == 8) return evaluate(point);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    throw std::runtime_error("others have nothing to do");
+  };
+  EXPECT_EQ(sweep(Plan::load(file("eight.yaml")), waits, options("a.db", 8), always).ok, 8U);
 }
 
 TEST_F(SweepTest, GivesTheSameBytesInShardsThatAreMerged) {
