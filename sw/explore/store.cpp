@@ -191,10 +191,6 @@ FinishedStore::FinishedStore(const std::string& path, const std::string& version
 
 bool FinishedStore::has(const std::string& hash) { return finds(*find_, hash); }
 
-std::uint64_t Store::size() {
-  return static_cast<std::uint64_t>(database_.number("SELECT count(*) FROM points"));
-}
-
 namespace {
 
 // Numbers inside names count as numbers: bank2 comes before bank10.

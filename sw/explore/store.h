@@ -44,7 +44,6 @@ class Store {
   bool has(const std::string& hash);
   // False if the point is there already.
   bool add(const StoredPoint& point);
-  std::uint64_t size();
 
  private:
   void create();
