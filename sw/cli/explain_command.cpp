@@ -24,6 +24,7 @@
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
+#include "sw/explore/bank_names.h"
 #include "sw/explore/batch.h"
 #include "sw/explore/knobs.h"
 #include "sw/simulation/simulate_point.h"
@@ -289,6 +290,8 @@ int explain(const ExplainOptions& options) {
   Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
+    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();
   const platform::Tables tables = tables_of(*board, calibration);
   catch_interrupts();

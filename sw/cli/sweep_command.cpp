@@ -339,7 +339,9 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
   }
   try {
     const explore::StoreLock lock(options.sweep.store);
-    const auto open_store = [&options] { explore::Store(options.sweep.store, options.sweep.version); };
+    const auto open_store = [&] {
+      explore::Store(options.sweep.store, options.sweep.version).check_banks(plan.banks());
+    };
     if (std::filesystem::file_size(options.sweep.store) > 0) open_store();
     file.write({});
     open_store();  // a new one is made when nothing else is wrong
@@ -383,6 +385,7 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
                          report::read_whole_file(files.left_lut.path),
                          report::read_whole_file(files.right_lut.path)};
   }
+  sweep.banks = plan.banks();
   sweep.version = options.sweep.version;
   sweep.points = plan.size();
   sweep.shards = std::min(options.shards, plan.size());

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "platform/value_reader.h"
 #include "platform/yaml_tree.h"
 #include "platform/yaml_values.h"
+#include "sw/explore/bank_names.h"
 #include "sw/explore/conditions.h"
 #include "sw/explore/plan.h"
 
@@ -93,6 +95,7 @@ class PlanReader {
       if (const YamlNode* sample = find(*sections, "sample")) read_sample(*sample);
     }
     if (!diagnostics_.empty()) fail();
+    plan_.banks_ = {banks_.begin(), banks_.end()};
     return std::move(plan_);
   }
 
@@ -169,11 +172,13 @@ class PlanReader {
       for (const YamlNode::Entry& entry : *entries) {
         take_path("set", entry.key);
         plan_.base_->replace(entry.key.text, entry.value, plan_.path_);
+        take_banks(entry.key, entry.value);
       }
     }
     try {
       plan_.base_board_ = plan_.base_->read();
       plan_.base_yaml_ = to_yaml(*plan_.base_board_);
+      for (const platform::BankConfig& bank : plan_.base_board_->banks) take_bank(bank.name, board->place);
     } catch (const platform::BoardError& error) {
       diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
     }
@@ -235,6 +240,25 @@ class PlanReader {
     return rule.empty() && is_new;
   }
 
+  // The names of banks that a value brings, of `ssram.banks` or of a key below.
+  void take_banks(const YamlNode& key, const YamlNode& value) {
+    static const std::string kBanks = "ssram.banks";
+    if (key.text == kBanks) {
+      for (const YamlNode::Entry& bank : value.entries) take_bank(bank.key.text, bank.key.place);
+    } else if (key.text.rfind(kBanks + '.', 0) == 0) {
+      const std::size_t begin = kBanks.size() + 1;
+      take_bank(key.text.substr(begin, key.text.find('.', begin) - begin), key.place);
+    }
+  }
+
+  // All points of a plan have their rows in one table.
+  void take_bank(const std::string& name, const Place& place) {
+    if (!banks_.insert(name).second) return;
+    for (const std::string& other : banks_) {
+      if (differ_in_case(name, other)) report(place, bank_names_problem(other, name));
+    }
+  }
+
   void read_vary(const YamlNode& node) {
     const Entries* const entries =
         read_map("vary", node, {}, "a map of keys of the board and lists or ranges of their values");
@@ -284,7 +308,10 @@ class PlanReader {
       report(section + ": " + path, node,
              "a list of values, or a range such as {from: 16, to: 128, step: 16}");
     }
-    for (const YamlNode& value : values) check_value(path, value);
+    for (const YamlNode& value : values) {
+      check_value(path, value);
+      take_banks(entry.key, value);
+    }
     return values;
   }
 
@@ -407,6 +434,7 @@ class PlanReader {
   Plan plan_;
   std::vector<Diagnostic> diagnostics_;
   std::map<std::string, Place> places_;
+  std::set<std::string> banks_;
 };
 
 Plan Plan::load(const std::string& path, const std::string& board) { return PlanReader(path, board).read(); }

@@ -142,7 +142,7 @@ void ShardFolder::empty() const {
 void ShardFolder::begin(const ShardedSweep& sweep) {
   if (fs::exists(store_)) {
     const StoreLock lock(store_);
-    { const Store checked(store_, sweep.version); }
+    Store(store_, sweep.version).check_banks(sweep.banks);
     merge_stores({store_}, store_);
   }
   empty();

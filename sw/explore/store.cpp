@@ -15,6 +15,8 @@
 #include <random>
 #include <utility>
 
+#include "sw/explore/bank_names.h"
+
 namespace stereotlm::explore {
 namespace {
 
@@ -126,6 +128,17 @@ void Store::create() {
 void Store::read_columns() {
   const std::vector<std::string> names = columns_of(database_);
   columns_ = {names.begin(), names.end()};
+}
+
+void Store::check_banks(const std::vector<std::string>& banks) const {
+  for (const std::string& bank : banks) {
+    const std::string words = fmt::format("ssram.banks.{}.words", bank);
+    for (const std::string& column : columns_) {
+      if (!differ_in_case(column, words)) continue;
+      throw DatabaseError(fmt::format("{}: its column {} differs from {} only in case: give another file",
+                                      database_.path(), column, words));
+    }
+  }
 }
 
 bool Store::has(const std::string& hash) { return finds(*find_, hash); }
@@ -291,7 +304,24 @@ class OneVersion {
   std::string path_;  // of the first that was checked
 };
 
+// That there is no column that differs from another only in case.
+void check_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
+  const auto is_less = [](const std::string& a, const std::string& b) {
+    return sqlite3_stricmp(a.c_str(), b.c_str()) < 0;
+  };
+  std::map<std::string, const Reader*, decltype(is_less)> all(is_less);
+  for (const auto& reader : readers) {
+    for (const std::string& column : reader->columns()) {
+      const auto& [name, first] = *all.emplace(column, reader.get()).first;
+      if (name == column) continue;
+      throw DatabaseError(fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix",
+                                      reader->path(), column, name, first->path()));
+    }
+  }
+}
+
 std::vector<std::string> all_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
+  check_columns(readers);
   std::set<std::string> names;
   for (const auto& reader : readers) names.insert(reader->columns().begin(), reader->columns().end());
   for (const char* first : kFirstColumns) names.erase(first);

@@ -41,6 +41,9 @@ class Store {
   Store(const std::string& path, const std::string& version,
         std::chrono::milliseconds patience = Database::kPatience);
 
+  // Throws if it has columns of a bank whose name differs from one of these only in case.
+  void check_banks(const std::vector<std::string>& banks) const;
+
   bool has(const std::string& hash);
   // False if the point is there already.
   bool add(const StoredPoint& point);

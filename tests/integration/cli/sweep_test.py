@@ -152,6 +152,30 @@ class Refusals(SweepTest):
         self.refused(run("sweep"), "PLAN: missing", "--out: missing")
         self.refused(run("merge"), "OUT: missing", "DB: missing")
 
+    def test_of_banks_whose_names_differ_only_in_case(self):
+        def board(one, other):
+            return self.file(f"{one}{other}.yaml", (
+                f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\nmatcher: {{filter: none}}\n"
+                f"ssram: {{banks: {{{one}: {{}}, {other}: {{}}}}}}\n"
+                f"allocation: {{left_image: {one}, right_image: {other}, disparity: {one}, left_lut: {other}, "
+                f"right_lut: {one}}}\n").encode())
+
+        rule = "ssram.banks = A, a: the names differ only in case"
+        twins = board("A", "a")
+        self.succeeds(run("check", twins))
+        plan = self.file("twins.yaml", f"board: {twins}\nrun: {{source: preloaded}}\n".encode())
+        self.refused(self.sweep(plan=plan), f"{plan}:1:8: {rule}")
+        self.refused_in_one_line(run("allocate", twins, "--source", "preloaded", "--banks", 2, "--out", self.store),
+                                 f"{twins}: {rule}")
+        self.refused_in_one_line(run("explain", twins, "--source", "preloaded"), f"{twins}: {rule}")
+        self.assertFalse(self.store.exists())
+        self.succeeds(self.sweep("--board", board("a", "b"), plan=plan))
+        rule = f"--out {self.store}: its column ssram.banks.a.words differs from ssram.banks.A.words only in case"
+        self.refused_in_one_line(self.sweep("--board", board("A", "b"), plan=plan), rule)
+        self.refused_in_one_line(run("allocate", board("A", "b"), "--source", "preloaded", "--banks", 2, "--out", self.store),
+                                 rule)
+        self.assertEqual(self.query("SELECT count(*) FROM points"), [(1,)])
+
     def test_of_files_that_the_progress_would_replace(self):
         link = self.folder / "link"
         link.symlink_to(self.plan)

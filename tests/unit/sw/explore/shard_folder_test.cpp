@@ -191,6 +191,19 @@ TEST_F(ShardFolderTest, DoesNotMixVersions) {
               EndsWith("a.db: holds points of version 0; this is version 1: give another file"));
 }
 
+TEST_F(ShardFolderTest, DoesNotMixBanksWhoseNamesDifferOnlyInCase) {
+  StoredPoint point;
+  point.hash = "h1";
+  point.status = "ok";
+  point.values = {{"ssram.banks.a.words", std::int64_t{1}}};
+  Store(store(), "1").add(point);
+  ShardFolder folder(store());
+  folder.lock();
+  ShardedSweep sweep = three_shards();
+  sweep.banks = {"A"};
+  EXPECT_THAT(message_of([&] { folder.begin(sweep); }), EndsWith("only in case: give another file"));
+}
+
 TEST_F(ShardFolderTest, GivesTheStoreTheFormThatManyMayRead) {
   add(store(), "h1");
   ShardFolder folder(store());

@@ -230,6 +230,28 @@ TEST_F(StoreTest, DoesNotMergePointsOfDifferentVersions) {
                 " of version 1.2.3: they do not mix");
 }
 
+TEST_F(StoreTest, HasNoColumnsThatDifferOnlyInCase) {
+  StoredPoint small = point("h1");
+  small.values = {{"ssram.banks.a.words", std::int64_t{1}}};
+  StoredPoint large = point("h2");
+  large.values = {{"ssram.banks.A.words", std::int64_t{1}}};
+  Store(file("a.db"), kVersion).add(small);
+  Store(file("b.db"), kVersion).add(large);
+  const Store store(file("a.db"), kVersion);
+  store.check_banks({"a", "b"});
+  EXPECT_EQ(message_of([&] {
+              store.check_banks({"b", "A"});
+            }),
+            file("a.db") +
+                ": its column ssram.banks.a.words differs from ssram.banks.A.words only in case: give "
+                "another file");
+  EXPECT_EQ(message_of([&] {
+              merge_stores({file("a.db"), file("b.db")}, file("c.db"));
+            }),
+            file("b.db") + ": its column ssram.banks.A.words differs from ssram.banks.a.words of " +
+                file("a.db") + " only in case: they do not mix");
+}
+
 // A process that has added a point ends at once: the point is in the journal alone. Whatever ends the merge, its
 // journal may be gone then.
 TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
