@@ -167,11 +167,12 @@ TEST_F(ShardFolderTest, KeepsThePointsOfManyShardsWithFewOpenFiles) {
   folder.begin(three_shards());
   for (int shard = 0; shard < kShards; ++shard)
     add(file("shard_" + std::to_string(shard) + ".work"), "h" + std::to_string(shard));
-  rlimit files{};
-  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &files), 0);
-  files.rlim_cur = 64;
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit few = {64, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
   folder.keep_points("1");
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_EQ(Database(store(), Database::Access::kRead).number("SELECT count(*) FROM points"), kShards);
 }
 
