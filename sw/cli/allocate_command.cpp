@@ -21,6 +21,7 @@
 #include "sw/cli/version.h"
 #include "sw/explore/allocation_run.h"
 #include "sw/explore/allocation_search.h"
+#include "sw/explore/bank_names.h"
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"
 #include "sw/explore/sweep.h"
@@ -270,6 +271,8 @@ int allocate(const AllocateOptions& options) {
   Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
+    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   if (board && *options.banks > static_cast<int>(board->banks.size())) {
     problems.add(fmt::format("--banks = {}: must be 1..{}, the banks of the board", *options.banks,
                              board->banks.size()));
@@ -295,9 +298,11 @@ int allocate(const AllocateOptions& options) {
     refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", *options.banks,
                        search.placements(), fewest_text(*board, *options.banks, run)));
   }
+  std::vector<std::string> names;
+  for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
   try {
     const explore::StoreLock lock(sweep.store);
-    const explore::Store store(sweep.store, sweep.version);
+    explore::Store(sweep.store, sweep.version).check_banks(names);
   } catch (const explore::DatabaseError& error) {
     refuse(fmt::format("--out {}", error.what()));
   }

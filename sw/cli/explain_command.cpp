@@ -25,6 +25,7 @@
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
+#include "sw/explore/bank_names.h"
 #include "sw/explore/batch.h"
 #include "sw/explore/knobs.h"
 #include "sw/simulation/simulate_point.h"
@@ -291,6 +292,8 @@ int explain(const ExplainOptions& options) {
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
   temporary_folder(problems);  // there can be one
+  if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
+    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();
   const platform::Tables tables = tables_of(*board, calibration);
   catch_interrupts();

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +29,7 @@ struct MergeOptions {
 
 int merge(const MergeOptions& options) {
   try {
-    std::optional<explore::StoreLock> lock;
-    if (std::filesystem::exists(options.out.text)) lock.emplace(options.out.text);
+    const explore::StoreLock lock(options.out.text);
     explore::merge_stores(options.inputs.text, options.out.text);
   } catch (const explore::DatabaseError& error) {
     refuse(error.what());

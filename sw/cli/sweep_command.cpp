@@ -68,6 +68,26 @@ constexpr const char* kFooter =
     "DB; it waits, and submits again what is lost. The machines share the file system of DB and of this\n"
     "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
 
+// Also of files that are not there yet.
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code none;
+  if (std::filesystem::equivalent(a, b, none)) return true;
+  const auto whole = [&none](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path), none);
+  };
+  return whole(a) == whole(b);
+}
+
+// Whether it is one of --progress, or empty.
+bool is_counts_file(const std::string& path) {
+  try {
+    const std::string text = report::read_whole_file(path);
+    return text.empty() || text == explore::counts_text(explore::read_counts(text));
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
 struct SweepCommandOptions {
   Typed plan;
   Typed out;
@@ -133,10 +153,27 @@ struct SweepCommandOptions {
                                        {&progress, "--progress"}}) {
       if (option->is_given() && option->text.empty()) problems.add(fmt::format("{}: empty", name));
     }
+    if (!progress.text.empty()) check_progress(problems);
     problems.check();
   }
 
  private:
+  // It replaces the file: that must be none of a user's.
+  void check_progress(Problems& problems) {
+    for (const auto& [file, name] : {std::pair{&out, "--out"}, {&plan, "PLAN"}, {&known, "--known"}}) {
+      if (file->text.empty() || !is_same_file(progress.text, file->text)) continue;
+      problems.add(fmt::format("--progress = {}: is the file of {}", progress.text, name));
+      return;
+    }
+    std::error_code none;
+    if (std::filesystem::exists(progress.text, none) && !is_counts_file(progress.text)) {
+      problems.add(
+          fmt::format("--progress = {}: is there, and not as a file of --progress: remove it, or give "
+                      "another file",
+                      progress.text));
+    }
+  }
+
   void check_launcher(Problems& problems) {
     const auto refuse_given = [&problems](bool is_given, const char* name, const char* rule) {
       if (is_given) problems.add(fmt::format("{}: {}", name, rule));
@@ -294,18 +331,22 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
                const std::optional<CalibrationInput>& calibration) {
   ProgressFile file(options.progress.text);
   try {
-    const explore::StoreLock lock(options.sweep.store);
-    const explore::Store store(options.sweep.store, options.sweep.version);
-  } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--out {}", error.what()));
-  }
-  try {
     if (!options.sweep.known.empty()) {
       const explore::FinishedStore known(options.sweep.known, options.sweep.version);
     }
-    file.write({});
   } catch (const explore::DatabaseError& error) {
     refuse(fmt::format("--known {}", error.what()));
+  }
+  try {
+    const explore::StoreLock lock(options.sweep.store);
+    const auto open_store = [&] {
+      explore::Store(options.sweep.store, options.sweep.version).check_banks(plan.banks());
+    };
+    if (std::filesystem::file_size(options.sweep.store) > 0) open_store();
+    file.write({});
+    open_store();  // a new one is made when nothing else is wrong
+  } catch (const explore::DatabaseError& error) {
+    refuse(fmt::format("--out {}", error.what()));
   } catch (const std::system_error& error) {
     refuse(fmt::format("--progress {}: {}", options.progress.text, error.code().message()));
   }
@@ -344,6 +385,7 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
                          report::read_whole_file(files.left_lut.path),
                          report::read_whole_file(files.right_lut.path)};
   }
+  sweep.banks = plan.banks();
   sweep.version = options.sweep.version;
   sweep.points = plan.size();
   sweep.shards = std::min(options.shards, plan.size());

@@ -10,6 +10,7 @@
 #include "models/kernels/filter_kernel.h"
 #include "platform/board_keys.h"
 #include "platform/board_rules.h"
+#include "sw/explore/bank_names.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -106,7 +107,9 @@ class Steps {
   // A new bank is like the one that its buffer comes from.
   void add_banks_more() {
     std::string name = "new_bank";
-    const auto is_name = [&](const BankConfig& bank) { return bank.name == name; };
+    const auto is_name = [&](const BankConfig& bank) {
+      return bank.name == name || differ_in_case(bank.name, name);
+    };
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
     for (const Buffer& buffer : platform::buffers(board_.allocation)) {
       if (buffers_in(buffer.bank) < 2) continue;

@@ -33,6 +33,8 @@ class Plan : public Points {
   const std::vector<std::string>& conditions() const override { return conditions_; }
   // Paths that vary, in the order of the file.
   std::vector<std::string> varied() const;
+  // Of the banks of all points.
+  const std::vector<std::string>& banks() const { return banks_; }
   const std::string& path() const { return path_; }
   const std::string& board() const { return board_; }  // a preset, or the path of a board file
 
@@ -77,6 +79,7 @@ class Plan : public Points {
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
   std::string base_yaml_;
+  std::vector<std::string> banks_;
   PointRun run_;
   std::vector<Axis> axes_;  // the last varies fastest
   std::uint64_t product_ = 1;

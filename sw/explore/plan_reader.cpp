@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +15,7 @@
 #include "platform/value_reader.h"
 #include "platform/yaml_tree.h"
 #include "platform/yaml_values.h"
+#include "sw/explore/bank_names.h"
 #include "sw/explore/conditions.h"
 #include "sw/explore/plan.h"
 
@@ -27,6 +30,7 @@ namespace {
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 62U;
 constexpr std::uint64_t kMostFrames = 1'000'000;
 constexpr std::int64_t kMostValues = 1'000'000;  // of one key
+constexpr int kMostRangeDigits = 18;             // of a number of a range, written with all its places
 
 // A decimal number as an integer and a number of digits behind the point.
 struct Decimal {
@@ -47,6 +51,11 @@ std::optional<Decimal> decimal(const YamlNode& node) {
   if (text.size() > kMostDigits) return std::nullopt;
   value.digits = std::stoll(text);
   return value;
+}
+
+// How many digits it has if it is written with so many places.
+int digits_with(const Decimal& value, int places) {
+  return static_cast<int>(std::to_string(std::abs(value.digits)).size()) + places - value.places;
 }
 
 void scale(Decimal& value, int places) {
@@ -86,6 +95,7 @@ class PlanReader {
       if (const YamlNode* sample = find(*sections, "sample")) read_sample(*sample);
     }
     if (!diagnostics_.empty()) fail();
+    plan_.banks_ = {banks_.begin(), banks_.end()};
     return std::move(plan_);
   }
 
@@ -162,11 +172,13 @@ class PlanReader {
       for (const YamlNode::Entry& entry : *entries) {
         take_path("set", entry.key);
         plan_.base_->replace(entry.key.text, entry.value, plan_.path_);
+        take_banks(entry.key, entry.value);
       }
     }
     try {
       plan_.base_board_ = plan_.base_->read();
       plan_.base_yaml_ = to_yaml(*plan_.base_board_);
+      for (const platform::BankConfig& bank : plan_.base_board_->banks) take_bank(bank.name, board->place);
     } catch (const platform::BoardError& error) {
       diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
     }
@@ -228,6 +240,25 @@ class PlanReader {
     return rule.empty() && is_new;
   }
 
+  // The names of banks that a value brings, of `ssram.banks` or of a key below.
+  void take_banks(const YamlNode& key, const YamlNode& value) {
+    static const std::string kBanks = "ssram.banks";
+    if (key.text == kBanks) {
+      for (const YamlNode::Entry& bank : value.entries) take_bank(bank.key.text, bank.key.place);
+    } else if (key.text.rfind(kBanks + '.', 0) == 0) {
+      const std::size_t begin = kBanks.size() + 1;
+      take_bank(key.text.substr(begin, key.text.find('.', begin) - begin), key.place);
+    }
+  }
+
+  // All points of a plan have their rows in one table.
+  void take_bank(const std::string& name, const Place& place) {
+    if (!banks_.insert(name).second) return;
+    for (const std::string& other : banks_) {
+      if (differ_in_case(name, other)) report(place, bank_names_problem(other, name));
+    }
+  }
+
   void read_vary(const YamlNode& node) {
     const Entries* const entries =
         read_map("vary", node, {}, "a map of keys of the board and lists or ranges of their values");
@@ -277,7 +308,10 @@ class PlanReader {
       report(section + ": " + path, node,
              "a list of values, or a range such as {from: 16, to: 128, step: 16}");
     }
-    for (const YamlNode& value : values) check_value(path, value);
+    for (const YamlNode& value : values) {
+      check_value(path, value);
+      take_banks(entry.key, value);
+    }
     return values;
   }
 
@@ -300,10 +334,11 @@ class PlanReader {
 
   std::vector<YamlNode> range_of(const std::string& name, const YamlNode& node) {
     if (read_map(name, node, {"from", "to", "step"}, "a range") == nullptr) return {};
-    std::array<Decimal, 3> numbers;
+    constexpr std::array kKeys = {"from", "to", "step"};
+    std::array<Decimal, kKeys.size()> numbers;
     int places = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const char* const key = std::array{"from", "to", "step"}[i];
+      const char* const key = kKeys[i];
       constexpr const char* kRule = "a decimal number of at most 15 digits";
       const YamlNode::Entry* const entry = node.find(key);
       if (entry == nullptr) {
@@ -317,6 +352,14 @@ class PlanReader {
       }
       numbers[i] = *number;
       places = std::max(places, number->places);
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (digits_with(numbers[i], places) > kMostRangeDigits) {
+        report(fmt::format("{}.{}", name, kKeys[i]), node.find(kKeys[i])->value,
+               fmt::format("at most {} digits, with the {} decimal places that the range has",
+                           kMostRangeDigits, places));
+        return {};
+      }
     }
     for (Decimal& number : numbers) scale(number, places);
     const auto& [from, to, step] = numbers;
@@ -391,6 +434,7 @@ class PlanReader {
   Plan plan_;
   std::vector<Diagnostic> diagnostics_;
   std::map<std::string, Place> places_;
+  std::set<std::string> banks_;
 };
 
 Plan Plan::load(const std::string& path, const std::string& board) { return PlanReader(path, board).read(); }

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -120,16 +119,17 @@ bool ShardFolder::is_of(const ShardedSweep& sweep) const { return text_of(file(k
 void ShardFolder::keep_points(const std::string& version) {
   std::vector<std::string> stores;
   for (const auto& entry : fs::directory_iterator(path_)) {
-    const std::string path = entry.path().string();
-    if (entry.path().extension() == ".work") const Store completed(path, version);
-    if (entry.path().extension() == ".work" || entry.path().extension() == ".db") stores.push_back(path);
+    const fs::path ending = entry.path().extension();
+    if (ending == ".work" || ending == ".db") stores.push_back(entry.path().string());
   }
   if (stores.empty()) return;
-  std::optional<StoreLock> lock;
-  if (fs::exists(store_)) {
-    lock.emplace(store_);
-    stores.push_back(store_);
+  for (const std::string& path : stores) {
+    if (fs::path(path).extension() != ".work") continue;
+    { const Store completed(path, version); }
+    merge_stores({path}, path);  // without a journal, which would take two more open files than it does
   }
+  const StoreLock lock(store_);
+  if (fs::file_size(store_) > 0) stores.push_back(store_);
   merge_stores(stores, store_);
 }
 
@@ -142,7 +142,7 @@ void ShardFolder::empty() const {
 void ShardFolder::begin(const ShardedSweep& sweep) {
   if (fs::exists(store_)) {
     const StoreLock lock(store_);
-    { const Store checked(store_, sweep.version); }
+    Store(store_, sweep.version).check_banks(sweep.banks);
     merge_stores({store_}, store_);
   }
   empty();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "sw/explore/sweep_counts.h"
 
@@ -19,6 +20,7 @@ struct ShardedSweep {
     std::string right_lut;
   };
   std::optional<Calibration> calibration;  // the bytes of its files; nothing: tables are the identity
+  std::vector<std::string> banks;          // of all points
   std::string version;                     // of the program
   std::uint64_t points = 0;
   std::uint64_t shards = 1;

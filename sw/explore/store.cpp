@@ -1,7 +1,9 @@
 #include "sw/explore/store.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,16 +12,22 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <random>
 #include <utility>
+
+#include "sw/explore/bank_names.h"
 
 namespace stereotlm::explore {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kApplicationId = 0x53544C4D;  // "STLM"
 constexpr int kLayout = 2;
 
 // The columns that every database has, in front.
 constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
+constexpr int kVersionColumn = 3;
 constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 
 void create_tables(Database& database, const std::vector<std::string>& further_columns) {
@@ -143,6 +151,17 @@ void Store::read_columns() {
   columns_ = {names.begin(), names.end()};
 }
 
+void Store::check_banks(const std::vector<std::string>& banks) const {
+  for (const std::string& bank : banks) {
+    const std::string words = fmt::format("ssram.banks.{}.words", bank);
+    for (const std::string& column : columns_) {
+      if (!differ_in_case(column, words)) continue;
+      throw DatabaseError(fmt::format("{}: its column {} differs from {} only in case: give another file",
+                                      database_.path(), column, words));
+    }
+  }
+}
+
 bool Store::has(const std::string& hash) { return finds(*find_, hash); }
 
 bool Store::add(const StoredPoint& point) {
@@ -212,10 +231,6 @@ FinishedStore::FinishedStore(const std::string& path, const std::string& version
 
 bool FinishedStore::has(const std::string& hash) { return finds(*find_, hash); }
 
-std::uint64_t Store::size() {
-  return static_cast<std::uint64_t>(database_.number("SELECT count(*) FROM points"));
-}
-
 namespace {
 
 // Numbers inside names count as numbers: bank2 comes before bank10.
@@ -261,6 +276,7 @@ class Reader {
   const std::vector<std::string>& keys() const { return keys_; }  // those of the columns that are
   bool at_end() const { return !has_point_; }
   const std::string& hash() const { return hash_; }
+  std::string version() const { return points_->text(kVersionColumn); }
   void next() {
     has_point_ = points_->step();
     hash_ = has_point_ ? points_->text(0) : "";
@@ -300,7 +316,42 @@ std::string whole_text(Reader& reader, const std::vector<std::string>& columns) 
   return text;
 }
 
+// That all points are of one.
+class OneVersion {
+ public:
+  void check(const Reader& reader) {
+    if (path_.empty()) {
+      version_ = reader.version();
+      path_ = reader.path();
+    }
+    if (reader.version() == version_) return;
+    throw DatabaseError(fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix",
+                                    reader.path(), reader.version(), path_, version_));
+  }
+
+ private:
+  std::string version_;
+  std::string path_;  // of the first that was checked
+};
+
+// That there is no column that differs from another only in case.
+void check_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
+  const auto is_less = [](const std::string& a, const std::string& b) {
+    return sqlite3_stricmp(a.c_str(), b.c_str()) < 0;
+  };
+  std::map<std::string, const Reader*, decltype(is_less)> all(is_less);
+  for (const auto& reader : readers) {
+    for (const std::string& column : reader->columns()) {
+      const auto& [name, first] = *all.emplace(column, reader.get()).first;
+      if (name == column) continue;
+      throw DatabaseError(fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix",
+                                      reader->path(), column, name, first->path()));
+    }
+  }
+}
+
 std::vector<std::string> all_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
+  check_columns(readers);
   std::set<std::string> names;
   for (const auto& reader : readers) names.insert(reader->columns().begin(), reader->columns().end());
   for (const char* first : kFirstColumns) names.erase(first);
@@ -320,16 +371,18 @@ void copy_points(std::vector<std::unique_ptr<Reader>>& readers, Database& out,
                  const std::vector<std::string>& columns) {
   Statement insert(out, insert_sql(columns));
   Statement insert_blame(out, kInsertBlame);
-  std::string version;
+  OneVersion version;
   for (;;) {
     Reader* first = nullptr;
     for (const auto& reader : readers) {
       if (!reader->at_end() && (first == nullptr || reader->hash() < first->hash())) first = reader.get();
     }
     if (first == nullptr) return;
+    version.check(*first);
     const std::string hash = first->hash();
     for (const auto& reader : readers) {
       if (reader.get() == first || reader->at_end() || reader->hash() != hash) continue;
+      version.check(*reader);
       if (whole_text(*reader, columns) != whole_text(*first, columns)) {
         throw DatabaseError(
             fmt::format("{}: holds another result of point {} than {}", reader->path(), hash, first->path()));
@@ -361,18 +414,66 @@ void empty_journal(const std::string& path) {
   if (checkpoint.step() && checkpoint.integer(0) != 0) database.fail(SQLITE_BUSY);
 }
 
+// A new file beside a store, that takes its place or goes. Those that processes have left which were killed go too.
+class NewFile {
+ public:
+  explicit NewFile(const std::string& store) {
+    remove_left(store);
+    std::random_device random;
+    int file = -1;
+    do {
+      path_ = fmt::format("{}{}{:08x}{:08x}", store, kMark, random(), random());
+      file = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    } while (file < 0 && errno == EEXIST);
+    if (file < 0) throw DatabaseError(fmt::format("{}: cannot be made: {}", path_, std::strerror(errno)));
+    close(file);
+  }
+  ~NewFile() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  void replace(const std::string& store) {
+    if (std::rename(path_.c_str(), store.c_str()) != 0)
+      throw DatabaseError(fmt::format("{}: cannot be replaced: {}", store, std::strerror(errno)));
+    path_.clear();
+  }
+
+ private:
+  static constexpr const char* kMark = ".merging-";  // and 16 hexadecimal digits: nobody else's name
+
+  static void remove_left(const std::string& store) {
+    const std::string begin = fs::path(store).filename().string() + kMark;
+    const fs::path folder = fs::path(store).parent_path();
+    std::error_code ignored;
+    std::vector<fs::path> left;
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+      const std::string name = entry.path().filename().string();
+      const bool is_ours = name.size() == begin.size() + 16 && name.compare(0, begin.size(), begin) == 0 &&
+                           name.find_first_not_of("0123456789abcdef", begin.size()) == std::string::npos;
+      if (is_ours) left.push_back(entry.path());
+    }
+    for (const fs::path& path : left) fs::remove(path, ignored);
+  }
+
+  std::string path_;
+};
+
 }  // namespace
 
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out) {
-  const std::string aside = out + ".new";
-  std::error_code ignored;
-  std::filesystem::remove(aside, ignored);
-  try {
-    if (std::filesystem::exists(out)) empty_journal(out);
-    std::vector<std::unique_ptr<Reader>> readers;
-    readers.reserve(inputs.size());
-    for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
-    Database database(aside, Database::Access::kCreate);
+  std::error_code none;
+  if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
+  std::vector<std::unique_ptr<Reader>> readers;
+  readers.reserve(inputs.size());
+  for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
+  NewFile file(out);
+  {
+    Database database(file.path(), Database::Access::kWrite);
     database.execute(
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA locking_mode = EXCLUSIVE");
     database.execute("BEGIN");
@@ -382,16 +483,10 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
     copy_keys(readers, database);
     copy_points(readers, database, columns);
     database.execute("COMMIT");
-  } catch (...) {
-    std::filesystem::remove(aside, ignored);
-    throw;
   }
-  for (const char* ending : {"-wal", "-shm"}) std::filesystem::remove(out + ending, ignored);
-  if (std::rename(aside.c_str(), out.c_str()) != 0) {
-    const std::string why = std::strerror(errno);
-    std::filesystem::remove(aside, ignored);
-    throw DatabaseError(fmt::format("{}: cannot be replaced: {}", out, why));
-  }
+  readers.clear();
+  for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);
+  file.replace(out);
 }
 
 }  // namespace stereotlm::explore

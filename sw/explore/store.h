@@ -43,10 +43,12 @@ class Store {
   Store(const std::string& path, const std::string& version,
         std::chrono::milliseconds patience = Database::kPatience);
 
+  // Throws if it has columns of a bank whose name differs from one of these only in case.
+  void check_banks(const std::vector<std::string>& banks) const;
+
   bool has(const std::string& hash);
   // False if the point is there already.
   bool add(const StoredPoint& point);
-  std::uint64_t size();
 
  private:
   void create();
@@ -78,7 +80,7 @@ class FinishedStore {
 // Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their
 // hashes: its bytes depend on nothing but the points. `out` may be one of the inputs; it is replaced when the
 // new file is whole and on the disk; nobody else may write to it (see StoreLock). An `out` that is there and is
-// not a file of a Store is an error. Throws DatabaseError, also if two inputs hold different results of one point, or of
+// neither empty nor a file of a Store is an error. Throws DatabaseError, also if two inputs hold different results of one point, or of
 // different versions.
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out);
 

@@ -18,7 +18,20 @@ namespace {
 constexpr off_t kPlace = off_t{1} << 61;
 constexpr std::chrono::milliseconds kBetweenTries{20};
 
-enum class Outcome { kLocked, kBusy, kReplaced };
+enum class Outcome { kLocked, kBusy, kReplaced, kFailed };
+
+// Whether the open file is the one that has that name.
+bool is_of(int file, const std::string& name) {
+  struct stat opened = {};
+  struct stat there = {};
+  const bool is_there = fstat(file, &opened) == 0 && stat(name.c_str(), &there) == 0;
+  return is_there && opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+}
+
+bool is_empty(int file) {
+  struct stat opened = {};
+  return fstat(file, &opened) == 0 && opened.st_size == 0;
+}
 
 // Of an open file description: closing another descriptor of the file does not end it, as it would a lock of
 // the process.
@@ -29,27 +42,23 @@ Outcome try_lock(int file, const std::string& store) {
   range.l_start = kPlace;
   range.l_len = 1;
   if (fcntl(file, F_OFD_SETLK, &range) != 0) {
-    if (errno == EAGAIN || errno == EACCES) return Outcome::kBusy;
-    throw DatabaseError(fmt::format("{}: cannot be locked: {}", store, std::strerror(errno)));
+    return errno == EAGAIN || errno == EACCES ? Outcome::kBusy : Outcome::kFailed;
   }
-  struct stat locked = {};
-  struct stat there = {};
-  const bool is_there = fstat(file, &locked) == 0 && stat(store.c_str(), &there) == 0;
-  return is_there && locked.st_dev == there.st_dev && locked.st_ino == there.st_ino ? Outcome::kLocked
-                                                                                    : Outcome::kReplaced;
+  return is_of(file, store) ? Outcome::kLocked : Outcome::kReplaced;
 }
 
 }  // namespace
 
-StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patience) {
+StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patience) : store_(store) {
   const auto end = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    file_ = open(store.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file_ < 0)
-      throw DatabaseError(fmt::format("{}: cannot be opened to write: {}", store, std::strerror(errno)));
+    open_store();
     const Outcome outcome = try_lock(file_, store);
     if (outcome == Outcome::kLocked) return;
+    const int error = errno;
     close(file_);
+    if (outcome == Outcome::kFailed)
+      throw DatabaseError(fmt::format("{}: cannot be locked: {}", store, std::strerror(error)));
     if (std::chrono::steady_clock::now() >= end)
       throw DatabaseError(store +
                           ": another process is at work on it: wait for its end, or give another file");
@@ -57,6 +66,18 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patienc
   }
 }
 
-StoreLock::~StoreLock() { close(file_); }
+void StoreLock::open_store() {
+  constexpr mode_t kMode = 0644;
+  file_ = open(store_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  is_made_ = file_ >= 0;
+  if (file_ < 0 && errno == EEXIST) file_ = open(store_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+  if (file_ < 0)
+    throw DatabaseError(fmt::format("{}: cannot be opened to write: {}", store_, std::strerror(errno)));
+}
+
+StoreLock::~StoreLock() {
+  if (is_made_ && is_empty(file_) && is_of(file_, store_)) unlink(store_.c_str());
+  close(file_);
+}
 
 }  // namespace stereotlm::explore

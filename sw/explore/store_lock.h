@@ -13,14 +13,19 @@ class StoreLock {
   // For how long it waits: processes of a sweep that was killed take a moment to end.
   static constexpr std::chrono::milliseconds kPatience{3000};
 
-  // The file is made, empty, if it is not there. Throws DatabaseError.
+  // The file is made, empty, if it is not there; it goes with the lock if nothing has come of it. Throws
+  // DatabaseError.
   explicit StoreLock(const std::string& store, std::chrono::milliseconds patience = kPatience);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;
   StoreLock& operator=(const StoreLock&) = delete;
 
  private:
+  void open_store();
+
+  std::string store_;
   int file_ = -1;
+  bool is_made_ = false;  // by this lock
 };
 
 }  // namespace stereotlm::explore

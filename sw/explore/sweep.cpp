@@ -49,8 +49,8 @@ class Sweep {
     {  // What is wrong with the file is said once.
       const Store made(options_.store, options_.version, options_.patience);
     }
-    const std::uint64_t jobs = std::min<std::uint64_t>(options_.jobs, counts_.total);
-    for (std::uint64_t job = 0; job < jobs; ++job) start_worker(job);
+    workers_.resize(std::min<std::uint64_t>(options_.jobs, counts_.total));
+    for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
     while (is_busy()) {
       if (!go_on(counts_)) shared_.stop() = true;
       wait();
@@ -68,7 +68,6 @@ class Sweep {
   }
 
   void start_worker(std::size_t place) {
-    if (place >= workers_.size()) workers_.resize(place + 1);
     workers_[place] = std::make_unique<Worker>(points_, evaluate_, options_, shared_);
     give_order(*workers_[place]);
   }
@@ -113,7 +112,10 @@ class Sweep {
     WorkOrder order = worker.order();
     if (++deaths_[order.first] == kMostDeaths) {
       deaths_.erase(order.first);
-      fail(order.first, fmt::format("its process has ended with {}, {} times", worker.death(), kMostDeaths));
+      fail(order.first,
+           fmt::format("its process has {}, {} times: to try again, delete this row and give the "
+                       "same command",
+                       worker.death(), kMostDeaths));
       order.first += order.step;
       --order.count;
     }

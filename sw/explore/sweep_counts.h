@@ -16,7 +16,6 @@ struct SweepCounts {
   std::uint64_t given_up = 0;  // nothing of them is kept
 
   std::uint64_t done() const { return excluded + known + ok + impossible + failed + given_up; }
-  std::uint64_t ran() const { return ok + failed; }
   void add(const SweepCounts& other);
 };
 

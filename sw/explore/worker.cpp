@@ -1,17 +1,12 @@
 #include "sw/explore/worker.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -23,35 +18,6 @@
 
 namespace stereotlm::explore {
 namespace {
-
-[[noreturn]] void throw_errno(const char* what) {
-  throw std::system_error(errno, std::generic_category(), what);
-}
-
-// False at the end, or if the other side is gone.
-bool read_all(int from, void* bytes, std::size_t count) {
-  char* next = static_cast<char*>(bytes);
-  while (count > 0) {
-    const ssize_t got = read(from, next, count);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    next += got;
-    count -= static_cast<std::size_t>(got);
-  }
-  return true;
-}
-
-bool write_all(int to, const void* bytes, std::size_t count) {
-  const char* next = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t written = write(to, next, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    next += written;
-    count -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
 
 // What a worker tells: the end of a point, or of itself with a text.
 struct Report {
@@ -78,6 +44,8 @@ StoredPoint row_of(const Point& point) {
   row.keys = point.values;
   return row;
 }
+
+constexpr int kOutOfMemory = 75;  // the exit status of a worker
 
 // The work itself, in the process of the worker.
 class PointRunner {
@@ -112,6 +80,8 @@ class PointRunner {
         throw;
       } catch (const std::system_error&) {
         throw;
+      } catch (const std::bad_alloc&) {
+        throw;
       } catch (const std::exception& error) {
         end = PointEnd::kFailed;
         row = failed_point(point, error.what());
@@ -130,10 +100,9 @@ class PointRunner {
   std::optional<FinishedStore> known_;
 };
 
-[[noreturn]] void be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-                            const SharedState& shared, pid_t parent, int from, int to) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it has ended before that
+// Its exit status.
+int be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
+              const SharedState& shared, int from, int to) {
   // A terminal's Ctrl-C goes to all processes; the one that hands out the work decides what it means.
   signal(SIGINT, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
@@ -144,21 +113,23 @@ class PointRunner {
     while (read_all(from, &order, sizeof order)) {
       for (std::uint64_t i = 0; i < order.count; ++i) {
         report.end = shared.stop() ? PointEnd::kNotBegun : runner.run(order.first + i * order.step);
-        if (!write_all(to, &report, sizeof report)) _exit(1);
+        if (!write_all(to, &report, sizeof report)) return 1;
       }
     }
-    _exit(0);
+    return 0;
   } catch (const EndedBySignal& error) {
     signal(error.signal(), SIG_DFL);
     raise(error.signal());
-    _exit(1);  // a signal that does not end it
+    return 1;  // a signal that does not end it
+  } catch (const std::bad_alloc&) {
+    return kOutOfMemory;
   } catch (const std::exception& error) {
     const std::string text = error.what();
     report.is_failure = true;
     report.text_bytes = static_cast<std::uint32_t>(text.size());
     write_all(to, &report, sizeof report);
     write_all(to, text.data(), text.size());
-    _exit(1);
+    return 1;
   }
 }
 
@@ -172,55 +143,37 @@ StoredPoint failed_point(const Point& point, const std::string& reason) {
 }
 
 Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-               const SharedState& shared) {
-  std::array<int, 2> orders{};
-  std::array<int, 2> reports{};
-  if (pipe2(orders.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
-  if (pipe2(reports.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
-  const pid_t parent = getpid();
-  std::fflush(nullptr);  // or both processes would write what is in the buffers
-  pid_ = fork();
-  if (pid_ < 0) throw_errno("fork");
-  if (pid_ == 0) {
-    close(orders[1]);
-    close(reports[0]);
-    be_worker(points, evaluate, options, shared, parent, orders[0], reports[1]);
-  }
-  close(orders[0]);
-  close(reports[1]);
-  to_ = orders[1];
-  from_ = reports[0];
-}
-
-Worker::~Worker() {
-  close(to_);
-  close(from_);
-  if (pid_ < 0) return;
-  kill(pid_, SIGKILL);
-  while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+               const SharedState& shared)
+    : process_([&] {
+        orders_.close_write_end();
+        reports_.close_read_end();
+        return be_worker(points, evaluate, options, shared, orders_.read_end(), reports_.write_end());
+      }) {
+  orders_.close_read_end();
+  reports_.close_write_end();
 }
 
 void Worker::send(const WorkOrder& order) {
   order_ = order;
-  write_all(to_, &order, sizeof order);  // if it is dead, receive() says so
+  write_all(orders_.write_end(), &order, sizeof order);  // if it is dead, receive() says so
 }
 
 std::optional<PointEnd> Worker::receive() {
   Report report;
-  if (!read_all(from_, &report, sizeof report)) {
-    int status = 0;
-    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  if (!read_all(descriptor(), &report, sizeof report)) {
+    const int status = process_.wait();
+    if (WIFSIGNALED(status)) {
+      death_ = fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    } else if (WEXITSTATUS(status) == kOutOfMemory) {
+      death_ = "run out of memory";
+    } else {
+      death_ = fmt::format("ended with exit status {}", WEXITSTATUS(status));
     }
-    pid_ = -1;
-    death_ = WIFSIGNALED(status)
-                 ? fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                 : fmt::format("exit status {}", WEXITSTATUS(status));
     return std::nullopt;
   }
   if (report.is_failure) {
     std::string text(report.text_bytes, '\0');
-    read_all(from_, text.data(), text.size());
+    read_all(descriptor(), text.data(), text.size());
     throw std::runtime_error(text);
   }
   order_.first += order_.step;

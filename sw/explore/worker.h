@@ -1,11 +1,10 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "sw/explore/child_process.h"
 #include "sw/explore/points.h"
 #include "sw/explore/shared_state.h"
 #include "sw/explore/store.h"
@@ -32,25 +31,21 @@ class Worker {
   // Forks. Throws std::system_error.
   Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
          const SharedState& shared);
-  // Ends it if it still works.
-  ~Worker();
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
 
   void send(const WorkOrder& order);
   // That has not been told of yet; count 0: idle.
   const WorkOrder& order() const { return order_; }
 
-  int descriptor() const { return from_; }  // readable when there is something to receive()
+  int descriptor() const { return reports_.read_end(); }  // readable when there is something to receive()
   // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with
   // what it could not go on for.
   std::optional<PointEnd> receive();
-  std::string death() const { return death_; }
+  std::string death() const { return death_; }  // "ended with signal 9 (Killed)"
 
  private:
-  pid_t pid_ = -1;
-  int to_ = -1;
-  int from_ = -1;
+  Pipe orders_;
+  Pipe reports_;
+  ChildProcess process_;
   WorkOrder order_;
   std::string death_;
 };

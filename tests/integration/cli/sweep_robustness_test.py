@@ -32,6 +32,7 @@ run: {source: camera, frames: 60}
 vary: {matcher.disparities: [10, 20, 30, 40]}
 """
 SLOW_POINTS = 4
+MERGING = r"\.merging-[0-9a-f]{16}"  # behind the name of the file that a merge writes
 
 
 def of_plain_user():
@@ -95,8 +96,8 @@ class FullDisk(RobustnessTest):
             process = self.sweep_on(size, "--jobs", 2)
             if process.returncode == 0:
                 break
-            self.assertRegex(process.stderr, r"points\.db(\.new)?: the disk is full")
-            self.assertNotIn(".new", " ".join(path.name for path in self.disk.iterdir()))
+            self.assertRegex(process.stderr, rf"points\.db({MERGING})?: the disk is full")
+            self.assertNotIn(".merging", " ".join(path.name for path in self.disk.iterdir()))
             if process.returncode == 2:
                 full_at_begin += 1
             else:
@@ -117,7 +118,8 @@ class FullDisk(RobustnessTest):
         self.succeeds(self.sweep())
         before = self.store.read_bytes()
         process = self.on_disk_of(len(before) * 3 // 2, "merge", self.store, self.store)
-        self.refused_in_one_line(process, f"{self.store}.new: the disk is full")
+        self.refused_in_one_line(process)
+        self.assertRegex(process.stderr, rf"points\.db{MERGING}: the disk is full")
         self.assertTrue(self.store.read_bytes() == before)
         self.assertEqual([path.name for path in self.disk.iterdir()], ["points.db"])
 
@@ -127,7 +129,8 @@ class FullDisk(RobustnessTest):
         more = self.file("more.yaml", PLAN.replace("to: 40", "to: 41").encode())
         room = len(expected) * 9 // 5
         process = self.on_disk_of(room, "sweep", more, "--out", self.store)
-        self.fails(process, f"{self.store}.new: the disk is full; what is done is kept")
+        self.fails(process)
+        self.assertRegex(process.stderr, rf"points\.db{MERGING}: the disk is full; what is done is kept")
         self.assertEqual(self.points(), POINTS + 1)
         self.finished(self.expected(more), more)
 
@@ -180,6 +183,27 @@ class LockedDatabase(RobustnessTest):
         connection.execute("ROLLBACK")
         connection.close()
         self.finished(before)
+
+    def test_by_a_merge_into_it_is_said_at_once(self):
+        """Also where the merge is the first to write to it. It waits for the database that it reads."""
+        self.succeeds(self.sweep())
+        before = self.store.read_bytes()
+        connection = self.lock("BEGIN EXCLUSIVE")
+        merged = self.folder / "merged.db"
+        process = subprocess.Popen([program.PROGRAM, "merge", str(merged), str(self.store)],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        end = time.monotonic() + 30
+        while not merged.exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        rule = f"{merged}: another process is at work on it: wait for its end, or give another file"
+        self.refused_in_one_line(run("merge", merged, self.left), rule)
+        self.refused_in_one_line(self.sweep(store=merged), f"--out {rule}")
+        connection.execute("ROLLBACK")
+        connection.close()
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, errors)
+        self.assertTrue(merged.read_bytes() == before)
 
     def test_by_another_sweep_is_said_at_once(self):
         slow = self.file("slow.yaml", SLOW.replace("60", "60000").encode())
@@ -284,7 +308,8 @@ class Killed(RobustnessTest):
         self.assertEqual(process.returncode, 0, errors)
         self.assertGreaterEqual(kills, 3 * SLOW_POINTS)
         self.assertIn(f"{SLOW_POINTS} points: 0 ok, 0 impossible, {SLOW_POINTS} failed\n", out)
-        reason = "its process has ended with signal 9 (Killed), 3 times"
+        reason = ("its process has ended with signal 9 (Killed), 3 times: to try again, delete this row and give the "
+                  "same command")
         self.assertIn(f"  {SLOW_POINTS} failed: {reason}\n", out)
         rows = self.query('SELECT reason, config, "matcher.disparities" FROM points WHERE status = \'failed\' ORDER BY 3')
         self.assertEqual([row[2] for row in rows], [10, 20, 30, 40])

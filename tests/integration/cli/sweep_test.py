@@ -102,10 +102,13 @@ class Sweep(SweepTest):
         self.assertEqual(list(self.folder.glob("*.db-*")), [])
 
     def test_keeps_a_file_with_its_progress(self):
-        progress = self.file("progress", b"of an earlier sweep")
-        self.succeeds(self.sweep("--progress", progress))
-        self.assertEqual(progress.read_text(),
-                         f"total {POINTS}\nexcluded 0\nknown 0\nok {POINTS - IMPOSSIBLE}\nimpossible {IMPOSSIBLE}\nfailed 0\ngiven_up 0\n")
+        progress = self.folder / "progress"
+        for known in (0, POINTS):  # the second time it replaces its file
+            self.succeeds(self.sweep("--progress", progress))
+            new = POINTS - IMPOSSIBLE, IMPOSSIBLE
+            ok, impossible = new if known == 0 else (0, 0)
+            self.assertEqual(progress.read_text(), f"total {POINTS}\nexcluded 0\nknown {known}\nok {ok}\n"
+                                                   f"impossible {impossible}\nfailed 0\ngiven_up 0\n")
 
     def test_of_another_board_than_the_plan_names(self):
         board = self.file("board.yaml", b"extends: fpl2003\nfpga: {clock_mhz: 50}\n")
@@ -139,18 +142,67 @@ class Refusals(SweepTest):
         self.refused_in_one_line(self.sweep("--launcher", "pbs"), "--launcher = pbs: must be local or slurm")
         self.refused_in_one_line(self.sweep("--known", self.left), f"--known {self.left}: not a database")
         self.refused_in_one_line(self.sweep("--known", self.folder / "none.db"), "--known ", "No such file or directory")
+        self.assertFalse(self.store.exists(), "nothing was to be made")
         none = self.folder / "none" / "progress"
         self.refused_in_one_line(self.sweep("--progress", none), f"--progress {none}: No such file or directory")
+        self.assertFalse(self.store.exists(), "nothing was to be made")
         self.refused(self.sweep("--board", "fpl2004"), "fpl2004: not a preset")
         self.refused(self.sweep("--known", "", "--progress", "", "--board", ""), "--known: empty", "--progress: empty",
                      "--board: empty")
         self.refused(run("sweep"), "PLAN: missing", "--out: missing")
         self.refused(run("merge"), "OUT: missing", "DB: missing")
 
+    def test_of_banks_whose_names_differ_only_in_case(self):
+        def board(one, other):
+            return self.file(f"{one}{other}.yaml", (
+                f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\nmatcher: {{filter: none}}\n"
+                f"ssram: {{banks: {{{one}: {{}}, {other}: {{}}}}}}\n"
+                f"allocation: {{left_image: {one}, right_image: {other}, disparity: {one}, left_lut: {other}, "
+                f"right_lut: {one}}}\n").encode())
+
+        rule = "ssram.banks = A, a: the names differ only in case"
+        twins = board("A", "a")
+        self.succeeds(run("check", twins))
+        plan = self.file("twins.yaml", f"board: {twins}\nrun: {{source: preloaded}}\n".encode())
+        self.refused(self.sweep(plan=plan), f"{plan}:1:8: {rule}")
+        self.refused_in_one_line(run("allocate", twins, "--source", "preloaded", "--banks", 2, "--out", self.store),
+                                 f"{twins}: {rule}")
+        self.refused_in_one_line(run("explain", twins, "--source", "preloaded"), f"{twins}: {rule}")
+        self.assertFalse(self.store.exists())
+        self.succeeds(self.sweep("--board", board("a", "b"), plan=plan))
+        rule = f"--out {self.store}: its column ssram.banks.a.words differs from ssram.banks.A.words only in case"
+        self.refused_in_one_line(self.sweep("--board", board("A", "b"), plan=plan), rule)
+        self.refused_in_one_line(run("allocate", board("A", "b"), "--source", "preloaded", "--banks", 2, "--out", self.store),
+                                 rule)
+        self.assertEqual(self.query("SELECT count(*) FROM points"), [(1,)])
+
+    def test_of_files_that_the_progress_would_replace(self):
+        link = self.folder / "link"
+        link.symlink_to(self.plan)
+        (self.folder / "sub").mkdir()
+        around = self.folder / "sub" / ".." / "points.db"
+        for path, name in ((self.store, "--out"), (around, "--out"), (self.plan, "PLAN"), (link, "PLAN")):
+            self.refused_in_one_line(self.sweep("--progress", path), f"--progress = {path}: is the file of {name}")
+        self.assertFalse(self.store.exists())
+        self.succeeds(self.sweep())
+        before = self.store.read_bytes()
+        more = self.folder / "more.db"
+        self.refused_in_one_line(self.sweep("--known", self.store, "--progress", self.store, store=more),
+                                 f"--progress = {self.store}: is the file of --known")
+        notes = self.file("notes", b"ok 3\nand more\n")
+        for path in (notes, self.left, self.store, self.folder, "/dev/null"):
+            self.refused_in_one_line(self.sweep("--progress", path, store=more),
+                                     f"--progress = {path}: is there, and not as a file of --progress: ")
+        self.assertFalse(more.exists())
+        self.assertEqual(notes.read_bytes(), b"ok 3\nand more\n")
+        self.assertEqual(self.plan.read_text(), PLAN)
+        self.assertEqual(self.store.read_bytes(), before)
+
     def test_of_databases(self):
         self.refused_in_one_line(self.sweep(store=self.left), f"--out {self.left}: not a database")
         self.refused_in_one_line(self.sweep(store=self.folder / "none" / "a.db"), "No such file or directory")
         self.refused_in_one_line(run("merge", self.store, self.left), f"{self.left}: not a database")
+        self.assertFalse(self.store.exists())
         self.assertEqual(self.left.read_bytes()[:2], b"P5")
 
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/board_yaml.h"
+#include "sw/explore/bank_names.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -121,6 +122,16 @@ TEST(KnobSteps, GiveABufferThatSharesItsBankANewOne) {
   ASSERT_EQ(step.board.banks.size(), 9U);
   EXPECT_EQ(step.board.banks[8].turnaround_cycles, 3);
   EXPECT_THAT(step.board.allocation.disparity, ElementsAre(step.board.banks[8].name, "bank5"));
+}
+
+TEST(KnobSteps, GiveNoBankANameThatDiffersFromAnotherOnlyInCase) {
+  const BoardConfig shared =
+      board_with({"ssram.banks={New_Bank: {}, b: {words: 1048576}}", "allocation.left_image=New_Bank",
+                  "allocation.right_image=b", "allocation.disparity=b", "allocation.left_lut=b",
+                  "allocation.right_lut=b"});
+  const std::vector<KnobStep> steps = steps_of("a bank more", shared);
+  ASSERT_FALSE(steps.empty());
+  for (const KnobStep& step : steps) EXPECT_EQ(bank_names_problem(step.board), std::nullopt);
 }
 
 TEST(KnobSteps, MoveAllBuffersOfABankIntoAnother) {

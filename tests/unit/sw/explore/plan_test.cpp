@@ -261,6 +261,23 @@ TEST(PlanRefusals, AreForEachValueThatNoOtherKeyCanMakeRight) {
       ElementsAre(HasSubstr("ssram.banks.b.size = 3: unknown key"), ": the plan would have 2 points"));
 }
 
+TEST(PlanRefusals, AreForBanksWhoseNamesDifferOnlyInCase) {
+  const std::string rule = ": the names differ only in case: a database could not tell their columns apart";
+  EXPECT_THAT(refusals(kBoard + "set: {ssram.banks.BANK3.words: 4}\n"),
+              ElementsAre(":1:8: ssram.banks = BANK3, bank3" + rule));
+  EXPECT_THAT(refusals(kBoard + "vary: {ssram.banks.Bank0.words: [1, 2]}\n"),
+              ElementsAre(":2:8: ssram.banks = bank0, Bank0" + rule, ": the plan would have 2 points"));
+  EXPECT_THAT(refusals(kBoard + "vary: {ssram.banks: [{one: {}}, {two: {}, One: {}}]}\n"),
+              ElementsAre(":2:43: ssram.banks = one, One" + rule, ": the plan would have 2 points"));
+}
+
+TEST(Plan, NamesTheBanksOfAllItsPoints) {
+  EXPECT_THAT(
+      plan_of("board: fpl2003\nvary: {ssram.banks: [{one: {}}, {two: {}}], ssram.default.words: [1, 2]}\n")
+          .banks(),
+      ElementsAre("bank0", "bank1", "bank2", "bank3", "bank4", "bank5", "bank6", "bank7", "one", "two"));
+}
+
 TEST(PlanRefusals, AreForKeysGivenTwice) {
   EXPECT_THAT(refusals(kBoard + "set: {matcher.window: 3}\nvary: {matcher.window: [5]}\n"),
               ElementsAre(HasSubstr(":3:8: vary: matcher.window: given before, at 2:7")));
@@ -282,6 +299,19 @@ TEST(PlanRefusals, AreForRangesThatDoNotEnd) {
               HasSubstr("vary: matcher.disparities.from = x: a decimal number of at most 15 digits"));
   EXPECT_THAT(refusals(kBoard + "vary: {matcher.disparities: {from: 1, to: 4}}\n").front(),
               HasSubstr("vary: matcher.disparities.step: missing: a decimal number"));
+}
+
+TEST(PlanRefusals, AreForRangesWhoseNumbersDoNotFit) {
+  EXPECT_THAT(
+      refusals(kBoard + "vary: {fpga.clock_mhz: {from: 1844677, to: 1844677, step: 0.0000000000001}}\n"),
+      ElementsAre(":2:31: vary: fpga.clock_mhz.from = 1844677: at most 18 digits, with the 13 decimal places "
+                  "that the range has"));
+  EXPECT_THAT(refusals(kBoard + "vary: {fpga.clock_mhz: {from: 0, to: 100000, step: 0.0000000000001}}\n"),
+              ElementsAre(HasSubstr(":2:38: vary: fpga.clock_mhz.to = 100000: at most 18 digits")));
+  EXPECT_EQ(
+      plan_of(kBoard + "vary: {fpga.clock_mhz: {from: 99.9999999999999, to: 100, step: 0.0000000000001}}\n")
+          .size(),
+      2U);
 }
 
 TEST(PlanRefusals, AreForCalibrationsThatAreNoFile) {

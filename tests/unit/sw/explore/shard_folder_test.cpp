@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <string>
@@ -159,6 +160,22 @@ TEST_F(ShardFolderTest, KeepsThePointsOfAllShards) {
   EXPECT_EQ(read_file(store()), read_file(file("expected.work")));
 }
 
+TEST_F(ShardFolderTest, KeepsThePointsOfManyShardsWithFewOpenFiles) {
+  constexpr int kShards = 40;
+  ShardFolder folder(store());
+  folder.lock();
+  folder.begin(three_shards());
+  for (int shard = 0; shard < kShards; ++shard)
+    add(file("shard_" + std::to_string(shard) + ".work"), "h" + std::to_string(shard));
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit few = {64, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  folder.keep_points("1");
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(Database(store(), Database::Access::kRead).number("SELECT count(*) FROM points"), kShards);
+}
+
 TEST_F(ShardFolderTest, DoesNotMakeAStoreOfNothing) {
   ShardFolder folder(store());
   folder.lock();
@@ -173,6 +190,19 @@ TEST_F(ShardFolderTest, DoesNotMixVersions) {
   folder.lock();
   EXPECT_THAT(message_of([&] { folder.begin(three_shards()); }),
               EndsWith("a.db: holds points of version 0; this is version 1: give another file"));
+}
+
+TEST_F(ShardFolderTest, DoesNotMixBanksWhoseNamesDifferOnlyInCase) {
+  StoredPoint point;
+  point.hash = "h1";
+  point.status = "ok";
+  point.keys = {{"ssram.banks.a.words", std::int64_t{1}}};
+  Store(store(), "1").add(point);
+  ShardFolder folder(store());
+  folder.lock();
+  ShardedSweep sweep = three_shards();
+  sweep.banks = {"A"};
+  EXPECT_THAT(message_of([&] { folder.begin(sweep); }), EndsWith("only in case: give another file"));
 }
 
 TEST_F(ShardFolderTest, GivesTheStoreTheFormThatManyMayRead) {

@@ -83,6 +83,27 @@ TEST_F(StoreLockTest, IsOfTheFileThatIsThere) {
   EXPECT_THAT(refusal(), EndsWith("give another file"));
 }
 
+TEST_F(StoreLockTest, LeavesNoEmptyFileThatItHasMade) {
+  { const StoreLock lock(store()); }
+  EXPECT_FALSE(std::filesystem::exists(store()));
+  {
+    const StoreLock lock(store());
+    test::write_file(store(), "points");
+  }
+  EXPECT_TRUE(std::filesystem::exists(store()));
+  test::write_file(store(), "");
+  { const StoreLock lock(store()); }
+  EXPECT_TRUE(std::filesystem::exists(store())) << "somebody else has made it";
+}
+
+TEST_F(StoreLockTest, LeavesAFileThatHasTakenThePlaceOfItsOwn) {
+  {
+    const StoreLock lock(store());
+    std::filesystem::rename(test::write_file(store() + ".new", ""), store());
+  }
+  EXPECT_TRUE(std::filesystem::exists(store()));
+}
+
 TEST_F(StoreLockTest, SaysWhyItCannotBe) {
   EXPECT_EQ(message_of([&] { const StoreLock lock(store() + "/none.db"); }),
             store() + "/none.db: cannot be opened to write: No such file or directory");

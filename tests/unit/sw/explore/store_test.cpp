@@ -16,8 +16,10 @@ namespace {
 
 using test::message_of;
 using test::read_file;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kVersion = "1.2.3";
 
@@ -34,6 +36,12 @@ StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
 class StoreTest : public ::testing::Test {
  protected:
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      found.push_back(entry.path().filename().string());
+    return found;
+  }
   // The rows that a query gives, their columns joined by "|".
   static std::vector<std::string> rows(const std::string& path, const std::string& sql) {
     Database database(path, Database::Access::kRead);
@@ -47,6 +55,9 @@ class StoreTest : public ::testing::Test {
     }
     return found;
   }
+  static std::vector<std::string> hashes(const std::string& path) {
+    return rows(path, "SELECT hash FROM points ORDER BY hash");
+  }
 
  private:
   test::ScratchFolder folder_;
@@ -58,7 +69,7 @@ TEST_F(StoreTest, KeepsARowForEachPoint) {
     EXPECT_FALSE(store.has("h1"));
     EXPECT_TRUE(store.add(point("h1")));
     EXPECT_TRUE(store.has("h1"));
-    EXPECT_EQ(store.size(), 1U);
+    EXPECT_THAT(hashes(file("a.db")), ElementsAre("h1"));
   }
   EXPECT_THAT(rows(file("a.db"),
                    "SELECT hash, status, reason, version, config, \"image.width\", cycles, rate FROM points"),
@@ -96,7 +107,7 @@ TEST_F(StoreTest, MayBeAddedToFromSeveralConnections) {
   two.add(wide);
   one.add(point("h5"));
   EXPECT_TRUE(two.has("h5"));
-  EXPECT_EQ(two.size(), 5U);
+  EXPECT_THAT(hashes(file("a.db")), ElementsAre("h1", "h2", "h3", "h4", "h5"));
   EXPECT_THAT(rows(file("a.db"), "SELECT name FROM keys"), ElementsAre("image.width", "new"));
 }
 
@@ -204,7 +215,7 @@ TEST_F(StoreTest, IsContinuedAfterItWasMerged) {
   Store store(file("a.db"), kVersion);
   EXPECT_FALSE(store.add(point("h1")));
   EXPECT_TRUE(store.add(point("h0")));
-  EXPECT_EQ(store.size(), 2U);
+  EXPECT_THAT(hashes(file("a.db")), ElementsAre("h0", "h1"));
 }
 
 TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
@@ -215,7 +226,7 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
             }),
             file("b.db") + ": holds another result of point h1 than " + file("a.db"));
   EXPECT_FALSE(std::filesystem::exists(file("c.db")));
-  EXPECT_FALSE(std::filesystem::exists(file("c.db.new")));
+  EXPECT_THAT(names(), Not(Contains(HasSubstr("c.db"))));
   { Store(file("d.db"), kVersion).add(point("h1", 7)); }
   StoredPoint blamed = point("h1", 7);
   blamed.blame.front().cycles = 4;
@@ -224,6 +235,46 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
                 merge_stores({file("d.db"), file("e.db")}, file("c.db"));
               }),
               HasSubstr("another result of point h1"));
+}
+
+TEST_F(StoreTest, DoesNotMergePointsOfDifferentVersions) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  for (const char* const hash : {"h0", "h1", "h2"}) {
+    const std::string other = file(std::string(hash) + ".db");
+    { Store(other, "1.2.4").add(point(hash)); }
+    const std::string text = message_of([&] { merge_stores({file("a.db"), other}, file("c.db")); });
+    EXPECT_THAT(text, HasSubstr(": they do not mix")) << hash;
+    EXPECT_THAT(text, HasSubstr(other));
+    EXPECT_THAT(text, HasSubstr("version 1.2.4"));
+    EXPECT_FALSE(std::filesystem::exists(file("c.db")));
+  }
+  EXPECT_EQ(message_of([&] {
+              merge_stores({file("a.db"), file("h2.db")}, file("c.db"));
+            }),
+            file("h2.db") + ": holds points of version 1.2.4, and " + file("a.db") +
+                " of version 1.2.3: they do not mix");
+}
+
+TEST_F(StoreTest, HasNoColumnsThatDifferOnlyInCase) {
+  StoredPoint small = point("h1");
+  small.keys = {{"ssram.banks.a.words", std::int64_t{1}}};
+  StoredPoint large = point("h2");
+  large.keys = {{"ssram.banks.A.words", std::int64_t{1}}};
+  Store(file("a.db"), kVersion).add(small);
+  Store(file("b.db"), kVersion).add(large);
+  const Store store(file("a.db"), kVersion);
+  store.check_banks({"a", "b"});
+  EXPECT_EQ(message_of([&] {
+              store.check_banks({"b", "A"});
+            }),
+            file("a.db") +
+                ": its column ssram.banks.a.words differs from ssram.banks.A.words only in case: give "
+                "another file");
+  EXPECT_EQ(message_of([&] {
+              merge_stores({file("a.db"), file("b.db")}, file("c.db"));
+            }),
+            file("b.db") + ": its column ssram.banks.A.words differs from ssram.banks.a.words of " +
+                file("a.db") + " only in case: they do not mix");
 }
 
 // A process that has added a point ends at once: the point is in the journal alone. Whatever ends the merge, its
@@ -238,8 +289,10 @@ TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
   }
   waitpid(child, nullptr, 0);
   ASSERT_GT(std::filesystem::file_size(file("a.db-wal")), 0U);
-  std::filesystem::create_directories(file("a.db.new/x"));  // the merge cannot write
-  EXPECT_THAT(message_of([&] { merge_stores({file("a.db")}, file("a.db")); }), HasSubstr("a.db.new: "));
+  EXPECT_THAT(message_of([&] {
+                merge_stores({file("a.db"), file("none.db")}, file("a.db"));
+              }),
+              HasSubstr("none.db: "));
   for (const char* const ending : {"-wal", "-shm"}) std::filesystem::remove(file("a.db") + ending);
   EXPECT_THAT(rows(file("a.db"), "SELECT hash FROM points ORDER BY hash"), ElementsAre("h1", "h2"));
 }
@@ -250,6 +303,30 @@ TEST_F(StoreTest, DoesNotReplaceWhatIsNoStore) {
   EXPECT_THAT(message_of([&] { merge_stores({file("a.db")}, file("notes.txt")); }),
               HasSubstr("notes.txt: not a database"));
   EXPECT_EQ(read_file(file("notes.txt")), "notes");
+}
+
+TEST_F(StoreTest, LeavesFilesOfOthersBesideIt) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  const std::vector<std::string> others = {"a.db.new", "a.db.merging-mine", "a.db.merging-0123456789abcdeX",
+                                           "b.db.merging-0123456789abcdef"};
+  for (const std::string& other : others) test::write_file(file(other), "mine");
+  merge_stores({file("a.db")}, file("a.db"));
+  for (const std::string& other : others) EXPECT_EQ(read_file(file(other)), "mine") << other;
+  EXPECT_EQ(names().size(), others.size() + 1);
+}
+
+TEST_F(StoreTest, RemovesWhatAMergeThatWasKilledHasLeft) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  test::write_file(file("a.db.merging-0123456789abcdef"), "half");
+  merge_stores({file("a.db")}, file("a.db"));
+  EXPECT_THAT(names(), ElementsAre("a.db"));
+}
+
+TEST_F(StoreTest, MergesIntoAnEmptyFile) {
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  test::write_file(file("b.db"), "");
+  merge_stores({file("a.db")}, file("b.db"));
+  EXPECT_THAT(rows(file("b.db"), "SELECT hash FROM points"), ElementsAre("h1"));
 }
 
 TEST_F(StoreTest, MergesOnlyWhatIsThere) {

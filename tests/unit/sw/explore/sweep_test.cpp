@@ -9,7 +9,9 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -100,6 +102,25 @@ TEST_F(SweepTest, GivesTheSameBytesForAnyNumberOfJobs) {
   }
 }
 
+// A point ends when as many processes work as there are points.
+TEST_F(SweepTest, GivesEachWorkerItsShareAtOnce) {
+  test::write_file(file("eight.yaml"),
+                   "board: fpl2003\nvary: {matcher.disparities: [1, 2, 3, 4, 5, 6, 7, 8]}\n");
+  const std::filesystem::path at_work = file("at_work");
+  std::filesystem::create_directory(at_work);
+  const auto waits = [&at_work](const Point& point) -> Figures {
+    test::write_file(at_work / std::to_string(getpid()), "");
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < end) {
+      const std::filesystem::directory_iterator files(at_work);
+      if (std::distance(begin(files), std::filesystem::end(files)) == 8) return evaluate(point);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    throw std::runtime_error("others have nothing to do");
+  };
+  EXPECT_EQ(sweep(Plan::load(file("eight.yaml")), waits, options("a.db", 8), always).ok, 8U);
+}
+
 TEST_F(SweepTest, GivesTheSameBytesInShardsThatAreMerged) {
   const std::string expected = reference();
   for (const std::uint64_t shards : {2U, 7U, 61U}) {
@@ -140,7 +161,7 @@ TEST_F(SweepTest, DoesNotRunAPointThatIsThere) {
   const auto never = [](const Point& /*point*/) -> Figures { std::abort(); };
   const SweepCounts counts = sweep(plan(), never, options("a.db"), always);
   EXPECT_EQ(counts.known, 45U);
-  EXPECT_EQ(counts.ran(), 0U);
+  EXPECT_EQ(counts.ok + counts.failed, 0U);
   EXPECT_EQ(read_file(file("a.db")), reference());
 }
 
@@ -208,6 +229,8 @@ TEST_F(SweepTest, ReplacesAWorkerThatDies) {
   EXPECT_EQ(read_file(file("a.db")), expected);
 }
 
+const std::string kAgain = ": to try again, delete this row and give the same command";
+
 // Of 60 points 6 have a board and the window 9.
 TEST_F(SweepTest, MakesARowOfEachPointWhoseWorkersDieAgainAndAgain) {
   const auto dies = [](const Point& point) -> Figures {
@@ -222,7 +245,8 @@ TEST_F(SweepTest, MakesARowOfEachPointWhoseWorkersDieAgainAndAgain) {
     EXPECT_EQ(counts.failed, 12U);
     Database database(file(store), Database::Access::kWrite);
     const std::string killed =
-        "status = 'failed' AND reason = 'its process has ended with signal 9 (Killed), 3 times'";
+        "status = 'failed' AND reason = 'its process has ended with signal 9 (Killed), 3 times" + kAgain +
+        "'";
     EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND " + killed), 6);
     EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE " + killed), 6);
     database.execute("DELETE FROM points WHERE " + killed);
@@ -246,7 +270,27 @@ TEST_F(SweepTest, TakesTheEndOfAProcessOfEvaluateForThatOfTheWorker) {
   EXPECT_EQ(counts.ok, 18U);
   Database database(file("a.db"), Database::Access::kRead);
   EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND reason = "
-                            "'its process has ended with signal 11 (Segmentation fault), 3 times'"),
+                            "'its process has ended with signal 11 (Segmentation fault), 3 times" +
+                            kAgain + "'"),
+            6);
+}
+
+TEST_F(SweepTest, TriesAgainWhereMemoryWasShort) {
+  const std::string once = file("short");
+  const auto runs_out = [&once](const Point& point) {
+    if (point.board->matcher.window == 9) throw std::bad_alloc();
+    if (!std::filesystem::exists(once)) {
+      test::write_file(once, "");
+      throw std::bad_alloc();
+    }
+    return evaluate(point);
+  };
+  const SweepCounts counts = sweep(plan(), runs_out, options("a.db"), always);
+  EXPECT_EQ(counts.ok, 18U);
+  Database database(file("a.db"), Database::Access::kRead);
+  EXPECT_EQ(database.number("SELECT count(*) FROM points WHERE \"matcher.window\" = 9 AND reason = "
+                            "'its process has run out of memory, 3 times" +
+                            kAgain + "'"),
             6);
 }
 

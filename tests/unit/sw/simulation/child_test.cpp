@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sys/time.h>
 #include <sys/types.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,9 +13,11 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <new>
 #include <stdexcept>
 #include <string>
 
+#include "sw/explore/child_process.h"
 #include "sw/explore/ended_by_signal.h"
 
 namespace stereotlm::simulation {
@@ -131,6 +135,32 @@ TEST(Child, TellsTheSignalApartFromAFailure) {
 TEST(Child, NamesTheStatusWithWhichItEndedTooEarly) {
   Child child([](const Child::Tell& /*tell*/) { _exit(3); });
   EXPECT_EQ(failure_of(child), "the process ended with status 3 before its work was done");
+}
+
+TEST(Child, HandsOnThatMemoryWasShort) {
+  Child child([](const Child::Tell& /*tell*/) { throw std::bad_alloc(); });
+  EXPECT_THROW(child.next(), std::bad_alloc);
+}
+
+pid_t forker = 0;
+
+void wait_until_it_has_ended() {
+  while (getppid() == forker) usleep(1000);
+}
+
+TEST(Child, DoesNotBeginIfTheOtherProcessHasEndedBefore) {
+  explore::Pipe told;
+  const pid_t other = fork();
+  if (other == 0) {
+    forker = getpid();
+    pthread_atfork(nullptr, nullptr, wait_until_it_has_ended);
+    const Child child([&](const Child::Tell& /*tell*/) { explore::write_all(told.write_end(), "", 1); });
+    _exit(0);
+  }
+  told.close_write_end();
+  ASSERT_EQ(waitpid(other, nullptr, 0), other);
+  char byte = 0;
+  EXPECT_FALSE(explore::read_all(told.read_end(), &byte, 1)) << "it has worked for nobody";
 }
 
 TEST(Child, IsGoneWhenItIsDestroyed) {
