@@ -48,7 +48,8 @@ int flags_of(Database::Access access) {
 }  // namespace
 
 Database::Database(const std::string& path, Access access, std::chrono::milliseconds patience) : path_(path) {
-  const int code = sqlite3_open_v2(path.c_str(), &handle_, flags_of(access), nullptr);
+  // Of one thread each.
+  const int code = sqlite3_open_v2(path.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) {
     const std::string text =
         fmt::format("{}: {}", path, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));

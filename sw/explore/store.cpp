@@ -27,7 +27,6 @@ constexpr int kLayout = 2;
 
 // The columns that every database has, in front.
 constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
-constexpr int kVersionColumn = 3;
 constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 
 void create_tables(Database& database, const std::vector<std::string>& further_columns) {
@@ -268,6 +267,8 @@ class Reader {
     points_.emplace(database_, "SELECT * FROM points ORDER BY hash");
     blame_.emplace(database_, fmt::format("SELECT {} FROM blame WHERE hash = ? ORDER BY hash, port, bank, by",
                                           kBlameColumns));
+    all_blame_.emplace(database_,
+                       fmt::format("SELECT {} FROM blame ORDER BY hash, port, bank, by", kBlameColumns));
     next();
   }
 
@@ -276,17 +277,24 @@ class Reader {
   const std::vector<std::string>& keys() const { return keys_; }  // those of the columns that are
   bool at_end() const { return !has_point_; }
   const std::string& hash() const { return hash_; }
-  std::string version() const { return points_->text(kVersionColumn); }
+  std::vector<std::string> versions() const {  // of its points
+    return names_of(database_, "SELECT DISTINCT version FROM points ORDER BY version");
+  }
   void next() {
     has_point_ = points_->step();
     hash_ = has_point_ ? points_->text(0) : "";
   }
   const Statement& point() const { return *points_; }
-  Statement& blame() {
+  Statement& blame() {  // of the point
     blame_->reset();
     blame_->bind(1, hash_);
     return *blame_;
   }
+  // A row of all blame, point after point.
+  void next_blame() { has_blame_ = all_blame_->step(); }
+  bool has_blame() const { return has_blame_; }
+  const Statement& all_blame() const { return *all_blame_; }
+  std::string blame_hash() const { return all_blame_->text(0); }
 
  private:
   Database database_;
@@ -294,7 +302,9 @@ class Reader {
   std::vector<std::string> keys_;
   std::optional<Statement> points_;
   std::optional<Statement> blame_;
+  std::optional<Statement> all_blame_;
   bool has_point_ = false;
+  bool has_blame_ = false;
   std::string hash_;
 };
 
@@ -316,23 +326,22 @@ std::string whole_text(Reader& reader, const std::vector<std::string>& columns) 
   return text;
 }
 
-// That all points are of one.
-class OneVersion {
- public:
-  void check(const Reader& reader) {
-    if (path_.empty()) {
-      version_ = reader.version();
-      path_ = reader.path();
+// That all points are of one version.
+void check_versions(const std::vector<std::unique_ptr<Reader>>& readers) {
+  const Reader* first = nullptr;
+  std::string of_first;
+  for (const auto& reader : readers) {
+    for (const std::string& version : reader->versions()) {
+      if (first == nullptr) {
+        first = reader.get();
+        of_first = version;
+      }
+      if (version == of_first) continue;
+      throw DatabaseError(fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix",
+                                      reader->path(), version, first->path(), of_first));
     }
-    if (reader.version() == version_) return;
-    throw DatabaseError(fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix",
-                                    reader.path(), reader.version(), path_, version_));
   }
-
- private:
-  std::string version_;
-  std::string path_;  // of the first that was checked
-};
+}
 
 // That there is no column that differs from another only in case.
 void check_columns(const std::vector<std::unique_ptr<Reader>>& readers) {
@@ -366,23 +375,29 @@ void copy_keys(const std::vector<std::unique_ptr<Reader>>& readers, Database& ou
   for (const std::string& key : keys) insert_key(out, key);
 }
 
+// Where each column of a reader lies among these.
+std::vector<int> places_of(const Reader& reader, const std::vector<std::string>& columns) {
+  std::vector<int> places;
+  for (const std::string& column : reader.columns())
+    places.push_back(static_cast<int>(std::find(columns.begin(), columns.end(), column) - columns.begin()));
+  return places;
+}
+
 // Copies all points, each once.
 void copy_points(std::vector<std::unique_ptr<Reader>>& readers, Database& out,
                  const std::vector<std::string>& columns) {
   Statement insert(out, insert_sql(columns));
-  Statement insert_blame(out, kInsertBlame);
-  OneVersion version;
+  std::map<const Reader*, std::vector<int>> places;
+  for (const auto& reader : readers) places.emplace(reader.get(), places_of(*reader, columns));
   for (;;) {
     Reader* first = nullptr;
     for (const auto& reader : readers) {
       if (!reader->at_end() && (first == nullptr || reader->hash() < first->hash())) first = reader.get();
     }
     if (first == nullptr) return;
-    version.check(*first);
     const std::string hash = first->hash();
     for (const auto& reader : readers) {
       if (reader.get() == first || reader->at_end() || reader->hash() != hash) continue;
-      version.check(*reader);
       if (whole_text(*reader, columns) != whole_text(*first, columns)) {
         throw DatabaseError(
             fmt::format("{}: holds another result of point {} than {}", reader->path(), hash, first->path()));
@@ -390,20 +405,44 @@ void copy_points(std::vector<std::unique_ptr<Reader>>& readers, Database& out,
       reader->next();
     }
     insert.clear_bindings();
-    for (std::size_t i = 0; i < first->columns().size(); ++i) {
-      const auto place = std::find(columns.begin(), columns.end(), first->columns()[i]) - columns.begin();
-      insert.bind_column(static_cast<int>(place) + 1, first->point(), static_cast<int>(i));
-    }
+    int column = 0;
+    for (const int place : places.at(first)) insert.bind_column(place + 1, first->point(), column++);
     insert.run();
-    Statement& blame = first->blame();
-    while (blame.step()) {
-      for (int column = 0; column < blame.columns(); ++column)
-        insert_blame.bind_column(column + 1, blame, column);
-      insert_blame.run();
-    }
-    blame.reset();
     first->next();
   }
+}
+
+// Copies the blame of all points, behind them.
+void copy_blame(std::vector<std::unique_ptr<Reader>>& readers, Database& out) {
+  Statement insert(out, kInsertBlame);
+  for (const auto& reader : readers) reader->next_blame();
+  for (;;) {
+    Reader* first = nullptr;
+    for (const auto& reader : readers) {
+      if (reader->has_blame() && (first == nullptr || reader->blame_hash() < first->blame_hash()))
+        first = reader.get();
+    }
+    if (first == nullptr) return;
+    const std::string hash = first->blame_hash();
+    for (; first->has_blame() && first->blame_hash() == hash; first->next_blame()) {
+      for (int i = 0; i < first->all_blame().columns(); ++i) insert.bind_column(i + 1, first->all_blame(), i);
+      insert.run();
+    }
+    for (const auto& reader : readers) {  // it is the same, as the points are
+      while (reader->has_blame() && reader->blame_hash() == hash) reader->next_blame();
+    }
+  }
+}
+
+// Both, of the one store that is attached as `input`.
+void copy_attached(Database& out, const std::vector<std::string>& columns) {
+  std::string names;
+  for (const std::string& column : columns) names += (names.empty() ? "" : ", ") + quoted_name(column);
+  out.execute(
+      fmt::format("INSERT INTO main.points({}) SELECT {} FROM input.points ORDER BY hash", names, names));
+  out.execute(
+      fmt::format("INSERT INTO main.blame({0}) SELECT {0} FROM input.blame ORDER BY hash, port, bank, by",
+                  kBlameColumns));
 }
 
 // Brings all that its journal holds into the file itself: the journal can go then, whatever follows.
@@ -471,17 +510,28 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
   std::vector<std::unique_ptr<Reader>> readers;
   readers.reserve(inputs.size());
   for (const std::string& input : inputs) readers.push_back(std::make_unique<Reader>(input));
+  check_versions(readers);
   NewFile file(out);
   {
     Database database(file.path(), Database::Access::kWrite);
     database.execute(
-        "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA locking_mode = EXCLUSIVE");
+        "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
+    if (inputs.size() == 1) {
+      Statement attach(database, "ATTACH ? AS input");
+      attach.bind(1, inputs.front());
+      attach.run();
+    }
     database.execute("BEGIN");
     std::vector<std::string> columns = all_columns(readers);
     create_tables(database, columns);
     columns.insert(columns.begin(), kFirstColumns.begin(), kFirstColumns.end());
     copy_keys(readers, database);
-    copy_points(readers, database, columns);
+    if (inputs.size() == 1) {
+      copy_attached(database, columns);
+    } else {
+      copy_points(readers, database, columns);
+      copy_blame(readers, database);
+    }
     database.execute("COMMIT");
   }
   readers.clear();
