@@ -136,7 +136,7 @@ The whole computer, cameras at 29.97 Hz, 31 frames: where the local bus shares b
 - What matters is the place of the host. With the host last, a lane that reads in 99 % of all clocks leaves the local
   bus next to nothing: the FIFOs of the capture boards overflow and {lost:.0f} % of the pixels are lost with 5 banks,
   although the frame rate looks best. Host first or second, or round robin, loses none.
-- Round robin gives the host its words as well, and costs the core the same: its frame rate is within {robin:.1f} % of
+- Round robin gives the host its words as well, and costs no more: the rate that is delivered is within {robin:.1f} % of
   that of host first wherever no pixel is lost.
 
 **Limits.** One kind of memory: with `sync_burst` each change of direction costs, and the order decides how often

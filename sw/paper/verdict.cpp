@@ -28,6 +28,8 @@ std::string text_of(const Rule& rule) {
       return fmt::format("within {:g} %", rule.tolerance);
     case Relation::kWithin:
       return fmt::format("within {:g}{}", rule.tolerance, unit);
+    case Relation::kMore:
+      return "more than the printed value";
     case Relation::kAtLeast:
       break;
   }
@@ -36,6 +38,8 @@ std::string text_of(const Rule& rule) {
 }
 
 Verdict verdict_of(const Rule& rule, double printed, double modelled) {
+  if (rule.relation == Relation::kMore)
+    return modelled > printed ? Verdict::kConfirmed : Verdict::kNotConfirmed;
   double most = rule.tolerance;
   if (rule.relation == Relation::kWithinPercent) most *= std::abs(printed) / 100;
   const double away = rule.relation == Relation::kAtLeast ? printed - modelled : std::abs(modelled - printed);

@@ -20,6 +20,7 @@ enum class Relation {
   kWithinPercent,  // it differs by at most `tolerance` percent of the printed one
   kWithin,         // it differs by at most `tolerance`
   kAtLeast,        // it is at most `tolerance` below the printed one
+  kMore,           // it is above the printed one
 };
 
 struct Rule {
@@ -28,7 +29,7 @@ struct Rule {
   std::string unit;  // of the tolerance, behind it; percent apart
 };
 
-// "within 0.35 %", "within 1 point", "at least the printed value less 0.5 frames/s"
+// "within 0.35 %", "within 1 point", "at least the printed value less 0.5 frames/s", "more than the printed value"
 std::string text_of(const Rule& rule);
 
 // kConfirmed or kNotConfirmed.

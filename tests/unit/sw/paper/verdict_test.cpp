@@ -31,6 +31,14 @@ TEST(Verdict, AtLeastHasNoUpperEnd) {
   EXPECT_EQ(verdict_of(rule, 20, 2000), kYes);
 }
 
+TEST(Verdict, MoreIsNotAsMany) {
+  const Rule rule = {Relation::kMore, 0, ""};
+  EXPECT_EQ(verdict_of(rule, 20, 20.001), kYes);
+  EXPECT_EQ(verdict_of(rule, 20, 20), kNo);
+  EXPECT_EQ(verdict_of(rule, 20, 19.98), kNo);
+  EXPECT_EQ(text_of(rule), "more than the printed value");
+}
+
 TEST(Verdict, FewerBanksThanNeededRefuteWhoeverHasFoundThem) {
   EXPECT_EQ(verdict_of_need(8, 7, true), kNo);
   EXPECT_EQ(verdict_of_need(8, 7, false), kNo);
