@@ -1,0 +1,132 @@
+#include "models/fpga/known_groups.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::Port;
+
+TEST(Progress, FitsWhereEachOfItDoes) {
+  const Progress progress = {10, 4, 3, 2, 1};
+  EXPECT_TRUE(progress.fits(progress));
+  for (const Progress& room : {Progress{9, 4, 3, 2, 1}, Progress{10, 3, 3, 2, 1}, Progress{10, 4, 2, 2, 1},
+                               Progress{10, 4, 3, 1, 1}, Progress{10, 4, 3, 2, 0}}) {
+    EXPECT_FALSE(progress.fits(room));
+  }
+}
+
+TEST(Progress, ComesAsOftenAsTheScarcestOfItsRoomAllows) {
+  const Progress room = {100, 100, 100, 100, 100};
+  EXPECT_EQ((Progress{7, 1, 1, 1, 1}).times_in(room), 14U);
+  EXPECT_EQ((Progress{7, 51, 1, 1, 1}).times_in(room), 1U);
+  EXPECT_EQ((Progress{1, 1, 26, 1, 1}).times_in(room), 3U);
+  EXPECT_EQ((Progress{1, 1, 1, 34, 1}).times_in(room), 2U);
+  EXPECT_EQ((Progress{1, 1, 1, 1, 101}).times_in(room), 0U);
+  EXPECT_EQ((Progress{20, 0, 0, 0, 0}).times_in({100, 0, 0, 0, 0}), 5U);
+}
+
+// Groups of 10, 11, 12, .. cycles with a word each, one behind the other; in each of them the result port is granted
+// once more than in the one before.
+class KnownGroupsTest : public testing::Test {
+ protected:
+  static constexpr std::uint64_t kMuch = UINT64_MAX / 2;
+
+  KnownGroups::Group& group(std::size_t number) {
+    KnownGroups::State state;
+    state.control.rest = number;
+    return groups_.at(state);
+  }
+  // Of so many groups, the last of which goes on with group number `back_to`.
+  void make_ring(std::size_t groups, std::size_t back_to) {
+    for (std::size_t i = 0; i < groups; ++i) {
+      KnownGroups::Group& one = group(i);
+      one.progress = {10 + i, 4, 8, 8, 1};
+      one.counts[memory::index_of(Port::kResult)].count(Intent::kRequest, true, i + 1);
+      one.next = &group(i + 1 < groups ? i + 1 : back_to);
+    }
+  }
+  // The number of the group that comes next.
+  std::uint64_t walk(std::size_t from, const Progress& room) {
+    progress_ = {};
+    return groups_.walk(group(from), room, progress_, control_, arbitration_).begin->control.rest;
+  }
+  std::uint64_t granted() const { return control_.port_cycles(Port::kResult).granted(); }
+
+  KnownGroups groups_;
+  Progress progress_;
+  CoreControl control_{CoreConfig{}};
+  memory::Arbitration arbitration_{memory::ArbiterConfig{}, std::vector<memory::SsramBankConfig>(6)};
+};
+
+TEST_F(KnownGroupsTest, AreTheSameForTheSameState) {
+  EXPECT_EQ(&group(1), &group(1));
+  EXPECT_NE(&group(1), &group(2));
+  EXPECT_EQ(group(1).begin->control.rest, 1U);
+  EXPECT_EQ(group(1).next, nullptr);
+}
+
+TEST_F(KnownGroupsTest, EndTheWalkWhereNothingIsKnown) {
+  group(0).progress = {10, 4, 8, 8, 1};
+  group(0).next = &group(1);
+  EXPECT_EQ(walk(0, {kMuch, kMuch, kMuch, kMuch, kMuch}), 1U);
+  EXPECT_EQ(progress_.cycles, 10U);
+  EXPECT_EQ(walk(1, {kMuch, kMuch, kMuch, kMuch, kMuch}), 1U);
+  EXPECT_EQ(progress_.cycles, 0U);
+}
+
+TEST_F(KnownGroupsTest, EndTheWalkWhereThereIsNoRoom) {
+  make_ring(1, 0);
+  walk(0, {9, kMuch, kMuch, kMuch, kMuch});
+  EXPECT_EQ(progress_.cycles, 0U);
+  EXPECT_EQ(granted(), 0U);
+}
+
+// Whatever the ring, and wherever the walk enters it: as if the groups were taken one by one.
+TEST_F(KnownGroupsTest, AreWalkedAroundTheirRing) {
+  for (std::size_t length = 1; length <= 12; ++length) {
+    for (std::size_t back_to = 0; back_to < length; ++back_to) {
+      groups_.clear();
+      make_ring(length, back_to);
+      for (const std::uint64_t words : {0U, 1U, 5U, 11U, 12U, 13U, 100U, 12'345U}) {
+        std::uint64_t cycles = 0;
+        std::uint64_t grants = granted();
+        std::size_t at = 0;
+        for (std::uint64_t word = 0; word < words; ++word) {
+          cycles += 10 + at;
+          grants += at + 1;
+          at = at + 1 < length ? at + 1 : back_to;
+        }
+        ASSERT_EQ(walk(0, {kMuch, kMuch, kMuch, kMuch, words}), at)
+            << length << ' ' << back_to << ' ' << words;
+        ASSERT_EQ(progress_.cycles, cycles);
+        ASSERT_EQ(progress_.words, words);
+        ASSERT_EQ(granted(), grants);
+      }
+    }
+  }
+}
+
+TEST_F(KnownGroupsTest, AreNotKnownOnceCleared) {
+  make_ring(3, 0);
+  groups_.clear();
+  EXPECT_EQ(group(0).next, nullptr);
+}
+
+TEST_F(KnownGroupsTest, AreFullBeforeTheyGrowWithTheFrame) {
+  std::size_t number = 0;
+  while (!groups_.is_full()) {
+    group(number++);
+    ASSERT_LT(number, 100'000U);
+  }
+  EXPECT_GT(number, 1000U);
+  groups_.clear();
+  EXPECT_FALSE(groups_.is_full());
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga
