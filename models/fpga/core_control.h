@@ -37,8 +37,8 @@ class MatchControl {
     ++columns_;
     return (columns_ - geometry_.result_delay_columns) % 4 == 0;
   }
-  // After consume() was true: whether the four columns complete a word of results. The column just consumed is number
-  // columns_ - 1, so columns_ - result_delay_columns results have left.
+  // After consume() was true: whether the four columns complete a word of results. The column just consumed
+  // is number columns_ - 1, so columns_ - result_delay_columns results have left.
   bool word_leaves() const { return columns_ > geometry_.result_delay_columns; }
 
   // Between two columns: all that the next cycles depend on, beside lanes and result queue.
@@ -166,15 +166,16 @@ class CoreControl {
 
   void start_frame(const FrameLatencies& latencies);
   Decision decide() const;
-  // `*_entry_valid`: of the table entry that the side's LUT port has read in this cycle. True if the matcher has
-  // completed four columns with it, counted from result_delay_columns % 4 on.
+  // `*_entry_valid`: of the table entry that the side's LUT port has read in this cycle. True if the matcher
+  // has completed four columns with it, counted from result_delay_columns % 4 on.
   bool commit(const Decision& decision, memory::PortMask granted, bool left_entry_valid,
               bool right_entry_valid);
   // The host port is not the core's own: what it did in this cycle is counted here beside the others.
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
     host_cycles_.count(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
   }
-  // In some cycles that were counted as ones without request, or will be, the host had one for a bank of its own.
+  // In some cycles that were counted as ones without request, or will be, the host had one for a bank of its
+  // own.
   void host_was_busy(bool granted, std::uint64_t cycles) {
     host_cycles_.count(Intent::kIdle, false, ~cycles + 1);  // may become negative until they are counted
     count_host(true, granted, cycles);
@@ -186,7 +187,8 @@ class CoreControl {
   // Cycles beside those committed.
   void count(const Counts& counts, std::uint64_t times);
 
-  // After four columns: all that the next cycles depend on, but for the arbiters, and the slots not yet taken.
+  // After four columns: all that the next cycles depend on, but for the arbiters, and the slots not yet
+  // taken.
   struct State {
     LaneControl::State left;
     LaneControl::State right;
@@ -197,8 +199,8 @@ class CoreControl {
     }
   };
   State state() const { return {left_.state(), right_.state(), match_.state() | result_.state() << 8U}; }
-  // As if cycles had been committed in which the matcher consumes so many columns, none of which changes its own
-  // state, and so many words of results are written, and that lead to this state.
+  // As if cycles had been committed in which the matcher consumes so many columns, none of which changes its
+  // own state, and so many words of results are written, and that lead to this state.
   void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   const MatchControl& match() const { return match_; }
   const ResultControl& result() const { return result_; }

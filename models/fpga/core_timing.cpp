@@ -107,8 +107,8 @@ std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
   return cycle;
 }
 
-// Whether the slots next to be taken are known to make the same accesses for a while. Where another stretch of them
-// begins, no group is known any more.
+// Whether the slots next to be taken are known to make the same accesses for a while. Where another stretch
+// of them begins, no group is known any more.
 bool CoreTiming::look_at_slots() {
   if (control_.match().draining()) return true;
   const auto is_behind = [](const LaneControl& lane, std::uint64_t alike_to) {

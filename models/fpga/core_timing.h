@@ -20,11 +20,11 @@ struct EntriesRead {
 
 // The cycles of the core: control and arbitration, stepped together. Plain C++, no SystemC.
 //
-// A frame can be stepped cycle by cycle, while whoever steps it moves the data; or it runs ahead by itself. Then what
-// has come before is not stepped again: what four columns of the matcher do depends on the state before them, as long
-// as the slots to come make the same accesses (KnownGroups). Of a pixel port that is alone on its bank it does not matter which entries are valid: a slot that needs an
-// access takes the cycle of one that passes. Running ahead, all are taken for valid then, and the counts are put right
-// in the end.
+// A frame can be stepped cycle by cycle, while whoever steps it moves the data; or it runs ahead by itself.
+// Then what has come before is not stepped again: what four columns of the matcher do depends on the state
+// before them, as long as the slots to come make the same accesses (KnownGroups). Of a pixel port that is
+// alone on its bank it does not matter which entries are valid: a slot that needs an access takes the cycle
+// of one that passes. Running ahead, all are taken for valid then, and the counts are put right in the end.
 //
 // While rows are recorded the cycles around the end of each are stepped.
 class CoreTiming {
@@ -45,8 +45,8 @@ class CoreTiming {
   RowRecorder& rows() { return rows_; }
   const RowRecorder& rows() const { return rows_; }
 
-  // One cycle, in which the host requests or not. `move` is called as move(decision, granted) between the grants and
-  // what follows from them, and returns EntriesRead.
+  // One cycle, in which the host requests or not. `move` is called as move(decision, granted) between the
+  // grants and what follows from them, and returns EntriesRead.
   template <class Move>
   memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
     using memory::PortMask;

@@ -47,8 +47,8 @@ void KnownGroups::take(Group& group, std::uint64_t times) {
   group.times += times;
 }
 
-// Where the walk comes back to a group that it has passed, it goes round as often as there is room. The group to come
-// back to moves on after 1, 2, 4, .. steps (Brent, 1980), so that a ring of any length is found.
+// Where the walk comes back to a group that it has passed, it goes round as often as there is room. The group
+// to come back to moves on after 1, 2, 4, .. steps (Brent, 1980), so that a ring of any length is found.
 KnownGroups::Group& KnownGroups::walk(Group& first, Progress room, Progress& progress, CoreControl& control,
                                       memory::Arbitration& arbitration) {
   Group* group = &first;

@@ -28,9 +28,9 @@ struct Progress {
   void take(const Progress& other, std::uint64_t times = 1) { add(other, ~times + 1); }
 };
 
-// What the core does from one group of four columns of the matcher to the next, by the state that it begins in: noted
-// when it is stepped, and from then on skipped. The state says it all as long as the slots to come make the same
-// accesses; the groups of another stretch of slots, or of other routes, are others.
+// What the core does from one group of four columns of the matcher to the next, by the state that it begins
+// in: noted when it is stepped, and from then on skipped. The state says it all as long as the slots to come
+// make the same accesses; the groups of another stretch of slots, or of other routes, are others.
 class KnownGroups {
  public:
   struct State {
@@ -55,8 +55,8 @@ class KnownGroups {
   void clear() { groups_.clear(); }
   bool is_full() const { return groups_.size() >= kMost; }
 
-  // Follows what is known from a group on, as far as there is room, and around rings at once: it adds what has come
-  // to `progress`, and to the counts of control and arbitration. Returns the group that comes next.
+  // Follows what is known from a group on, as far as there is room, and around rings at once: it adds what
+  // has come to `progress`, and to the counts of control and arbitration. Returns the group that comes next.
   Group& walk(Group& first, Progress room, Progress& progress, CoreControl& control,
               memory::Arbitration& arbitration);
 

@@ -103,8 +103,8 @@ class LaneControl {
     arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
-  // In so many cycles of this frame the pixel port had no access to make, as it turns out, but passed a slot. `marks`:
-  // bit i for slot handled() + i, whether it needs an access, of those taken and not handled.
+  // In so many cycles of this frame the pixel port had no access to make, as it turns out, but passed a slot.
+  // `marks`: bit i for slot handled() + i, whether it needs an access, of those taken and not handled.
   void correct_passes(std::uint64_t cycles, std::uint64_t marks) {
     pixel_cycles_.count(Intent::kRequest, true, ~cycles + 1);
     pixel_cycles_.count(Intent::kPass, false, cycles);

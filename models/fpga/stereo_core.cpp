@@ -239,9 +239,9 @@ std::string StereoCore::waits() const {
   return text;
 }
 
-// Runs the cycles that nothing from outside can come between, then waits for the next thing to do. What happens at
-// the time of an edge belongs to the cycle that begins there: while anything is pending at that time, the cycle
-// waits until just after it.
+// Runs the cycles that nothing from outside can come between, then waits for the next thing to do. What
+// happens at the time of an edge belongs to the cycle that begins there: while anything is pending at that
+// time, the cycle waits until just after it.
 void StereoCore::run_ahead() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   const auto horizon_after = [now] { return now + Clock::to_ps(sc_core::sc_time_to_pending_activity()); };

@@ -56,18 +56,18 @@ struct StereoCoreConfig {
 // file, and the one clocked process that steps them. Stages exchange data through streams, reach memory
 // through the crossbar's sockets, and move when CoreControl says so.
 //
-// At Fidelity::kCycle the process runs ahead of the kernel up to the next event that is pending, so that nothing
-// which it could have seen is missed, and by at most 8192 cycles, also past the end of an sc_start(); every
-// access carries its own time. It sleeps while no frame runs and no word waits at the local bus.
+// At Fidelity::kCycle the process runs ahead of the kernel up to the next event that is pending, so that
+// nothing which it could have seen is missed, and by at most 8192 cycles, also past the end of an sc_start();
+// every access carries its own time. It sleeps while no frame runs and no word waits at the local bus.
 //
-// At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus for
-// a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory at the
-// start strobe, and the disparities appear with the last write, or before: as far ahead of it as nothing is
-// pending that could notice; a burst of the local bus that would notice (it writes what the frame reads, or
-// touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose memory
-// cannot be had directly, whose buffers overlap, whose tables point outside the image, or that begins within
-// such a burst is done cycle by cycle. Where errors are not thrown a frame that met one ends with the error
-// flag of register_map.h.
+// At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus
+// for a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory
+// at the start strobe, and the disparities appear with the last write, or before: as far ahead of it as
+// nothing is pending that could notice; a burst of the local bus that would notice (it writes what the frame
+// reads, or touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose
+// memory cannot be had directly, whose buffers overlap, whose tables point outside the image, or that begins
+// within such a burst is done cycle by cycle. Where errors are not thrown a frame that met one ends with the
+// error flag of register_map.h.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most at
 // Fidelity::kCycle, else 2^22) would run for ever: a port that the arbiters always pass over. That is
@@ -92,8 +92,8 @@ class StereoCore : public sc_core::sc_module {
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
   // Cycle 0 of the frame that was started last, of the clock's.
   std::uint64_t first_cycle() const { return first_cycle_; }
-  // From the next frame on: when its rows of results were whole. Those of the frames finished since the last call,
-  // which only the caller keeps from growing with the frames.
+  // From the next frame on: when its rows of results were whole. Those of the frames finished since the last
+  // call, which only the caller keeps from growing with the frames.
   void record_rows() { timing_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
   // Frames that were started and are done cycle by cycle, at whatever fidelity.
@@ -222,7 +222,8 @@ class StereoCore : public sc_core::sc_module {
   Buffers buffers_;  // of the frame that runs
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
   std::vector<std::uint8_t> disparities_;  // of the frame that runs
-  // Words of the local bus in a bank that the running frame does not use, until it is known which of them count.
+  // Words of the local bus in a bank that the running frame does not use, until it is known which of them
+  // count.
   struct Served {
     std::uint64_t cycle;
     std::uint64_t cycles;  // from it on

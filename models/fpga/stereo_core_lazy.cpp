@@ -170,8 +170,8 @@ void StereoCore::catch_up() {
   cycle_ = timing_.run_ahead(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp())));
 }
 
-// Does what is due now, and waits for what comes next. What happens at the time of an edge belongs to the cycle that
-// begins there.
+// Does what is due now, and waits for what comes next. What happens at the time of an edge belongs to the
+// cycle that begins there.
 void StereoCore::run_lazily() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   if (local_bus_.word_waits()) {
@@ -205,7 +205,8 @@ void StereoCore::run_lazily() {
   look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
 }
 
-// A burst for a bank that the frame uses, or beside somebody who may start the next frame as soon as this one ends.
+// A burst for a bank that the frame uses, or beside somebody who may start the next frame as soon as this one
+// ends.
 bool StereoCore::serves_host_beside_frame() const {
   return state_ == State::kRunning &&
          (!nobody_else_starts() || crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank));
@@ -234,8 +235,8 @@ void StereoCore::serve_beside_frame() {
   }
 }
 
-// Words for a bank that nobody else uses. They may be served before their time, unless somebody at the registers can
-// start a frame that uses the bank, at any time that something is pending for.
+// Words for a bank that nobody else uses. They may be served before their time, unless somebody at the
+// registers can start a frame that uses the bank, at any time that something is pending for.
 void StereoCore::serve_alone(std::uint64_t now_ps) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::size_t bank = *host_route_.bank;
@@ -250,8 +251,8 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   while (local_bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
-    // Somebody at the registers may start a frame that uses the bank: at its predecessor's end, and at any time that
-    // something is pending for.
+    // Somebody at the registers may start a frame that uses the bank: at its predecessor's end, and at any
+    // time that something is pending for.
     if (!nobody_else_starts() && state_ == State::kFinishing && cycle >= done_cycle_) {
       count_served(UINT64_MAX, false);
       finish_frame(now_ps);
@@ -271,8 +272,8 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   if (state_ != State::kRunning) count_served(UINT64_MAX, false);
 }
 
-// The data of a burst that has just begun, if nobody can start a frame before its end and its bank grants direct
-// access.
+// The data of a burst that has just begun, if nobody can start a frame before its end and its bank grants
+// direct access.
 void StereoCore::move_burst() {
   const std::uint64_t bytes = host_route_.end - host_route_.first;
   if (burst_is_moved_ || !nobody_else_starts() || local_bus_.words_left() * 4 != bytes) return;

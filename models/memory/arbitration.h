@@ -9,8 +9,8 @@
 
 namespace stereotlm::memory {
 
-// Which port works on which bank, and what the banks' arbiters grant them in a cycle (contract section 2). Plain
-// C++, no SystemC: the crossbar is built around it.
+// Which port works on which bank, and what the banks' arbiters grant them in a cycle (contract section 2).
+// Plain C++, no SystemC: the crossbar is built around it.
 class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
@@ -51,8 +51,8 @@ class Arbitration {
     return arbiters_[bank].granted_in(outcome) != 0;
   }
 
-  // All that arbitration from `cycle` on depends on as long as no route changes, one word a shared bank; the others
-  // are 0.
+  // All that arbitration from `cycle` on depends on as long as no route changes, one word a shared bank; the
+  // others are 0.
   using State = std::array<std::uint32_t, kPortCount>;
   State state(std::uint64_t cycle) const;
   // What was decided in some cycles.
@@ -72,8 +72,8 @@ class Arbitration {
   // From here on decisions are recorded, until take_recorded() or a change of routes, which drops them.
   void begin_recording();
   Decided take_recorded();
-  // As if so many cycles had been arbitrated that lead to this state from `cycle` on: their decisions are told by
-  // count_skipped().
+  // As if so many cycles had been arbitrated that lead to this state from `cycle` on: their decisions are
+  // told by count_skipped().
   void skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles);
   void count_skipped(const Decided& decided, std::uint64_t times);
 

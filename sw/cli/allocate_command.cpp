@@ -139,7 +139,8 @@ std::string table(const Context& context, const std::vector<BestPlacement>& all)
 }
 
 // Runs the best of each number of banks with pixels, each frame with another pair, fed by an ideal host: all
-// have to give the same disparities, and the cycles that were found. Says how many do; nothing once interrupted.
+// have to give the same disparities, and the cycles that were found. Says how many do; nothing once
+// interrupted.
 std::string check_pixels(const Context& context, const platform::Tables& tables,
                          const std::vector<BestPlacement>& all) {
   ScenePairs pairs(context.board);

@@ -20,15 +20,16 @@ struct RecordedRun {
   std::string stats_json;
 };
 
-// Reads config.yaml, run.json and stats.json of the folder and checks that every input is there, with its SHA-256.
-// Nothing if it is not so, with every reason reported.
+// Reads config.yaml, run.json and stats.json of the folder and checks that every input is there, with its
+// SHA-256. Nothing if it is not so, with every reason reported.
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              Problems& problems);
 
 // "A 'results/demo/a'"
 std::string name_of(const RecordedRun& run);
 
-// What it takes to run it again, with its pictures opened. Reports what is wrong: the result is good for nothing then.
+// What it takes to run it again, with its pictures opened. Reports what is wrong: the result is good for
+// nothing then.
 RunInput open_again(const RecordedRun& run, Problems& problems);
 
 }  // namespace stereotlm::cli

@@ -251,7 +251,8 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
   }
 }
 
-// The calibration of all points, if they have one; the plan is given its tables. Refused if no point can have them.
+// The calibration of all points, if they have one; the plan is given its tables. Refused if no point can have
+// them.
 std::optional<CalibrationInput> load_calibration(const SweepCommandOptions& options, explore::Plan& plan) {
   const bool is_option = !options.calibration.text.empty();
   const std::string path = is_option ? options.calibration.text : plan.calibration();

@@ -8,7 +8,8 @@
 
 namespace stereotlm::cli {
 
-// A folder for temporary files, made before a command has done anything. Null, and reported, if there can be none.
+// A folder for temporary files, made before a command has done anything. Null, and reported, if there can be
+// none.
 inline std::unique_ptr<report::TemporaryFolder> temporary_folder(Problems& problems) {
   try {
     return std::make_unique<report::TemporaryFolder>();

@@ -36,8 +36,8 @@ class Pipe {
 class ChildProcess {
  public:
   // Forks. The child has a copy of everything but the threads (open files are the same, with their
-  // positions), does the work, which must not throw, and leaves with the status that it gives, without running
-  // destructors of static objects. Throws std::system_error if there can be no child.
+  // positions), does the work, which must not throw, and leaves with the status that it gives, without
+  // running destructors of static objects. Throws std::system_error if there can be no child.
   explicit ChildProcess(const std::function<int()>& work);
   // Ends it if it still works.
   ~ChildProcess();

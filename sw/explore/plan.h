@@ -23,7 +23,8 @@ struct PlanValue {
 class Plan : public Points {
  public:
   // Reads a plan file; `board`, if it is given, in place of the board that the plan names. Throws
-  // platform::BoardError with everything that is wrong, and with the number of points that the plan would have.
+  // platform::BoardError with everything that is wrong, and with the number of points that the plan would
+  // have.
   static Plan load(const std::string& path, const std::string& board = "");
 
   // Points before conditions.
@@ -41,8 +42,8 @@ class Plan : public Points {
   // The file of the calibration that `run` names, and where; empty: none.
   const std::string& calibration() const { return calibration_; }
   const std::string& calibration_place() const { return calibration_place_; }
-  // Gives all points the tables of a calibration, of images of that size, in place of the identity. Points that
-  // they do not fit are impossible; if no point can be another one this gives the rule, else nothing.
+  // Gives all points the tables of a calibration, of images of that size, in place of the identity. Points
+  // that they do not fit are impossible; if no point can be another one this gives the rule, else nothing.
   std::optional<std::string> use_calibration(const std::string& sha256, int width, int height);
 
  private:

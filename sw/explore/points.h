@@ -22,9 +22,10 @@ struct PointRun {
   std::string calibration;   // SHA-256 of the tables; empty: the identity
 };
 
-// Frames of a run: those asked for, or of the board alone one turn of its allocation's lists, the first one (where
-// frames leave nothing behind its frame rate is that of any number of turns), of the whole computer kCameraFrames: between the first and the last
-// delivery every buffer of a list, of whatever length, is used as often as the others.
+// Frames of a run: those asked for, or of the board alone one turn of its allocation's lists, the first one
+// (where frames leave nothing behind its frame rate is that of any number of turns), of the whole computer
+// kCameraFrames: between the first and the last delivery every buffer of a list, of whatever length, is used
+// as often as the others.
 inline constexpr std::uint64_t kCameraFrames = 13;
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 

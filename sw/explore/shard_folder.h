@@ -29,9 +29,9 @@ struct ShardedSweep {
 };
 
 // The folder STORE.shards, on a file system that all machines share. There lie copies of the plan, of its
-// board and of its calibration, the scripts of the tasks, and for each shard its store, its counts and its log: some files a shard,
-// none a point. A shard is whole when shard_I.db is there. Member functions throw std::runtime_error that
-// names the file.
+// board and of its calibration, the scripts of the tasks, and for each shard its store, its counts and its
+// log: some files a shard, none a point. A shard is whole when shard_I.db is there. Member functions throw
+// std::runtime_error that names the file.
 class ShardFolder {
  public:
   explicit ShardFolder(const std::string& store);  // does not touch it

@@ -453,7 +453,8 @@ void empty_journal(const std::string& path) {
   if (checkpoint.step() && checkpoint.integer(0) != 0) database.fail(SQLITE_BUSY);
 }
 
-// A new file beside a store, that takes its place or goes. Those that processes have left which were killed go too.
+// A new file beside a store, that takes its place or goes. Those that processes have left which were killed
+// go too.
 class NewFile {
  public:
   explicit NewFile(const std::string& store) {

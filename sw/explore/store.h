@@ -64,8 +64,8 @@ class Store {
   std::map<std::string, std::unique_ptr<Statement>> insertions_;  // by their columns
 };
 
-// The file of a Store that nobody writes to. Any number of machines may read it at the same time if it has the
-// final form of merge_stores(). Member functions throw DatabaseError. Not to be used across fork().
+// The file of a Store that nobody writes to. Any number of machines may read it at the same time if it has
+// the final form of merge_stores(). Member functions throw DatabaseError. Not to be used across fork().
 class FinishedStore {
  public:
   // Throws if it holds points of another version.
@@ -79,9 +79,9 @@ class FinishedStore {
 
 // Writes the points of all `inputs`, which are files of a Store, into one file `out`, in the order of their
 // hashes: its bytes depend on nothing but the points. `out` may be one of the inputs; it is replaced when the
-// new file is whole and on the disk; nobody else may write to it (see StoreLock). An `out` that is there and is
-// neither empty nor a file of a Store is an error. Throws DatabaseError, also if two inputs hold different results of one point, or of
-// different versions.
+// new file is whole and on the disk; nobody else may write to it (see StoreLock). An `out` that is there and
+// is neither empty nor a file of a Store is an error. Throws DatabaseError, also if two inputs hold different
+// results of one point, or of different versions.
 void merge_stores(const std::vector<std::string>& inputs, const std::string& out);
 
 }  // namespace stereotlm::explore

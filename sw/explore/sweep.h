@@ -16,8 +16,8 @@ namespace stereotlm::explore {
 struct GivenUp {};
 
 // Simulates a point that has a board. Called in worker processes, which are forked from this one; what it
-// throws is the reason for which the point has failed. But std::system_error ends the sweep: it is the machine
-// that lacks something; and EndedBySignal and std::bad_alloc count as the end of the worker.
+// throws is the reason for which the point has failed. But std::system_error ends the sweep: it is the
+// machine that lacks something; and EndedBySignal and std::bad_alloc count as the end of the worker.
 using Evaluate = std::function<Figures(const Point& point)>;
 
 struct SweepOptions {
@@ -32,9 +32,10 @@ struct SweepOptions {
 
 // All points that the stores do not have. `go_on` is called several times a second with what is done of this
 // shard; once it returns false no further point is begun. At the end the store is put into its final form,
-// whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun again, and
-// is one that has failed when it has died kMostDeaths times, with a reason that says how to try again. Throws DatabaseError, also if another sweep is at
-// work on the store, and std::runtime_error; all points that were finished are kept.
+// whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun again,
+// and is one that has failed when it has died kMostDeaths times, with a reason that says how to try again.
+// Throws DatabaseError, also if another sweep is at work on the store, and std::runtime_error; all points
+// that were finished are kept.
 inline constexpr int kMostDeaths = 3;
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on);

@@ -21,7 +21,8 @@ constexpr double kRatePercent = 0.35;
 constexpr double kTable2Rate = 18.9;
 constexpr double kSizeHalfDigit = 0.5;
 constexpr double kSizePoints = 1;
-// Section 4: in practice, in windows of 7x7 and 9x9. Abstract and section 5: without a window. Section 1: more.
+// Section 4: in practice, in windows of 7x7 and 9x9. Abstract and section 5: without a window. Section 1:
+// more.
 constexpr double kPracticeRate = 20;
 // Abstract: at 320x240. Section 1: more. Section 4: four times as fast there.
 constexpr double kSmallRate = 80;

@@ -62,7 +62,8 @@ struct Means {
   std::function<platform::Bound(const platform::BoardConfig& board, std::uint64_t frames)> bound;
   std::string version;
   unsigned jobs = 1;
-  // Several times a second: of the boards of all searches and runs, those that are done and those that are left at most.
+  // Several times a second: of the boards of all searches and runs, those that are done and those that are
+  // left at most.
   std::function<bool(std::uint64_t done, std::uint64_t most_left)> go_on;
 };
 

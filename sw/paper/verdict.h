@@ -29,7 +29,8 @@ struct Rule {
   std::string unit;  // of the tolerance, behind it; percent apart
 };
 
-// "within 0.35 %", "within 1 point", "at least the printed value less 0.5 frames/s", "more than the printed value"
+// "within 0.35 %", "within 1 point", "at least the printed value less 0.5 frames/s", "more than the printed
+// value"
 std::string text_of(const Rule& rule);
 
 // kConfirmed or kNotConfirmed.

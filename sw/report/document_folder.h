@@ -9,12 +9,12 @@
 
 namespace stereotlm::report {
 
-// A folder into which a document and its files go, beside whatever else it holds, which stays: an OutputFolder whose
-// mark is the document.
+// A folder into which a document and its files go, beside whatever else it holds, which stays: an
+// OutputFolder whose mark is the document.
 class DocumentFolder {
  public:
-  // Throws as OutputFolder does, and if one of the files is there without the document (then it is somebody else's), or
-  // if something of such a name is no file.
+  // Throws as OutputFolder does, and if one of the files is there without the document (then it is somebody
+  // else's), or if something of such a name is no file.
   DocumentFolder(const std::filesystem::path& dir, const std::string& document,
                  const std::vector<std::string>& files);
 

@@ -5,8 +5,8 @@
 
 namespace stereotlm::report {
 
-// A new file, written piece by piece. All throw std::system_error, whose code is the cause, if a byte could not be
-// stored: what is left of the file is then the caller's to remove.
+// A new file, written piece by piece. All throw std::system_error, whose code is the cause, if a byte could
+// not be stored: what is left of the file is then the caller's to remove.
 class NewFile {
  public:
   // An existing file is an error.

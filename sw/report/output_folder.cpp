@@ -115,8 +115,8 @@ void OutputFolder::commit() {
   discard();
 }
 
-// put_back() relies on the order. The earlier mark goes last: while it is there, all else in place is earlier too. The
-// new mark comes last: once it is there, all is new.
+// put_back() relies on the order. The earlier mark goes last: while it is there, all else in place is earlier
+// too. The new mark comes last: once it is there, all is new.
 void OutputFolder::move_into_place() const {
   const auto move_all = [this](const fs::path& from, const fs::path& to) {
     for (const fs::path& name : entries(from)) {

@@ -14,8 +14,8 @@ namespace stereotlm::report {
 struct OutputContent {
   std::string called;  // what DIR is in messages: "result folder"
   std::string mark;    // the file that is put into place last: with it the others are whole
-  // What of an entry of DIR is not the command's own, as seen from DIR ("thesis.tex", "frames/note"); nothing: it is
-  // replaced whole.
+  // What of an entry of DIR is not the command's own, as seen from DIR ("thesis.tex", "frames/note");
+  // nothing: it is replaced whole.
   std::function<std::optional<std::string>(const std::filesystem::path& entry)> foreign;
   // Why DIR must not be written to. `was_left`: a run that was killed has left files there.
   std::function<std::optional<std::string>(const std::filesystem::path& dir, bool was_left)> problem;
@@ -26,14 +26,14 @@ inline constexpr const char* kAsideFolder = ".partial";
 
 // A folder that is as it was until commit(), and has all new files after it, in place of the earlier ones.
 //
-// New files are written aside, into DIR/.partial (inside DIR, so that DIR may be a mount point), and moved into place
-// together. What a run has left there that was killed meanwhile is cleaned away, and what it had moved is put back
-// first. DIR is locked: a second run into it is refused.
+// New files are written aside, into DIR/.partial (inside DIR, so that DIR may be a mount point), and moved
+// into place together. What a run has left there that was killed meanwhile is cleaned away, and what it had
+// moved is put back first. DIR is locked: a second run into it is refused.
 class OutputFolder {
  public:
-  // Creates DIR and its parents where missing, and proves that it can be written to. Throws std::runtime_error, having
-  // changed nothing, if it cannot be, if DIR is in use by another run, if something in DIR/.partial is not ours, or if
-  // the content has a problem with DIR.
+  // Creates DIR and its parents where missing, and proves that it can be written to. Throws
+  // std::runtime_error, having changed nothing, if it cannot be, if DIR is in use by another run, if
+  // something in DIR/.partial is not ours, or if the content has a problem with DIR.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
   // Without commit(): removes all it made; an earlier result stays as it was.
   ~OutputFolder();
@@ -44,10 +44,11 @@ class OutputFolder {
   // That the content has with DIR now.
   std::optional<std::string> problem() const { return content_.problem(dir_, was_left_); }
 
-  // `name`: "stats.json", "frames/000000.png", once each. Throws std::runtime_error if it cannot be stored (disk full);
-  // the object is then good for nothing but to be destroyed.
+  // `name`: "stats.json", "frames/000000.png", once each. Throws std::runtime_error if it cannot be stored
+  // (disk full); the object is then good for nothing but to be destroyed.
   void add(const std::string& name, std::string_view bytes);
-  // Once, with the mark, else std::logic_error. Throws std::runtime_error if it fails, with all back in place.
+  // Once, with the mark, else std::logic_error. Throws std::runtime_error if it fails, with all back in
+  // place.
   void commit();
 
   // Throws std::runtime_error that names the folder.

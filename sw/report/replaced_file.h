@@ -8,8 +8,8 @@
 
 namespace stereotlm::report {
 
-// A file that is as it was until commit(), and there whole after it. It is written aside, in the same folder, under a
-// name that nothing has there. All throw std::system_error, whose code is the cause.
+// A file that is as it was until commit(), and there whole after it. It is written aside, in the same folder,
+// under a name that nothing has there. All throw std::system_error, whose code is the cause.
 class ReplacedFile {
  public:
   explicit ReplacedFile(const std::filesystem::path& path);

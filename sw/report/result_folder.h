@@ -17,8 +17,8 @@ std::string frame_file_name(std::uint64_t frame);
 // The folder of `run --out`, which holds one result and nothing else: an OutputFolder whose mark is run.json.
 class ResultFolder {
  public:
-  // Throws as OutputFolder does, and if DIR is neither empty nor a folder that holds run.json and only files that `run`
-  // writes.
+  // Throws as OutputFolder does, and if DIR is neither empty nor a folder that holds run.json and only files
+  // that `run` writes.
   explicit ResultFolder(const std::filesystem::path& dir);
 
   // `name`: a file that `run` writes ("stats.json", "frames/000000.png"), once each; else

@@ -10,13 +10,15 @@
 
 namespace stereotlm::report {
 
-// The rows by themselves: cycles and stalls since the row above was whole; those of the top row since the frame began.
+// The rows by themselves: cycles and stalls since the row above was whole; those of the top row since the
+// frame began.
 fpga::RowProfile rows_alone(const fpga::RowProfile& profile);
 
 // The rows of results of two runs, A and B, frame by frame: what each takes more in B, by itself.
 class RowComparison {
  public:
-  // The next frame of both. Throws std::invalid_argument if it has not as many rows in both, and as the frames before.
+  // The next frame of both. Throws std::invalid_argument if it has not as many rows in both, and as the
+  // frames before.
   void add(const fpga::RowProfile& a, const fpga::RowProfile& b);
 
   std::uint64_t frames() const { return frames_; }
@@ -46,10 +48,10 @@ class RowComparison {
     std::int64_t most = 0;                                    // of one row
     std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // of all its rows
   };
-  // From the top, those whose rows all have the same cycles and stalls more or less; where these are more than
-  // `most_ranges`, those whose rows all take as many cycles more or less, or else so many of the same height. Left out
-  // are those of rows that take as long in both, without stalls in all that one of them has more: the others sum up to
-  // the whole, in cycles and in stalls.
+  // From the top, those whose rows all have the same cycles and stalls more or less; where these are more
+  // than `most_ranges`, those whose rows all take as many cycles more or less, or else so many of the same
+  // height. Left out are those of rows that take as long in both, without stalls in all that one of them has
+  // more: the others sum up to the whole, in cycles and in stalls.
   std::vector<Range> ranges(std::size_t most_ranges) const;
 
  private:

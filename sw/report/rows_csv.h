@@ -10,9 +10,9 @@
 
 namespace stereotlm::report {
 
-// The rows of results of two runs, A and B, as a table for other programs: a line for each frame and row, with the
-// row's own cycles and stalls in both. The file is as it was until commit(), and there whole after it: a ReplacedFile.
-// All throw std::runtime_error naming the file if it cannot be written.
+// The rows of results of two runs, A and B, as a table for other programs: a line for each frame and row,
+// with the row's own cycles and stalls in both. The file is as it was until commit(), and there whole after
+// it: a ReplacedFile. All throw std::runtime_error naming the file if it cannot be written.
 class RowsCsv {
  public:
   explicit RowsCsv(const std::filesystem::path& path);

@@ -5,7 +5,8 @@
 
 namespace stereotlm::report {
 
-// The folder in which temporary files lie: that of the first of TMPDIR, TMP, TEMP and TEMPDIR which is set, or /tmp.
+// The folder in which temporary files lie: that of the first of TMPDIR, TMP, TEMP and TEMPDIR which is set,
+// or /tmp.
 struct TemporaryPlace {
   std::string variable;
   std::string folder;

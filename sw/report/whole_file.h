@@ -10,7 +10,8 @@ namespace stereotlm::report {
 // could not be stored: what is left of the file is then the caller's to remove. An existing file is an error.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
-// The whole content. Throws std::runtime_error that names the path and the cause if it is no regular file that can be read.
+// The whole content. Throws std::runtime_error that names the path and the cause if it is no regular file
+// that can be read.
 std::string read_whole_file(const std::filesystem::path& path);
 
 // With ReplacedFile: the file is there whole, or as it was. Throws std::system_error.

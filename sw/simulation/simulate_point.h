@@ -33,8 +33,8 @@ class PointSimulator {
 };
 
 // When the core of the whole computer starts for the first time, in seconds from time 0. Until then the host
-// alone uses the banks, and only writes: the time does not depend on where the buffers lie, but for a burst of
-// the local bus that is saved where the last words of one picture and the first of the other, in the same
+// alone uses the banks, and only writes: the time does not depend on where the buffers lie, but for a burst
+// of the local bus that is saved where the last words of one picture and the first of the other, in the same
 // bank, are neighbours. In a child of this process. Throws as PointSimulator does.
 double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables);
 

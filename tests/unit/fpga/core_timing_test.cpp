@@ -21,8 +21,8 @@ using memory::Port;
 
 constexpr std::uint64_t kNever = UINT64_MAX;
 
-// A burst of the local bus, which begins to ask in a cycle counted from the frame's first, or later if the one before
-// it has not ended.
+// A burst of the local bus, which begins to ask in a cycle counted from the frame's first, or later if the
+// one before it has not ended.
 struct Burst {
   std::uint64_t cycle = 0;
   std::size_t bank = 0;
@@ -179,8 +179,8 @@ class Timing {
   std::uint64_t first_cycle_ = 0;
 };
 
-// Two of the same setting, one stepped and one run ahead, frame after frame: `frame(random, stepped, ahead)` takes both
-// to the end of each.
+// Two of the same setting, one stepped and one run ahead, frame after frame: `frame(random, stepped, ahead)`
+// takes both to the end of each.
 template <typename Frame>
 void expect_equal_in_random_settings(std::uint64_t settings, const Frame& frame, bool record_rows = false) {
   for (std::uint64_t seed = 0; seed < settings; ++seed) {

@@ -30,8 +30,8 @@ TEST(Progress, ComesAsOftenAsTheScarcestOfItsRoomAllows) {
   EXPECT_EQ((Progress{20, 0, 0, 0, 0}).times_in({100, 0, 0, 0, 0}), 5U);
 }
 
-// Groups of 10, 11, 12, .. cycles with a word each, one behind the other; in each of them the result port is granted
-// once more than in the one before.
+// Groups of 10, 11, 12, .. cycles with a word each, one behind the other; in each of them the result port is
+// granted once more than in the one before.
 class KnownGroupsTest : public testing::Test {
  protected:
   static constexpr std::uint64_t kMuch = UINT64_MAX / 2;

@@ -335,7 +335,8 @@ TEST(LeastDelivery, IsWhenTheFramesAreDoneOneAfterAnother) {
   EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 5, {2, 1.5}), 1.5 + cycles * kCycle, 1e-12);
 }
 
-// Of 100 frames, or the last 10 of them: what the core reads and writes, results read back, and all pairs but the first.
+// Of 100 frames, or the last 10 of them: what the core reads and writes, results read back, and all pairs but
+// the first.
 TEST(LeastDelivery, CountsWhatTheHostMovesInABank) {
   BoardConfig board = small_board();
   board.allocation.left_image = {"bank0"};

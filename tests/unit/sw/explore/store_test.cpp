@@ -277,8 +277,8 @@ TEST_F(StoreTest, HasNoColumnsThatDifferOnlyInCase) {
                 file("a.db") + " only in case: they do not mix");
 }
 
-// A process that has added a point ends at once: the point is in the journal alone. Whatever ends the merge, its
-// journal may be gone then.
+// A process that has added a point ends at once: the point is in the journal alone. Whatever ends the merge,
+// its journal may be gone then.
 TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
   { Store(file("a.db"), kVersion).add(point("h1")); }
   const pid_t child = fork();
