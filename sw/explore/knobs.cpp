@@ -81,6 +81,26 @@ class Steps {
     }
   }
 
+  // Of all banks that turn round, together.
+  void add_turnarounds() {
+    std::set<int> cycles;
+    for (const BankConfig& bank : board_.banks) {
+      if (bank.kind == memory::BankKind::kSyncBurst) cycles.insert(bank.turnaround_cycles);
+    }
+    if (cycles.empty()) return;
+    const bool is_one = cycles.size() == 1;
+    for (const int change : {1, -1}) {
+      BoardConfig changed = board_;
+      for (BankConfig& bank : changed.banks) {
+        if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles += change;
+      }
+      add({"ssram.banks.*.turnaround_cycles", is_one ? std::to_string(*cycles.begin()) : "different",
+           is_one ? std::to_string(*cycles.begin() + change)
+                  : std::string("one ") + (change > 0 ? "more" : "less") + " each",
+           std::move(changed)});
+    }
+  }
+
   void add_buffers() {
     using List = std::vector<std::string>;
     const auto add_lists = [this](const char* knob,
@@ -224,6 +244,7 @@ std::vector<KnobStep> knob_steps(const BoardConfig& board, bool camera) {
   steps.add_filters();
   steps.add_priorities();
   steps.add_kinds();
+  steps.add_turnarounds();
   steps.add_buffers();
   steps.add_banks_more();
   steps.add_banks_less();

@@ -20,13 +20,15 @@ struct KnobStep {
   bool only_best = false;
 };
 
-// One step of every knob of a board, as far as there is such a board: - each number up and down by one (the
-// window by two), each word to every other one; - fpga.priority: two neighbours exchanged; -
-// ssram.banks.*.kind: all banks of another kind (a new sync_burst has 2 turnaround cycles); -
-// allocation.left_image, right_image, and allocation.disparity: a buffer more, in the bank of the first, or
-// less; - a bank more: a buffer that shares its bank gets a new one, like that; a bank less: the buffers of
-// one bank move
-//   into another that is used.
+// One step of every knob of a board, as far as there is such a board:
+//   a number: up and down by one (the window by two); a word: each other one
+//   fpga.priority: two neighbours exchanged
+//   ssram.banks.*.kind: all banks of another kind (a new sync_burst has 2 turnaround cycles)
+//   ssram.banks.*.turnaround_cycles: of all banks that have any, up and down by one
+//   allocation.left_image, right_image, and allocation.disparity: a buffer more, in the bank of the first,
+//   or less
+//   a bank more: a buffer that shares its bank gets a new one, like that
+//   a bank less: the buffers of one bank move into another that is used
 // The size of the images, the depth of banks and the device stay. `camera`: of the whole computer, else the
 // knobs of the board alone.
 std::vector<KnobStep> knob_steps(const platform::BoardConfig& board, bool camera);

@@ -100,6 +100,21 @@ TEST(KnobSteps, TurnAllBanksIntoAnotherKind) {
   EXPECT_EQ(steps_of("ssram.banks.*.kind", mixed)[2].board.banks[3].turnaround_cycles, 5);
 }
 
+TEST(KnobSteps, TurnAllBanksRoundFasterAndSlower) {
+  const char* const knob = "ssram.banks.*.turnaround_cycles";
+  EXPECT_THAT(texts_of(knob, board_with({})), IsEmpty());
+  const BoardConfig one = board_with({"ssram.banks.bank3={kind: sync_burst, turnaround_cycles: 5}"});
+  EXPECT_THAT(texts_of(knob, one), ElementsAre("5 -> 6", "5 -> 4"));
+  EXPECT_EQ(steps_of(knob, one)[0].board.banks[3].turnaround_cycles, 6);
+  EXPECT_EQ(steps_of(knob, one)[0].board.banks[2].turnaround_cycles, 0);
+  const BoardConfig least = board_with({"ssram.banks.bank3={kind: sync_burst, turnaround_cycles: 1}"});
+  EXPECT_THAT(texts_of(knob, least), ElementsAre("1 -> 2"));
+  const BoardConfig two = board_with({"ssram.banks.bank3={kind: sync_burst, turnaround_cycles: 5}",
+                                      "ssram.banks.bank4={kind: sync_burst, turnaround_cycles: 2}"});
+  EXPECT_THAT(texts_of(knob, two), ElementsAre("different -> one more each", "different -> one less each"));
+  EXPECT_EQ(steps_of(knob, two)[1].board.banks[4].turnaround_cycles, 1);
+}
+
 TEST(KnobSteps, AddAndTakeAwayBuffers) {
   const BoardConfig board = board_with({"allocation.disparity=bank4"});
   EXPECT_THAT(texts_of("allocation.left_image, right_image", board),
