@@ -20,8 +20,8 @@ SEARCHES = {
 }
 DRAWN = {"core": ("o-", "tab:blue"), "core_sync_burst": ("o--", "tab:cyan"), "computer": ("s-", "tab:red"),
          "computer_sync_burst": ("s--", "tab:orange"), "computer_long_queues": ("s-", "tab:green")}
-# Banks, allocations, simulated, best rate, steady (of a computer), bound, reached by, one of them.
-ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+\.\d+) +(\d+)  (.*)")
+# Banks, allocations, simulated, best rate, bound, steady (of a computer), reached by, one of them.
+ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
 BANKS = range(1, 9)
 
 
@@ -30,7 +30,7 @@ def read(name):
     found = {}
     for line in (HERE / f"{name}.txt").read_text().splitlines():
         if row := ROW.fullmatch(line):
-            banks, allocations, simulated, best, steady, bound, reached_by, witness = row.groups()
+            banks, allocations, simulated, best, bound, steady, reached_by, witness = row.groups()
             found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated), "best": float(best),
                                  "steady": float(steady) if steady else None, "bound": float(bound),
                                  "reached_by": int(reached_by), "witness": witness}
