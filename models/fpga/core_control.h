@@ -50,7 +50,8 @@ class MatchControl {
   std::uint64_t words() const {
     return columns_ > geometry_.result_delay_columns ? (columns_ - geometry_.result_delay_columns) / 4 : 0;
   }
-  // Between two columns: so many more can be consumed, as far as this side knows, before the state changes.
+  // Between two columns: so many more can be consumed, as far as this side knows, the last of which may
+  // change the state.
   std::uint64_t columns_alike() const {
     const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
     const std::uint64_t left = (draining() ? drain_left_ : slots_left_) / slots_per_column;
@@ -104,6 +105,7 @@ class ResultControl {
   }
   // As if cycles had been committed in which so many words are written and that lead to this state.
   void skip_to(std::uint64_t state, std::uint64_t words) {
+    static_assert(kResultFifoRule.max <= 0xff);
     queued_ = static_cast<int>(state & 0xffU);
     written_ += words;
   }
@@ -199,8 +201,8 @@ class CoreControl {
     }
   };
   State state() const { return {left_.state(), right_.state(), match_.state() | result_.state() << 8U}; }
-  // As if cycles had been committed in which the matcher consumes so many columns, none of which changes its
-  // own state, and so many words of results are written, and that lead to this state.
+  // As if cycles had been committed in which the matcher consumes so many columns, at most columns_alike(),
+  // and so many words of results are written, and that lead to this state of lanes and result queue.
   void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   const MatchControl& match() const { return match_; }
   const ResultControl& result() const { return result_; }

@@ -1,7 +1,5 @@
 #include "models/fpga/core_timing.h"
 
-#include <algorithm>
-
 namespace stereotlm::fpga {
 namespace {
 
@@ -9,11 +7,12 @@ constexpr bool has(memory::PortMask mask, memory::Port port) { return (mask & me
 
 }  // namespace
 
-CoreTiming::CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration)
+CoreTiming::CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration, std::size_t most_groups)
     : control_(config),
       rows_(control_.geometry()),
       arbitration_(arbitration),
-      all_valid_(control_.geometry()) {}
+      all_valid_(control_.geometry()),
+      known_(most_groups) {}
 
 void CoreTiming::start_frame(const FrameLatencies& latencies) {
   control_.start_frame(latencies);
@@ -34,7 +33,7 @@ void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern&
   right_ = {&right, looks(memory::Port::kRightPixel, right)};
 }
 
-void CoreTiming::begin_routing() {
+void CoreTiming::host_route_changes() {
   stepped_.reset();
   look_at_entries();
 }
@@ -92,18 +91,20 @@ std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
   if (stepped_) end_group(cycle);
   if (!look_at_slots()) return cycle;
   Progress left = room(cycle, end);
+  if (!holds_group(left)) return cycle;
   KnownGroups::Group* group = &known_.at(state(cycle));
   if (group->next != nullptr) {
     Progress skipped;
     group = &known_.walk(*group, left, skipped, control_, arbitration_);
     if (skipped.cycles == 0) return cycle;
     cycle += skipped.cycles;
-    left.take(skipped);
+    left.subtract(skipped);
     control_.count_host(false, false, skipped.cycles);
     control_.skip_to(group->begin->control, skipped.columns, skipped.words);
     arbitration_.skip_to(group->begin->arbitration, cycle, skipped.cycles);
   }
-  if (group->next == nullptr) begin_group(*group, left, cycle);
+  // Behind the last column alike the state is another than that of the group.
+  if (group->next == nullptr && holds_group(left)) begin_group(*group, left, cycle);
   return cycle;
 }
 
@@ -143,6 +144,13 @@ Progress CoreTiming::room(std::uint64_t cycle, std::uint64_t end) const {
           rows_.next_words() - control_.result().words_written() - 1};
 }
 
+// Whether four columns may be alike. Less is not worth noting.
+bool CoreTiming::holds_group(const Progress& room) const {
+  const std::uint64_t slots =
+      control_.match().draining() ? 0 : 4 * static_cast<std::uint64_t>(control_.geometry().slots_per_column);
+  return room.columns >= 4 && room.left_slots >= slots && room.right_slots >= slots;
+}
+
 void CoreTiming::begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle) {
   stepped_ = {&group, room, progress(cycle), control_.match().state(), control_.counts()};
   arbitration_.begin_recording();
@@ -153,7 +161,7 @@ void CoreTiming::end_group(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();
   Progress progress = this->progress(cycle);
-  progress.take(stepped.begin);
+  progress.subtract(stepped.begin);
   const bool is_alike =
       progress.columns <= stepped.room.columns && progress.left_slots <= stepped.room.left_slots &&
       progress.right_slots <= stepped.room.right_slots && control_.match().state() == stepped.match_state;

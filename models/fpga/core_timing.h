@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -29,15 +30,17 @@ struct EntriesRead {
 // While rows are recorded the cycles around the end of each are stepped.
 class CoreTiming {
  public:
-  // `arbitration` outlives it. Throws std::invalid_argument if the configuration has problems.
-  CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration);
+  // `arbitration` outlives it; `most_groups`: that it keeps in mind. Throws std::invalid_argument if the
+  // configuration has problems.
+  CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration,
+             std::size_t most_groups = KnownGroups::kMost);
 
   // Ports are routed. A frame whose data is moved as it is stepped ..
   void start_frame(const FrameLatencies& latencies);
   // .. or one that runs ahead, on these accesses, which outlive it.
   void start_frame(const FrameLatencies& latencies, const SlotPattern& left, const SlotPattern& right);
-  // Routes are about to change within a frame.
-  void begin_routing();
+  // The route of the host is about to change within a frame. The core's own stay as long as it runs.
+  void host_route_changes();
   // All cycles of the frame have been run: puts the counts right.
   void end_frame() { look_at_entries(); }
 
@@ -93,6 +96,7 @@ class CoreTiming {
   bool look_at_slots();
   std::uint64_t alike_to(const LaneControl& lane, const Side& side) const;
   Progress room(std::uint64_t cycle, std::uint64_t end) const;
+  bool holds_group(const Progress& room) const;
   void begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle);
   void end_group(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;

@@ -42,7 +42,7 @@ KnownGroups::Group& KnownGroups::at(const State& state) {
   return entry->second;
 }
 
-void KnownGroups::take(Group& group, std::uint64_t times) {
+void KnownGroups::note(Group& group, std::uint64_t times) {
   if (group.times == 0) walked_.push_back(&group);
   group.times += times;
 }
@@ -57,8 +57,8 @@ KnownGroups::Group& KnownGroups::walk(Group& first, Progress room, Progress& pro
   std::uint64_t steps = 0;
   std::uint64_t patience = 1;
   while (group->next != nullptr && group->progress.fits(room)) {
-    take(*group, 1);
-    room.take(group->progress);
+    note(*group, 1);
+    room.subtract(group->progress);
     progress.add(group->progress);
     since_mark.add(group->progress);
     group = group->next;
@@ -66,8 +66,8 @@ KnownGroups::Group& KnownGroups::walk(Group& first, Progress room, Progress& pro
     if (group == mark) {
       const std::uint64_t times = since_mark.times_in(room);
       if (times == 0) continue;
-      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) take(*group, times);
-      room.take(since_mark, times);
+      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) note(*group, times);
+      room.subtract(since_mark, times);
       progress.add(since_mark, times);
     } else if (steps == patience) {
       mark = group;

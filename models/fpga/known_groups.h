@@ -25,7 +25,7 @@ struct Progress {
   // How often; `cycles` is not 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other, std::uint64_t times = 1);
-  void take(const Progress& other, std::uint64_t times = 1) { add(other, ~times + 1); }
+  void subtract(const Progress& other, std::uint64_t times = 1) { add(other, ~times + 1); }
 };
 
 // What the core does from one group of four columns of the matcher to the next, by the state that it begins
@@ -33,6 +33,9 @@ struct Progress {
 // make the same accesses; the groups of another stretch of slots, or of other routes, are others.
 class KnownGroups {
  public:
+  // Of what never comes again as much would be noted as the frame is long.
+  static constexpr std::size_t kMost = 4096;
+
   struct State {
     CoreControl::State control;
     memory::Arbitration::State arbitration{};
@@ -50,25 +53,29 @@ class KnownGroups {
     std::uint64_t times = 0;  // that it has come in walk() and is not counted yet
   };
 
+  explicit KnownGroups(std::size_t most = kMost) : most_(most) {}
+  KnownGroups(const KnownGroups&) = delete;  // groups point to each other
+  KnownGroups& operator=(const KnownGroups&) = delete;
+
   // The group that begins in a state. Groups stay until clear().
   Group& at(const State& state);
   void clear() { groups_.clear(); }
-  bool is_full() const { return groups_.size() >= kMost; }
+  bool is_full() const { return groups_.size() >= most_; }
 
-  // Follows what is known from a group on, as far as there is room, and around rings at once: it adds what
-  // has come to `progress`, and to the counts of control and arbitration. Returns the group that comes next.
+  // Follows what is known from a group on, as far as there is room, and around rings at once. Adds what has
+  // come to `progress`, and to the counts of control and arbitration, whose states the caller brings to that
+  // of the group returned, which comes next.
   Group& walk(Group& first, Progress room, Progress& progress, CoreControl& control,
               memory::Arbitration& arbitration);
 
  private:
-  // Of what never comes again as much would be noted as the frame is long.
-  static constexpr std::size_t kMost = 4096;
   struct Hash {
     std::size_t operator()(const State& state) const;
   };
 
-  void take(Group& group, std::uint64_t times);
+  void note(Group& group, std::uint64_t times);
 
+  std::size_t most_;
   std::unordered_map<State, Group, Hash> groups_;
   std::vector<Group*> walked_;  // not counted yet
 };

@@ -137,6 +137,7 @@ class LaneControl {
   }
   // As if cycles had been committed in which the matcher consumes so many slots and that lead to this state.
   void skip_to(const State& state, std::uint64_t slots) {
+    static_assert(kMostSlots <= 0xff);
     const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state.counts >> bit & 0xffU); };
     const std::uint64_t taken_before = taken_;
     consumed_ += slots;

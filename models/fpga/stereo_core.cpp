@@ -292,7 +292,7 @@ void StereoCore::route_host(const HostRoute& route) {
   if (!route.bank) {
     if (!host_is_routed_) return;
     host_is_routed_ = false;
-    timing_.begin_routing();
+    timing_.host_route_changes();
     crossbar_.unroute(Port::kHost);
     return;
   }
@@ -312,7 +312,7 @@ void StereoCore::route_host(const HostRoute& route) {
 void StereoCore::join_host() {
   if (!host_route_.bank || host_is_routed_) return;
   host_is_routed_ = true;
-  timing_.begin_routing();
+  timing_.host_route_changes();
   crossbar_.route(Port::kHost, *host_route_.bank, host_route_.write);
 }
 

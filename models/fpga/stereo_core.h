@@ -40,7 +40,7 @@ namespace stereotlm::fpga {
 // How the core works on a frame; the results and times are the same.
 enum class Fidelity : std::uint8_t {
   kCycle,   // cycle by cycle, every access a transaction
-  kFast,    // its data at once, by direct access; its timing ahead, as far as it repeats (CoreTiming)
+  kFast,    // its data at once, by direct access; its timing ahead, as far as it is known (CoreTiming)
   kTiming,  // as kFast, but without pictures and disparities; a frame done cycle by cycle has both
 };
 
@@ -67,7 +67,8 @@ struct StereoCoreConfig {
 // reads, or touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose
 // memory cannot be had directly, whose buffers overlap, whose tables point outside the image, or that begins
 // within such a burst is done cycle by cycle. Where errors are not thrown a frame that met one ends with the
-// error flag of register_map.h.
+// error flag of register_map.h. The words of a burst are all in place with its first one, where nothing but
+// the local bus can start a frame.
 //
 // A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most at
 // Fidelity::kCycle, else 2^22) would run for ever: a port that the arbiters always pass over. That is
@@ -222,6 +223,7 @@ class StereoCore : public sc_core::sc_module {
   Buffers buffers_;  // of the frame that runs
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
   std::vector<std::uint8_t> disparities_;  // of the frame that runs
+  bool burst_is_moved_ = false;  // of the local bus: its data is where it belongs, its words are only counted
   // Words of the local bus in a bank that the running frame does not use, until it is known which of them
   // count.
   struct Served {
@@ -229,7 +231,6 @@ class StereoCore : public sc_core::sc_module {
     std::uint64_t cycles;  // from it on
     memory::BankArbiter::Outcome outcome;
   };
-  bool burst_is_moved_ = false;  // of the local bus: its data is where it belongs, its words are only counted
   std::vector<Served> served_;
   std::size_t served_bank_ = 0;
   sc_core::sc_event start_event_{"start_event"};

@@ -55,7 +55,7 @@ class Arbitration {
   // others are 0.
   using State = std::array<std::uint32_t, kPortCount>;
   State state(std::uint64_t cycle) const;
-  // What was decided in some cycles.
+  // What was decided in some cycles: of use as long as the same ports have the same routes.
   struct Decided {
     struct Shared {
       std::size_t bank;  // of the shared ones

@@ -40,6 +40,7 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
 }
 
 void BankArbiter::skip_to(std::uint32_t state, std::uint64_t cycle, std::uint64_t cycles) {
+  static_assert(kTurnaroundRule.max < 0xff);
   place_ = state & 0xffU;
   ready_cycle_ = {cycle + (state >> 8U & 0xffU), cycle + (state >> 16U)};
   if (!counting_) return;

@@ -38,6 +38,7 @@ struct Setting {
   std::vector<std::uint32_t> left_entries;
   std::vector<std::uint32_t> right_entries;
   int frames = 1;
+  std::size_t most_groups = KnownGroups::kMost;
 };
 
 Setting random_setting(test::SplitMix64& random) {
@@ -59,6 +60,7 @@ Setting random_setting(test::SplitMix64& random) {
   setting.left_entries = random_entries(random, setting.core);
   setting.right_entries = random_entries(random, setting.core);
   setting.frames = random.between(1, 3);
+  if (random.chance(30)) setting.most_groups = static_cast<std::size_t>(random.between(1, 16));
   return setting;
 }
 
@@ -71,7 +73,7 @@ class Timing {
       : setting_(setting),
         way_(way),
         arbitration_(setting.arbiter, setting.banks),
-        timing_(setting.core, arbitration_),
+        timing_(setting.core, arbitration_, setting.most_groups),
         left_(FrameGeometry(setting.core)),
         right_(FrameGeometry(setting.core)) {
     if (setting.core.left_table) left_.set_entries(setting.left_entries.data());
@@ -125,10 +127,10 @@ class Timing {
   // The words of a burst, until it ends or the frame.
   void serve(const Burst& burst) {
     if (done()) return;
-    timing_.begin_routing();
+    timing_.host_route_changes();
     arbitration_.route(Port::kHost, burst.bank, burst.write);
     for (int words = 0; words < burst.words && !done();) words += int{step(true)};
-    timing_.begin_routing();
+    timing_.host_route_changes();
     arbitration_.unroute(Port::kHost);
   }
   void finish() {

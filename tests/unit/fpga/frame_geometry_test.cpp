@@ -78,6 +78,26 @@ TEST(SlotCursor, WalksTheSequenceOfTheContract) {
   }
 }
 
+TEST(SlotCursor, AdvancesByAnyNumberOfSlots) {
+  for (const CoreConfig& config : boards()) {
+    const FrameGeometry geometry(config);
+    for (const std::uint64_t slots : {0U, 1U, 2U, 3U, 5U, 8U, 13U, 50U}) {
+      SlotCursor steps(geometry);
+      SlotCursor advances(geometry);
+      for (std::uint64_t left = geometry.slots; left > slots; left -= slots + 1) {
+        steps.advance();
+        advances.advance();
+        for (std::uint64_t slot = 0; slot < slots; ++slot) steps.advance();
+        advances.advance(slots);
+        ASSERT_EQ(advances.done(), steps.done());
+        ASSERT_EQ(advances.frame_column(), steps.frame_column());
+        ASSERT_EQ(advances.column(), steps.column());
+        ASSERT_EQ(advances.row(), steps.row());
+      }
+    }
+  }
+}
+
 TEST(SlotCursor, HasNothingToWalkBeforeAFrame) { EXPECT_TRUE(SlotCursor().done()); }
 
 TEST(FrameGeometry, HoldsResultsBackByTheColumnsOfTheContract) {

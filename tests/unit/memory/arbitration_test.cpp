@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <sstream>
 #include <string>
@@ -191,6 +192,62 @@ TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
     ASSERT_EQ(text_of(repeats.arbiters()), text_of(steps.arbiters()));
   }
   EXPECT_GT(repeated, 300);
+}
+
+// What one has recorded between two states another one skips, wherever in time it is in the first of them.
+TEST_P(ArbitrationPeriods, SkipToWhereStepsLead) {
+  int skipped = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    SplitMix64 random(seed);
+    const ArbiterConfig config = random_arbiter(random);
+    const Routes routes(random);
+    Arbitration skips(config, banks());
+    Arbitration steps(config, banks());
+    std::uint64_t cycle = 3;
+    for (Arbitration* arbitration : {&skips, &steps}) {
+      routes.apply(*arbitration);
+      if (GetParam()) arbitration->begin_counting(cycle);
+    }
+    struct Span {
+      Arbitration::State begin;
+      std::vector<PortMask> requests;
+      Arbitration::Decided decided;
+      Arbitration::State end;
+    };
+    std::vector<Span> spans;
+    for (int part = 0; part < 60; ++part) {
+      const Arbitration::State now = steps.state(cycle);
+      ASSERT_EQ(skips.state(cycle), now);
+      const auto known =
+          std::find_if(spans.begin(), spans.end(), [&now](const Span& s) { return s.begin == now; });
+      if (known != spans.end()) {
+        const std::uint64_t cycles = known->requests.size();
+        for (std::uint64_t i = 0; i < cycles; ++i) steps.arbitrate(cycle + i, known->requests[i]);
+        cycle += cycles;
+        skips.count_skipped(known->decided, 1);
+        skips.skip_to(known->end, cycle, cycles);
+        skipped += int{!(known->begin == known->end)};
+        continue;
+      }
+      Span span{now, {}, {}, {}};
+      for (int cycles = random.between(1, 12); cycles > 0; --cycles)
+        span.requests.push_back(random_requests(random, routes.ports));
+      skips.begin_recording();
+      for (const PortMask requests : span.requests) {
+        ASSERT_EQ(skips.arbitrate(cycle, requests), steps.arbitrate(cycle, requests));
+        ++cycle;
+      }
+      span.decided = skips.take_recorded();
+      span.end = steps.state(cycle);
+      spans.push_back(span);
+    }
+    for (Arbitration* arbitration : {&skips, &steps}) {
+      if (GetParam()) arbitration->end_counting(cycle);
+    }
+    ASSERT_EQ(text_of(skips.arbiters()), text_of(steps.arbiters()));
+  }
+  EXPECT_GT(skipped, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Arbitration, ArbitrationPeriods, testing::Bool(), [](const auto& suite) {
