@@ -110,6 +110,9 @@ class Paper(ProgramTest):
             if within:
                 self.assertEqual(float(within[1]), tolerance)
                 holds = abs(printed - modelled) <= tolerance * (printed / 100 if within[2] == "%" else 1)
+            elif rule == "more than the printed value":
+                self.assertEqual(tolerance, 0)
+                holds = modelled > printed
             else:
                 self.assertTrue(at_least, rule)
                 self.assertEqual(float(at_least[1] or 0), tolerance)
