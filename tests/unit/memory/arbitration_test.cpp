@@ -142,7 +142,30 @@ TEST(Arbitration, GrantsAndCountsAsAnArbiterForEachBankWhoeverMeetsThere) {
   }
 }
 
-// Two in the same routes, counting or not.
+// Two in the same routes, counting or not: one skips what the other steps.
+struct TwoAlike {
+  TwoAlike(SplitMix64& random, bool are_counted, std::uint64_t cycle)
+      : config(random_arbiter(random)), routes(random), counts(are_counted) {
+    for (Arbitration* arbitration : {&skips, &steps}) {
+      routes.apply(*arbitration);
+      if (counts) arbitration->begin_counting(cycle);
+    }
+  }
+  // All that both have counted until then is the same.
+  void expect_equal(std::uint64_t end_cycle) {
+    for (Arbitration* arbitration : {&skips, &steps}) {
+      if (counts) arbitration->end_counting(end_cycle);
+    }
+    ASSERT_EQ(text_of(skips.arbiters()), text_of(steps.arbiters()));
+  }
+
+  ArbiterConfig config;
+  Routes routes;
+  bool counts;
+  Arbitration skips{config, banks()};
+  Arbitration steps{config, banks()};
+};
+
 class ArbitrationPeriods : public testing::TestWithParam<bool> {};
 
 TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
@@ -150,46 +173,36 @@ TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SplitMix64 random(seed);
-    const ArbiterConfig config = random_arbiter(random);
-    const Routes routes(random);
-    Arbitration repeats(config, banks());
-    Arbitration steps(config, banks());
+    std::uint64_t cycle = 7;
+    TwoAlike two(random, GetParam(), cycle);
     std::vector<PortMask> period;
     for (int cycles = random.between(1, 30); cycles > 0; --cycles)
-      period.push_back(random_requests(random, routes.ports));
-    std::uint64_t cycle = 7;
+      period.push_back(random_requests(random, two.routes.ports));
     const auto step = [&](Arbitration& arbitration, std::uint64_t from) {
       for (std::size_t i = 0; i < period.size(); ++i) arbitration.arbitrate(from + i, period[i]);
     };
-    for (Arbitration* arbitration : {&repeats, &steps}) {
-      routes.apply(*arbitration);
-      if (GetParam()) arbitration->begin_counting(cycle);
-    }
     // Until it comes back to where it was.
     for (int tries = 0; tries < 20; ++tries) {
-      const Arbitration::State before = repeats.state(cycle);
-      repeats.begin_recording();
-      step(repeats, cycle);
-      step(steps, cycle);
+      const Arbitration::State before = two.skips.state(cycle);
+      two.skips.begin_recording();
+      step(two.skips, cycle);
+      step(two.steps, cycle);
       cycle += period.size();
-      if (!(repeats.state(cycle) == before)) continue;
+      if (!(two.skips.state(cycle) == before)) continue;
       const auto times = static_cast<std::uint64_t>(random.between(1, 5));
-      const Arbitration::Decided decided = repeats.take_recorded();
-      repeats.count_skipped(decided, times);
-      repeats.skip_to(before, cycle + times * period.size(), times * period.size());
-      for (std::uint64_t i = 0; i < times; ++i) step(steps, cycle + i * period.size());
+      const Arbitration::Decided decided = two.skips.take_recorded();
+      two.skips.count_skipped(decided, times);
+      two.skips.skip_to(before, cycle + times * period.size(), times * period.size());
+      for (std::uint64_t i = 0; i < times; ++i) step(two.steps, cycle + i * period.size());
       cycle += times * period.size();
       ++repeated;
-      ASSERT_EQ(repeats.state(cycle), steps.state(cycle));
+      ASSERT_EQ(two.skips.state(cycle), two.steps.state(cycle));
     }
     for (const std::uint64_t end = cycle + 50; cycle < end; ++cycle) {
-      const PortMask requests = random_requests(random, routes.ports);
-      ASSERT_EQ(repeats.arbitrate(cycle, requests), steps.arbitrate(cycle, requests));
+      const PortMask requests = random_requests(random, two.routes.ports);
+      ASSERT_EQ(two.skips.arbitrate(cycle, requests), two.steps.arbitrate(cycle, requests));
     }
-    for (Arbitration* arbitration : {&repeats, &steps}) {
-      if (GetParam()) arbitration->end_counting(cycle);
-    }
-    ASSERT_EQ(text_of(repeats.arbiters()), text_of(steps.arbiters()));
+    ASSERT_NO_FATAL_FAILURE(two.expect_equal(cycle));
   }
   EXPECT_GT(repeated, 300);
 }
@@ -200,15 +213,8 @@ TEST_P(ArbitrationPeriods, SkipToWhereStepsLead) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SplitMix64 random(seed);
-    const ArbiterConfig config = random_arbiter(random);
-    const Routes routes(random);
-    Arbitration skips(config, banks());
-    Arbitration steps(config, banks());
     std::uint64_t cycle = 3;
-    for (Arbitration* arbitration : {&skips, &steps}) {
-      routes.apply(*arbitration);
-      if (GetParam()) arbitration->begin_counting(cycle);
-    }
+    TwoAlike two(random, GetParam(), cycle);
     struct Span {
       Arbitration::State begin;
       std::vector<PortMask> requests;
@@ -217,35 +223,32 @@ TEST_P(ArbitrationPeriods, SkipToWhereStepsLead) {
     };
     std::vector<Span> spans;
     for (int part = 0; part < 60; ++part) {
-      const Arbitration::State now = steps.state(cycle);
-      ASSERT_EQ(skips.state(cycle), now);
+      const Arbitration::State now = two.steps.state(cycle);
+      ASSERT_EQ(two.skips.state(cycle), now);
       const auto known =
           std::find_if(spans.begin(), spans.end(), [&now](const Span& s) { return s.begin == now; });
       if (known != spans.end()) {
         const std::uint64_t cycles = known->requests.size();
-        for (std::uint64_t i = 0; i < cycles; ++i) steps.arbitrate(cycle + i, known->requests[i]);
+        for (std::uint64_t i = 0; i < cycles; ++i) two.steps.arbitrate(cycle + i, known->requests[i]);
         cycle += cycles;
-        skips.count_skipped(known->decided, 1);
-        skips.skip_to(known->end, cycle, cycles);
+        two.skips.count_skipped(known->decided, 1);
+        two.skips.skip_to(known->end, cycle, cycles);
         skipped += int{!(known->begin == known->end)};
         continue;
       }
       Span span{now, {}, {}, {}};
       for (int cycles = random.between(1, 12); cycles > 0; --cycles)
-        span.requests.push_back(random_requests(random, routes.ports));
-      skips.begin_recording();
+        span.requests.push_back(random_requests(random, two.routes.ports));
+      two.skips.begin_recording();
       for (const PortMask requests : span.requests) {
-        ASSERT_EQ(skips.arbitrate(cycle, requests), steps.arbitrate(cycle, requests));
+        ASSERT_EQ(two.skips.arbitrate(cycle, requests), two.steps.arbitrate(cycle, requests));
         ++cycle;
       }
-      span.decided = skips.take_recorded();
-      span.end = steps.state(cycle);
+      span.decided = two.skips.take_recorded();
+      span.end = two.steps.state(cycle);
       spans.push_back(span);
     }
-    for (Arbitration* arbitration : {&skips, &steps}) {
-      if (GetParam()) arbitration->end_counting(cycle);
-    }
-    ASSERT_EQ(text_of(skips.arbiters()), text_of(steps.arbiters()));
+    ASSERT_NO_FATAL_FAILURE(two.expect_equal(cycle));
   }
   EXPECT_GT(skipped, 100);
 }

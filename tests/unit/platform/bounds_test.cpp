@@ -331,8 +331,10 @@ TEST(LeastDelivery, IsWhenTheFramesAreDoneOneAfterAnother) {
   const BoardConfig board = small_board();
   const Tables tables = identity_tables(board);
   const auto cycles = static_cast<double>(2 * largest(board, tables, 0) + largest(board, tables, 1));
-  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 3, {0, 0.5}), 0.5 + cycles * kCycle, 1e-12);
-  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 5, {2, 1.5}), 1.5 + cycles * kCycle, 1e-12);
+  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 3, {0, 0.5}), 0.5 + cycles * kCycle,
+              1e-12);
+  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 5, {2, 1.5}), 1.5 + cycles * kCycle,
+              1e-12);
 }
 
 // Of 100 frames, or the last 10 of them: what the core reads and writes, results read back, and all pairs but
