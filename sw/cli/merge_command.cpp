@@ -9,6 +9,7 @@
 #include "sw/cli/exit_status.h"
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
+#include "sw/explore/merge_stores.h"
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"
 

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "sw/explore/merge_stores.h"
 #include "sw/explore/shared_state.h"
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"

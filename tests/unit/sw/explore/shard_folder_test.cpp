@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sw/explore/merge_stores.h"
 #include "sw/explore/store.h"
 #include "tests/support/scratch_folder.h"
 

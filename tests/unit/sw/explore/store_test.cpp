@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sw/explore/merge_stores.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::explore {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "sw/explore/ended_by_signal.h"
+#include "sw/explore/merge_stores.h"
 #include "sw/explore/plan.h"
 #include "sw/explore/store.h"
 #include "tests/support/scratch_folder.h"
