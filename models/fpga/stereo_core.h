@@ -15,6 +15,7 @@
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_timing.h"
+#include "models/fpga/fidelity.h"
 #include "models/fpga/local_bus.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
@@ -36,13 +37,6 @@
 #include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
-
-// How the core works on a frame; the results and times are the same.
-enum class Fidelity : std::uint8_t {
-  kCycle,   // cycle by cycle, every access a transaction
-  kFast,    // its data at once, by direct access; its timing ahead, as far as it is known (CoreTiming)
-  kTiming,  // as kFast, but without pictures and disparities; a frame done cycle by cycle has both
-};
 
 struct StereoCoreConfig {
   CoreConfig core;

@@ -7,31 +7,12 @@
 #include <vector>
 
 #include "models/fpga/frame_buffers.h"
+#include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/word_access.h"
 
 namespace stereotlm::host {
-
-struct StereoPair {
-  kernels::GrayImage left;
-  kernels::GrayImage right;
-};
-
-// Where the pictures come from and the results go.
-class FrameSource {
- public:
-  virtual ~FrameSource() = default;
-  // The pair that frame number `frame` works on, of the configured size; valid until the next call.
-  virtual const StereoPair& pair(std::uint64_t frame) = 0;
-};
-
-class FrameSink {
- public:
-  virtual ~FrameSink() = default;
-  // Frame number `frame` has ended; called at its last cycle's end.
-  virtual void take(std::uint64_t frame, const kernels::GrayImage& disparity) = 0;
-};
 
 struct IdealHostConfig {
   int width = 0;   // pixels

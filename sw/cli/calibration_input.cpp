@@ -73,12 +73,13 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     const std::string content = report::read_whole_file(files.calibration);
     input.described.file = described(files.calibration, content);
     try {
-      input.calibration = calibration_functions().parse_calibration(content);
-      if (board != nullptr) check_board(input.calibration.rig, *board);
+      input.calibration =
+          std::make_shared<const calib::Calibration>(calibration_functions().parse_calibration(content));
+      if (board != nullptr) check_board(input.calibration->rig, *board);
     } catch (const std::runtime_error& error) {
       throw at_path(error.what());
     }
-    const calib::Calibration& calibration = input.calibration;
+    const calib::Calibration& calibration = *input.calibration;
     attempt([&] {
       input.tables.left =
           load_table(files.left_lut, calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
@@ -90,7 +91,7 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
   });
   if (!is_right) return std::nullopt;
   attempt([&] {
-    const calib::Calibration& calibration = input.calibration;
+    const calib::Calibration& calibration = *input.calibration;
     if (!calib::are_tables_of({*input.tables.left, *input.tables.right}, calibration.rig,
                               calibration.rectification, calibration.disparity_offset)) {
       throw at_path("matrices and disparity_offset: must be those that its tables were made with");

@@ -1,21 +1,25 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "calib/calibration.h"
 #include "platform/board_config.h"
 #include "platform/tables.h"
 #include "sw/cli/open_source.h"
 #include "sw/cli/problems.h"
 #include "sw/report/run_json.h"
 
+namespace stereotlm::calib {
+struct Calibration;
+}
+
 namespace stereotlm::cli {
 
 // The file of --calibration and the tables beside it.
 struct CalibrationInput {
-  calib::Calibration calibration;
+  std::shared_ptr<const calib::Calibration> calibration;  // never null
   platform::Tables tables;
   report::InputCalibration described;
   std::vector<NamedFile> files;

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "models/host/ideal_host.h"
+#include "models/host/frame_source.h"
 #include "sw/media/truth.h"
 
 namespace stereotlm::cli {

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "calib/calibration.h"
 #include "platform/board_yaml.h"
 #include "sw/cli/calibration_library.h"
 #include "sw/cli/interrupt.h"

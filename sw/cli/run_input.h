@@ -13,12 +13,16 @@
 #include "sw/report/result_folder.h"
 #include "sw/report/run_json.h"
 
+namespace stereotlm::calib {
+struct Calibration;
+}
+
 namespace stereotlm::cli {
 
 // All that a run works on, loaded and checked.
 struct RunInput {
   platform::BoardConfig board;
-  std::optional<calib::Calibration> calibration;
+  std::shared_ptr<const calib::Calibration> calibration;  // null: without
   platform::Tables tables;
   std::unique_ptr<PairSource> pairs;  // null: blank ones; only with timing_only
   bool camera = true;                 // --source camera, else preloaded

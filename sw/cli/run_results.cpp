@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/calibration.h"
 #include "calib/depth.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/calibration.h"
 #include "platform/board_draft.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/calibration_input.h"
@@ -263,7 +264,7 @@ std::optional<CalibrationInput> load_calibration(const SweepCommandOptions& opti
   Problems problems;
   auto calibration = load_calibration(path, nullptr, problems, named);
   if (calibration) {
-    const calib::Rig& rig = calibration->calibration.rig;
+    const calib::Rig& rig = calibration->calibration->rig;
     const auto problem = plan.use_calibration(sha256_of(calibration->tables), rig.width, rig.height);
     if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
   }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "models/binder.h"
-#include "models/fpga/stereo_core.h"
-#include "models/host/ideal_host.h"
+#include "models/fpga/fidelity.h"
+#include "models/host/frame_source.h"
 #include "platform/board_config.h"
 #include "platform/tables.h"
 #include "sw/simulation/simulation.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "models/binder.h"
-#include "models/host/ideal_host.h"
+#include "models/host/frame_source.h"
 #include "platform/collect.h"
 #include "platform/preloaded_system.h"
 #include "sw/simulation/simulation.h"

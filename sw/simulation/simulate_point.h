@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "models/host/ideal_host.h"
+#include "models/host/frame_source.h"
 #include "platform/bounds.h"
 #include "platform/tables.h"
 #include "sw/explore/figures.h"

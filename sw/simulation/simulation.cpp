@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <systemc>
 #include <utility>
 
 #include "models/clock.h"
+#include "models/fpga/stereo_core.h"
 
 namespace stereotlm::simulation {
 namespace {
@@ -45,6 +47,10 @@ std::uint64_t Simulation::cycles() const {
   return static_cast<std::uint64_t>(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6 +
                                     0.5);
 }
+
+void Simulation::record_rows() { core().record_rows(); }
+
+std::vector<fpga::RowProfile> Simulation::take_rows() { return core().take_rows(); }
 
 const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
   try {

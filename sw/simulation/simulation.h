@@ -2,14 +2,18 @@
 
 #include <cstdint>
 #include <exception>
-#include <systemc>
 #include <vector>
 
-#include "models/fpga/stereo_core.h"
-#include "models/host/ideal_host.h"
+#include "models/fpga/fidelity.h"
+#include "models/fpga/row_profile.h"
+#include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "platform/board_config.h"
 #include "platform/statistics.h"
+
+namespace stereotlm::fpga {
+class StereoCore;
+}
 
 namespace stereotlm::simulation {
 
@@ -45,9 +49,9 @@ class Simulation {
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }
 
   // From the next frame of the core on: when its rows of results were whole.
-  void record_rows() { core().record_rows(); }
+  void record_rows();
   // Of the frames that the core has finished since the last call. Results come in the same order, of a computer later.
-  std::vector<fpga::RowProfile> take_rows() { return core().take_rows(); }
+  std::vector<fpga::RowProfile> take_rows();
 
   // Of the frames that are done, with no other under way that end_early() would finish; one at least for a computer.
   virtual platform::Statistics statistics() const = 0;

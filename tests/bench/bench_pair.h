@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "models/host/ideal_host.h"
+#include "models/host/frame_source.h"
 
 namespace stereotlm::bench {
 

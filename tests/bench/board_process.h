@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/fpga/stereo_core.h"
-#include "models/host/ideal_host.h"
+#include "models/host/frame_source.h"
 #include "platform/tables.h"
 
 namespace stereotlm::bench {

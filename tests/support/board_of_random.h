@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/host/ideal_host.h"
+#include "models/host/frame_source.h"
 #include "platform/board_config.h"
 #include "platform/tables.h"
 #include "tests/support/plain_cycle_loop.h"
