@@ -39,17 +39,19 @@ class Terminal:
             found = pattern.findall(self.text)
             if found:
                 return found
-            self.read(0.1)
+            if self.read(0.1) is None:
+                raise AssertionError(f"ended without {pattern.pattern}: {self.text!r}")
         raise AssertionError(f"not within {seconds} s: {pattern.pattern} in {self.text!r}")
 
     def read(self, seconds):
-        if select.select([self.master], [], [], seconds)[0]:
-            try:
-                self.text += os.read(self.master, 65536).decode()
-                return True
-            except OSError:
-                pass
-        return False
+        """Whether there was anything to read within this time; None where nothing will come any more."""
+        if not select.select([self.master], [], [], seconds)[0]:
+            return False
+        try:
+            self.text += os.read(self.master, 65536).decode()
+        except OSError:
+            return None
+        return True
 
     def finish(self):
         """(exit status, standard output)."""

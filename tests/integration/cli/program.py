@@ -15,6 +15,7 @@ import unittest
 import zlib
 
 PROGRAM = None  # set by main()
+PYTHON = "/usr/bin/python3"  # Debian's, which has matplotlib
 
 WIDTH = 32
 HEIGHT = 24
@@ -67,6 +68,20 @@ def read_png(path, bits=8):
         above = bytes(row)
         rows.append(above)
     return width, height, channels, rows
+
+
+def drawn(path):
+    """(width, height, part of it that is white, number of colours) of a figure."""
+    script = """
+import sys
+import numpy
+from matplotlib import image
+pixels = (image.imread(sys.argv[1])[:, :, :3] * 255).round().astype(int) @ [65536, 256, 1]
+print(pixels.shape[1], pixels.shape[0], numpy.mean(pixels == 0xFFFFFF), len(numpy.unique(pixels)))
+"""
+    process = subprocess.run([PYTHON, "-c", script, str(path)], capture_output=True, text=True, timeout=300, check=True)
+    width, height, white, colors = process.stdout.split()
+    return int(width), int(height), float(white), int(colors)
 
 
 def read_png_16(path):
