@@ -37,7 +37,7 @@ bool finds(Statement& find, const std::string& hash) {
   return found;
 }
 
-// What a point has in further columns, in the order of insertion().
+// What a point has in further columns.
 std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
   std::vector<const platform::BoardValue*> values;
   for (const auto* part : {&point.keys, &point.figures}) {
@@ -60,6 +60,8 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
 // Once, by whoever comes first.
 void Store::create() {
   if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
+    // The journal gets whole pages, and each point changes some.
+    database_.execute("PRAGMA page_size = 1024");
     wait_for_writers(database_);
     // Readers do not wait for the one who writes; nothing is lost when the process ends, however it does.
     database_.execute("PRAGMA journal_mode = WAL");
@@ -92,14 +94,14 @@ void Store::check_banks(const std::vector<std::string>& banks) const {
 bool Store::has(const std::string& hash) { return finds(*find_, hash); }
 
 bool Store::add(const StoredPoint& point) {
+  const std::vector<const platform::BoardValue*> values = further_values(point);
   database_.execute("BEGIN IMMEDIATE");
   try {
-    add_columns(point);
-    Statement& insert = insertion(point);
+    Statement& insert = insertion(point, values);
     int place = 0;
     for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
       insert.bind(++place, text);
-    for (const platform::BoardValue* value : further_values(point)) insert.bind(++place, *value);
+    for (const platform::BoardValue* value : values) insert.bind(++place, *value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
     for (const StoredBlame& row : point.blame) {
@@ -115,38 +117,39 @@ bool Store::add(const StoredPoint& point) {
   } catch (const DatabaseError&) {
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr,
                  nullptr);  // SQLite may have done it already
+    insertions_.clear();    // the columns that it has added are gone
     throw;
   }
 }
 
-void Store::add_columns(const StoredPoint& point) {
-  const auto is_known = [this](const platform::BoardValue& value) { return columns_.count(value.path) > 0; };
-  const auto are_known = [&](const std::vector<platform::BoardValue>& values) {
-    return std::all_of(values.begin(), values.end(), is_known);
-  };
-  if (are_known(point.keys) && are_known(point.figures)) return;
-  read_columns();  // another process may have added them
-  for (const auto* values : {&point.keys, &point.figures}) {
-    for (const platform::BoardValue& value : *values) {
-      if (is_known(value)) continue;
-      database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
-      if (values == &point.keys) insert_key(database_, value.path);
-      columns_.insert(value.path);
-    }
-  }
+Statement& Store::insertion(const StoredPoint& point,
+                            const std::vector<const platform::BoardValue*>& values) {
+  const auto known =
+      std::find_if(insertions_.begin(), insertions_.end(), [&values](const Insertion& insertion) {
+        return std::equal(
+            values.begin(), values.end(), insertion.paths.begin(), insertion.paths.end(),
+            [](const platform::BoardValue* value, const std::string& path) { return value->path == path; });
+      });
+  if (known != insertions_.end()) return *known->statement;
+  add_columns(point);
+  Insertion made;
+  for (const platform::BoardValue* value : values) made.paths.push_back(value->path);
+  std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
+  columns.insert(columns.end(), made.paths.begin(), made.paths.end());
+  made.statement = std::make_unique<Statement>(database_, insert_point_sql(columns));
+  insertions_.push_back(std::move(made));
+  return *insertions_.back().statement;
 }
 
-Statement& Store::insertion(const StoredPoint& point) {
-  std::string signature;
-  for (const platform::BoardValue* value : further_values(point)) signature += value->path + '\n';
-  std::unique_ptr<Statement>& statement = insertions_[signature];
-  if (!statement) {
-    std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
-    for (const platform::BoardValue* value : further_values(point)) columns.push_back(value->path);
-    statement = std::make_unique<Statement>(database_, insert_point_sql(columns));
+void Store::add_columns(const StoredPoint& point) {
+  read_columns();  // another process may have added some
+  for (const auto* values : {&point.keys, &point.figures}) {
+    for (const platform::BoardValue& value : *values) {
+      if (!columns_.insert(value.path).second) continue;
+      database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
+      if (values == &point.keys) insert_key(database_, value.path);
+    }
   }
-  statement->clear_bindings();
-  return *statement;
 }
 
 FinishedStore::FinishedStore(const std::string& path, const std::string& version)

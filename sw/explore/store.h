@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -53,15 +52,20 @@ class Store {
  private:
   void create();
   void read_columns();
+  // Of points with the same further columns, which it adds where they are missing.
+  struct Insertion {
+    std::vector<std::string> paths;
+    std::unique_ptr<Statement> statement;
+  };
+  Statement& insertion(const StoredPoint& point, const std::vector<const platform::BoardValue*>& values);
   void add_columns(const StoredPoint& point);
-  Statement& insertion(const StoredPoint& point);
 
   Database database_;
   std::string version_;
   std::set<std::string> columns_;
   std::unique_ptr<Statement> find_;
   std::unique_ptr<Statement> insert_blame_;
-  std::map<std::string, std::unique_ptr<Statement>> insertions_;  // by their columns
+  std::vector<Insertion> insertions_;
 };
 
 // The file of a Store that nobody writes to. Any number of machines may read it at the same time if it has
