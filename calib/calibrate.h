@@ -41,9 +41,10 @@ struct CalibrationResult {
   std::vector<std::string> skipped;     // pictures without grid: "'left04.jpg': no grid of .."
 };
 
-// From pictures of a grid to the tables: finds the corners, fits the rig to those that fit one, rectifies, chooses the
-// disparity offset, and measures how good all that is. Throws std::invalid_argument, with all that is needed to mend it: too
-// few pairs with a grid; cameras swapped or one above the other; disparities that do not hold the grid's.
+// From pictures of a grid to the tables: finds the corners, fits the rig to those that fit one, rectifies,
+// chooses the disparity offset, and measures how good all that is. Throws std::invalid_argument, with all
+// that is needed to mend it: too few pairs with a grid; cameras swapped or one above the other; disparities
+// that do not hold the grid's.
 CalibrationResult calibrate(const CalibrationRequest& request);
 
 }  // namespace stereotlm::calib

@@ -79,8 +79,8 @@ double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& positio
   return count > 0 ? sum / count : 0;
 }
 
-// How much two opposite of the squares around a corner are brighter than the other two. `right` and `down` lead to the
-// next corners.
+// How much two opposite of the squares around a corner are brighter than the other two. `right` and `down`
+// lead to the next corners.
 double contrast(const kernels::GrayImage& picture, const Eigen::Vector2d& corner,
                 const Eigen::Vector2d& right, const Eigen::Vector2d& down) {
   constexpr double kReach = 0.35;  // of a square
@@ -107,7 +107,8 @@ class Squares {
     without_lens_ = to_eigen<Eigen::Matrix3d>(cv::findHomography(on_board, seen));
   }
 
-  // Whether the corners alternate as those of a chessboard do. They do not where a line in between was missed.
+  // Whether the corners alternate as those of a chessboard do. They do not where a line in between was
+  // missed.
   bool alternate() const {
     constexpr double kAtLeast = 0.9;  // the rest is for single corners that cannot be seen well
     double sum = 0;
@@ -122,8 +123,8 @@ class Squares {
     return std::abs(sum) > kAtLeast * most;
   }
 
-  // Whether there are more lines of corners than those found. On the edge of the outermost squares, where one or two of
-  // the four squares around a point are missing, the contrast is half that of a corner.
+  // Whether there are more lines of corners than those found. On the edge of the outermost squares, where one
+  // or two of the four squares around a point are missing, the contrast is half that of a corner.
   bool go_on() const {
     constexpr double kAtLeast = 0.72;
     const auto exceeds = [](double beyond, double within) {

@@ -35,8 +35,8 @@ struct DisparityRange {
   int needed() const;
 };
 
-// Throws std::invalid_argument if `range` needs more than `disparities` candidates: what `auto` chooses, which leaves as
-// much room on its near side as on its far side, and is not below 0 unless it must.
+// Throws std::invalid_argument if `range` needs more than `disparities` candidates: what `auto` chooses,
+// which leaves as much room on its near side as on its far side, and is not below 0 unless it must.
 int disparity_offset_for(const DisparityRange& range, int disparities);
 
 }  // namespace stereotlm::calib

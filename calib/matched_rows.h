@@ -10,10 +10,11 @@ struct MatchedRows {
   RowError error;          // of those that were found
 };
 
-// How well the rows of two rectified pictures agree, from what they show: the most conspicuous points of the left one are
-// looked for in the right one, 0 .. disparities-1 columns to the left and up to 8 rows above or below, and those found
-// beyond doubt count. A hint whether the tables belong to the cameras: those of the rig itself come out below one pixel.
-// Costs some 20 ms at 640x480. Throws std::invalid_argument if the pictures differ in size.
+// How well the rows of two rectified pictures agree, from what they show: the most conspicuous points of the
+// left one are looked for in the right one, 0 .. disparities-1 columns to the left and up to 8 rows above or
+// below, and those found beyond doubt count. A hint whether the tables belong to the cameras: those of the
+// rig itself come out below one pixel. Costs some 20 ms at 640x480. Throws std::invalid_argument if the
+// pictures differ in size.
 MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
 
 }  // namespace stereotlm::calib

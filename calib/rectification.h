@@ -9,8 +9,8 @@ namespace stereotlm::calib {
 
 using Projection = Eigen::Matrix<double, 3, 4>;
 
-// Two ideal cameras in place of those of a rig, with parallel axes, one focal length and one principal point, that see a
-// point in the same row. Names as in OpenCV's stereoRectify.
+// Two ideal cameras in place of those of a rig, with parallel axes, one focal length and one principal point,
+// that see a point in the same row. Names as in OpenCV's stereoRectify.
 struct Rectification {
   // Camera coordinates of an ideal camera = r1 (r2) * those of the left (right) camera.
   Eigen::Matrix3d r1 = Eigen::Matrix3d::Identity();
@@ -18,21 +18,21 @@ struct Rectification {
   // From camera coordinates of the ideal left camera to pixels of the left (right) rectified picture.
   Projection p1 = Projection::Zero();
   Projection p2 = Projection::Zero();
-  // From (column, row, true disparity, 1) of the rectified left picture to homogeneous camera coordinates of the ideal left
-  // camera, mm.
+  // From (column, row, true disparity, 1) of the rectified left picture to homogeneous camera coordinates of
+  // the ideal left camera, mm.
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
 };
 
 // The rectified pictures have the size of the rig's, and hold no pixel that the cameras did not see.
 Rectification rectify(const Rig& rig);
 
-// Where a pixel of a camera's picture is in its rectified one. `rotation` and `projection`: r1 and p1, or r2 and p2. Throws
-// as CameraModel::direction.
+// Where a pixel of a camera's picture is in its rectified one. `rotation` and `projection`: r1 and p1, or r2
+// and p2. Throws as CameraModel::direction.
 Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
                                 const Projection& projection, const Eigen::Vector2d& pixel);
 
-// The other way: the pixel of the camera's picture that is seen at a position of the rectified one. Nothing if that is
-// behind the camera or beyond what its lens sees (CameraModel::widest()).
+// The other way: the pixel of the camera's picture that is seen at a position of the rectified one. Nothing
+// if that is behind the camera or beyond what its lens sees (CameraModel::widest()).
 class SourcePixels {
  public:
   SourcePixels(const CameraModel& camera, const Eigen::Matrix3d& rotation, const Projection& projection);

@@ -125,8 +125,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Pairs after which the right camera is where the others say: a grid that moved between the two pictures of a pair would
-// spoil the fit to all, and then nothing fits.
+// Pairs after which the right camera is where the others say: a grid that moved between the two pictures of a
+// pair would spoil the fit to all, and then nothing fits.
 Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
   constexpr double kMostShare = 0.02;  // of the distance of the grid
   std::array<std::vector<double>, 3> places;

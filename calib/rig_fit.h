@@ -48,15 +48,16 @@ enum class Lens : std::uint8_t { kFull, kWithoutK3 };
 
 inline constexpr std::size_t kFewestPairs = 3;
 
-// Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate), to begin with from the
-// pairs that agree where the right camera is. A corner whose misfit is more than eight
-// times the median, and than 0.1 pixels, is left out on both sides, and the fit repeated without those until none changes;
-// a pair that keeps less than half of its corners is left out whole. Throws std::invalid_argument if there are fewer than
-// kFewestPairs, or fewer are left; std::runtime_error if OpenCV finds no rig.
+// Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate), to begin
+// with from the pairs that agree where the right camera is. A corner whose misfit is more than eight times
+// the median, and than 0.1 pixels, is left out on both sides, and the fit repeated without those until none
+// changes; a pair that keeps less than half of its corners is left out whole. Throws std::invalid_argument if
+// there are fewer than kFewestPairs, or fewer are left; std::runtime_error if OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
-// One fit, to the corners used, from the cameras of `guess`. Throws std::runtime_error if OpenCV finds no rig.
+// One fit, to the corners used, from the cameras of `guess`. Throws std::runtime_error if OpenCV finds no
+// rig.
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs,
               const std::vector<std::vector<bool>>& used, const Rig& guess, Lens lens);
 

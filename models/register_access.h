@@ -5,9 +5,10 @@
 
 namespace stereotlm {
 
-// What every bank of 32-bit registers at the byte addresses 0, 4, .. below `end` asks of an access: a read or write
-// (else TLM_COMMAND_ERROR_RESPONSE) of 4 bytes, streaming width not below it (TLM_BURST_ERROR_RESPONSE), without byte
-// enables (TLM_BYTE_ENABLE_ERROR_RESPONSE), at the address of a register (TLM_ADDRESS_ERROR_RESPONSE).
+// What every bank of 32-bit registers at the byte addresses 0, 4, .. below `end` asks of an access: a read or
+// write (else TLM_COMMAND_ERROR_RESPONSE) of 4 bytes, streaming width not below it
+// (TLM_BURST_ERROR_RESPONSE), without byte enables (TLM_BYTE_ENABLE_ERROR_RESPONSE), at the address of a
+// register (TLM_ADDRESS_ERROR_RESPONSE).
 inline tlm::tlm_response_status check_register_access(const tlm::tlm_generic_payload& access,
                                                       std::uint64_t end) {
   const std::uint64_t address = access.get_address();

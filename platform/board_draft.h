@@ -11,7 +11,8 @@
 
 namespace stereotlm::platform {
 
-// Whether a board is given by the path of its file: it has a / or ends in .yaml; else by the name of a preset.
+// Whether a board is given by the path of its file: it has a / or ends in .yaml; else by the name of a
+// preset.
 bool is_board_file(const std::string& board);
 
 // What is wrong with the path of a value that is to be replaced; empty if the schema has it.

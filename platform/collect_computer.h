@@ -24,8 +24,8 @@ struct Delivery {
 
 // What the parts of a computer have counted so far. To be taken while the core runs no frame.
 struct ComputerCounters {
-  // Words written to the buffers of the board; [buffer] in the order of buffers() in board_rules.h, then those
-  // outside of all.
+  // Words written to the buffers of the board; [buffer] in the order of buffers() in board_rules.h, then
+  // those outside of all.
   struct Words {
     std::vector<std::uint64_t> into_bridge;
     std::vector<std::uint64_t> in_bridge;  // still, and not on the local bus
@@ -48,9 +48,9 @@ struct ComputerCounters {
 
 ComputerCounters counters_of(const Computer& computer);
 
-// The figures of a run that ended with the last of `deliveries`, when `counters` were taken, with their bounds; the
-// identities of contract section 6 are checked, and those that do not hold listed in `failed`. The board's counters and
-// `deliveries` are of the same frames, at least one.
+// The figures of a run that ended with the last of `deliveries`, when `counters` were taken, with their
+// bounds; the identities of contract section 6 are checked, and those that do not hold listed in `failed`.
+// The board's counters and `deliveries` are of the same frames, at least one.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries);
 

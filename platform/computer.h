@@ -21,14 +21,15 @@
 
 namespace stereotlm::platform {
 
-// The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board behind its PCI
-// bridge, host memory, and the processor that runs `program`. The devices lie where DeviceMap says.
+// The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board
+// behind its PCI bridge, host memory, and the processor that runs `program`. The devices lie where DeviceMap
+// says.
 class Computer : public sc_core::sc_module {
  public:
   enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kLoad };
 
-  // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has problems, or
-  // `host_memory_bytes` is out of range.
+  // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has
+  // problems, or `host_memory_bytes` is out of range.
   Computer(const sc_core::sc_module_name& name, const BoardConfig& config, std::uint64_t host_memory_bytes,
            host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder,
            fpga::Fidelity fidelity = fpga::Fidelity::kCycle);

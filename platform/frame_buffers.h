@@ -11,8 +11,8 @@ namespace stereotlm::platform {
 // Throws as layout_buffers() does.
 fpga::FrameBuffers frame_buffers(const BoardConfig& board);
 
-// The addresses of the buffers on the local bus, in the order of buffers() in board_rules.h. Throws as layout_buffers()
-// does.
+// The addresses of the buffers on the local bus, in the order of buffers() in board_rules.h. Throws as
+// layout_buffers() does.
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

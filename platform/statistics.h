@@ -9,8 +9,8 @@
 
 namespace stereotlm::platform {
 
-// The figures of one run, as `stats.json` lists them (contract section 6). Counters of banks and ports are sums
-// over the frames and cover the counted cycles of contract section 2 only.
+// The figures of one run, as `stats.json` lists them (contract section 6). Counters of banks and ports are
+// sums over the frames and cover the counted cycles of contract section 2 only.
 struct BankStatistics {
   std::string name;
   std::uint64_t reads = 0;

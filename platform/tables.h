@@ -22,8 +22,8 @@ inline Tables identity_tables(const BoardConfig& board) {
   return tables;
 }
 
-// Throws std::invalid_argument if a side has a table and no place for it, or the other way round, or a table is not of
-// the size of the images or has problems.
+// Throws std::invalid_argument if a side has a table and no place for it, or the other way round, or a table
+// is not of the size of the images or has problems.
 void check_tables(const BoardConfig& board, const Tables& tables);
 
 }  // namespace stereotlm::platform

@@ -13,15 +13,15 @@ namespace stereotlm::capture {
 class CameraSource {
  public:
   virtual ~CameraSource() = default;
-  // The picture of camera frame `number`, which began at `begin_ps`, of the camera's size; valid until the next
-  // call. Asked for taken frames only, in their order.
+  // The picture of camera frame `number`, which began at `begin_ps`, of the camera's size; valid until the
+  // next call. Asked for taken frames only, in their order.
   virtual const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) = 0;
 };
 
 // The camera of one side (contract section 3): its frames begin with the frame clock, or on demand when
 // triggered, and go out line by line with blanking. One event per frame, and one per line of a frame that is
-// taken. A trigger in the blanking behind the last pixel of a frame begins the next one at once; one that comes
-// before, or while a frame is about to begin, or to a free-running camera, is ignored and counted.
+// taken. A trigger in the blanking behind the last pixel of a frame begins the next one at once; one that
+// comes before, or while a frame is about to begin, or to a free-running camera, is ignored and counted.
 //
 // SC_REPORT_ERROR (type /stereotlm/camera): a picture of another size; TakeFrame for another frame than the
 // running one, or a second time.

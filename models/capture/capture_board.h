@@ -30,8 +30,9 @@ class CapturePartnerIf : public virtual sc_core::sc_interface {
 // those of fpga/register_file.h. Debug transport reads.
 //
 // Whether a frame is taken is decided 1 ps after its beginning, when everything that happens at that
-// beginning has happened, in whatever order. Words leave the FIFO at the end of their data clock. The bus is asked
-// in advance, for the time at which the FIFO will ask: no event per burst, pixel or word beside those of the bus.
+// beginning has happened, in whatever order. Words leave the FIFO at the end of their data clock. The bus is
+// asked in advance, for the time at which the FIFO will ask: no event per burst, pixel or word beside those
+// of the bus.
 //
 // SC_REPORT_ERROR (type /stereotlm/capture_board): a line that no capture expects; a grant without request or
 // from before it; the end of a burst that there is not, or that does not fit it.

@@ -6,8 +6,8 @@
 
 namespace stereotlm::fpga {
 
-// The buffers of a board, as the base registers and the bridge's descriptors name them: bits 31..26 bank, 25..0 first
-// word. Lists are used in turn, frame by frame.
+// The buffers of a board, as the base registers and the bridge's descriptors name them: bits 31..26 bank,
+// 25..0 first word. Lists are used in turn, frame by frame.
 struct FrameBuffers {
   std::vector<std::uint32_t> left_images;
   std::vector<std::uint32_t> right_images;  // as many

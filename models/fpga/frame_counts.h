@@ -19,10 +19,10 @@
 
 namespace stereotlm::fpga {
 
-// What the stages count in one frame, whenever it runs through them: nothing of it depends on the timing but the
-// queue's longest. The slots issued and the words packed are those that the control has come to, so that an
-// audit can hold them against the geometry; the rest is known without the frame's cycles from the geometry,
-// the pattern of the slots, and the answers.
+// What the stages count in one frame, whenever it runs through them: nothing of it depends on the timing but
+// the queue's longest. The slots issued and the words packed are those that the control has come to, so that
+// an audit can hold them against the geometry; the rest is known without the frame's cycles from the
+// geometry, the pattern of the slots, and the answers.
 struct FrameCounts {
   // Of a frame that `control` has run, in which `answered` pixels have a disparity.
   FrameCounts(const CoreConfig& config, const SlotPattern& left, const SlotPattern& right,

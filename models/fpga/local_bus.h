@@ -32,22 +32,24 @@ struct HostRoute {
   std::uint64_t end = 0;    // the first behind the burst
 };
 
-// The FPGA's end of the bridge's local bus, and the `host` port of the banks (contract section 3; the state machine of
-// Alpha Data's examples). A burst is one transaction of consecutive words in one bank, or of registers, by
-// nb_transport: BEGIN_REQ stands for the address clock, the first that begins at or after its time; then come a
-// decode clock and one clock a word. A word whose clock ends at t asks for its bank from the first cycle of the FPGA that
-// begins at or after t, and the next word's clock is the first that begins at or after the cycle in which it was granted.
-// Words read are on the bus once they are usable. BEGIN_RESP is at the end of the idle clock behind the last word: the
-// bus is free. One burst at a time; the next BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
+// The FPGA's end of the bridge's local bus, and the `host` port of the banks (contract section 3; the state
+// machine of Alpha Data's examples). A burst is one transaction of consecutive words in one bank, or of
+// registers, by nb_transport: BEGIN_REQ stands for the address clock, the first that begins at or after its
+// time; then come a decode clock and one clock a word. A word whose clock ends at t asks for its bank from
+// the first cycle of the FPGA that begins at or after t, and the next word's clock is the first that begins
+// at or after the cycle in which it was granted. Words read are on the bus once they are usable. BEGIN_RESP
+// is at the end of the idle clock behind the last word: the bus is free. One burst at a time; the next
+// BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
 //
-// Refused at once: an address that is not a multiple of 4 or of no bank or register TLM_ADDRESS_ERROR_RESPONSE; a length that
-// is no multiple of 4, a streaming width below it, or a burst beyond the 2^28 bytes of its bank's addresses
-// TLM_BURST_ERROR_RESPONSE; byte enables TLM_BYTE_ENABLE_ERROR_RESPONSE; neither read nor write
-// TLM_COMMAND_ERROR_RESPONSE. What a bank or register refuses is the burst's response; its other words are
-// transferred. Debug transport and DMI reach banks and registers at once; there is no b_transport.
+// Refused at once: an address that is not a multiple of 4 or of no bank or register
+// TLM_ADDRESS_ERROR_RESPONSE; a length that is no multiple of 4, a streaming width below it, or a burst
+// beyond the 2^28 bytes of its bank's addresses TLM_BURST_ERROR_RESPONSE; byte enables
+// TLM_BYTE_ENABLE_ERROR_RESPONSE; neither read nor write TLM_COMMAND_ERROR_RESPONSE. What a bank or register
+// refuses is the burst's response; its other words are transferred. Debug transport and DMI reach banks and
+// registers at once; there is no b_transport.
 //
-// It has no process for the banks: the core's process asks it in every cycle. Register accesses happen at the end of
-// their clock.
+// It has no process for the banks: the core's process asks it in every cycle. Register accesses happen at the
+// end of their clock.
 class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {
@@ -74,13 +76,14 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   std::uint64_t request_ps() const { return request_ps_; }
   // Whether it asks in the cycle that begins at `edge_ps`.
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
-  // The word is granted, in the cycle at `at` from now, which begins at `grant_ps`; read, it is usable at `usable_ps`.
+  // The word is granted, in the cycle at `at` from now, which begins at `grant_ps`; read, it is usable at
+  // `usable_ps`.
   void access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps);
   std::size_t words_left() const { return words_left_; }
   // Instead of access(): the data of all words that wait goes to or comes from there at once ..
   void move_words(unsigned char* words);
-  // .. and they are granted, `words` more of them, the last one in the cycle that begins at `grant_ps`; read, it is usable
-  // at `usable_ps`.
+  // .. and they are granted, `words` more of them, the last one in the cycle that begins at `grant_ps`; read,
+  // it is usable at `usable_ps`.
   void count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   // Whether its clocks begin when those of this clock do.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }

@@ -38,7 +38,8 @@ class ResultWriter : public sc_core::sc_module {
   void start_frame(std::uint64_t disparity_address);
   // Writes the oldest word, in the cycle at `at` from now.
   void write(const sc_core::sc_time& at);
-  // The disparity buffer of so many words, where memory lets it be written directly; else null. For use at once.
+  // The disparity buffer of so many words, where memory lets it be written directly; else null. For use at
+  // once.
   std::uint8_t* buffer(std::uint64_t words);
   // A frame that was written so.
   void count(const Stats& frame);

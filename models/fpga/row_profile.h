@@ -8,7 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// The core's own ports: those before the host's, whose words are not counted cycle by cycle where they meet nobody.
+// The core's own ports: those before the host's, whose words are not counted cycle by cycle where they meet
+// nobody.
 inline constexpr std::size_t kCorePortCount = memory::index_of(memory::Port::kHost);
 
 // A row of results is whole with the write of its last word.

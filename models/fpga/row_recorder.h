@@ -8,8 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// Notes when the rows of results of a frame are whole, once it is turned on. Whoever steps the core asks after each
-// cycle whether as many words are written as next_words() says; that is all it costs.
+// Notes when the rows of results of a frame are whole, once it is turned on. Whoever steps the core asks
+// after each cycle whether as many words are written as next_words() says; that is all it costs.
 class RowRecorder {
  public:
   explicit RowRecorder(const FrameGeometry& geometry)

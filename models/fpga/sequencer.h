@@ -10,8 +10,8 @@
 
 namespace stereotlm::fpga {
 
-// Sends the slots of a frame to both lanes, each at its own pace. Where a lane is in the sequence, and in which
-// cycle it takes its next slot, is the control's decision.
+// Sends the slots of a frame to both lanes, each at its own pace. Where a lane is in the sequence, and in
+// which cycle it takes its next slot, is the control's decision.
 class Sequencer : public sc_core::sc_module {
  public:
   struct Stats {

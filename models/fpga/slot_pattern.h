@@ -7,9 +7,9 @@
 
 namespace stereotlm::fpga {
 
-// Which slots of one side make which accesses, known before they are made: where the sequence lies outside the
-// image, and which table entries are valid. What the columns of slots have in common is found when the entries are
-// set, so that asking is cheap.
+// Which slots of one side make which accesses, known before they are made: where the sequence lies outside
+// the image, and which table entries are valid. What the columns of slots have in common is found when the
+// entries are set, so that asking is cheap.
 class SlotPattern {
  public:
   // Every entry is valid, or there is no table.
@@ -22,8 +22,8 @@ class SlotPattern {
     const auto place = static_cast<std::size_t>(column);
     return (valid_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
-  // Columns of slots are counted over the whole frame, strip after strip. The first one behind `frame_column` whose
-  // slots do not make the same accesses, one by one; the number of columns if there is none.
+  // Columns of slots are counted over the whole frame, strip after strip. The first one behind `frame_column`
+  // whose slots do not make the same accesses, one by one; the number of columns if there is none.
   std::uint64_t alike_until(std::uint64_t frame_column) const;
 
   // Of the first `slots` slots of a frame those whose entries are read and not valid.

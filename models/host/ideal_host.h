@@ -35,8 +35,8 @@ class IdealHost : public sc_core::sc_module {
   tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
   sc_core::sc_in<bool> done{"done"};
 
-  // Tables, null for a side without one, `source` and `sink` outlive the host. Throws std::invalid_argument if
-  // a list of buffers is empty, or a side has a table but no buffer for it, or the other way round.
+  // Tables, null for a side without one, `source` and `sink` outlive the host. Throws std::invalid_argument
+  // if a list of buffers is empty, or a side has a table but no buffer for it, or the other way round.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);

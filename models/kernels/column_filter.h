@@ -72,12 +72,13 @@ class ColumnFilter {
   bool wide_ = false;           // a sum may leave 24 bits, in which a float is exact
   std::vector<float> weights_;  // column by column
 
-  // Line memories: per image column 2h rows, in whole blocks, and the ninth bit of their words: bit e for row e.
+  // Line memories: per image column 2h rows, in whole blocks, and the ninth bit of their words: bit e for row
+  // e.
   std::size_t line_stride_ = 0;
   std::vector<float> line_values_;
   std::vector<std::uint64_t> line_valid_;
-  // The last columns, 2h + rows_per_column rows each, the newest at position_. At the end of the memory the last
-  // ones move to its beginning.
+  // The last columns, 2h + rows_per_column rows each, the newest at position_. At the end of the memory the
+  // last ones move to its beginning.
   std::size_t stride_ = 0;
   std::vector<float> columns_;
   std::vector<std::uint64_t> columns_valid_;

@@ -3,16 +3,16 @@
 #include <cstdint>
 #include <vector>
 
-// The inner loops of the kernels that work on whole images, one build of them per instruction set. The results
-// are exact and the same with each.
+// The inner loops of the kernels that work on whole images, one build of them per instruction set. The
+// results are exact and the same with each.
 namespace stereotlm::kernels {
 
 // Vectors of 16-bit lanes; positions, counts and offsets below are in them where nothing else is said.
 inline constexpr int kMostImageLanes = 32;
 inline constexpr int kMostImageVectorBytes = 2 * kMostImageLanes;
 
-// Filter taps as pairs of neighbouring columns: weights[row * pairs + p] holds that of column 2p in the lower and
-// that of column 2p + 1 in the upper half; a weight that does not exist is 0.
+// Filter taps as pairs of neighbouring columns: weights[row * pairs + p] holds that of column 2p in the lower
+// and that of column 2p + 1 in the upper half; a weight that does not exist is 0.
 struct FilterTaps {
   int rows = 0;
   int pairs = 0;
@@ -20,8 +20,8 @@ struct FilterTaps {
   const std::int32_t* weights = nullptr;
 };
 
-// How an image is matched: each lane of a vector has its own segment of columns in its own band of rows. Position
-// p of a lane lies p columns right of its segment's first one.
+// How an image is matched: each lane of a vector has its own segment of columns in its own band of rows.
+// Position p of a lane lies p columns right of its segment's first one.
 struct MatchPlan {
   int window = 0;
   int disparities = 0;
@@ -58,14 +58,16 @@ struct ImageLoops {
 
   // out[u] = sum over the rows of rows[..][u], for `width` pixels.
   void (*add_rows)(const std::uint8_t* const* rows, int count, int width, std::int16_t* out);
-  // out[u] = clamp(128 + floor(S / 2^shift), 0, 255), S the sum over the taps of weight * rows[row][u + column].
-  // Exact if S is within 32 bits. `out` is written, and the rows are read, up to 64 pixels beyond `width`.
+  // out[u] = clamp(128 + floor(S / 2^shift), 0, 255), S the sum over the taps of weight * rows[row][u +
+  // column]. Exact if S is within 32 bits. `out` is written, and the rows are read, up to 64 pixels beyond
+  // `width`.
   void (*filter_row)(const std::int16_t* const* rows, const FilterTaps& taps, int width, std::uint8_t* out);
 
   // out[i] = entering[i] + 256 * leaving[i].
   void (*pair_pixels)(const std::uint8_t* entering, const std::uint8_t* leaving, int width,
                       std::int16_t* out);
-  // Vector i holds from[lane][i] of each lane, for i < count; up to the next multiple of 8 is read and written.
+  // Vector i holds from[lane][i] of each lane, for i < count; up to the next multiple of 8 is read and
+  // written.
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
   // The reverse, in bytes.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
@@ -75,9 +77,9 @@ struct ImageLoops {
   void (*match_row)(const MatchPlan& plan, const MatchMemory& memory);
 };
 
-// Those that this machine can run, the best first. The environment variable STEREOTLM_VECTORS leaves out what is better
-// than the one that it names (avx512, avx2, base), for measurements; throws std::invalid_argument if there is none of
-// this name.
+// Those that this machine can run, the best first. The environment variable STEREOTLM_VECTORS leaves out what
+// is better than the one that it names (avx512, avx2, base), for measurements; throws std::invalid_argument
+// if there is none of this name.
 const std::vector<const ImageLoops*>& image_loops();
 
 }  // namespace stereotlm::kernels

@@ -62,8 +62,8 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
              column_sums_.data(), right_.best.data(), left_.best.data()};
 }
 
-// Segments share window - 1 columns with the next, bands as many rows: what is shared is done twice, at about half
-// the work of a window. More segments keep less column sums.
+// Segments share window - 1 columns with the next, bands as many rows: what is shared is done twice, at about
+// half the work of a window. More segments keep less column sums.
 void ImageMatcher::choose_bands() {
   const double shared = plan_.window - 1;
   double least = std::numeric_limits<double>::max();
@@ -92,8 +92,8 @@ void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
   side.best = VectorArray(2 * static_cast<std::size_t>(best_positions) * lanes);
 }
 
-// Row `step` of each band enters its windows. Bands that end below the image take its last row again; nothing of
-// them is used.
+// Row `step` of each band enters its windows. Bands that end below the image take its last row again; nothing
+// of them is used.
 void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
   const auto width = static_cast<std::size_t>(width_);
   const auto row_of = [&](int row) {

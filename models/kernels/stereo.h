@@ -11,8 +11,8 @@
 
 namespace stereotlm::kernels {
 
-// The whole of contract section 1 on whole images, without memories and time, one image at a time; for many frames
-// see StereoPipeline. Disparity images hold kInvalidDisparity where there is none.
+// The whole of contract section 1 on whole images, without memories and time, one image at a time; for many
+// frames see StereoPipeline. Disparity images hold kInvalidDisparity where there is none.
 struct StereoConfig {
   int window = 7;        // n: kWindowRule
   int disparities = 80;  // D: kDisparitiesRule

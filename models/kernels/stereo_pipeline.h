@@ -11,17 +11,17 @@
 
 namespace stereotlm::kernels {
 
-// The whole of contract section 1 on whole images, frame after frame: rectify, filter, match, check. All memory is
-// taken at construction.
+// The whole of contract section 1 on whole images, frame after frame: rectify, filter, match, check. All
+// memory is taken at construction.
 class StereoPipeline {
  public:
-  // Throws std::invalid_argument if the configuration has problems, or the images are to be filtered but empty.
-  // `loops`: one of image_loops().
+  // Throws std::invalid_argument if the configuration has problems, or the images are to be filtered but
+  // empty. `loops`: one of image_loops().
   StereoPipeline(int width, int height, const StereoConfig& config,
                  const ImageLoops& loops = *image_loops().front());
 
-  // Images hold width * height pixels, tables as many entries, row-major; a table that is null does not exist. The
-  // caller has checked the tables: valid entries lie inside the image.
+  // Images hold width * height pixels, tables as many entries, row-major; a table that is null does not
+  // exist. The caller has checked the tables: valid entries lie inside the image.
   void run(const std::uint8_t* left, const std::uint8_t* right, const std::uint32_t* left_table,
            const std::uint32_t* right_table, std::uint8_t* disparity);
 

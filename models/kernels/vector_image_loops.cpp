@@ -1,6 +1,6 @@
 // Compiled once per instruction set STEREOTLM_INSTRUCTION_SET, whose table of loops is STEREOTLM_IMAGE_LOOPS.
-// What is defined here must not leave this file, or the linker could choose it for machines that cannot run it: so
-// no function of the standard library, and everything but the table of loops in an unnamed namespace.
+// What is defined here must not leave this file, or the linker could choose it for machines that cannot run
+// it: so no function of the standard library, and everything but the table of loops in an unnamed namespace.
 #include <cstddef>
 #include <cstdint>
 
@@ -227,8 +227,8 @@ void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out) {
   }
 }
 
-// Window sums of up to 14 bits, so that 16 hold a key: the sum above the last two bits of the disparity, counted from
-// the smallest value on. The group of 4 disparities is kept beside the best key.
+// Window sums of up to 14 bits, so that 16 hold a key: the sum above the last two bits of the disparity,
+// counted from the smallest value on. The group of 4 disparities is kept beside the best key.
 struct NarrowKeys {
   static constexpr int kGroup = 4;
   static constexpr int kScale = 4;
@@ -288,8 +288,9 @@ struct WideKeys {
   static Halves disparity(const Best& best) { return join_lanes(best.even & 0xFF, best.odd & 0xFF); }
 };
 
-// Column sums of kCount neighbouring disparities, which lie side by side, at one position after the other. Pointers
-// and not indices, in an object that nothing else points to: a store could change what is read through others.
+// Column sums of kCount neighbouring disparities, which lie side by side, at one position after the other.
+// Pointers and not indices, in an object that nothing else points to: a store could change what is read
+// through others.
 template <int kScale, int kCount>
 struct ColumnSums {
   const std::int16_t* right;

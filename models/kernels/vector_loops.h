@@ -55,10 +55,10 @@ std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes);
 inline constexpr int kFilterBlock = 8;
 constexpr int padded_rows(int rows) { return (rows + kFilterBlock - 1) / kFilterBlock * kFilterBlock; }
 
-// Filters `rows` pixels of one column with a size x size kernel (size odd):
-// out[k] = clamp(128 + floor(S / 2^shift), 0, 255), S = sum over i, j of weights[i * size + j] * column i [k + j],
-// where column i starts at columns + i * stride. Exact as long as no partial sum leaves -2^24..2^24. Columns are
-// read up to padded_rows(rows) + size - 1, and `out` is written up to padded_rows(rows).
+// Filters `rows` pixels of one column with a size x size kernel (size odd): out[k] = clamp(128 + floor(S /
+// 2^shift), 0, 255), S = sum over i, j of weights[i * size + j] * column i [k + j], where column i starts at
+// columns + i * stride. Exact as long as no partial sum leaves -2^24..2^24. Columns are read up to
+// padded_rows(rows) + size - 1, and `out` is written up to padded_rows(rows).
 void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
                    int shift, std::uint8_t* out);
 

@@ -28,14 +28,14 @@ struct CrossbarConfig {
 };
 
 // The crossbar between the six ports and the banks, with one arbiter per bank. It has no process: its owner's
-// clocked process calls arbitrate() once per cycle. A port is routed to the bank that it works on; its requests come as the
-// argument of arbitrate(), and if one is granted, the stage behind the port makes the access in the same cycle: one word by
-// b_transport, which takes no simulated time and adds the bank's read time to `delay`. Without a grant, or of another
-// bank or direction than the port's route, it is answered TLM_GENERIC_ERROR_RESPONSE and does not reach the bank, as is
-// every nb_transport.
+// clocked process calls arbitrate() once per cycle. A port is routed to the bank that it works on; its
+// requests come as the argument of arbitrate(), and if one is granted, the stage behind the port makes the
+// access in the same cycle: one word by b_transport, which takes no simulated time and adds the bank's read
+// time to `delay`. Without a grant, or of another bank or direction than the port's route, it is answered
+// TLM_GENERIC_ERROR_RESPONSE and does not reach the bank, as is every nb_transport.
 //
-// An address of a bank that does not exist is answered TLM_ADDRESS_ERROR_RESPONSE; other errors are the bank's. Debug
-// transport and DMI reach every bank without a grant.
+// An address of a bank that does not exist is answered TLM_ADDRESS_ERROR_RESPONSE; other errors are the
+// bank's. Debug transport and DMI reach every bank without a grant.
 class Crossbar : public sc_core::sc_module {
  public:
   sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
@@ -61,15 +61,15 @@ class Crossbar : public sc_core::sc_module {
   Arbitration& arbitration() { return arbitration_; }
   const Arbitration& arbitration() const { return arbitration_; }
 
-  // Tells from the last call on whether words of this port's bank may have changed, first .. end - 1 by their byte
-  // addresses on the crossbar. The first call, and one for other words, says yes.
+  // Tells from the last call on whether words of this port's bank may have changed, first .. end - 1 by their
+  // byte addresses on the crossbar. The first call, and one for other words, says yes.
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
   // Words have been written directly.
   void changes(std::uint64_t first, std::uint64_t bytes);
   // Accesses that a stage has made directly, to the bank that its port is routed to.
   void count_direct(Port port, std::uint64_t accesses) { direct_accesses_[bank_of(port)] += accesses; }
-  // As many bytes at this byte address of the crossbar, where the bank lets them be accessed directly; else null. For
-  // use at once, and to be told as above.
+  // As many bytes at this byte address of the crossbar, where the bank lets them be accessed directly; else
+  // null. For use at once, and to be told as above.
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
   void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }

@@ -376,8 +376,8 @@ void PciBridge::fetch(Channel& channel, std::uint32_t descriptor) {
   start_on_pci(channel.pci);
 }
 
-// What follows when a transfer has ended. A burst is read on one bus while the one before it is written on the
-// other, and both have ended before the next.
+// What follows when a transfer has ended. A burst is read on one bus while the one before it is written on
+// the other, and both have ended before the next.
 void PciBridge::go_on(Channel& channel) {
   settle();
   if (!channel.busy || channel.pci.under_way) return;

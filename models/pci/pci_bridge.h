@@ -33,21 +33,22 @@ struct PciBridgeConfig {
   std::vector<AddressRange> buffers = {};
 };
 
-// The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge"); registers and
-// descriptors in bridge_registers.h.
+// The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge");
+// registers and descriptors in bridge_registers.h.
 //
-// - Writes to the slave window are posted: words wait in the bridge, in order, for the local bus; a burst is taken as far as
-//   there are free places at its address clock (`stop`), and a word gives its place back at the end of its burst on
-//   the local bus. Reads wait until all writes before them have gone, and block until their words are there.
-// - A DMA channel fetches a descriptor, then moves its words in bursts. PCI and local bus overlap: one burst can be on
-//   either while the last one is on the other.
-// - The local bus serves posted writes first, then reads, then the channels in turn; when it has nothing to serve, the
-//   turn moves on.
+// - Writes to the slave window are posted: words wait in the bridge, in order, for the local bus; a burst is
+//   taken as far as there are free places at its address clock (`stop`), and a word gives its place back at
+//   the end of its burst on the local bus. Reads wait until all writes before them have gone, and block until
+//   their words are there.
+// - A DMA channel fetches a descriptor, then moves its words in bursts. PCI and local bus overlap: one burst
+//   can be on either while the last one is on the other.
+// - The local bus serves posted writes first, then reads, then the channels in turn; when it has nothing to
+//   serve, the turn moves on.
 //
 // The end of a burst on the local bus is an event only if something waits for it, or it was refused.
 //
-// Errors are those of bridge_registers.h; a register access that is not one aligned word, or in the wrong direction, and a
-// slave access outside the window are answered with an error response.
+// Errors are those of bridge_registers.h; a register access that is not one aligned word, or in the wrong
+// direction, and a slave access outside the window are answered with an error response.
 class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciStopIf {
  public:
   struct Stats {

@@ -21,8 +21,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 
 // A 32-bit PCI bus (contract section 3). A burst is an address clock, the target's wait clocks, one clock a
 // word and an idle clock; the next address clock can be the one after that, since arbitration is hidden
-// behind the burst. It costs two events, however long it is: where it is granted, and where it ends. A request that
-// cuts it moves its end.
+// behind the burst. It costs two events, however long it is: where it is granted, and where it ends. A
+// request that cuts it moves its end.
 //
 // Arbitration is round robin, from the slot after the last one granted (at first from slot 0), among the
 // requests made at or before the beginning of the clock: it is decided 1 ps later, so that every request made

@@ -7,8 +7,8 @@
 
 #include "models/clock.h"
 
-// What passes between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Targets are
-// reached by the base protocol.
+// What passes between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Targets
+// are reached by the base protocol.
 namespace stereotlm::pci {
 
 // What a master does with the bus that it has been granted.
@@ -39,8 +39,8 @@ struct BurstResult {
 class PciMasterIf {
  public:
   virtual ~PciMasterIf() = default;
-  // GNT#: the address clock begins at `address_clock_ps`, now or 1 ps ago. Without words the bus is given back
-  // unused.
+  // GNT#: the address clock begins at `address_clock_ps`, now or 1 ps ago. Without words the bus is given
+  // back unused.
   virtual PciBurst begin_burst(std::uint64_t address_clock_ps) = 0;
   // At the end of the last data clock. The master may request again at once.
   virtual void end_burst(const BurstResult& result) = 0;
@@ -49,8 +49,8 @@ class PciMasterIf {
 // A place on the bus, as its master sees it.
 class PciSlotIf : public virtual sc_core::sc_interface {
  public:
-  // REQ#, until the bus is granted: from the first clock that begins now or later, or at or after a time that is to
-  // come. Asking again meanwhile changes nothing.
+  // REQ#, until the bus is granted: from the first clock that begins now or later, or at or after a time that
+  // is to come. Asking again meanwhile changes nothing.
   void request(PciMasterIf& master) { request(master, Clock::to_ps(sc_core::sc_time_stamp())); }
   virtual void request(PciMasterIf& master, std::uint64_t from_ps) = 0;
   virtual const Clock& clock() const = 0;

@@ -6,9 +6,9 @@
 
 namespace stereotlm::pci {
 
-// The words of posted writes that wait in the bridge for the local bus, in order, each with its address there. A burst
-// keeps its places until it has been sent. Plain C++; once built it allocates nothing but what waiting()
-// returns.
+// The words of posted writes that wait in the bridge for the local bus, in order, each with its address
+// there. A burst keeps its places until it has been sent. Plain C++; once built it allocates nothing but what
+// waiting() returns.
 class PostedWrites {
  public:
   // The first words that wait, as far as their addresses follow each other in one bank.
@@ -32,8 +32,8 @@ class PostedWrites {
 
   // `words`: of `count`, not more than there are free places.
   void push(std::uint64_t address, const void* words, std::size_t count);
-  // Of at most `most` words, at least one; while some wait, and none are being sent. Its words stay where they are
-  // until sent().
+  // Of at most `most` words, at least one; while some wait, and none are being sent. Its words stay where
+  // they are until sent().
   Burst send(std::size_t most);
   void sent();
 

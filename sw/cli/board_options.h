@@ -31,8 +31,8 @@ class BoardOptions {
   // The board; nothing if it is wrong, with every reason reported.
   std::optional<platform::BoardConfig> load(Problems& problems) const;
 
-  // The calibration that was given, if any, as checked, for that board; nothing if it is wrong too, with every reason reported.
-  // `board`: null if it is wrong.
+  // The calibration that was given, if any, as checked, for that board; nothing if it is wrong too, with
+  // every reason reported. `board`: null if it is wrong.
   std::optional<CalibrationInput> load_calibration(const platform::BoardConfig* board,
                                                    Problems& problems) const;
 

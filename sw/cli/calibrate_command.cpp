@@ -173,7 +173,8 @@ class Calibrator {
                  functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
   }
 
-  // The pictures that were calibrated from, and a scene with the disparities that the board should find in it.
+  // The pictures that were calibrated from, and a scene with the disparities that the board should find in
+  // it.
   void write_synthetic(const fs::path& folder) {
     const MediaFunctions& media = media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {

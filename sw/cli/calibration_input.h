@@ -25,9 +25,10 @@ struct CalibrationInput {
   std::vector<NamedFile> files;
 };
 
-// Loads and checks it for the board. Nothing if it cannot be used, with every reason reported: a file that is damaged, of
-// another size than the board's pictures, tables that are not those that it was written with, a side without table.
-// `board`: null if it is not known, which is reported elsewhere. `named`: where the path was given.
+// Loads and checks it for the board. Nothing if it cannot be used, with every reason reported: a file that is
+// damaged, of another size than the board's pictures, tables that are not those that it was written with, a
+// side without table. `board`: null if it is not known, which is reported elsewhere. `named`: where the path
+// was given.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  Problems& problems,
                                                  const std::string& named = "--calibration");

@@ -11,7 +11,8 @@
 
 namespace stereotlm::cli {
 
-// What this program uses of calib with OpenCV and cairo, in a library that is loaded when it is first asked for.
+// What this program uses of calib with OpenCV and cairo, in a library that is loaded when it is first asked
+// for.
 struct CalibrationFunctions {
   // calibrate.h, calibration_yaml.h, matched_rows.h
   calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);

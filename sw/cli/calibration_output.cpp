@@ -90,7 +90,8 @@ void CalibrationOutput::check_aside() const {
 void CalibrationOutput::check_earlier() const {
   std::vector<fs::path> replaced = {files_.left_lut, files_.right_lut, files_.drawings};
   if (makes_pictures_) replaced.push_back(files_.pictures);
-  // A run that was killed while it put its files into place has left the calibration, which comes last, aside.
+  // A run that was killed while it put its files into place has left the calibration, which comes last,
+  // aside.
   const bool has_earlier = is_there(files_.calibration) || is_there(aside(files_.calibration));
   for (const fs::path& path : replaced) {
     if (is_there(path) && !has_earlier) {

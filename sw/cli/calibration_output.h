@@ -10,14 +10,14 @@
 
 namespace stereotlm::cli {
 
-// What calibrate writes: an earlier calibration of that name, or none, until commit(), and the new one whole after it. New
-// files are written aside, into the folder F.partial beside F.yaml.
+// What calibrate writes: an earlier calibration of that name, or none, until commit(), and the new one whole
+// after it. New files are written aside, into the folder F.partial beside F.yaml.
 class CalibrationOutput {
  public:
-  // Proves that the folder can be written to. Throws std::runtime_error, having changed nothing, if it cannot, or is not
-  // there, if F.yaml is there and no calibration, or what lies beside it under the names that calibrate uses was not
-  // written by it.
-  // `makes_pictures`: F_pictures/ is written too; else nothing touches it.
+  // Proves that the folder can be written to. Throws std::runtime_error, having changed nothing, if it
+  // cannot, or is not there, if F.yaml is there and no calibration, or what lies beside it under the names
+  // that calibrate uses was not written by it. `makes_pictures`: F_pictures/ is written too; else nothing
+  // touches it.
   CalibrationOutput(const std::string& calibration, bool makes_pictures);
 
   // Without commit(): removes what was written aside.
@@ -31,8 +31,8 @@ class CalibrationOutput {
   void add(const std::filesystem::path& file, std::string_view bytes);
   void add(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes);
 
-  // Replaces the earlier calibration. Throws std::runtime_error if that fails; a calibration whose tables are not all in
-  // place is refused by whoever loads it.
+  // Replaces the earlier calibration. Throws std::runtime_error if that fails; a calibration whose tables are
+  // not all in place is refused by whoever loads it.
   void commit();
 
  private:

@@ -23,8 +23,8 @@ struct DiffLimits {
   std::string pixels;
 };
 
-// Two runs, run again and laid beside each other: rows where they are of the same frame of the core, disparities where
-// they are of the same camera frame.
+// Two runs, run again and laid beside each other: rows where they are of the same frame of the core,
+// disparities where they are of the same camera frame.
 class FrameAlignment {
  public:
   // Begins both. All outlives it; `csv` may be null.

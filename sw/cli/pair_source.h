@@ -21,8 +21,8 @@ class PairSource : public host::FrameSource {
   // 1 or more.
   std::uint64_t length() const { return length_; }
 
-  // The reference is good until kHeld other pairs have been asked for. Throws std::runtime_error naming option
-  // and path if a file does not give any more what it gave when the source was opened.
+  // The reference is good until kHeld other pairs have been asked for. Throws std::runtime_error naming
+  // option and path if a file does not give any more what it gave when the source was opened.
   static constexpr std::size_t kHeld = 4;
   const host::StereoPair& pair(std::uint64_t frame) final;
 

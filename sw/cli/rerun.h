@@ -13,8 +13,8 @@
 
 namespace stereotlm::cli {
 
-// A recorded run, run again in a process of its own, with the rows of its frames. At fidelity fast, whichever it was
-// run at: the figures are the same.
+// A recorded run, run again in a process of its own, with the rows of its frames. At fidelity fast, whichever
+// it was run at: the figures are the same.
 class Rerun {
  public:
   // Begins. `run` outlives it.
@@ -25,10 +25,11 @@ class Rerun {
     fpga::RowProfile rows;
     kernels::GrayImage disparity;  // empty without pixels
   };
-  // Waits for as long at most, or until a signal has been caught, and tells whether next() has something to say.
+  // Waits for as long at most, or until a signal has been caught, and tells whether next() has something to
+  // say.
   bool has_news(std::chrono::milliseconds wait) { return child_->has_news(wait); }
-  // Waits for the next frame; nothing after the last. Throws std::runtime_error if the run fails, or ends with other
-  // figures than those recorded.
+  // Waits for the next frame; nothing after the last. Throws std::runtime_error if the run fails, or ends
+  // with other figures than those recorded.
   std::optional<Frame> next();
 
  private:

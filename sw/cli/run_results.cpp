@@ -43,7 +43,8 @@ void write_files(RunInput& input, platform::Statistics statistics, const simulat
   folder.commit();
 }
 
-// A made scene's own truth, which is without calibration, is shown to the user only: stats.json has the accuracy against --truth.
+// A made scene's own truth, which is without calibration, is shown to the user only: stats.json has the
+// accuracy against --truth.
 std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const simulation::Result& last,
                                                  const std::optional<report::Accuracy>& accuracy) {
   if (accuracy || !input.pairs || input.calibration || input.timing_only) return accuracy;

@@ -14,8 +14,9 @@ namespace stereotlm::cli {
 // place. Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const simulation::Result& result);
 
-// For a run that ended after `frames_done` frames: without the truth, and with a note that says so, if the last
-// of them does not show the pair that the truth belongs to. The run is then the same as one without --truth.
+// For a run that ended after `frames_done` frames: without the truth, and with a note that says so, if the
+// last of them does not show the pair that the truth belongs to. The run is then the same as one without
+// --truth.
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done);
 
 // For a run that was not compared as --verify asks, because it was interrupted: without --verify, and with a

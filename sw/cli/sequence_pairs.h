@@ -9,9 +9,9 @@
 
 namespace stereotlm::cli {
 
-// The pairs of `--sequence DIR`: left_*.png with right_*.png of the same `*`, in the order of their names, byte
-// by byte. Other files in the folder do not matter. The first pictures are kept as they were decoded, up to 128 MB; the
-// others are decoded again when they are asked for.
+// The pairs of `--sequence DIR`: left_*.png with right_*.png of the same `*`, in the order of their names,
+// byte by byte. Other files in the folder do not matter. The first pictures are kept as they were decoded, up
+// to 128 MB; the others are decoded again when they are asked for.
 class SequencePairs : public PairSource {
  public:
   // Reads every picture once. Throws std::runtime_error, without the name of the option, if the folder cannot

@@ -17,7 +17,8 @@ namespace stereotlm::cli {
 // `--verify`: the same run at the other fidelity, in a process of its own, and what differs.
 class Verification {
  public:
-  // Begins the other run; before this process elaborates its own. It opens the pictures anew. `input` outlives it.
+  // Begins the other run; before this process elaborates its own. It opens the pictures anew. `input`
+  // outlives it.
   Verification(const RunInput& input, const RunOptions& options);
 
   // A result of this process's run, in turn.

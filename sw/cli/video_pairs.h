@@ -14,9 +14,9 @@ namespace stereotlm::cli {
 // The pairs of `--video F [F2] --video-layout L`.
 class VideoPairs : public PairSource {
  public:
-  // Decodes each video once. Throws std::runtime_error, without the name of the option, for the first one that
-  // cannot be decoded or whose frames are not as large as the layout needs, and if two differ in their number
-  // of frames. `board`: null if it is not known; the pairs are then of no use.
+  // Decodes each video once. Throws std::runtime_error, without the name of the option, for the first one
+  // that cannot be decoded or whose frames are not as large as the layout needs, and if two differ in their
+  // number of frames. `board`: null if it is not known; the pairs are then of no use.
   VideoPairs(const PictureOptions::Video& options, const platform::BoardConfig* board);
 
   // For standard error: videos of which fewer frames can be decoded than their headers say.

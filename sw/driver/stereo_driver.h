@@ -10,8 +10,8 @@
 #include "models/host/program.h"
 #include "platform/device_map.h"
 
-// The program on the host (contract section 3), against host::HostBus: it runs on the model's CPU, and could on a real
-// machine.
+// The program on the host (contract section 3), against host::HostBus: it runs on the model's CPU, and could
+// on a real machine.
 namespace stereotlm::driver {
 
 struct DriverConfig {
@@ -44,17 +44,18 @@ class FrameListener {
   virtual void frame_delivered(const DeliveredFrame& frame) = 0;
 };
 
-// Uploads the tables, then keeps the books of the buffers: a capture is armed when its buffer is free, the core starts when
-// a pair and a free output buffer are there, results are read back by DMA. Each stage counts the frames that it has
-// begun and ended; a buffer is free when the stage behind has ended with the frame that it held.
+// Uploads the tables, then keeps the books of the buffers: a capture is armed when its buffer is free, the
+// core starts when a pair and a free output buffer are there, results are read back by DMA. Each stage counts
+// the frames that it has begun and ended; a buffer is free when the stage behind has ended with the frame
+// that it held.
 //
-// With capture_to_host captures go to a ring in host memory, and a DMA channel copies the oldest pair to the board. run() ends
-// with the last of `frames` deliveries. Throws std::runtime_error if the hardware reports an error, and what HostBus
-// throws.
+// With capture_to_host captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
+// board. run() ends with the last of `frames` deliveries. Throws std::runtime_error if the hardware reports
+// an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
-  // The tables' entries, row by row (contract 1.1); empty for a side without. `listener` outlives the driver. Throws
-  // std::invalid_argument if the configuration has problems or a table has not one entry per pixel.
+  // The tables' entries, row by row (contract 1.1); empty for a side without. `listener` outlives the driver.
+  // Throws std::invalid_argument if the configuration has problems or a table has not one entry per pixel.
   StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
                std::vector<std::uint32_t> right_table, FrameListener& listener);
 

@@ -31,8 +31,8 @@ class Batch {
 
   // The database, after run().
   const std::string& path() const { return path_; }
-  // Of a point that was simulated; until the next call. Throws PointFailed, and std::runtime_error if it was not
-  // simulated.
+  // Of a point that was simulated; until the next call. Throws PointFailed, and std::runtime_error if it was
+  // not simulated.
   const StoredRow& row_of(const Point& point);
 
  private:

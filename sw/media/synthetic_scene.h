@@ -10,15 +10,16 @@ namespace stereotlm::media {
 // A moving scene whose disparities are known: a far wall, a floor that comes nearer towards the bottom, and
 // boxes at several depths in front of them that move from frame to frame and bounce at the border of the left
 // picture. All are textured with noise, as seen by two ideal cameras: without noise of their own, and a point
-// at column x of the left picture is at column x - d of the right one, unless something nearer hides it there.
+// at column x of the left picture is at column x - d of the right one, unless something nearer hides it
+// there.
 //
 // Integer arithmetic and a generator of its own (SplitMix64): the same pictures on every machine. Any frame
 // can be asked for at any time; there is no last one.
 class SyntheticScene {
  public:
   // For a board of this size and number of candidates; disparities are 1 .. disparities-1, at most a quarter
-  // of the width (all 0 if disparities = 1). Throws std::invalid_argument if the size or the disparities break
-  // the rules of a board.
+  // of the width (all 0 if disparities = 1). Throws std::invalid_argument if the size or the disparities
+  // break the rules of a board.
   SyntheticScene(std::uint64_t seed, int width, int height, int disparities);
 
   struct Frame {

@@ -15,8 +15,8 @@ std::vector<std::uint32_t> entries_of(const std::optional<kernels::Rectification
   return table ? table->entries : std::vector<std::uint32_t>{};
 }
 
-// Longer than anything waits that will come: for the next frame of the cameras while another one ends, and for the bus
-// behind a third party.
+// Longer than anything waits that will come: for the next frame of the cameras while another one ends, and
+// for the bus behind a third party.
 double patience_seconds(const platform::BoardConfig& board) {
   constexpr double kRest = 0.1;  // clocks of 1 MHz included
   constexpr double kTurns = 4;

@@ -13,12 +13,12 @@
 
 namespace stereotlm::simulation {
 
-// `--source camera`: the whole computer with the driver on its processor. Camera frame k shows pair k. What the core has
-// begun when it ends early is finished and delivered.
+// `--source camera`: the whole computer with the driver on its processor. Camera frame k shows pair k. What
+// the core has begun when it ends early is finished and delivered.
 class CameraSimulation : public Simulation, private driver::FrameListener {
  public:
-  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the computer cannot be
-  // built.
+  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the
+  // computer cannot be built.
   CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                    fpga::Fidelity fidelity = fpga::Fidelity::kCycle);

@@ -10,11 +10,12 @@
 
 namespace stereotlm::simulation {
 
-// `--source preloaded`: the board alone, fed by an ideal host. Frame f shows pair f. The frame under way when it ends early
-// is given up.
+// `--source preloaded`: the board alone, fed by an ideal host. Frame f shows pair f. The frame under way when
+// it ends early is given up.
 class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
  public:
-  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the board cannot be built.
+  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the board
+  // cannot be built.
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                       host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);

@@ -23,8 +23,8 @@ struct Result {
   std::uint64_t time_ps = 0;  // when it was there, from time 0
 };
 
-// A board and what is around it, on the pairs of a source, until `frames` results are there. One of these a process:
-// SystemC elaborates once.
+// A board and what is around it, on the pairs of a source, until `frames` results are there. One of these a
+// process: SystemC elaborates once.
 class Simulation {
  public:
   virtual ~Simulation() = default;
@@ -37,8 +37,8 @@ class Simulation {
   // before the last frame is finished.
   std::vector<Result> advance();
 
-  // To be finished as soon as the results are those of a whole run of fewer frames: of those that are done, and of
-  // those under way where they have left their traces.
+  // To be finished as soon as the results are those of a whole run of fewer frames: of those that are done,
+  // and of those under way where they have left their traces.
   virtual void end_early() = 0;
 
   std::uint64_t frames() const { return frames_; }  // to do
@@ -50,10 +50,12 @@ class Simulation {
 
   // From the next frame of the core on: when its rows of results were whole.
   void record_rows();
-  // Of the frames that the core has finished since the last call. Results come in the same order, of a computer later.
+  // Of the frames that the core has finished since the last call. Results come in the same order, of a
+  // computer later.
   std::vector<fpga::RowProfile> take_rows();
 
-  // Of the frames that are done, with no other under way that end_early() would finish; one at least for a computer.
+  // Of the frames that are done, with no other under way that end_early() would finish; one at least for a
+  // computer.
   virtual platform::Statistics statistics() const = 0;
   const Result& last() const { return last_; }
 

@@ -95,8 +95,8 @@ void stereo_bm(benchmark::State& state, const host::StereoPair& pair) {
   for (auto _ : state) matcher.run();
 }
 
-// One iteration is as many frames as make up some ms; frame_ms is one of them. Between the iterations StereoBM runs once:
-// what slows the machine down for a while slows both down, and `ratio` is of the two.
+// One iteration is as many frames as make up some ms; frame_ms is one of them. Between the iterations
+// StereoBM runs once: what slows the machine down for a while slows both down, and `ratio` is of the two.
 void run_frames(benchmark::State& state, const Case& c, const BoardProcess::Setting& setting,
                 const host::StereoPair& pair) {
   const std::uint32_t frames = setting.fidelity == Fidelity::kTiming ? 20

@@ -11,9 +11,9 @@
 
 namespace stereotlm::bench {
 
-// A run of a board in a child process, because SystemC elaborates once per process. It works when it is told to, and
-// sleeps in between. Every failure of the child, an identity of contract section 6 that does not hold included, is a
-// std::runtime_error here.
+// A run of a board in a child process, because SystemC elaborates once per process. It works when it is told
+// to, and sleeps in between. Every failure of the child, an identity of contract section 6 that does not hold
+// included, is a std::runtime_error here.
 class BoardProcess {
  public:
   struct Setting {

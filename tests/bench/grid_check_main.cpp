@@ -1,5 +1,5 @@
-// stereotlm-grid-check: how right a board's disparities are at the corners of the grid that its rig was calibrated with,
-// and the distances that follow from them.
+// stereotlm-grid-check: how right a board's disparities are at the corners of the grid that its rig was
+// calibrated with, and the distances that follow from them.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -1,5 +1,6 @@
-// Loaded before the libraries of a program (LD_PRELOAD), makes the folder FULL_DISK_FOLDER look like a disk of
-// FULL_DISK_BYTES: a write that makes its files larger than that in all fails with ENOSPC, as on a real one.
+// Loaded before the libraries of a program (LD_PRELOAD), makes the folder FULL_DISK_FOLDER look like a disk
+// of FULL_DISK_BYTES: a write that makes its files larger than that in all fails with ENOSPC, as on a real
+// one.
 
 #include <dirent.h>
 #include <dlfcn.h>

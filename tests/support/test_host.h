@@ -9,9 +9,8 @@
 
 namespace stereotlm::test {
 
-// An initiator that a test drives: words by b_transport, words and bursts by nb_transport, blocks by debug transport,
-// and DMI.
-// It ends a response of nb_transport as `ending` says, and records every answer.
+// An initiator that a test drives: words by b_transport, words and bursts by nb_transport, blocks by debug
+// transport, and DMI. It ends a response of nb_transport as `ending` says, and records every answer.
 class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
  public:
   struct Answer {

@@ -1,5 +1,5 @@
-// The core with the tables of the rig that took the chessboard pairs of opencv-doc: timing and blame as the plain cycle
-// loop has them, pixels as the kernels have them on whole pictures.
+// The core with the tables of the rig that took the chessboard pairs of opencv-doc: timing and blame as the
+// plain cycle loop has them, pixels as the kernels have them on whole pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// What lies in the banks of the tables after the driver has uploaded them, as a program on the host reads it back over PCI.
+// What lies in the banks of the tables after the driver has uploaded them, as a program on the host reads it
+// back over PCI.
 #include <gtest/gtest.h>
 
 #include <algorithm>

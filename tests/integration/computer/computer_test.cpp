@@ -1,5 +1,5 @@
-// The whole computer, with the driver on its processor and every memory-mapped link under the monitor. The boards are
-// small, and their cameras as fast in proportion to the core as those of the paper's board.
+// The whole computer, with the driver on its processor and every memory-mapped link under the monitor. The
+// boards are small, and their cameras as fast in proportion to the core as those of the paper's board.
 #include "platform/computer.h"
 
 #include <gtest/gtest.h>
@@ -223,8 +223,8 @@ TEST_F(ComputerTest, DeliversThemBesideAHog) {
   EXPECT_GT(stats.masters.at(platform::Computer::kLoad).words, stats.clocks / 2);
 }
 
-// Free-running cameras write straight into the idle buffer: a capture waits for the next frame, so that frames of
-// the core fall into step with the cameras.
+// Free-running cameras write straight into the idle buffer: a capture waits for the next frame, so that
+// frames of the core fall into step with the cameras.
 TEST_F(ComputerTest, TakesThreePairsInFiveCameraFramesWithTwoBuffers) {
   run(small_board(kWindow7), 31);
   EXPECT_NEAR(fps() / camera_fps(), 3.0 / 5, kOnePercent * 3 / 5);

@@ -1,5 +1,5 @@
-// What cameras, buffers and core make of the frame rate together, with every result compared with the arithmetic of the
-// pictures that were captured.
+// What cameras, buffers and core make of the frame rate together, with every result compared with the
+// arithmetic of the pictures that were captured.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,8 +67,8 @@ TEST_P(CameraRates, AreThoseOfTheSlowestPartOverSixtyFrames) {
   EXPECT_NEAR(*statistics.frames_per_second.steady / expected, 1, 0.01);
 }
 
-// A sixteenth of the pixels from cameras that are sixteen times as fast: the core needs nearly the same part of a camera
-// frame, 1.17 with a window of 5, 1.62 with 7, 2.08 with 9.
+// A sixteenth of the pixels from cameras that are sixteen times as fast: the core needs nearly the same part
+// of a camera frame, 1.17 with a window of 5, 1.62 with 7, 2.08 with 9.
 std::vector<std::string> sixteenth(std::vector<std::string> sets) {
   sets.insert(sets.end(), {"image.width=160", "image.height=120", "cameras.frame_rate_hz=479.52"});
   return sets;

@@ -154,8 +154,9 @@ TEST_F(CameraSimulationTest, HasNothingToFinishBeforeTheFirstCapture) {
   EXPECT_EQ(simulation->frames(), 0U);
 }
 
-// Lines as fast as those of the paper's board, 640 pixels in 52.15 us, 24 of them. A third party keeps the bus for
-// 50 us from the first pixel of a line on: the FIFO of 140 words is full at pixel 560, 45.6 us after the first.
+// Lines as fast as those of the paper's board, 640 pixels in 52.15 us, 24 of them. A third party keeps the
+// bus for 50 us from the first pixel of a line on: the FIFO of 140 words is full at pixel 560, 45.6 us after
+// the first.
 TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
   constexpr int kRow = 10;
   constexpr int kFirstDropped = 560;

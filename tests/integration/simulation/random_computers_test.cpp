@@ -1,5 +1,5 @@
-// Whole computers around random boards, each in a process of its own under the monitor: identities and bounds hold,
-// results are those of the pictures that were captured, and everything is the same at each fidelity.
+// Whole computers around random boards, each in a process of its own under the monitor: identities and bounds
+// hold, results are those of the pictures that were captured, and everything is the same at each fidelity.
 #include <gtest/gtest.h>
 
 #include <algorithm>

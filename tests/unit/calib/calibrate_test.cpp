@@ -67,7 +67,8 @@ TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
   EXPECT_LT((made.rig.rotation - known.rotation).cwiseAbs().maxCoeff(), 0.01);
   EXPECT_NEAR(made.rig.translation.norm() / known.translation.norm(), 1, 0.01);
 
-  // By the recovered tables, the board's disparities of the scene are those that follow from what matches truly.
+  // By the recovered tables, the board's disparities of the scene are those that follow from what matches
+  // truly.
   const auto scene = rig().scene();
   kernels::StereoConfig config;
   config.disparities = 60;

@@ -1,4 +1,5 @@
-// The FPGA's end of the local bus alone. The test plays the core: it grants words and says when they are usable.
+// The FPGA's end of the local bus alone. The test plays the core: it grants words and says when they are
+// usable.
 #include "models/fpga/local_bus.h"
 
 #include <gtest/gtest.h>
@@ -227,8 +228,8 @@ TEST_F(LocalBusTest, ReachesBanksAndRegistersByDebugTransport) {
   EXPECT_EQ(dmi.get_end_address(), kWords * 4 - 1);
 }
 
-// Reports that do not throw: an exception from here, behind a process of the bus, would pass a stack that the address
-// sanitizer does not know.
+// Reports that do not throw: an exception from here, behind a process of the bus, would pass a stack that the
+// address sanitizer does not know.
 void report_without_exception() {
   sc_core::sc_report_handler::set_actions("/stereotlm/local_bus", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
 }

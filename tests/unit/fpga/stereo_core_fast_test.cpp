@@ -1,5 +1,5 @@
-// What is special where the data of a frame is worked on at once: frames that cannot be, bursts that would notice, and
-// tables that have changed since the last one.
+// What is special where the data of a frame is worked on at once: frames that cannot be, bursts that would
+// notice, and tables that have changed since the last one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -151,8 +151,8 @@ TEST_F(StereoCoreFast, WorksAtOnceAgainOnTheNextFrameThatCanBe) {
   EXPECT_EQ(core->frame_cycles().back(), frame_cycles_alone(4));
 }
 
-// Changes to a table between two frames: the second one has no valid entry, and so no disparities and no reads of the
-// image.
+// Changes to a table between two frames: the second one has no valid entry, and so no disparities and no
+// reads of the image.
 class StereoCoreTables : public StereoCoreFast {
  protected:
   void run_first() {
@@ -367,7 +367,8 @@ TEST_F(StereoCoreTiming, TakesAsLong) {
   EXPECT_EQ(accesses(kResult), kImageWords);
 }
 
-// A frame that is done cycle by cycle after all: in processes of their own at the two fidelities, it gives the same.
+// A frame that is done cycle by cycle after all: in processes of their own at the two fidelities, it gives
+// the same.
 class WholeBoard : public StereoCoreBench {
  public:
   WholeBoard(Fidelity fidelity, bool has_direct_access)

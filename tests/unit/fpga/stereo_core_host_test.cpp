@@ -1,5 +1,5 @@
-// The host port beside the core's own: bursts of the local bus before, in and after a frame. Its clock is the core's:
-// a burst that begins at edge c asks from cycle c + kFirst on, and a word a cycle.
+// The host port beside the core's own: bursts of the local bus before, in and after a frame. Its clock is the
+// core's: a burst that begins at edge c asks from cycle c + kFirst on, and a word a cycle.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The core at fast fidelity against itself cycle by cycle: random boards, and what a host does with them, with every
-// time, word and count. Each run is in a process of its own.
+// The core at fast fidelity against itself cycle by cycle: random boards, and what a host does with them,
+// with every time, word and count. Each run is in a process of its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,8 +59,8 @@ StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {
   return board;
 }
 
-// A board and its host. The host makes one access after the other over the local bus; frames are started over the
-// local bus too, or by somebody else at the registers, at any time.
+// A board and its host. The host makes one access after the other over the local bus; frames are started over
+// the local bus too, or by somebody else at the registers, at any time.
 class HostedRun {
  public:
   HostedRun(std::uint64_t seed, Fidelity fidelity)

@@ -17,8 +17,8 @@ namespace {
 using test::RandomBoard;
 using test::SplitMix64;
 
-// One frame: what leaves `half` columns after (u, v) entered and as many rows further up, is its filtered value
-// and its own valid bit. Rows outside the image hold anything.
+// One frame: what leaves `half` columns after (u, v) entered and as many rows further up, is its filtered
+// value and its own valid bit. Rows outside the image hold anything.
 void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_per_column, int first_row,
                      int strips, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
@@ -118,8 +118,8 @@ TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
   }
 }
 
-// 255 * 65793 is the last multiple of 255 below 2^24, the limit of a float's exact integers; every shift keeps
-// the lowest bits of the sum apart somewhere.
+// 255 * 65793 is the last multiple of 255 below 2^24, the limit of a float's exact integers; every shift
+// keeps the lowest bits of the sum apart somewhere.
 TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
   SplitMix64 random(7);
   for (const int more : {0, 1, 2}) {

@@ -20,8 +20,8 @@ namespace {
 using test::RandomBoard;
 using test::SplitMix64;
 
-// All pictures of the board through one pipeline for each instruction set, there and back, so that nothing of a frame
-// reaches the next.
+// All pictures of the board through one pipeline for each instruction set, there and back, so that nothing of
+// a frame reaches the next.
 void expect_reference(const RandomBoard& board) {
   const StereoConfig config{board.window, board.disparities, test::filter_kernel(board.filter),
                             board.lr_tolerance};
@@ -72,7 +72,8 @@ RandomBoard noise_board(int width, int height, int window, int disparities, Spli
   return board;
 }
 
-// Wide images have segments of several vectors in every lane; many disparities reach over more than one of them.
+// Wide images have segments of several vectors in every lane; many disparities reach over more than one of
+// them.
 TEST(StereoPipeline, EqualsTheReferenceOnWideAndOnHighImages) {
   SplitMix64 random(11);
   for (int window = 3; window <= 31; window += 2) {

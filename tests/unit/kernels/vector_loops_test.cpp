@@ -41,7 +41,8 @@ void with_each_instruction_set(const std::function<void()>& check) {
   EXPECT_GE(targets, 1);
 }
 
-// Both matches of one pair of filtered images, by the kernels of the FPGA's stages, one window row after the other.
+// Both matches of one pair of filtered images, by the kernels of the FPGA's stages, one window row after the
+// other.
 struct Streamed {
   std::vector<int> right_based;  // -1 where invalid
   std::vector<int> left_based;
@@ -63,7 +64,8 @@ Streamed streamed_matches(const test::RandomBoard& board, const std::vector<std:
   for (int row = radius; row < board.height - radius; ++row) {
     sums.start_frame();
     chain.start_frame();
-    // `column` ends the window around left pixel column - radius; unit A runs on until its last pixel has left it.
+    // `column` ends the window around left pixel column - radius; unit A runs on until its last pixel has
+    // left it.
     for (int column = 0; column < width + radius + board.disparities - 1; ++column) {
       for (int k = 0; k < board.window && column < width; ++k) {
         left_pixels[static_cast<std::size_t>(k)] = left[place(column, row - radius + k)];

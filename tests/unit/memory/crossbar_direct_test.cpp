@@ -1,5 +1,5 @@
-// What a stage needs to work on many words at once: direct access, whether they have changed, and grants that are
-// decided elsewhere.
+// What a stage needs to work on many words at once: direct access, whether they have changed, and grants that
+// are decided elsewhere.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -19,8 +19,9 @@
 
 namespace stereotlm::pci {
 
-// What lies on the local bus, as far as the bridge can tell: words that keep what is written, and tell where they are
-// before. A burst takes word_time for each word and a word_time more; while it is held, none is answered.
+// What lies on the local bus, as far as the bridge can tell: words that keep what is written, and tell where
+// they are before. A burst takes word_time for each word and a word_time more; while it is held, none is
+// answered.
 class LocalTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<> {
  public:
   struct Burst {

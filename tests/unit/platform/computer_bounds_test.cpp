@@ -30,8 +30,8 @@ TEST(ComputerBounds, GiveCamerasOnDemandTheTimeToTheLastPixel) {
 }
 
 TEST(ComputerBounds, CountTheBusClocksOfCaptureToTheBoard) {
-  // 64 words a burst into the bridge, whose posted writes are less than a FIFO; 32 a burst back to memory, and a
-  // descriptor.
+  // 64 words a burst into the bridge, whose posted writes are less than a FIFO; 32 a burst back to memory,
+  // and a descriptor.
   const double capture = 2 * (kPicture + 1200 * (1 + 4 + 1));
   const double result = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
   EXPECT_DOUBLE_EQ(bound_of(BoardConfig(), "pci"), 33.333e6 / (capture + result));

@@ -19,9 +19,10 @@
 
 namespace stereotlm::driver {
 
-// A computer without time for pictures of one word: whatever is under way ends, one thing after the other and in an order
-// without pattern, when the program waits for an interrupt. It checks that nobody touches a buffer that somebody else
-// works on. Capture k writes pair_word(k, side); the core writes result_word() of what it finds.
+// A computer without time for pictures of one word: whatever is under way ends, one thing after the other and
+// in an order without pattern, when the program waits for an interrupt. It checks that nobody touches a
+// buffer that somebody else works on. Capture k writes pair_word(k, side); the core writes result_word() of
+// what it finds.
 class FakeMachine : public host::HostBus {
  public:
   explicit FakeMachine(std::uint64_t seed, std::uint64_t memory_bytes = 1U << 16U)
