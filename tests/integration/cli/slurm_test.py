@@ -38,7 +38,7 @@ def tearDownModule():
 
 
 class SlurmTest(SweepTest):
-    locals = {}  # by plan
+    local_stores = {}  # bytes by plan
 
     def setUp(self):
         super().setUp()
@@ -99,11 +99,11 @@ class SlurmTest(SweepTest):
     def local(self, plan):
         """The bytes of a sweep on this machine alone."""
         text = plan.read_bytes()
-        if text not in self.locals:
+        if text not in self.local_stores:
             store = self.folder / "local.db"
             self.succeeds(self.sweep(plan=plan, store=store))
-            self.locals[text] = store.read_bytes()
-        return self.locals[text]
+            self.local_stores[text] = store.read_bytes()
+        return self.local_stores[text]
 
     def assert_whole(self, plan):
         self.assertEqual(self.store.read_bytes(), self.local(plan))
