@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "models/capture/capture_config.h"
-#include "models/rounding.h"
+#include "models/period.h"
 
 namespace stereotlm::capture {
 
@@ -34,37 +34,7 @@ class CameraTiming {
   int pixels_by(int row, std::uint64_t since_begin_ps) const;
 
  private:
-  __extension__ typedef unsigned __int128 Wide;
-
-  // A rational number of ps.
-  class Period {
-   public:
-    Period(Wide numerator, Wide denominator);
-    std::uint64_t times(std::uint64_t count) const {
-      if (const auto time = rounded_if_certain(static_cast<double>(count) * near_)) return *time;
-      // A division of 128 bits takes several times as long.
-      const std::uint64_t doubled_rest =
-          count <= narrow_counts_
-              ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)
-              : static_cast<std::uint64_t>(2 * rest_ * count / denominator_);
-      return whole_ * count + (doubled_rest + 1) / 2;
-    }
-
-   private:
-    double near_;  // to the number
-    std::uint64_t whole_;
-    Wide rest_;  // of denominator_
-    Wide denominator_;
-    std::uint64_t narrow_counts_;  // for which 64 bits are enough
-  };
-
-  // A frame rate of numerator / denominator Hz, both below 10^18.
-  struct Rate {
-    std::uint64_t numerator;
-    std::uint64_t denominator;
-  };
-  CameraTiming(const CameraConfig& config, const Rate& rate);
-  static Rate rate_of(const CameraConfig& config);
+  CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz);
 
   // The step is the largest time of which a line and the distance of two pixels are multiples: 52.15/63.56 =
   // 745/908.

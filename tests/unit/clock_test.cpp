@@ -2,17 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <initializer_list>
+#include <algorithm>
 #include <random>
+#include <stdexcept>
+#include <string>
+
+#include "tests/support/plain_clock.h"
 
 namespace stereotlm {
 namespace {
 
-// round(k * 10^6 / f) ps, halves up, in whole numbers: f is `thousandths_of_mhz` / 1000 MHz.
-std::uint64_t exact_edge_ps(std::uint64_t edge, std::uint64_t thousandths_of_mhz) {
-  return (2 * edge * 1'000'000'000 + thousandths_of_mhz) / (2 * thousandths_of_mhz);
-}
+// The contract's definition in whole numbers, without the short ways.
+test::PlainClock definition(const std::string& mhz) { return test::PlainClock(test::plain_number(mhz)); }
 
 TEST(Clock, PutsTheEdgesOfAWholePeriodAtItsMultiples) {
   const Clock clock(40);
@@ -37,12 +38,16 @@ TEST(Clock, RoundsAHalfPicosecondUp) {
 }
 
 TEST(Clock, DoesNotDrift) {
-  for (const std::uint64_t edge : {1U, 7U, 999'983U, 999'999'999U, 1'000'000'000U}) {
-    EXPECT_EQ(Clock(33.333).edge_ps(edge), exact_edge_ps(edge, 33'333)) << edge;
-    EXPECT_EQ(Clock(29.97).edge_ps(edge), exact_edge_ps(edge, 29'970)) << edge;
-    EXPECT_EQ(Clock(66.667).edge_ps(edge), exact_edge_ps(edge, 66'667)) << edge;
-    EXPECT_EQ(Clock(1000).edge_ps(edge), exact_edge_ps(edge, 1'000'000)) << edge;
+  for (const char* mhz : {"33.333", "29.97", "66.667", "1000"}) {
+    for (const std::uint64_t edge : {1U, 7U, 999'983U, 999'999'999U, 1'000'000'000U})
+      EXPECT_EQ(Clock(std::stod(mhz)).edge_ps(edge), definition(mhz).edge(edge)) << mhz << " MHz, " << edge;
   }
+}
+
+// No double is 25.6 or 13.7047; the nearest ones would put these edges 1 ps earlier.
+TEST(Clock, HasTheDecimalFrequencyThatWasWritten) {
+  EXPECT_EQ(Clock(25.6).edge_ps(1), 39'063U);  // 39062.5
+  EXPECT_EQ(Clock(13.7047).edge_ps(930'277), 67'880'143'309U);
 }
 
 TEST(Clock, FindsTheEdgeAtATimeAndTheNextOneAPicosecondLater) {
@@ -59,58 +64,48 @@ TEST(Clock, FindsTheEdgeAtATimeAndTheNextOneAPicosecondLater) {
   }
 }
 
-// The definition in extended precision, without the short ways.
-std::uint64_t plain_edge_ps(std::uint64_t edge, double mhz) {
-  return static_cast<std::uint64_t>(
-      std::floor(static_cast<long double>(edge) * 1e6L / static_cast<long double>(mhz) + 0.5L));
-}
-std::uint64_t plain_edge_at_or_after(std::uint64_t time_ps, double mhz) {
-  auto edge =
-      static_cast<std::uint64_t>(static_cast<long double>(time_ps) * static_cast<long double>(mhz) / 1e6L);
-  while (edge > 0 && plain_edge_ps(edge - 1, mhz) >= time_ps) --edge;
-  while (plain_edge_ps(edge, mhz) < time_ps) ++edge;
-  return edge;
-}
-
 TEST(Clock, TakesNoShortWayPastTheDefinition) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> rate(1, 1000);
   for (int i = 0; i < 400; ++i) {
-    constexpr double kUsual[] = {33.333, 66.667, 66.666, 40, 640, 29.97, 1, 1000, 999.999, 133.3333};
-    const double mhz = i < 10 ? kUsual[i] : rate(random);
-    const Clock clock(mhz);
+    constexpr const char* kUsual[] = {"33.333", "66.667", "66.666", "40",      "640",
+                                      "29.97",  "1",      "1000",   "999.999", "0.001"};
+    const std::string mhz = i < 10 ? kUsual[i] : std::to_string(rate(random));
+    const Clock clock(std::stod(mhz));
     for (int j = 0; j < 500; ++j) {
       const std::uint64_t edge = random() >> (24 + random() % 40);  // up to 2^40
-      const std::uint64_t time = plain_edge_ps(edge, mhz);
+      const std::uint64_t time = definition(mhz).edge(edge);
       ASSERT_EQ(clock.edge_ps(edge), time) << mhz << " MHz, edge " << edge;
       for (const std::uint64_t at :
            {time, time + 1, time - std::min<std::uint64_t>(time, 1), time + random() % 1'000'000}) {
-        ASSERT_EQ(clock.edge_at_or_after(at), plain_edge_at_or_after(at, mhz)) << mhz << " MHz, " << at;
+        ASSERT_EQ(clock.edge_at_or_after(at), definition(mhz).first_edge(at)) << mhz << " MHz, " << at;
       }
     }
   }
 }
 
-// 1562.5 ps, and 2^k / 3 ps, of which many edges lie near a half.
+// Periods of 1562.5 ps and nearly so, and of 2^k / 3 ps: many edges lie at a half, or near one.
 TEST(Clock, RoundsEdgesNearAHalfAsDefined) {
-  for (const double mhz : {640.0, 1e6 / 1562.4999999999, 1e6 / 1562.5000000001, 1.5, 3e6 / 32768}) {
-    const Clock clock(mhz);
+  for (const char* mhz : {"640", "640.00000000004096", "639.99999999995904", "25.6", "1.5", "91.552734375"}) {
+    const Clock clock(std::stod(mhz));
     for (std::uint64_t edge = 0; edge < 3'000; ++edge) {
       for (const std::uint64_t far : {std::uint64_t{0}, std::uint64_t{1} << 20U, std::uint64_t{1} << 38U}) {
-        ASSERT_EQ(clock.edge_ps(far + edge), plain_edge_ps(far + edge, mhz)) << mhz << " MHz, " << far + edge;
+        ASSERT_EQ(clock.edge_ps(far + edge), definition(mhz).edge(far + edge))
+            << mhz << " MHz, " << far + edge;
       }
     }
   }
 }
 
-TEST(Clock, HasTheEdgesOfOneWithItsPeriodInWholePicoseconds) {
-  EXPECT_TRUE(Clock(40).has_edges_of(Clock(40)));
-  EXPECT_TRUE(Clock(62.5).has_edges_of(Clock(62.5)));
+TEST(Clock, HasTheEdgesOfOneWithItsFrequency) {
+  for (const double mhz : {40.0, 62.5, 33.333}) EXPECT_TRUE(Clock(mhz).has_edges_of(Clock(mhz))) << mhz;
   EXPECT_FALSE(Clock(40).has_edges_of(Clock(80)));
   EXPECT_FALSE(Clock(80).has_edges_of(Clock(40)));
-  // Not known of a period that is none.
-  EXPECT_FALSE(Clock(33.333).has_edges_of(Clock(33.333)));
-  EXPECT_FALSE(Clock(33.333).has_edges_of(Clock(66.666)));
+  EXPECT_FALSE(Clock(33.333).has_edges_of(Clock(33.334)));
+}
+
+TEST(Clock, RefusesAFrequencyOutsideItsRange) {
+  for (const double mhz : {0.0, -40.0, 0.000999, 1000.001}) EXPECT_THROW(Clock{mhz}, std::invalid_argument);
 }
 
 TEST(Clock, CountsSimulatedTimeInPicoseconds) {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/rounding.h"
+
+namespace stereotlm {
+
+__extension__ typedef unsigned __int128 Wide;
+
+// A decimal number, exactly: numerator / denominator.
+struct DecimalNumber {
+  Wide numerator = 0;
+  Wide denominator = 1;
+};
+
+// The decimal number that was written where `value` was read: the shortest one that reads back equal. For
+// 0.001 <= value <= 1000: its numerator is below 10^17, its denominator at most 10^19.
+DecimalNumber decimal_of(double value);
+
+// A rational number of ps, and its multiples. Each multiple is rounded once, halves up, from its exact value,
+// so that nothing drifts.
+class Period {
+ public:
+  // numerator / denominator ps; both below 2^127.
+  Period(Wide numerator, Wide denominator);
+
+  std::uint64_t times(std::uint64_t count) const {
+    if (rest_ == 0) return whole_ * count;
+    if (const auto time = rounded_if_certain(static_cast<double>(count) * near_)) return *time;
+    // A division of 128 bits takes several times as long.
+    const std::uint64_t doubled_rest =
+        count <= narrow_counts_
+            ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)
+            : static_cast<std::uint64_t>(2 * rest_ * count / denominator_);
+    return whole_ * count + (doubled_rest + 1) / 2;
+  }
+
+  friend bool operator==(const Period& a, const Period& b) {
+    return a.whole_ == b.whole_ && a.rest_ == b.rest_ && a.denominator_ == b.denominator_;
+  }
+
+ private:
+  double near_;  // the number, as near as a double is
+  std::uint64_t whole_;
+  Wide rest_;  // of denominator_, both without a common factor
+  Wide denominator_;
+  std::uint64_t narrow_counts_;  // up to which 64 bits are enough
+};
+
+}  // namespace stereotlm
