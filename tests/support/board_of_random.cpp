@@ -138,8 +138,37 @@ platform::BoardConfig board_config(const RandomBoard& board) {
 platform::Tables board_tables(const RandomBoard& board) { return board_tables(cycle_input(board)); }
 
 host::StereoPair stereo_pair(const RandomBoard& board, int frame) {
-  const PicturePair& pair = board.pictures_of_frame(frame);
-  return {gray_image(board, pair.left), gray_image(board, pair.right)};
+  return stereo_pair(board, board.pictures_of_frame(frame));
+}
+
+host::StereoPair stereo_pair(const RandomBoard& board, const PicturePair& pictures) {
+  return {gray_image(board, pictures.left), gray_image(board, pictures.right)};
+}
+
+platform::BoardConfig board_config(const RandomComputer& computer) {
+  platform::BoardConfig board = board_config(computer.board);
+  board.cameras.frame_rate_hz = std::stod(computer.frame_rate_hz);
+  board.cameras.trigger =
+      computer.on_demand ? platform::CameraTrigger::kOnDemand : platform::CameraTrigger::kFreeRunning;
+  board.capture.destination = computer.capture_to_host ? platform::CaptureDestination::kHostMemory
+                                                       : platform::CaptureDestination::kBoard;
+  board.capture.host_frames = computer.host_frames;
+  board.capture.fifo_words = computer.fifo_words;
+  board.capture.fifo_trigger_words = computer.fifo_trigger_words;
+  board.pci.clock_mhz = std::stod(computer.pci_clock_mhz);
+  board.pci.latency_timer_clocks = computer.latency_timer_clocks;
+  board.pci.bridge_wait_clocks = computer.bridge_wait_clocks;
+  board.pci.memory_wait_clocks = computer.memory_wait_clocks;
+  if (computer.load) {
+    board.pci.load =
+        platform::PciLoadConfig{computer.load->burst_words, std::stod(computer.load->interval_us),
+                                std::stod(computer.load->first_us), std::stod(computer.load->access_us)};
+  }
+  board.bridge.local_clock_mhz = std::stod(computer.local_clock_mhz);
+  board.bridge.dma_burst_words = computer.dma_burst_words;
+  board.bridge.posted_words = computer.posted_words;
+  board.fpga.clock_mhz = std::stod(computer.fpga_clock_mhz);
+  return board;
 }
 
 }  // namespace stereotlm::test

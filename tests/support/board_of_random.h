@@ -5,6 +5,7 @@
 #include "platform/tables.h"
 #include "tests/support/plain_cycle_loop.h"
 #include "tests/support/random_board.h"
+#include "tests/support/random_computer.h"
 
 // What the references are told about a board, in the types of the platform. Only this file and those that use
 // it know both sides.
@@ -20,5 +21,8 @@ platform::Tables board_tables(const PlainCycleInput& input);
 platform::BoardConfig board_config(const RandomBoard& board);
 platform::Tables board_tables(const RandomBoard& board);
 host::StereoPair stereo_pair(const RandomBoard& board, int frame);
+host::StereoPair stereo_pair(const RandomBoard& board, const PicturePair& pictures);
+
+platform::BoardConfig board_config(const RandomComputer& computer);
 
 }  // namespace stereotlm::test

@@ -1,0 +1,157 @@
+#include "tests/support/plain_board.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace stereotlm::test {
+
+PlainPlaces plain_places(const PlainCycleInput& input) {
+  const auto table_words = static_cast<std::uint64_t>(input.width) * static_cast<std::uint64_t>(input.height);
+  std::vector<std::uint64_t> used(input.banks.size());
+  const auto place = [&used](int bank, std::uint64_t words) {
+    return std::exchange(used[static_cast<std::size_t>(bank)], used[static_cast<std::size_t>(bank)] + words);
+  };
+  PlainPlaces places;
+  for (const int bank : input.left_image) places.left_image.push_back(place(bank, table_words / 4));
+  for (const int bank : input.right_image) places.right_image.push_back(place(bank, table_words / 4));
+  for (const int bank : input.disparity) places.disparity.push_back(place(bank, table_words / 4));
+  if (input.left_lut) places.left_lut = place(*input.left_lut, table_words);
+  if (input.right_lut) places.right_lut = place(*input.right_lut, table_words);
+  return places;
+}
+
+std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
+                                       const std::optional<std::vector<std::uint32_t>>& entries) {
+  if (!bank) return {};
+  if (entries) return *entries;
+  std::vector<std::uint32_t> identity;
+  for (int row = 0; row < input.height; ++row) {
+    for (int column = 0; column < input.width; ++column) {
+      identity.push_back(0x8000'0000U | static_cast<std::uint32_t>(row) << 16U |
+                         static_cast<std::uint32_t>(column));
+    }
+  }
+  return identity;
+}
+
+PlainBoard::PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::function<void()> frame_ends)
+    : events_(events),
+      input_(input),
+      frame_ends_(std::move(frame_ends)),
+      clock_(input.clock_mhz),
+      places_(plain_places(input.core)),
+      banks_(input.core.banks.size()),
+      core_(input.core) {
+  const auto picture_pixels =
+      static_cast<std::size_t>(input.core.width) * static_cast<std::size_t>(input.core.height);
+  for (auto& words : banks_) words.resize(picture_pixels * 5);  // nine pictures and two tables at most
+}
+
+void PlainBoard::host_asks(int bank, std::uint64_t place, bool write, std::uint32_t& word, PlainTime from_ps,
+                           std::function<void(PlainTime, PlainTime)> granted) {
+  if (host_) throw std::logic_error("plain board: a word of the host while one waits");
+  host_ = HostWord{bank, place, write, &word, from_ps, std::move(granted)};
+  await_cycle();
+}
+
+void PlainBoard::start_frame() {
+  if (core_.runs()) throw std::logic_error("plain board: a start strobe while the core runs");
+  next_cycle_ = std::max(next_cycle_, clock_.first_edge(events_.now()));
+  first_cycle_ = next_cycle_;
+  const int frame = static_cast<int>(frame_cycles_.size());
+  compute(frame);
+  core_.start_frame(frame);
+  await_cycle();
+}
+
+void PlainBoard::await_cycle() {
+  std::uint64_t cycle = next_cycle_;
+  if (!core_.runs()) {
+    if (!host_) return;
+    cycle = std::max(cycle, clock_.first_edge(host_->from_ps));
+  }
+  events_.at(clock_.edge(cycle), PlainPhase::kDecisions, [this, cycle] { run_cycle(cycle); });
+}
+
+void PlainBoard::run_cycle(std::uint64_t cycle) {
+  if (cycle < next_cycle_) return;  // it has been run for somebody else
+  std::optional<PlainHostRequest> request;
+  if (host_ && host_->from_ps <= events_.now()) request = PlainHostRequest{host_->bank, host_->write};
+  const bool ran = core_.runs();
+  if (!ran && !request) return;
+  next_cycle_ = cycle + 1;
+  const bool granted = core_.step(static_cast<std::int64_t>(cycle), request);
+  if (ran && !core_.runs()) {
+    const std::uint64_t end = cycle + 1 + static_cast<std::uint64_t>(input_.core.pipeline_latency_cycles);
+    frame_cycles_.push_back(end - first_cycle_);
+    events_.at(clock_.edge(end), PlainPhase::kEffects, frame_ends_);
+  }
+  if (granted) grant_host(cycle);
+  await_cycle();
+}
+
+void PlainBoard::grant_host(std::uint64_t cycle) {
+  const HostWord host = std::move(*host_);
+  host_.reset();
+  std::uint32_t& stored = *words_at(host.bank, host.place);
+  (host.write ? stored : *host.word) = host.write ? *host.word : stored;
+  const auto latency = static_cast<std::uint64_t>(
+      plain_read_latency(input_.core.banks[static_cast<std::size_t>(host.bank)].kind));
+  host.granted(clock_.edge(cycle), clock_.edge(cycle + latency));
+}
+
+// The disparities of the frame that begins. The program touches none of its buffers before its end, so that
+// they may be there from its beginning on.
+void PlainBoard::compute(int frame) {
+  const PlainCycleInput& core = input_.core;
+  const auto input_entry = static_cast<std::size_t>(frame) % core.left_image.size();
+  const auto output_entry = static_cast<std::size_t>(frame) % core.disparity.size();
+  ReferenceInput input;
+  input.width = core.width;
+  input.height = core.height;
+  input.left = pixels_at(core.left_image[input_entry], places_.left_image[input_entry]);
+  input.right = pixels_at(core.right_image[input_entry], places_.right_image[input_entry]);
+  input.left_table = table_at(core.left_lut, places_.left_lut);
+  input.right_table = table_at(core.right_lut, places_.right_lut);
+  input.filter = input_.filter;
+  input.window = core.window;
+  input.disparities = core.disparities;
+  input.lr_tolerance = input_.lr_tolerance;
+  const std::vector<std::uint32_t> words = compute_reference(input).disparity_words;
+  std::copy(words.begin(), words.end(),
+            words_at(core.disparity[output_entry], places_.disparity[output_entry]));
+}
+
+std::uint32_t* PlainBoard::words_at(int bank, std::uint64_t place) {
+  return &banks_[static_cast<std::size_t>(bank)].at(place);
+}
+
+std::vector<std::uint8_t> PlainBoard::pixels_at(int bank, std::uint64_t place) const {
+  const auto words =
+      static_cast<std::uint64_t>(input_.core.width) * static_cast<std::uint64_t>(input_.core.height) / 4;
+  std::vector<std::uint8_t> pixels;
+  for (std::uint64_t word = place; word < place + words; ++word) {
+    const std::uint32_t value = banks_[static_cast<std::size_t>(bank)].at(word);
+    for (unsigned byte = 0; byte < 4; ++byte)
+      pixels.push_back(static_cast<std::uint8_t>(value >> (8 * byte)));
+  }
+  return pixels;
+}
+
+std::optional<std::vector<std::uint32_t>> PlainBoard::table_at(const std::optional<int>& bank,
+                                                               std::uint64_t place) const {
+  if (!bank) return std::nullopt;
+  const auto entries =
+      static_cast<std::ptrdiff_t>(input_.core.width) * static_cast<std::ptrdiff_t>(input_.core.height);
+  const auto first = banks_[static_cast<std::size_t>(*bank)].begin() + static_cast<std::ptrdiff_t>(place);
+  return std::vector<std::uint32_t>(first, first + entries);
+}
+
+PlainCycleResult PlainBoard::core_result() const {
+  PlainCycleResult result = core_.result();
+  result.frame_cycles = frame_cycles_;
+  return result;
+}
+
+}  // namespace stereotlm::test

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "tests/support/plain_clock.h"
+#include "tests/support/plain_core.h"
+#include "tests/support/plain_events.h"
+#include "tests/support/reference_arithmetic.h"
+
+// The FPGA and its banks, with their words, behind the local bus: contract sections 1 to 3.
+namespace stereotlm::test {
+
+struct PlainBoardInput {
+  PlainCycleInput core;  // a table of std::nullopt on a side that has one: the identity
+  PlainNumber clock_mhz;
+  std::optional<ReferenceKernel> filter;
+  std::optional<int> lr_tolerance;
+};
+
+// First words of the buffers, in their banks.
+struct PlainPlaces {
+  std::vector<std::uint64_t> left_image;  // in the order of the list
+  std::vector<std::uint64_t> right_image;
+  std::vector<std::uint64_t> disparity;
+  std::uint64_t left_lut = 0;
+  std::uint64_t right_lut = 0;
+};
+PlainPlaces plain_places(const PlainCycleInput& input);
+
+// The entries of a table, as the banks hold them; empty for a side without table.
+std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
+                                       const std::optional<std::vector<std::uint32_t>>& entries);
+
+class PlainBoard {
+ public:
+  // `input` is sound and outlives the board. `frame_ends` is called at the end of each frame.
+  PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::function<void()> frame_ends);
+
+  // A word of a bank asks for it from the first cycle that begins at or after `from_ps`. `granted(begin,
+  // usable)`: when the cycle of the grant begins, and when the word is usable, if it is read (into `word`).
+  // One word at a time.
+  void host_asks(int bank, std::uint64_t place, bool write, std::uint32_t& word, PlainTime from_ps,
+                 std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
+  // The local-bus clock that carries the start strobe ends now.
+  void start_frame();
+
+  const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  PlainCycleResult core_result() const;
+
+ private:
+  struct HostWord {
+    int bank;
+    std::uint64_t place;
+    bool write;
+    std::uint32_t* word;
+    PlainTime from_ps;
+    std::function<void(PlainTime, PlainTime)> granted;
+  };
+
+  void await_cycle();
+  void run_cycle(std::uint64_t cycle);
+  void grant_host(std::uint64_t cycle);
+  void compute(int frame);
+  std::vector<std::uint8_t> pixels_at(int bank, std::uint64_t place) const;
+  std::uint32_t* words_at(int bank, std::uint64_t place);
+  std::optional<std::vector<std::uint32_t>> table_at(const std::optional<int>& bank,
+                                                     std::uint64_t place) const;
+
+  PlainEvents& events_;
+  const PlainBoardInput& input_;
+  std::function<void()> frame_ends_;
+  PlainClock clock_;
+  PlainPlaces places_;
+  std::vector<std::vector<std::uint32_t>> banks_;
+  PlainCore core_;
+  std::optional<HostWord> host_;
+  std::uint64_t next_cycle_ = 0;
+  std::uint64_t first_cycle_ = 0;  // of the frame that runs
+  std::vector<std::uint64_t> frame_cycles_;
+};
+
+}  // namespace stereotlm::test

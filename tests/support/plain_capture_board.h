@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "tests/support/plain_clock.h"
+#include "tests/support/plain_events.h"
+#include "tests/support/plain_pci_bus.h"
+
+// A camera's capture board of contract section 3, one pixel at a time.
+namespace stereotlm::test {
+
+struct PlainCaptureConfig {
+  PlainCamera camera;
+  int fifo_words = 0;
+  int fifo_trigger_words = 0;
+};
+
+// Where a picture goes.
+struct PlainPicturePlace {
+  PlainTarget* target = nullptr;
+  int wait_clocks = 0;
+  std::uint64_t word = 0;
+};
+
+class PlainCaptureBoard : private PlainMaster {
+ public:
+  enum class Readiness { kReady, kNotArmed, kBusy };
+  struct Stats {
+    std::uint64_t captured_frames = 0;
+    std::uint64_t dropped_not_armed = 0;
+    std::uint64_t dropped_busy = 0;
+    std::uint64_t dropped_by_partner = 0;
+    std::uint64_t dropped_pixels = 0;
+  };
+
+  PlainCaptureBoard(PlainEvents& events, PlainPciBus& bus, const PlainCaptureConfig& config)
+      : events_(events), bus_(bus), config_(config), master_(bus.add(*this)) {}
+
+  // For the program.
+  void arm(const PlainPicturePlace& place);
+  bool done() const { return done_; }
+  void clear_done() { done_ = false; }
+  std::uint64_t frame_number() const { return done_frame_; }
+
+  // A frame of the camera begins now; `partner_is_ready`: the other side can start with it.
+  Readiness readiness() const;
+  void frame_begins(std::uint64_t number, bool partner_is_ready, const std::vector<std::uint8_t>& pixels);
+  // A frame that begins as the run ends: no capture takes it.
+  void drop_frame() { ++stats_.dropped_not_armed; }
+
+  const Stats& stats() const { return stats_; }
+
+ private:
+  struct Word {
+    std::uint64_t place = 0;  // of the picture
+    std::uint32_t value = 0;
+    int pixels = 0;
+    int row = 0;
+  };
+
+  PlainBurst burst() override;
+  void word_gone() override;
+  void ended(const PlainWords& words) override;
+
+  void await_pixel();
+  void pixel_arrives();
+  bool all_pixels_have_come() const { return row_ == config_.camera.height; }
+  std::size_t complete_words() const;
+  void request_or_finish();
+
+  PlainEvents& events_;
+  PlainPciBus& bus_;
+  PlainCaptureConfig config_;
+  std::size_t master_;
+
+  bool armed_ = false;
+  PlainPicturePlace next_place_;
+  bool done_ = false;
+  std::uint64_t done_frame_ = 0;
+
+  bool capturing_ = false;
+  std::uint64_t frame_ = 0;
+  PlainTime begin_ps_ = 0;
+  PlainPicturePlace place_;
+  std::vector<std::uint8_t> pixels_;
+  int column_ = 0;  // of the next pixel
+  int row_ = 0;
+  bool drops_line_ = false;
+  std::deque<Word> fifo_;
+  std::size_t owed_ = 0;  // words in it that were complete at the last grant
+  bool asks_ = false;
+  bool has_bus_ = false;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::test

@@ -1,0 +1,514 @@
+#include "tests/support/plain_computer.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "tests/support/plain_bridge.h"
+#include "tests/support/plain_events.h"
+
+namespace stereotlm::test {
+namespace {
+
+// Bus addresses, in words: host memory from 0 on, then the bridge's slave window.
+constexpr std::uint64_t kSlaveWindow = std::uint64_t{1} << 31U;
+
+class HostMemory : public PlainTarget {
+ public:
+  void write(std::uint64_t word, const PlainWords& words) override {
+    std::copy(words.begin(), words.end(), at(word, words.size()));
+  }
+  void read(std::uint64_t word, std::size_t count, PlainTime /*end_ps*/,
+            std::function<void(PlainWords)> answer) override {
+    const auto first = at(word, count);
+    answer(PlainWords(first, first + static_cast<std::ptrdiff_t>(count)));
+  }
+  PlainWords::iterator at(std::uint64_t word, std::size_t count) {
+    if (words_.size() < word + count) words_.resize(word + count);
+    return words_.begin() + static_cast<std::ptrdiff_t>(word);
+  }
+
+ private:
+  PlainWords words_;
+};
+
+// The registers of a capture board, in words.
+enum class CaptureRegister : std::uint64_t { kControl, kStatus, kBuffer, kFrameLow, kFrameHigh };
+constexpr std::uint32_t kArm = 1;
+constexpr std::uint32_t kTrigger = 2;
+constexpr std::uint32_t kDone = 4;
+
+class CaptureRegisters : public PlainTarget {
+ public:
+  CaptureRegisters(PlainCaptureBoard& board, std::function<PlainPicturePlace(std::uint32_t)> place_of,
+                   std::function<void()> trigger)
+      : board_(board), place_of_(std::move(place_of)), trigger_(std::move(trigger)) {}
+  void write(std::uint64_t word, const PlainWords& words) override {
+    const std::uint32_t value = words.at(0);
+    switch (static_cast<CaptureRegister>(word)) {
+      case CaptureRegister::kControl:
+        if ((value & kArm) != 0) board_.arm(place_of_(buffer_));
+        if ((value & kTrigger) != 0) trigger_();
+        break;
+      case CaptureRegister::kStatus:
+        if ((value & kDone) != 0) board_.clear_done();
+        break;
+      case CaptureRegister::kBuffer:
+        buffer_ = value;
+        break;
+      case CaptureRegister::kFrameLow:
+      case CaptureRegister::kFrameHigh:
+        throw std::logic_error("plain computer: a write of a register that is only read");
+    }
+  }
+  void read(std::uint64_t word, std::size_t /*count*/, PlainTime /*end_ps*/,
+            std::function<void(PlainWords)> answer) override {
+    switch (static_cast<CaptureRegister>(word)) {
+      case CaptureRegister::kStatus:
+        return answer({board_.done() ? kDone : 0});
+      case CaptureRegister::kFrameLow:
+        return answer({static_cast<std::uint32_t>(board_.frame_number())});
+      case CaptureRegister::kFrameHigh:
+        return answer({static_cast<std::uint32_t>(board_.frame_number() >> 32U)});
+      case CaptureRegister::kControl:
+      case CaptureRegister::kBuffer:
+        break;
+    }
+    throw std::logic_error("plain computer: a read of a register that is only written");
+  }
+
+ private:
+  PlainCaptureBoard& board_;
+  std::function<PlainPicturePlace(std::uint32_t)> place_of_;
+  std::function<void()> trigger_;
+  std::uint32_t buffer_ = 0;
+};
+
+// Reads its own device again and again.
+class Load : private PlainMaster, private PlainTarget {
+ public:
+  Load(PlainEvents& events, PlainPciBus& bus, const PlainLoad& load)
+      : events_(events), bus_(bus), load_(load), master_(bus.add(*this)) {
+    await_transfer();
+  }
+
+ private:
+  void await_transfer() {
+    const PlainTime due = load_.first_ps + transfers_ * load_.interval_ps;
+    events_.at(std::max(due, events_.now()), PlainPhase::kEffects, [this] { bus_.request(master_); });
+  }
+  PlainBurst burst() override {
+    return {false, this, 0, 0, PlainWords(static_cast<std::size_t>(load_.burst_words) - words_done_)};
+  }
+  void ended(const PlainWords& words) override {
+    words_done_ += words.size();
+    if (words_done_ < static_cast<std::size_t>(load_.burst_words)) {
+      bus_.request(master_);
+      return;
+    }
+    words_done_ = 0;
+    ++transfers_;
+    await_transfer();
+  }
+  void read(std::uint64_t /*word*/, std::size_t count, PlainTime end_ps,
+            std::function<void(PlainWords)> answer) override {
+    events_.at(end_ps + load_.access_ps, PlainPhase::kEffects,
+               [count, answer] { answer(PlainWords(count)); });
+  }
+  void write(std::uint64_t /*word*/, const PlainWords& /*words*/) override {}
+
+  PlainEvents& events_;
+  PlainPciBus& bus_;
+  PlainLoad load_;
+  std::size_t master_;
+  std::uint64_t transfers_ = 0;
+  std::size_t words_done_ = 0;
+};
+
+// The processor: an access to a register is a PCI transaction of one word, asked for until it is taken.
+class Processor : private PlainMaster {
+ public:
+  Processor(PlainEvents& events, PlainPciBus& bus, std::function<bool()> interrupt)
+      : events_(events), bus_(bus), interrupt_(std::move(interrupt)), master_(bus.add(*this)) {}
+
+  std::uint32_t read(PlainTarget& target, std::uint64_t word, int wait_clocks) {
+    return access({false, &target, wait_clocks, word, {0}});
+  }
+  void write(PlainTarget& target, std::uint64_t word, std::uint32_t value, int wait_clocks) {
+    access({true, &target, wait_clocks, word, {value}});
+  }
+  void wait_for_interrupt() {
+    while (!interrupt_()) events_.run_next();
+  }
+
+ private:
+  std::uint32_t access(PlainBurst burst) {
+    burst_ = std::move(burst);
+    ended_ = false;
+    bus_.request(master_);
+    while (!ended_) events_.run_next();
+    return word_;
+  }
+  PlainBurst burst() override { return burst_; }
+  void ended(const PlainWords& words) override {
+    if (words.empty()) {
+      bus_.request(master_);
+      return;
+    }
+    word_ = words.front();
+    ended_ = true;
+  }
+
+  PlainEvents& events_;
+  PlainPciBus& bus_;
+  std::function<bool()> interrupt_;
+  std::size_t master_;
+  PlainBurst burst_;
+  bool ended_ = false;
+  std::uint32_t word_ = 0;
+};
+
+class Computer {
+ public:
+  explicit Computer(const PlainComputerInput& input)
+      : input_(input),
+        places_(plain_places(input.board.core)),
+        bus_(events_, input.pci_clock_mhz, input.latency_timer_clocks),
+        processor_(events_, bus_, [this] { return bridge_.interrupt() || left_.done() || right_.done(); }),
+        left_(events_, bus_, capture_config(input)),
+        right_(events_, bus_, capture_config(input)),
+        board_(events_, input.board, [this] { bridge_.ring(); }),
+        bridge_(events_, bus_, board_, host_memory_,
+                {input.local_clock_mhz, static_cast<std::size_t>(input.dma_burst_words),
+                 static_cast<std::size_t>(input.posted_words), input.memory_wait_clocks}),
+        left_registers_(left_, place_of(), [this] { frame_begins(); }),
+        right_registers_(right_, place_of(), [] {}) {
+    if (input.load) load_.emplace(events_, bus_, *input.load);
+    if (!input.on_demand) await_frame();
+  }
+
+  PlainComputerResult run() {
+    run_program();
+    events_.run_effects_of_now();
+    return result();
+  }
+
+ private:
+  // How many of something have begun and ended.
+  struct Stage {
+    std::uint64_t begun = 0;
+    std::uint64_t ended = 0;
+    bool idle() const { return begun == ended; }
+  };
+  static constexpr std::size_t kToBoard = 0;
+  static constexpr std::size_t kToHost = 1;
+
+  static PlainCaptureConfig capture_config(const PlainComputerInput& input) {
+    return {{input.board.core.width, input.board.core.height, input.frame_rate_hz},
+            input.fifo_words,
+            input.fifo_trigger_words};
+  }
+  std::function<PlainPicturePlace(std::uint32_t)> place_of() {
+    return [this](std::uint32_t word) -> PlainPicturePlace {
+      if (word >= kSlaveWindow) return {&bridge_.slave(), input_.bridge_wait_clocks, word - kSlaveWindow};
+      return {&host_memory_, input_.memory_wait_clocks, word};
+    };
+  }
+
+  // The cameras.
+
+  void await_frame() {
+    events_.at(plain_frame_ps(input_.frame_rate_hz, camera_frames_), PlainPhase::kEffects, [this] {
+      frame_begins();
+      await_frame();
+    });
+  }
+  void frame_begins() {
+    const std::uint64_t number = camera_frames_++;
+    undecided_ = true;
+    events_.at(events_.now(), PlainPhase::kDecisions, [this, number] { decide(number); });
+  }
+  // Whether the captures take the frame that has just begun: both or none.
+  void decide(std::uint64_t number) {
+    undecided_ = false;
+    const bool left_ready = left_.readiness() == PlainCaptureBoard::Readiness::kReady;
+    const bool right_ready = right_.readiness() == PlainCaptureBoard::Readiness::kReady;
+    if (left_ready && right_ready) begins_ps_[number] = events_.now();
+    const PicturePair pair = left_ready && right_ready ? input_.pictures(number) : PicturePair{};
+    left_.frame_begins(number, right_ready, pair.left);
+    right_.frame_begins(number, left_ready, pair.right);
+  }
+
+  // The program (sw/driver/README.md).
+
+  void run_program() {
+    upload_tables();
+    write(PlainBridgeRegister::kInterruptEnable, ~std::uint32_t{0});
+    start_what_can_be();
+    while (read_backs_.ended < frames()) {
+      processor_.wait_for_interrupt();
+      handle_interrupts();
+      if (read_backs_.ended < frames()) start_what_can_be();
+    }
+  }
+
+  void upload_tables() {
+    const PlainCycleInput& core = input_.board.core;
+    std::vector<PlainDescriptor> chain;
+    std::uint64_t host = tables_start();
+    const auto add = [&](const std::optional<int>& bank, std::uint64_t place, const PlainWords& table) {
+      if (!bank) return;
+      host_memory_.write(host, table);
+      chain.push_back({host, plain_board_word(*bank, place), false, table.size()});
+      host += table.size();
+    };
+    add(core.left_lut, places_.left_lut, plain_table(core, core.left_lut, core.left_table));
+    add(core.right_lut, places_.right_lut, plain_table(core, core.right_lut, core.right_table));
+    if (chain.empty()) return;
+    write(PlainBridgeRegister::kInterruptEnable, kPlainDmaDone);
+    start_dma(kToBoard, chain);
+    processor_.wait_for_interrupt();
+    write(PlainBridgeRegister::kInterruptStatus, read_status());
+  }
+
+  void handle_interrupts() {
+    const std::uint32_t status = read_status();
+    if (status != 0) write(PlainBridgeRegister::kInterruptStatus, status);
+    if ((status & kPlainDoorbell) != 0) {
+      processor_.read(bridge_.slave(), core_word(PlainCoreRegister::kStatus), input_.bridge_wait_clocks);
+      ++frames_.ended;
+      acknowledges_ = true;
+    }
+    if ((status & kPlainDmaDone << kToBoard) != 0) ++copies_.ended;
+    if ((status & kPlainDmaDone << kToHost) != 0) deliver();
+    if (read_backs_.ended < frames() && !captures_.idle()) handle_captures();
+  }
+
+  void handle_captures() {
+    for (std::size_t side = 0; side < 2; ++side) {
+      CaptureRegisters& registers = side == 0 ? left_registers_ : right_registers_;
+      if (side_done_[side] || (read(registers, CaptureRegister::kStatus) & kDone) == 0) continue;
+      write(registers, CaptureRegister::kStatus, kDone);
+      side_done_[side] = true;
+    }
+    if (!side_done_[0] || !side_done_[1]) return;
+    side_done_ = {};
+    ++captures_.ended;
+    const auto frame = [this](CaptureRegisters& registers) {
+      const std::uint64_t high = read(registers, CaptureRegister::kFrameHigh);
+      return high << 32U | read(registers, CaptureRegister::kFrameLow);
+    };
+    captured_.push_back(frame(left_registers_));
+    if (frame(right_registers_) != captured_.back())
+      throw std::logic_error("plain computer: the two sides have captured different frames");
+  }
+
+  void start_what_can_be() {
+    start_core();
+    arm_capture();
+    copy_pair();
+    read_back();
+  }
+
+  void start_core() {
+    const PlainCycleInput& core = input_.board.core;
+    const std::uint64_t frame = frames_.begun;
+    const std::uint64_t pairs = input_.capture_to_host ? copies_.ended : captures_.ended;
+    const bool starts = frames_.idle() && frame < frames() && frame < pairs &&
+                        frame < read_backs_.ended + core.disparity.size();
+    if (starts) {
+      ++frames_.begun;
+      const auto input = static_cast<std::size_t>(frame % core.left_image.size());
+      const auto output = static_cast<std::size_t>(frame % core.disparity.size());
+      write(PlainCoreRegister::kLeftImage, board_word(core.left_image[input], places_.left_image[input]));
+      write(PlainCoreRegister::kRightImage, board_word(core.right_image[input], places_.right_image[input]));
+      write(PlainCoreRegister::kDisparity, board_word(core.disparity[output], places_.disparity[output]));
+      if (frame == 0 && core.left_lut)
+        write(PlainCoreRegister::kLeftLut, board_word(*core.left_lut, places_.left_lut));
+      if (frame == 0 && core.right_lut)
+        write(PlainCoreRegister::kRightLut, board_word(*core.right_lut, places_.right_lut));
+    }
+    if (starts || acknowledges_) write(PlainCoreRegister::kControl, starts ? kPlainStart : 0);
+    acknowledges_ = false;
+  }
+
+  void arm_capture() {
+    const PlainCycleInput& core = input_.board.core;
+    const std::uint64_t capture = captures_.begun;
+    if (!captures_.idle()) return;
+    std::uint64_t left = 0;
+    std::uint64_t right = 0;
+    if (input_.capture_to_host) {
+      if (capture >= copies_.ended + static_cast<std::uint64_t>(input_.host_frames)) return;
+      left = pair_in_host(capture);
+      right = left + picture_words();
+    } else {
+      if (capture >= frames_.ended + core.left_image.size()) return;
+      const auto input = static_cast<std::size_t>(capture % core.left_image.size());
+      write(PlainBridgeRegister::kPage0, board_word(core.left_image[input], places_.left_image[input]));
+      write(PlainBridgeRegister::kPage1, board_word(core.right_image[input], places_.right_image[input]));
+      left = kSlaveWindow;
+      right = kSlaveWindow + kPlainApertureWords;
+    }
+    ++captures_.begun;
+    write(left_registers_, CaptureRegister::kBuffer, static_cast<std::uint32_t>(left));
+    write(right_registers_, CaptureRegister::kBuffer, static_cast<std::uint32_t>(right));
+    write(right_registers_, CaptureRegister::kControl, kArm);
+    write(left_registers_, CaptureRegister::kControl, kArm | (input_.on_demand ? kTrigger : 0));
+  }
+
+  void copy_pair() {
+    const PlainCycleInput& core = input_.board.core;
+    const std::uint64_t pair = copies_.begun;
+    if (!input_.capture_to_host || !copies_.idle() || pair >= captures_.ended ||
+        pair >= frames_.ended + core.left_image.size()) {
+      return;
+    }
+    ++copies_.begun;
+    const auto input = static_cast<std::size_t>(pair % core.left_image.size());
+    const std::uint64_t host = pair_in_host(pair);
+    start_dma(
+        kToBoard,
+        {{host, plain_board_word(core.left_image[input], places_.left_image[input]), false, picture_words()},
+         {host + picture_words(), plain_board_word(core.right_image[input], places_.right_image[input]),
+          false, picture_words()}});
+  }
+
+  void read_back() {
+    const PlainCycleInput& core = input_.board.core;
+    const std::uint64_t frame = read_backs_.begun;
+    if (!read_backs_.idle() || frame >= frames_.ended) return;
+    ++read_backs_.begun;
+    const auto output = static_cast<std::size_t>(frame % core.disparity.size());
+    start_dma(kToHost,
+              {{result_in_host(frame), plain_board_word(core.disparity[output], places_.disparity[output]),
+                true, picture_words()}});
+  }
+
+  void deliver() {
+    const std::uint64_t frame = read_backs_.ended++;
+    PlainDelivery delivery;
+    delivery.camera_frame = captured_[static_cast<std::size_t>(frame)];
+    delivery.begin_ps = begins_ps_.at(delivery.camera_frame);
+    delivery.host_ps = events_.now();
+    const auto words = host_memory_.at(result_in_host(frame), picture_words());
+    for (std::size_t word = 0; word < picture_words(); ++word) {
+      const std::uint32_t value = words[static_cast<std::ptrdiff_t>(word)];
+      for (unsigned byte = 0; byte < 4; ++byte)
+        delivery.disparity.push_back(static_cast<std::uint8_t>(value >> (8 * byte)));
+    }
+    deliveries_.push_back(std::move(delivery));
+  }
+
+  void start_dma(std::size_t channel, const std::vector<PlainDescriptor>& chain) {
+    bridge_.set_chain(channel, chain);
+    const std::uint64_t words = channel * kPlainChannelWords;
+    write_bridge(static_cast<std::uint64_t>(PlainBridgeRegister::kDescriptor0) + words, 0);
+    write_bridge(static_cast<std::uint64_t>(PlainBridgeRegister::kControl0) + words, 1);
+  }
+
+  // Accesses to registers.
+
+  void write(PlainBridgeRegister which, std::uint32_t value) {
+    write_bridge(static_cast<std::uint64_t>(which), value);
+  }
+  void write_bridge(std::uint64_t word, std::uint32_t value) {
+    processor_.write(bridge_.registers(), word, value, input_.bridge_wait_clocks);
+  }
+  std::uint32_t read_status() {
+    return processor_.read(bridge_.registers(),
+                           static_cast<std::uint64_t>(PlainBridgeRegister::kInterruptStatus),
+                           input_.bridge_wait_clocks);
+  }
+  static std::uint64_t core_word(PlainCoreRegister which) {
+    return kPlainCoreWindow + static_cast<std::uint64_t>(which);
+  }
+  void write(PlainCoreRegister which, std::uint32_t value) {
+    processor_.write(bridge_.slave(), core_word(which), value, input_.bridge_wait_clocks);
+  }
+  void write(CaptureRegisters& registers, CaptureRegister which, std::uint32_t value) {
+    processor_.write(registers, static_cast<std::uint64_t>(which), value, input_.bridge_wait_clocks);
+  }
+  std::uint32_t read(CaptureRegisters& registers, CaptureRegister which) {
+    return processor_.read(registers, static_cast<std::uint64_t>(which), input_.bridge_wait_clocks);
+  }
+
+  // Host memory: descriptors, tables, pairs, results.
+
+  std::uint64_t frames() const { return static_cast<std::uint64_t>(input_.frames); }
+  std::uint64_t picture_words() const {
+    return static_cast<std::uint64_t>(input_.board.core.width) *
+           static_cast<std::uint64_t>(input_.board.core.height) / 4;
+  }
+  std::uint64_t tables_start() const { return 64; }
+  std::uint64_t pair_in_host(std::uint64_t pair) const {
+    const std::uint64_t slot = pair % static_cast<std::uint64_t>(input_.host_frames);
+    return tables_start() + (8 + 2 * slot) * picture_words();
+  }
+  std::uint64_t result_in_host(std::uint64_t frame) const {
+    const std::uint64_t pairs = static_cast<std::uint64_t>(input_.host_frames);
+    return tables_start() + (8 + 2 * pairs + frame % input_.board.core.disparity.size()) * picture_words();
+  }
+  static std::uint32_t board_word(int bank, std::uint64_t place) {
+    return static_cast<std::uint32_t>(plain_board_word(bank, place));
+  }
+
+  PlainComputerResult result() {
+    if (undecided_) {
+      left_.drop_frame();
+      right_.drop_frame();
+    }
+    PlainComputerResult result;
+    result.core = board_.core_result();
+    result.deliveries = deliveries_;
+    result.pci_clocks = bus_.clocks();
+    result.pci_busy_clocks = bus_.busy_clocks();
+    for (std::size_t master = 0; master < (input_.load ? 5 : 4); ++master)
+      result.masters.push_back(bus_.stats(master));
+    const PlainBridge::Stats bridge = bridge_.stats();
+    result.posted_words = bridge.posted_words;
+    result.dma_words = bridge.dma_words;
+    result.local_clocks = bridge.local_clocks;
+    result.local_busy_clocks = bridge.local_busy_clocks;
+    result.cameras = {PlainComputerResult::Camera{camera_frames_, left_.stats()},
+                      PlainComputerResult::Camera{camera_frames_, right_.stats()}};
+    return result;
+  }
+
+  const PlainComputerInput& input_;
+  PlainPlaces places_;
+  PlainEvents events_;
+  HostMemory host_memory_;
+  PlainPciBus bus_;  // its masters in the order of the contract: host, captures, bridge, load
+  Processor processor_;
+  PlainCaptureBoard left_;
+  PlainCaptureBoard right_;
+  PlainBoard board_;
+  PlainBridge bridge_;
+  CaptureRegisters left_registers_;
+  CaptureRegisters right_registers_;
+  std::optional<Load> load_;
+
+  std::uint64_t camera_frames_ = 0;               // begun
+  bool undecided_ = false;                        // whether the last of them is captured
+  std::map<std::uint64_t, PlainTime> begins_ps_;  // of captured frames
+
+  Stage captures_;
+  Stage copies_;
+  Stage frames_;
+  Stage read_backs_;
+  std::array<bool, 2> side_done_{};
+  bool acknowledges_ = false;
+  std::vector<std::uint64_t> captured_;  // camera frames
+  std::vector<PlainDelivery> deliveries_;
+};
+
+}  // namespace
+
+PlainComputerResult run_plain_computer(const PlainComputerInput& input) {
+  require_sound(input.board.core);
+  return Computer(input).run();
+}
+
+}  // namespace stereotlm::test

@@ -1,0 +1,458 @@
+#include "tests/support/plain_core.h"
+
+#include <algorithm>
+#include <deque>
+
+namespace stereotlm::test {
+namespace {
+
+// Absolute cycles, counted from the first cycle of frame 0.
+using Cycle = std::int64_t;
+
+enum class Direction { kRead, kWrite };
+
+// What a port wants in a cycle, decided from the state at the beginning of that cycle. Every port is in one
+// of these; kAccess becomes granted or stalled, the others are port states as they stand.
+enum class Wish { kIdle, kBlocked, kStarved, kPass, kAccess };
+
+std::size_t index_of(PlainPort port) { return static_cast<std::size_t>(port); }
+
+int read_latency(PlainBankKind kind) { return kind == PlainBankKind::kZbtFlowThrough ? 1 : 2; }
+
+// One bank, its arbiter, and what both remember from frame to frame.
+class BankAndArbiter {
+ public:
+  BankAndArbiter(const PlainBank& bank, const PlainCycleInput& input)
+      : bank_(bank), arbitration_(input.arbitration), priority_(input.priority) {}
+
+  // The winner among the ports that request this bank; nullopt if none does.
+  std::optional<PlainPort> winner(const std::array<bool, kPlainPortCount>& requests) const {
+    std::size_t first = 0;
+    if (arbitration_ == PlainArbitration::kRoundRobin && last_granted_) {
+      const auto found = std::find(priority_.begin(), priority_.end(), *last_granted_);
+      first = static_cast<std::size_t>(found - priority_.begin()) + 1;
+    }
+    for (std::size_t step = 0; step < kPlainPortCount; ++step) {
+      const PlainPort port = priority_[(first + step) % kPlainPortCount];
+      if (requests[index_of(port)]) return port;
+    }
+    return std::nullopt;
+  }
+
+  // Whether an access in this direction may not be granted yet because of one in the other direction.
+  bool is_turning_round(Direction direction, Cycle now) const {
+    if (bank_.kind != PlainBankKind::kSyncBurst) return false;
+    const std::optional<Cycle>& other = direction == Direction::kRead ? last_write_ : last_read_;
+    return other && now < *other + bank_.turnaround_cycles + 1;
+  }
+
+  void grant(PlainPort port, Direction direction, Cycle now) {
+    last_granted_ = port;
+    (direction == Direction::kRead ? last_read_ : last_write_) = now;
+  }
+
+ private:
+  PlainBank bank_;
+  PlainArbitration arbitration_;
+  std::array<PlainPort, kPlainPortCount> priority_;
+  std::optional<PlainPort> last_granted_;
+  std::optional<Cycle> last_read_;
+  std::optional<Cycle> last_write_;
+};
+
+// The rectified pixel that a slot is for; the row may be outside the image.
+struct Slot {
+  int column = 0;
+  int row = 0;
+};
+
+std::vector<Slot> slots_of_a_frame(const PlainCycleInput& input) {
+  const int n = input.window;
+  const int r = (n - 1) / 2;
+  const int h = input.filter_half;
+  std::vector<Slot> slots;
+  if (input.fetch == PlainFetch::kColumn) {
+    const int w = std::max(0, h - r);
+    for (int v = -w; v <= input.height - 1; ++v) {
+      for (int u = 0; u <= input.width - 1; ++u) {
+        for (int k = 0; k <= n - 1; ++k) slots.push_back({u, v + h - r + k});
+      }
+    }
+  } else {
+    for (int y = 0; y <= input.height + r + h - 1; ++y) {
+      for (int u = 0; u <= input.width - 1; ++u) slots.push_back({u, y});
+    }
+  }
+  return slots;
+}
+
+// One side of the core during one frame.
+class Lane {
+ public:
+  struct Setting {
+    bool has_table = false;
+    const std::vector<std::uint32_t>* entries = nullptr;  // of the table; null: all valid
+    int table_latency = 0;                                // read latency of the table's bank
+    int image_latency = 0;                                // read latency of the bank of this frame's image
+  };
+
+  Lane(const PlainCycleInput& input, const std::vector<Slot>& sequence, const Setting& setting)
+      : width_(input.width),
+        height_(input.height),
+        lane_fifo_slots_(static_cast<std::size_t>(input.lane_fifo_slots)),
+        sequence_(sequence),
+        setting_(setting) {}
+
+  Wish lut_port_wish() const { return setting_.has_table ? wish_of_taker() : Wish::kIdle; }
+
+  Wish pixel_port_wish(Cycle now) const {
+    if (!setting_.has_table) return wish_of_taker();
+    if (handled_ == sequence_.size()) return Wish::kIdle;  // after its last slot
+    const bool can_handle =
+        handled_ < taken_ && now >= in_lane_[handled_ - consumed_].taken_at + setting_.table_latency;
+    if (!can_handle) return handled_ == 0 ? Wish::kIdle : Wish::kStarved;  // idle before its first slot
+    return is_empty(sequence_[handled_]) || !entry_is_valid(sequence_[handled_]) ? Wish::kPass
+                                                                                 : Wish::kAccess;
+  }
+
+  bool can_be_consumed(Cycle now) const {
+    return handled_ > consumed_ && now >= in_lane_.front().handled_at + setting_.image_latency;
+  }
+
+  // Updates at the end of cycle `now`.
+  void lut_port_took(Cycle now) {
+    in_lane_.push_back({now, now});
+    ++taken_;
+  }
+  void pixel_port_handled(Cycle now) {
+    if (!setting_.has_table) lut_port_took(now);  // the pixel port takes the slots itself
+    in_lane_[handled_ - consumed_].handled_at = now;
+    ++handled_;
+  }
+  void matcher_consumed() {
+    in_lane_.pop_front();
+    ++consumed_;
+  }
+
+ private:
+  struct SlotInLane {
+    Cycle taken_at;
+    Cycle handled_at;  // meaningful once the slot is handled
+  };
+
+  // The wish of the port that takes slots: the LUT port, or the pixel port of a side without table.
+  Wish wish_of_taker() const {
+    if (taken_ == sequence_.size()) return Wish::kIdle;  // after its last slot
+    if (in_lane_.size() >= lane_fifo_slots_) return Wish::kBlocked;
+    return is_empty(sequence_[taken_]) ? Wish::kPass : Wish::kAccess;
+  }
+
+  bool is_empty(const Slot& slot) const { return slot.row < 0 || slot.row > height_ - 1; }
+
+  bool entry_is_valid(const Slot& slot) const {
+    if (setting_.entries == nullptr) return true;
+    const auto place = static_cast<std::size_t>(slot.row) * static_cast<std::size_t>(width_) +
+                       static_cast<std::size_t>(slot.column);
+    return ((*setting_.entries)[place] >> 31U) == 1;
+  }
+
+  int width_;
+  int height_;
+  std::size_t lane_fifo_slots_;
+  const std::vector<Slot>& sequence_;
+  Setting setting_;
+  std::deque<SlotInLane> in_lane_;  // taken and not yet consumed; the first is slot number consumed_
+  std::size_t taken_ = 0;           // slots of the sequence, from the first
+  std::size_t handled_ = 0;
+  std::size_t consumed_ = 0;
+};
+
+// Counts consume-cycles into columns and columns into result words, during one frame.
+class Matcher {
+ public:
+  Matcher(const PlainCycleInput& input, std::size_t slots) : slots_(static_cast<std::int64_t>(slots)) {
+    const std::int64_t width = input.width;
+    const std::int64_t r = (input.window - 1) / 2;
+    const std::int64_t h = input.filter_half;
+    const std::int64_t w = std::max<std::int64_t>(0, h - r);
+    const std::int64_t drain_columns = input.disparities - 1 + r + h;  // C_d
+    if (input.fetch == PlainFetch::kColumn) {
+      cycles_per_column_ = input.window;
+      columns_ahead_ = drain_columns + w * width;
+    } else {
+      cycles_per_column_ = 1;
+      columns_ahead_ = drain_columns + (r + h) * width;
+    }
+    pixels_ = width * input.height;
+    drain_cycles_ = drain_columns * cycles_per_column_;
+  }
+
+  bool needs_slots() const { return slots_consumed_ < slots_; }
+  bool drains() const { return !needs_slots() && drain_cycles_done_ < drain_cycles_; }
+
+  // One consume-cycle, with a slot of both lanes or in the drain. True if it completes a result word.
+  bool consume() {
+    ++(needs_slots() ? slots_consumed_ : drain_cycles_done_);
+    ++cycles_of_column_;
+    if (cycles_of_column_ < cycles_per_column_) return false;
+    cycles_of_column_ = 0;
+    const std::int64_t column = columns_consumed_++;
+    const std::int64_t pixel = column - columns_ahead_;  // i, as column = i + C
+    return pixel >= 0 && pixel < pixels_ && pixel % 4 == 3;
+  }
+
+ private:
+  std::int64_t slots_;
+  std::int64_t cycles_per_column_ = 0;  // K
+  std::int64_t columns_ahead_ = 0;      // C
+  std::int64_t pixels_ = 0;
+  std::int64_t drain_cycles_ = 0;
+  std::int64_t slots_consumed_ = 0;
+  std::int64_t drain_cycles_done_ = 0;
+  std::int64_t cycles_of_column_ = 0;
+  std::int64_t columns_consumed_ = 0;
+};
+
+class ResultQueue {
+ public:
+  explicit ResultQueue(const PlainCycleInput& input)
+      : capacity_(input.result_fifo_words), words_of_frame_(input.width * input.height / 4) {}
+
+  bool has_free_place() const { return entered_ - written_ < capacity_; }
+  bool all_written() const { return written_ == words_of_frame_; }
+  Wish result_port_wish() const {
+    if (entered_ > written_) return Wish::kAccess;
+    return entered_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved;
+  }
+  void word_enters() { ++entered_; }
+  void word_is_written() { ++written_; }
+  std::int64_t written() const { return written_; }
+
+ private:
+  std::int64_t capacity_;
+  std::int64_t words_of_frame_;
+  std::int64_t entered_ = 0;
+  std::int64_t written_ = 0;
+};
+
+}  // namespace
+
+class PlainCore::Cycles {
+ public:
+  explicit Cycles(const PlainCycleInput& input) : input_(input), sequence_(slots_of_a_frame(input)) {
+    for (const PlainBank& bank : input.banks) banks_.emplace_back(bank, input);
+    result_.banks.resize(input.banks.size());
+    blame_.resize(input.banks.size());
+  }
+
+  void start_frame(int frame) {
+    const auto entry = static_cast<std::size_t>(frame);
+    const int left_image = input_.left_image[entry % input_.left_image.size()];
+    const int right_image = input_.right_image[entry % input_.right_image.size()];
+    bank_of_port_.fill(std::nullopt);
+    bank_of_port_[index_of(PlainPort::kLeftLut)] = input_.left_lut;
+    bank_of_port_[index_of(PlainPort::kRightLut)] = input_.right_lut;
+    bank_of_port_[index_of(PlainPort::kLeftPixel)] = left_image;
+    bank_of_port_[index_of(PlainPort::kRightPixel)] = right_image;
+    bank_of_port_[index_of(PlainPort::kResult)] = input_.disparity[entry % input_.disparity.size()];
+    frame_.emplace(
+        Frame{Lane(input_, sequence_, lane_setting(input_.left_lut, input_.left_table, left_image)),
+              Lane(input_, sequence_, lane_setting(input_.right_lut, input_.right_table, right_image)),
+              Matcher(input_, sequence_.size()),
+              ResultQueue(input_),
+              {},
+              {}});
+  }
+
+  bool runs() const { return frame_.has_value(); }
+
+  bool step(Cycle now, const std::optional<PlainHostRequest>& host) {
+    std::array<Wish, kPlainPortCount> wishes{};  // idle
+    if (frame_) {
+      wishes[index_of(PlainPort::kLeftLut)] = frame_->left.lut_port_wish();
+      wishes[index_of(PlainPort::kRightLut)] = frame_->right.lut_port_wish();
+      wishes[index_of(PlainPort::kLeftPixel)] = frame_->left.pixel_port_wish(now);
+      wishes[index_of(PlainPort::kRightPixel)] = frame_->right.pixel_port_wish(now);
+      wishes[index_of(PlainPort::kResult)] = frame_->queue.result_port_wish();
+    }
+    if (host) wishes[index_of(PlainPort::kHost)] = Wish::kAccess;
+    bank_of_port_[index_of(PlainPort::kHost)] = host ? std::optional<int>(host->bank) : std::nullopt;
+    host_direction_ = host && host->write ? Direction::kWrite : Direction::kRead;
+
+    const std::array<bool, kPlainPortCount> granted = arbitrate(wishes, now);
+    if (frame_) step_frame(wishes, granted, now);
+    return granted[index_of(PlainPort::kHost)];
+  }
+
+  PlainCycleResult result() const {
+    PlainCycleResult result = result_;
+    collect_blame(result);
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t kTurnaround = kPlainPortCount;
+  using BlameOfBank = std::array<std::array<std::uint64_t, kPlainPortCount + 1>, kPlainPortCount>;
+  struct Frame {
+    Lane left;
+    Lane right;
+    Matcher matcher;
+    ResultQueue queue;
+    std::vector<PlainRowEnd> rows;
+    PlainRowEnd until_now;
+  };
+
+  void step_frame(const std::array<Wish, kPlainPortCount>& wishes,
+                  const std::array<bool, kPlainPortCount>& granted, Cycle now) {
+    Frame& frame = *frame_;
+    const bool slots_ready = frame.left.can_be_consumed(now) && frame.right.can_be_consumed(now);
+    const bool consumes = frame.queue.has_free_place() &&
+                          ((frame.matcher.needs_slots() && slots_ready) || frame.matcher.drains());
+    const bool consumes_slots = consumes && frame.matcher.needs_slots();
+
+    count_port_states(wishes, granted);
+    ++result_.counted_cycles;
+    ++frame.until_now.cycles;
+    for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+      if (wishes[port] == Wish::kAccess && !granted[port]) ++frame.until_now.stalls[port];
+    }
+
+    const auto acts = [&](PlainPort port) {
+      return wishes[index_of(port)] == Wish::kPass || granted[index_of(port)];
+    };
+    if (consumes && frame.matcher.consume()) frame.queue.word_enters();
+    if (consumes_slots) {
+      frame.left.matcher_consumed();
+      frame.right.matcher_consumed();
+    }
+    if (acts(PlainPort::kLeftPixel)) frame.left.pixel_port_handled(now);
+    if (acts(PlainPort::kRightPixel)) frame.right.pixel_port_handled(now);
+    if (acts(PlainPort::kLeftLut)) frame.left.lut_port_took(now);
+    if (acts(PlainPort::kRightLut)) frame.right.lut_port_took(now);
+    if (acts(PlainPort::kResult)) {
+      frame.queue.word_is_written();
+      if (frame.queue.written() * 4 % input_.width == 0) frame.rows.push_back(frame.until_now);
+    }
+    if (!frame.queue.all_written()) return;
+    result_.rows.push_back(frame.rows);
+    frame_.reset();
+  }
+
+  Lane::Setting lane_setting(const std::optional<int>& lut,
+                             const std::optional<std::vector<std::uint32_t>>& entries, int image) const {
+    Lane::Setting setting;
+    setting.has_table = lut.has_value();
+    setting.entries = entries ? &*entries : nullptr;
+    if (lut) setting.table_latency = read_latency(input_.banks[static_cast<std::size_t>(*lut)].kind);
+    setting.image_latency = read_latency(input_.banks[static_cast<std::size_t>(image)].kind);
+    return setting;
+  }
+
+  Direction direction_of(PlainPort port) const {
+    if (port == PlainPort::kHost) return host_direction_;
+    return port == PlainPort::kResult ? Direction::kWrite : Direction::kRead;
+  }
+
+  // Decides every bank, and notes the grants in the banks. Within a frame it counts bank states and blame.
+  std::array<bool, kPlainPortCount> arbitrate(const std::array<Wish, kPlainPortCount>& wishes, Cycle now) {
+    std::array<bool, kPlainPortCount> granted{};
+    PlainBankStates not_counted;
+    BlameOfBank blame_not_counted{};
+    for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
+      PlainBankStates& states = frame_ ? result_.banks[bank] : not_counted;
+      BlameOfBank& blame = frame_ ? blame_[bank] : blame_not_counted;
+      std::array<bool, kPlainPortCount> requests{};
+      int request_count = 0;
+      for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+        requests[port] = wishes[port] == Wish::kAccess && bank_of_port_[port] == static_cast<int>(bank);
+        if (requests[port]) ++request_count;
+      }
+      if (request_count == 0) {
+        ++states.idle;
+        continue;
+      }
+      if (request_count >= 2) ++states.contended;
+
+      const PlainPort winner = *banks_[bank].winner(requests);
+      const Direction direction = direction_of(winner);
+      const bool refused = banks_[bank].is_turning_round(direction, now);
+      if (refused) {
+        ++states.turnaround;
+      } else {
+        ++states.busy;
+        ++(direction == Direction::kRead ? states.reads : states.writes);
+        banks_[bank].grant(winner, direction, now);
+        granted[index_of(winner)] = true;
+      }
+      for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+        if (requests[port] && !granted[port]) ++blame[port][refused ? kTurnaround : index_of(winner)];
+      }
+    }
+    return granted;
+  }
+
+  void count_port_states(const std::array<Wish, kPlainPortCount>& wishes,
+                         const std::array<bool, kPlainPortCount>& granted) {
+    for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+      PlainPortStates& states = result_.ports[port];
+      switch (wishes[port]) {
+        case Wish::kIdle:
+          ++states.idle;
+          break;
+        case Wish::kBlocked:
+          ++states.blocked;
+          break;
+        case Wish::kStarved:
+          ++states.starved;
+          break;
+        case Wish::kPass:
+          ++states.passed;
+          break;
+        case Wish::kAccess:
+          ++(granted[port] ? states.granted : states.stalled);
+          break;
+      }
+    }
+  }
+
+  void collect_blame(PlainCycleResult& result) const {
+    for (std::size_t bank = 0; bank < blame_.size(); ++bank) {
+      for (std::size_t victim = 0; victim < kPlainPortCount; ++victim) {
+        for (std::size_t by = 0; by <= kTurnaround; ++by) {
+          const std::uint64_t cycles = blame_[bank][victim][by];
+          if (cycles == 0) continue;
+          PlainBlame key{static_cast<PlainPort>(victim), static_cast<int>(bank), std::nullopt};
+          if (by != kTurnaround) key.by = static_cast<PlainPort>(by);
+          result.blame[key] = cycles;
+        }
+      }
+    }
+  }
+
+  const PlainCycleInput& input_;
+  std::vector<Slot> sequence_;
+  std::vector<BankAndArbiter> banks_;
+  std::array<std::optional<int>, kPlainPortCount> bank_of_port_;
+  Direction host_direction_ = Direction::kRead;
+  std::optional<Frame> frame_;  // that runs, until its last result write
+  std::vector<BlameOfBank> blame_;
+  PlainCycleResult result_;
+};
+
+PlainCore::PlainCore(const PlainCycleInput& input) : cycles_(std::make_unique<Cycles>(input)) {}
+PlainCore::~PlainCore() = default;
+void PlainCore::start_frame(int frame) { cycles_->start_frame(frame); }
+bool PlainCore::runs() const { return cycles_->runs(); }
+bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& host) {
+  return cycles_->step(now, host);
+}
+PlainCycleResult PlainCore::result() const { return cycles_->result(); }
+
+std::size_t plain_slot_count(const PlainCycleInput& input) {
+  require_sound(input);
+  return slots_of_a_frame(input).size();
+}
+
+int plain_read_latency(PlainBankKind kind) { return read_latency(kind); }
+
+}  // namespace stereotlm::test

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "tests/support/plain_cycle_input.h"
+
+// The timing of the FPGA core, cycle by cycle, written from contract section 2 alone. It shares no code with
+// the models and exists to be compared with them, so it keeps a time stamp for everything that the page dates
+// and applies every rule in every cycle.
+namespace stereotlm::test {
+
+struct PlainPortStates {
+  std::uint64_t granted = 0;
+  std::uint64_t stalled = 0;
+  std::uint64_t passed = 0;
+  std::uint64_t idle = 0;
+  std::uint64_t blocked = 0;
+  std::uint64_t starved = 0;
+};
+
+struct PlainBankStates {
+  std::uint64_t reads = 0;
+  std::uint64_t writes = 0;
+  std::uint64_t busy = 0;
+  std::uint64_t turnaround = 0;
+  std::uint64_t idle = 0;
+  std::uint64_t contended = 0;
+};
+
+// Who lost a cycle, where, and to whom.
+struct PlainBlame {
+  PlainPort port = PlainPort::kHost;  // the victim
+  int bank = 0;
+  std::optional<PlainPort> by;  // the port that was granted; nullopt: turnaround
+
+  friend bool operator<(const PlainBlame& a, const PlainBlame& b) {
+    return std::tie(a.port, a.bank, a.by) < std::tie(b.port, b.bank, b.by);
+  }
+};
+
+// A row of results is whole with the write of its last word.
+struct PlainRowEnd {
+  std::uint64_t cycles = 0;                             // of its frame, that write's included
+  std::array<std::uint64_t, kPlainPortCount> stalls{};  // of these cycles, in the order of PlainPort
+};
+
+// Counters are sums over the frames and cover the counted cycles, 0 .. frame_cycles - 1 -
+// pipeline_latency_cycles of each frame.
+struct PlainCycleResult {
+  bool hang = false;                        // a frame did not end in max_frame_cycles; the figures end there
+  std::vector<std::uint64_t> frame_cycles;  // of the frames that ended
+  std::vector<std::vector<PlainRowEnd>> rows;  // of the same frames
+  std::uint64_t counted_cycles = 0;
+  std::array<PlainPortStates, kPlainPortCount> ports;  // in the order of PlainPort
+  std::vector<PlainBankStates> banks;                  // in the order of PlainCycleInput::banks
+  std::map<PlainBlame, std::uint64_t> blame;           // without zero rows
+
+  const PlainPortStates& port(PlainPort which) const { return ports[static_cast<std::size_t>(which)]; }
+  std::uint64_t blamed(PlainPort victim, int bank, std::optional<PlainPort> by) const {
+    const auto row = blame.find(PlainBlame{victim, bank, by});
+    return row == blame.end() ? 0 : row->second;
+  }
+};
+
+// A word that the local bus asks for in a cycle.
+struct PlainHostRequest {
+  int bank = 0;
+  bool write = false;
+};
+
+class PlainCore {
+ public:
+  // `input` is sound (require_sound) and outlives the core.
+  explicit PlainCore(const PlainCycleInput& input);
+  ~PlainCore();
+
+  // The next step is cycle 0 of a frame, which uses entry `frame` of each list, modulo its length.
+  void start_frame(int frame);
+  // From start_frame() to the last result write.
+  bool runs() const;
+  // Cycle number `now`, greater than the last one. Cycles in which nobody asks may be left out. True if the
+  // host's word is granted.
+  bool step(std::int64_t now, const std::optional<PlainHostRequest>& host);
+  // `hang` and `frame_cycles` are the caller's.
+  PlainCycleResult result() const;
+
+ private:
+  class Cycles;
+  std::unique_ptr<Cycles> cycles_;
+};
+
+// From the cycle of the grant to the first in which the word can be used.
+int plain_read_latency(PlainBankKind kind);
+
+// The number of slots of one frame, empty ones included.
+std::size_t plain_slot_count(const PlainCycleInput& input);
+
+}  // namespace stereotlm::test

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "tests/support/plain_clock.h"
+#include "tests/support/plain_events.h"
+
+// The PCI bus of contract section 3, one word at a time.
+namespace stereotlm::test {
+
+using PlainWords = std::vector<std::uint32_t>;
+
+class PlainTarget {
+ public:
+  virtual ~PlainTarget() = default;
+  // At the address clock of a write: how many of so many words it takes.
+  virtual std::size_t takes(std::size_t words) const { return words; }
+  virtual void write(std::uint64_t word, const PlainWords& words) = 0;
+  // At the address clock, which ends at `end_ps`. The target calls `answer` when it has the words; the first is
+  // on the bus in the first clock after that, or after the wait clocks.
+  virtual void read(std::uint64_t word, std::size_t count, PlainTime end_ps,
+                    std::function<void(PlainWords)> answer) = 0;
+};
+
+// What a master does with the bus.
+struct PlainBurst {
+  bool write = true;
+  PlainTarget* target = nullptr;
+  int wait_clocks = 0;
+  std::uint64_t word = 0;  // the first, of the target
+  PlainWords words;        // to write; to read, only their number counts
+};
+
+class PlainMaster {
+ public:
+  virtual ~PlainMaster() = default;
+  // The address clock begins now.
+  virtual PlainBurst burst() = 0;
+  // The data clock of a word has ended.
+  virtual void word_gone() {}
+  // The last data clock has ended, or the address clock of a burst of which no word was taken. `words`: those
+  // transferred.
+  virtual void ended(const PlainWords& words) = 0;
+};
+
+class PlainPciBus {
+ public:
+  struct MasterStats {
+    std::uint64_t transactions = 0;
+    std::uint64_t words = 0;
+    std::uint64_t wait_clocks = 0;
+  };
+
+  PlainPciBus(PlainEvents& events, const PlainNumber& mhz, int latency_timer_clocks)
+      : events_(events),
+        clock_(mhz),
+        latency_timer_clocks_(static_cast<std::uint64_t>(latency_timer_clocks)) {}
+
+  // Masters take turns in the order in which they are added.
+  std::size_t add(PlainMaster& master);
+  // From now on, until it is granted.
+  void request(std::size_t master);
+
+  // Up to now.
+  std::uint64_t clocks() const { return clock_.clocks_by(events_.now()); }
+  std::uint64_t busy_clocks() const { return busy_clocks_ + (busy_ ? clocks() - address_clock_ : 0); }
+  const MasterStats& stats(std::size_t master) const { return slots_[master].stats; }
+
+ private:
+  struct Slot {
+    PlainMaster* master = nullptr;
+    std::optional<PlainTime> request_ps;
+    MasterStats stats;
+  };
+
+  void await_grant();
+  void grant(std::uint64_t clock);
+  void begin(std::uint64_t clock);
+  void begin_words(std::uint64_t clock, std::size_t words);
+  void await_word(std::uint64_t clock);
+  void end_word(std::uint64_t clock);
+  bool another_waits(std::uint64_t clock) const;
+  void end(std::uint64_t idle_clock);
+
+  PlainEvents& events_;
+  PlainClock clock_;
+  std::uint64_t latency_timer_clocks_;
+  std::vector<Slot> slots_;
+  std::size_t next_turn_ = 0;
+  std::uint64_t free_clock_ = 0;  // the first that can be an address clock
+  bool busy_ = false;
+  std::uint64_t busy_clocks_ = 0;  // of the bursts that have ended
+
+  // The burst that has the bus.
+  std::size_t owner_ = 0;
+  std::uint64_t address_clock_ = 0;
+  PlainBurst burst_;
+  std::size_t words_taken_ = 0;  // that the target takes, or answers
+  std::size_t words_done_ = 0;
+};
+
+}  // namespace stereotlm::test
