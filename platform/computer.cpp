@@ -80,8 +80,7 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
       right_camera("right_camera", camera_config(config), right),
       left_capture("left_capture", capture_config(config)),
       right_capture("right_capture", capture_config(config)),
-      load(make_load(config.pci.load)),
-      interrupts_("interrupt", kInterruptCount) {
+      load(make_load(config.pci.load)) {
   bind_pci(binder);
   bind_capture();
   binder.bind(cpu.bus, host_bridge.cpu, "cpu_to_host_bridge");
@@ -89,10 +88,9 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
   binder.bind(bridge.local, board.core.local_bus, "bridge_to_local_bus");
   board.core.done(done_);
   bridge.doorbell(done_);
-  bridge.interrupt(interrupts_[kBridgeInterrupt]);
-  left_capture.interrupt(interrupts_[kLeftInterrupt]);
-  right_capture.interrupt(interrupts_[kRightInterrupt]);
-  for (std::size_t line = 0; line < interrupts_.size(); ++line) cpu.interrupts[line](interrupts_[line]);
+  cpu.interrupts[kBridgeInterrupt].bind(bridge.interrupt);
+  cpu.interrupts[kLeftInterrupt].bind(left_capture.interrupt);
+  cpu.interrupts[kRightInterrupt].bind(right_capture.interrupt);
 }
 
 void Computer::bind_pci(Binder& binder) {

@@ -51,7 +51,6 @@ class Computer : public sc_core::sc_module {
   void bind_capture();
 
   sc_core::sc_signal<bool> done_{"done"};
-  sc_core::sc_vector<sc_core::sc_signal<bool>> interrupts_;
 };
 
 }  // namespace stereotlm::platform

@@ -32,17 +32,21 @@ CaptureBoard::CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoa
   SC_METHOD(proceed);
   sensitive << finish_due_;
   dont_initialize();
-  SC_METHOD(drive_interrupt);
-  sensitive << interrupt_changed_;
-  dont_initialize();
   registers.register_b_transport(this, &CaptureBoard::transport);
   registers.register_transport_dbg(this, &CaptureBoard::debug);
   as_partner.bind(*this);
+  interrupt.bind(*this);
 }
 
 CaptureBoard::Stats CaptureBoard::stats() const {
   Stats stats = stats_;
-  stats.dropped_pixels = fifo_.dropped_pixels();
+  CaptureFifo fifo = fifo_;
+  if (bus_state_ == BusState::kBurst) {
+    leave(fifo, pci->transferred());
+  } else if (capturing_) {
+    fifo.advance(now_ps());
+  }
+  stats.dropped_pixels = fifo.dropped_pixels();
   return stats;
 }
 
@@ -259,6 +263,17 @@ bool CaptureBoard::fits(const pci::BurstResult& result) const {
   return result.words == 0;
 }
 
+// The words that the bus has transferred by now have left the FIFO, each at the end of its data clock.
+void CaptureBoard::leave(CaptureFifo& fifo, const pci::BurstResult& transferred) const {
+  const Clock& clock = pci->clock();
+  fifo.leave(now_ps(), static_cast<int>(transferred.words), [&transferred, &clock](std::uint64_t time_ps) {
+    // Edges after first_data_clock, up to the time.
+    const std::uint64_t edges = clock.edge_at_or_after(time_ps + 1) - 1;
+    if (edges <= transferred.first_data_clock) return 0;
+    return static_cast<int>(std::min<std::uint64_t>(edges - transferred.first_data_clock, transferred.words));
+  });
+}
+
 void CaptureBoard::end_burst(const pci::BurstResult& result) {
   if (!fits(result)) {
     report(*this, "a burst ended with " + std::to_string(result.words) + " words: none such is running");
@@ -275,19 +290,10 @@ void CaptureBoard::end_burst(const pci::BurstResult& result) {
     words_lost_ = true;
     interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
   } else {
-    const Clock& clock = pci->clock();
-    fifo_.leave(now, static_cast<int>(result.words), [&result, &clock](std::uint64_t time_ps) {
-      // Edges after first_data_clock, up to the time.
-      const std::uint64_t edges = clock.edge_at_or_after(time_ps + 1) - 1;
-      if (edges <= result.first_data_clock) return 0;
-      return static_cast<int>(std::min<std::uint64_t>(edges - result.first_data_clock, result.words));
-    });
+    leave(fifo_, result);
     stats_.words += result.words;
   }
   proceed();
 }
-
-// The line has one driver, whichever process changes the registers.
-void CaptureBoard::drive_interrupt() { interrupt.write(done_ || words_lost_); }
 
 }  // namespace stereotlm::capture

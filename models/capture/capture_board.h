@@ -11,6 +11,7 @@
 #include "models/capture/camera_beats.h"
 #include "models/capture/capture_fifo.h"
 #include "models/capture/capture_registers.h"
+#include "models/interrupt.h"
 #include "models/pci/pci_slot.h"
 #include "models/stream.h"
 
@@ -36,7 +37,10 @@ class CapturePartnerIf : public virtual sc_core::sc_interface {
 //
 // SC_REPORT_ERROR (type /stereotlm/capture_board): a line that no capture expects; a grant without request or
 // from before it; the end of a burst that there is not, or that does not fit it.
-class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, private CapturePartnerIf {
+class CaptureBoard : public sc_core::sc_module,
+                     private pci::PciMasterIf,
+                     private CapturePartnerIf,
+                     private InterruptIf {
  public:
   // A capture that is done.
   struct Capture {
@@ -54,9 +58,9 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
     std::uint64_t dropped_not_armed = 0;   // this side was not armed
     std::uint64_t dropped_busy = 0;        // the last capture was running
     std::uint64_t dropped_by_partner = 0;  // the other side could not start
-    std::uint64_t dropped_pixels = 0;      // as far as known: at the end of the last burst or line
-    std::uint64_t bursts = 0;              // granted
-    std::uint64_t words = 0;               // written
+    std::uint64_t dropped_pixels = 0;
+    std::uint64_t bursts = 0;  // granted
+    std::uint64_t words = 0;   // written
     std::uint64_t lost_words = 0;
     std::uint64_t bus_errors = 0;        // bursts that ended with master abort or target error
     std::uint64_t refused_accesses = 0;  // of registers
@@ -66,7 +70,7 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
 
   tlm_utils::simple_target_socket<CaptureBoard> registers{"registers"};
   pci::PciMasterPort pci{"pci"};
-  sc_core::sc_out<bool> interrupt{"interrupt"};
+  InterruptOut interrupt{"interrupt"};
   StreamOut<TakeFrame> takes_out{"takes_out"};
   // To any number of cameras, or none.
   sc_core::sc_port<StreamIf<Trigger>, 0, sc_core::SC_ZERO_OR_MORE_BOUND> triggers_out{"triggers_out"};
@@ -85,6 +89,7 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
   // Throws std::invalid_argument if the configuration has problems.
   CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config);
 
+  // Up to now.
   Stats stats() const;
   // A frame has begun in this very ps: it counts as neither started nor dropped yet.
   bool undecided() const { return undecided_; }
@@ -112,7 +117,9 @@ class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, privat
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
   bool fits(const pci::BurstResult& result) const;
-  void drive_interrupt();
+  void leave(CaptureFifo& fifo, const pci::BurstResult& transferred) const;
+  bool is_asserted() const override { return done_ || words_lost_; }
+  const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
 
   CaptureFifo fifo_;
   sc_core::sc_event decision_{"decision"};

@@ -22,6 +22,7 @@ void CaptureFifo::begin_frame(const CameraTiming& timing, std::uint64_t begin_ps
   words_per_line_ = timing.width() / kPixelsPerWord;
   row_ = 0;
   word_ = 0;
+  drops_line_ = false;
 }
 
 void CaptureFifo::advance(std::uint64_t now_ps) { take(now_ps, nullptr); }
@@ -39,6 +40,7 @@ void CaptureFifo::take(std::uint64_t now_ps, const LeftBy* left_by) {
       return;
     ++row_;
     word_ = 0;
+    drops_line_ = false;
   }
 }
 
@@ -60,6 +62,13 @@ void CaptureFifo::take_words(int end, const LeftBy* left_by) {
   if (word == end) return;
   dropped_pixels_ += static_cast<std::uint64_t>(timing_->width() - word * kPixelsPerWord);
   word_ = words_per_line_;
+  drops_line_ = true;
+}
+
+std::uint64_t CaptureFifo::dropped_pixels() const {
+  if (!drops_line_) return dropped_pixels_;
+  const int arrived = timing_->pixels_by(row_, now_ps_ - begin_ps_);
+  return dropped_pixels_ - static_cast<std::uint64_t>(timing_->width() - arrived);
 }
 
 int CaptureFifo::complete_words() const {

@@ -55,8 +55,8 @@ class CaptureFifo {
   std::uint64_t words_per_line() const { return static_cast<std::uint64_t>(words_per_line_); }
   // All pixels have arrived and all words left, or been dropped.
   bool finished() const;
-  // Over all frames.
-  std::uint64_t dropped_pixels() const { return dropped_pixels_; }
+  // Over all frames, as of the last advance() or leave(): a pixel is dropped when it arrives.
+  std::uint64_t dropped_pixels() const;
 
  private:
   void take(std::uint64_t now_ps, const LeftBy* left_by);
@@ -77,7 +77,8 @@ class CaptureFifo {
   std::deque<LineWords> lines_;  // in the FIFO, oldest first, one entry per line
   int occupancy_ = 0;            // words in it, complete or being filled
   int owed_ = 0;                 // the oldest of them, complete at the last grant
-  std::uint64_t dropped_pixels_ = 0;
+  bool drops_line_ = false;      // the rest of the line that arrives
+  std::uint64_t dropped_pixels_ = 0;  // to the end of that line
 };
 
 }  // namespace stereotlm::capture

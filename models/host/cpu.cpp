@@ -39,7 +39,7 @@ Cpu::Cpu(const sc_core::sc_module_name& name, const CpuConfig& config, Program& 
 }
 
 void Cpu::run() {
-  for (const auto& interrupt : interrupts) rising_ |= interrupt.posedge_event();
+  for (const auto& interrupt : interrupts) interrupts_change_ |= interrupt->changed_event();
   std::optional<std::string> problem;
   try {
     program_.run(*this);
@@ -78,7 +78,8 @@ void Cpu::end_access(bool ok, const char* what, std::uint64_t address, const sc_
 }
 
 bool Cpu::interrupted() const {
-  return std::any_of(interrupts.begin(), interrupts.end(), [](const auto& line) { return line.read(); });
+  return std::any_of(interrupts.begin(), interrupts.end(),
+                     [](const InterruptIn& line) { return line->is_asserted(); });
 }
 
 void Cpu::wait_for_interrupt() {
@@ -87,7 +88,7 @@ void Cpu::wait_for_interrupt() {
         "wait_for_interrupt: the line is still asserted, and no register was accessed since it returned "
         "last");
   }
-  while (!interrupted()) wait(rising_);
+  while (!interrupted()) wait(interrupts_change_);
   accessed_ = false;
 }
 

@@ -7,6 +7,7 @@
 #include <tlm>
 
 #include "models/host/program.h"
+#include "models/interrupt.h"
 #include "models/kernels/integer_rule.h"
 #include "models/memory/word_access.h"
 
@@ -21,8 +22,7 @@ struct CpuConfig {
 
 // The host's processor, which runs one program (contract section 3, "Software"): the program takes no time of
 // its own, each of its accesses to a register is a transaction of one word that does. Host memory is reached
-// by DMI, which must not be revoked. The interrupt inputs are high when asserted, and one of them is enough
-// (the shared INTA#).
+// by DMI, which must not be revoked. One interrupt input that is asserted is enough (the shared INTA#).
 //
 // An access that is answered with an error throws into the program. An exception that leaves the program ends
 // it, and is reported with SC_REPORT_ERROR (type /stereotlm/cpu).
@@ -30,7 +30,7 @@ class Cpu : public sc_core::sc_module, private HostBus {
  public:
   tlm_utils::simple_initiator_socket<Cpu> bus{"bus"};
   tlm_utils::simple_initiator_socket<Cpu> host_memory{"host_memory"};
-  sc_core::sc_vector<sc_core::sc_in<bool>> interrupts;
+  sc_core::sc_vector<InterruptIn> interrupts;
 
   // `program` outlives the processor. Throws std::invalid_argument if the number of interrupts breaks its
   // rule.
@@ -52,7 +52,7 @@ class Cpu : public sc_core::sc_module, private HostBus {
   CpuConfig config_;
   Program& program_;
   memory::WordAccess access_{bus};
-  sc_core::sc_event_or_list rising_;
+  sc_core::sc_event_or_list interrupts_change_;
   bool accessed_ = true;  // since the last return from wait_for_interrupt
   bool finished_ = false;
   sc_core::sc_event finished_event_{"finished"};

@@ -22,15 +22,13 @@ PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig&
   slave.register_b_transport(this, &PciBridge::slave_transport);
   registers.register_b_transport(this, &PciBridge::register_transport);
   stop.bind(*this);
+  interrupt.bind(*this);
   local.register_nb_transport_bw(this, &PciBridge::local_response);
   SC_METHOD(work);
   sensitive << work_;
   dont_initialize();
   SC_METHOD(ring);
   sensitive << doorbell.pos();
-  dont_initialize();
-  SC_METHOD(drive_interrupt);
-  sensitive << interrupt_changed_;
   dont_initialize();
 }
 
@@ -188,9 +186,6 @@ void PciBridge::raise(std::uint32_t bits) {
   interrupt_status_ |= bits;
   interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
 }
-
-// The line has one driver, whichever process changes the registers.
-void PciBridge::drive_interrupt() { interrupt.write((interrupt_status_ & interrupt_enable_) != 0); }
 
 // The PCI bus. Transfers wait in a queue; one that is cut goes on with its next word.
 

@@ -11,6 +11,7 @@
 #include <tlm>
 #include <vector>
 
+#include "models/interrupt.h"
 #include "models/kernels/integer_rule.h"
 #include "models/pci/bridge_registers.h"
 #include "models/pci/pci_slot.h"
@@ -49,7 +50,7 @@ struct PciBridgeConfig {
 //
 // Errors are those of bridge_registers.h; a register access that is not one aligned word, or in the wrong
 // direction, and a slave access outside the window are answered with an error response.
-class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciStopIf {
+class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciStopIf, private InterruptIf {
  public:
   struct Stats {
     std::uint64_t posted_words = 0;       // taken from the PCI bus
@@ -65,7 +66,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   PciMasterPort pci{"pci"};
   tlm_utils::simple_initiator_socket<PciBridge> local{"local"};  // fpga/local_bus.h
   sc_core::sc_in<bool> doorbell{"doorbell"};                     // from the FPGA; rings when it rises
-  sc_core::sc_out<bool> interrupt{"interrupt"};                  // INTA#
+  InterruptOut interrupt{"interrupt"};                           // INTA#
 
   // Throws std::invalid_argument if the configuration has problems.
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
@@ -151,7 +152,8 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
 
   void ring();
   void raise(std::uint32_t bits);
-  void drive_interrupt();
+  bool is_asserted() const override { return (interrupt_status_ & interrupt_enable_) != 0; }
+  const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
 
   PciBridgeConfig config_;
   std::array<std::uint32_t, bridge::kApertures> pages_{};

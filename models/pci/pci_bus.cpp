@@ -21,6 +21,15 @@ const PciBusConfig& checked(const char* name, const PciBusConfig& config) {
 
 std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
 
+// The first of all buses below these objects; null if there is none.
+PciBus* first_bus(const std::vector<sc_core::sc_object*>& objects) {
+  for (sc_core::sc_object* const object : objects) {
+    if (auto* const bus = dynamic_cast<PciBus*>(object)) return bus;
+    if (PciBus* const bus = first_bus(object->get_child_objects())) return bus;
+  }
+  return nullptr;
+}
+
 BurstEnd end_of(std::size_t words, std::size_t taken, std::size_t asked) {
   if (words == asked) return BurstEnd::kComplete;
   return words == taken ? BurstEnd::kDisconnect : BurstEnd::kLatencyTimer;
@@ -47,7 +56,14 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
   SC_METHOD(step);
   sensitive << step_;
   dont_initialize();
+  SC_METHOD(decide);
+  sensitive << decision_;
+  dont_initialize();
   SC_THREAD(run_transports);
+}
+
+void PciBus::start_of_simulation() {
+  if (PciBus* const first = first_bus(sc_core::sc_get_top_level_objects())) decider_ = first;
 }
 
 // Requests.
@@ -62,14 +78,13 @@ void PciBus::request(std::size_t master, PciMasterIf& from, std::uint64_t from_p
   }
 }
 
-// Decides 1 ps after the beginning of the clock.
 void PciBus::await_request() {
   const std::uint64_t earliest = earliest_request(kNobody);
   if (earliest == kNever) return;
   const std::uint64_t clock = std::max(free_clock_, earliest);
   if (clock >= decision_clock_) return;
   decision_clock_ = clock;
-  step_at(clock_.edge_ps(clock) + 1);
+  step_at(clock_.edge_ps(clock));
 }
 
 std::uint64_t PciBus::earliest_request(std::size_t except) const {
@@ -85,7 +100,7 @@ std::uint64_t PciBus::earliest_request(std::size_t except) const {
 void PciBus::step() {
   switch (state_) {
     case State::kFree:
-      arbitrate();
+      decider_->decide_when_settled(*this);
       break;
     case State::kWords:
       end_words();
@@ -98,11 +113,22 @@ void PciBus::step() {
   }
 }
 
+void PciBus::decide_when_settled(PciBus& bus) {
+  undecided_.push_back(&bus);
+  decide();
+}
+
+void PciBus::decide() {
+  if (sc_core::sc_pending_activity_at_current_time()) return decision_.notify(sc_core::SC_ZERO_TIME);
+  for (PciBus* const bus : std::exchange(undecided_, {})) bus->arbitrate();
+}
+
 // Grants the clock to its requests in turn until one is used.
 void PciBus::arbitrate() {
   const std::uint64_t clock = decision_clock_;
   const std::uint64_t edge_ps = clock_.edge_ps(clock);
   decision_clock_ = kNever;
+  free_clock_ = clock + 1;  // for who asks from now on, if nobody uses this one
   state_ = State::kOccupied;
   std::size_t master = last_granted_;
   for (std::size_t tried = 0; tried < requests_.size(); ++tried) {
@@ -304,9 +330,20 @@ void PciBus::count(std::size_t master, const BurstResult& result) {
   if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) ++stats.aborts;
 }
 
+// Before the first data clock, and between the last one and the end of the burst, the result says it.
+BurstResult PciBus::transferred(std::size_t master) const {
+  if (!address_clock_ || running_.master != master) return {};
+  BurstResult so_far = running_.result;
+  if (state_ == State::kWords && whole_clocks() > so_far.first_data_clock)
+    so_far.words = static_cast<std::size_t>(whole_clocks() - so_far.first_data_clock);
+  return so_far;
+}
+
+std::uint64_t PciBus::whole_clocks() const { return clock_.edge_at_or_after(now_ps() + 1) - 1; }
+
 PciBus::Stats PciBus::stats() const {
   Stats stats;
-  stats.clocks = clock_.edge_at_or_after(now_ps() + 1) - 1;
+  stats.clocks = whole_clocks();
   stats.busy_clocks = busy_clocks_ + (address_clock_ ? stats.clocks - *address_clock_ : 0);
   stats.masters = master_stats_;
   return stats;

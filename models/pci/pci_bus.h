@@ -25,9 +25,9 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // request that cuts it moves its end.
 //
 // Arbitration is round robin, from the slot after the last one granted (at first from slot 0), among the
-// requests made at or before the beginning of the clock: it is decided 1 ps later, so that every request made
-// at the very time of the edge counts. A grant that its master gives back unused costs no clock; the next one
-// is asked in the same. If another master waits, the burst ends with the first word transferred in clock
+// requests made at or before the beginning of the clock. It is decided when nothing else is pending at that
+// time, so that whatever happens at the very time of the edge counts: requests, and what the target's registers
+// hold. A grant that its master gives back unused costs no clock; the next one is asked in the same. If another master waits, the burst ends with the first word transferred in clock
 // latency_timer_clocks or later, the address clock being clock 0; a request in the middle counts from the
 // first clock that begins at or after it.
 //
@@ -89,6 +89,7 @@ class PciBus : public sc_core::sc_module {
     void request(PciMasterIf& master, std::uint64_t from_ps) override {
       bus_.request(master_, master, from_ps);
     }
+    BurstResult transferred() const override { return bus_.transferred(master_); }
     const Clock& clock() const override { return bus_.clock_; }
 
    private:
@@ -131,6 +132,9 @@ class PciBus : public sc_core::sc_module {
 
   // The steps of a burst.
   void step();
+  void start_of_simulation() override;
+  void decide_when_settled(PciBus& bus);
+  void decide();
   void arbitrate();
   void begin(std::size_t master, const PciBurst& burst);
   void begin_words(std::uint64_t first_clock, std::size_t words);
@@ -152,6 +156,8 @@ class PciBus : public sc_core::sc_module {
   }
   void answered(bool ok, std::uint64_t clock);
 
+  BurstResult transferred(std::size_t master) const;
+  std::uint64_t whole_clocks() const;  // since time 0
   std::size_t writable_words() const;
   void count(std::size_t master, const BurstResult& result);
   std::optional<std::size_t> window_of(const PciBurst& burst) const;
@@ -165,6 +171,11 @@ class PciBus : public sc_core::sc_module {
   State state_ = State::kFree;
   std::uint64_t free_clock_ = 0;           // the first that can be an address clock
   std::uint64_t decision_clock_ = kNever;  // that step_ is to grant, in kFree
+  // The bus whose process decides for all of a simulation: two that wait until nothing else is pending would
+  // wait for each other.
+  PciBus* decider_ = this;
+  std::vector<PciBus*> undecided_;  // of the decider: the buses that it is to decide now
+  sc_core::sc_event decision_{"decision"};
   Running running_;
   sc_core::sc_event step_{"next_step"};
   sc_core::sc_event transport_{"next_transport"};  // or the end of words that are transported

@@ -39,8 +39,7 @@ struct BurstResult {
 class PciMasterIf {
  public:
   virtual ~PciMasterIf() = default;
-  // GNT#: the address clock begins at `address_clock_ps`, now or 1 ps ago. Without words the bus is given
-  // back unused.
+  // GNT#: the address clock begins now, at `address_clock_ps`. Without words the bus is given back unused.
   virtual PciBurst begin_burst(std::uint64_t address_clock_ps) = 0;
   // At the end of the last data clock. The master may request again at once.
   virtual void end_burst(const BurstResult& result) = 0;
@@ -53,6 +52,9 @@ class PciSlotIf : public virtual sc_core::sc_interface {
   // is to come. Asking again meanwhile changes nothing.
   void request(PciMasterIf& master) { request(master, Clock::to_ps(sc_core::sc_time_stamp())); }
   virtual void request(PciMasterIf& master, std::uint64_t from_ps) = 0;
+  // The words of the master's running burst that have been transferred by now, and the clock of the first.
+  // `end` says nothing yet.
+  virtual BurstResult transferred() const = 0;
   virtual const Clock& clock() const = 0;
 };
 

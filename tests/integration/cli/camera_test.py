@@ -167,5 +167,47 @@ class Interrupted(CameraTest):
         self.assertEqual(self.result(), self.result(whole))
 
 
+# Figures of the plain loop over events (tests/support/plain_computer.h) for computers at which a simulation of the whole
+# computer has gone wrong before.
+SLOW_BUS = [
+    "cameras.trigger=on_demand", "bridge.local_clock_mhz=10", "bridge.posted_words=2", "allocation.left_lut=none",
+    "allocation.right_lut=none",
+]
+FULL_FIFO = [
+    *SLOW_BUS, "matcher={window: 3, disparities: 1, filter: none, fetch: column, lr_tolerance: 253}",
+    "image={width: 32, height: 4}", "cameras.frame_rate_hz=777.7", "allocation.left_image=[bank1, bank1, bank2]",
+    "allocation.right_image=[bank0, bank1, bank2]",
+]
+FIFO = "host_frames: 3, fifo_words: 3, fifo_trigger_words: 3"
+PCI = "clock_mhz: 1, latency_timer_clocks: 64, memory_wait_clocks: 8"
+
+
+class Figures(ProgramTest):
+    def stats_of(self, frames, *sets):
+        options = [argument for assignment in sets for argument in ("--set", assignment)]
+        self.succeeds(run("run", "fpl2003", "--timing-only", "--frames", frames, "--out", self.out, *options))
+        return self.stats()
+
+    def test_an_interrupt_that_the_last_access_has_cleared_is_not_polled_again(self):
+        stats = self.stats_of("10", "capture.destination=host_memory")
+        self.assertEqual(stats["pci"]["masters"][0]["transactions"], 387)
+
+    def test_pixels_are_dropped_one_by_one_to_the_end_of_the_run(self):
+        for destination, bridge_wait_clocks, dropped in (
+            ("host_memory", 0, [100, 100]),
+            ("host_memory", 8, [110, 110]),  # of the line that is under way at the end, half has come
+            ("board", 0, [0, 2]),
+        ):
+            with self.subTest(destination=destination, bridge_wait_clocks=bridge_wait_clocks):
+                stats = self.stats_of("1", *FULL_FIFO, f"capture={{destination: {destination}, {FIFO}}}",
+                                      f"pci={{{PCI}, bridge_wait_clocks: {bridge_wait_clocks}}}")
+                self.assertEqual([camera["dropped_pixels"] for camera in stats["cameras"]], dropped)
+
+    def test_clocks_are_the_decimal_numbers_that_are_written(self):
+        stats = self.stats_of("40", *SLOW_BUS, "image={width: 4, height: 1}", "cameras.frame_rate_hz=0.17",
+                              "pci.clock_mhz=13.7047")
+        self.assertEqual(stats["latency_ms"]["capture_to_host"]["min"], 3309.549205746)
+
+
 if __name__ == "__main__":
     program.main()

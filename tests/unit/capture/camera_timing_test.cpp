@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "tests/unit/capture/plain_capture.h"
+#include "tests/support/plain_clock.h"
 
 namespace stereotlm::capture {
 namespace {
@@ -39,7 +39,7 @@ TEST(CameraTiming, PutsEveryPixelAtItsRoundedExactTime) {
     int width;
     int height;
     double frame_rate_hz;
-    test::PlainRate rate;
+    test::PlainNumber rate;
   };
   for (const Case& c :
        {Case{640, 480, 29.97, {2997, 100}}, Case{4, 1, 0.1, {1, 10}}, Case{8, 3, 327.68, {32768, 100}},

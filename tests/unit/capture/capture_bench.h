@@ -51,11 +51,9 @@ struct CaptureSide {
         source(camera_config.width, camera_config.height),
         camera((prefix + "camera").c_str(), camera_config, source),
         board((prefix + "board").c_str(), board_config),
-        bus((prefix + "bus").c_str(), clock_mhz),
-        interrupt((prefix + "interrupt").c_str()) {
+        bus((prefix + "bus").c_str(), clock_mhz) {
     binder.bind(host.socket, board.registers, prefix + "host_to_registers");
     board.pci.bind(bus.slot);
-    board.interrupt.bind(interrupt);
     camera.frames_out.bind(board.frames_in);
     camera.lines_out.bind(board.lines_in);
     board.takes_out.bind(camera.takes_in);
@@ -86,7 +84,6 @@ struct CaptureSide {
   Camera camera;
   CaptureBoard board;
   test::TestBus bus;
-  sc_core::sc_signal<bool> interrupt;
 };
 
 inline std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }

@@ -85,12 +85,31 @@ TEST_F(CaptureOverflow, EndsTheCaptureWithTheLastPixelIfItIsDropped) {
   grant_in(4, edge_at_or_after(pixel_ps(5, 1)));  // of the last line's first word
   run_to(pixel_ps(15, 1) - 1);
   EXPECT_EQ(side->board.stats().words, 5U);
-  EXPECT_EQ(side->board.stats().dropped_pixels, 12U);
+  EXPECT_EQ(side->board.stats().dropped_pixels, 11U);
   EXPECT_EQ(side->status(), registers::kStatusCapturing);
   run_to(pixel_ps(15, 1));
   EXPECT_EQ(side->status(), registers::kStatusDone);
-  EXPECT_TRUE(side->interrupt.read());
+  EXPECT_TRUE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->board.last_capture()->end_ps, pixel_ps(15, 1));
+}
+
+// Figures may be asked for at any time, not only at the end of a burst or line.
+TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
+  build_and_arm();
+  test::BusTurn turn;  // its burst begins at once, but its first word leaves when pixel 600 arrives
+  turn.wait_clocks = clock_ending_by(pixel_ps(600, 0)) - edge_at_or_after(word_ps(31, 0)) - 1;
+  plan(0, turn);
+  const auto dropped_by = [](int column) { return static_cast<std::uint64_t>(std::max(column - 559, 0)); };
+  for (const int column : {559, 560, 561, 600, 639}) {
+    run_to(pixel_ps(column, 0) - 1);
+    EXPECT_EQ(side->board.stats().dropped_pixels, dropped_by(column - 1)) << column;
+    run_to(pixel_ps(column, 0));
+    EXPECT_EQ(side->board.stats().dropped_pixels, dropped_by(column)) << column;
+  }
+  EXPECT_GT(burst(0).end_ps, pixel_ps(600, 0));
+  run_frame();
+  EXPECT_EQ(side->board.stats().dropped_pixels, 80U);
+  EXPECT_EQ(side->board.stats().words, 640U * 480 / 4 - 20);
 }
 
 // A FIFO of one word, and pixel 4 arrives at an edge of the bus clock: the word must have left by then.

@@ -25,12 +25,12 @@ struct RandomCapture {
   explicit RandomCapture(std::uint32_t seed) : dice(seed) {
     plain.camera.width = 4 * (1 + dice.upto(15));
     plain.camera.height = 1 + dice.upto(11);
-    plain.camera.rate = {1 + dice.upto(99'999), 100};
-    if (plain.camera.rate.numerator < 10) plain.camera.rate.numerator = 10;
+    plain.camera.rate_hz = {1 + dice.upto(99'999), 100};
+    if (plain.camera.rate_hz.numerator < 10) plain.camera.rate_hz.numerator = 10;
     plain.fifo_words = 1 + dice.upto(dice.one_in(2) ? 7 : 30);
     plain.trigger_words = 1 + dice.upto(plain.fifo_words - 1);
     plain.address = kAddress;
-    const double rate_hz = static_cast<double>(plain.camera.rate.numerator) / 100;
+    const double rate_hz = static_cast<double>(plain.camera.rate_hz.numerator) / 100;
     const CameraConfig camera{plain.camera.width, plain.camera.height, rate_hz, CameraTrigger::kFreeRunning};
     // From a bus that is much faster than the pixels to one that is too slow for them.
     const double words_per_s = rate_hz * plain.camera.width * plain.camera.height / 4;
@@ -43,7 +43,6 @@ struct RandomCapture {
       test::BusTurn turn;
       if (dice.one_in(1 + mood)) turn.busy_clocks = static_cast<std::uint64_t>(dice.upto(mood * 20));
       turn.wait_clocks = static_cast<std::uint64_t>(dice.upto(4));
-      turn.late = dice.one_in(2);
       if (dice.one_in(3)) {
         const int what = dice.upto(9);
         turn.limit = static_cast<std::size_t>(dice.upto(5));

@@ -108,7 +108,7 @@ TEST_F(CaptureRegisters, ShowACaptureFromArmingToItsEnd) {
   run_to(frame_ps(1) + word_ps(3, 2) + 1'000'000);
   const std::uint64_t end_ps = side->bus.bursts.back().end_ps;
   EXPECT_EQ(side->status(), kStatusDone);
-  EXPECT_TRUE(side->interrupt.read());
+  EXPECT_TRUE(side->board.interrupt->is_asserted());
   ASSERT_TRUE(side->board.last_capture());
   EXPECT_EQ(side->board.last_capture()->frame, 1U);
   EXPECT_EQ(side->board.last_capture()->begin_ps, frame_ps(1));
@@ -125,10 +125,10 @@ TEST_F(CaptureRegisters, RaiseTheInterruptWhenTheLastWordHasLeft) {
   const std::uint64_t end_ps = side->bus.bursts.back().end_ps;
   ASSERT_GT(end_ps, now_ps());
   run_to(end_ps - 1);
-  EXPECT_FALSE(side->interrupt.read());
+  EXPECT_FALSE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->status(), kStatusCapturing);
   run_to(end_ps);
-  EXPECT_TRUE(side->interrupt.read());
+  EXPECT_TRUE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->status(), kStatusDone);
 }
 
@@ -140,11 +140,11 @@ TEST_F(CaptureRegisters, ClearStatusBitsThatAreWrittenOne) {
   side->write(kStatus, 0);
   run_to(now_ps());
   EXPECT_EQ(side->status(), kStatusDone | kStatusArmRefused);
-  EXPECT_TRUE(side->interrupt.read());
+  EXPECT_TRUE(side->board.interrupt->is_asserted());
   side->write(kStatus, kStatusDone);
   run_to(now_ps());
   EXPECT_EQ(side->status(), kStatusArmRefused);
-  EXPECT_FALSE(side->interrupt.read());
+  EXPECT_FALSE(side->board.interrupt->is_asserted());
   side->write(kStatus, kStatusArmRefused);
   EXPECT_EQ(side->status(), 0U);
 }

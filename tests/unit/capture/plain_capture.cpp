@@ -6,13 +6,6 @@
 namespace stereotlm::test {
 namespace {
 
-__extension__ typedef __int128 Wide;
-
-// Halves up.
-std::uint64_t rounded(Wide numerator, Wide denominator) {
-  return static_cast<std::uint64_t>((2 * numerator + denominator) / (2 * denominator));
-}
-
 struct FifoWord {
   std::uint64_t address = 0;
   std::uint32_t value = 0;
@@ -140,18 +133,6 @@ class Board {
 };
 
 }  // namespace
-
-std::uint64_t plain_frame_ps(const PlainRate& rate, std::uint64_t number) {
-  return rounded(Wide{1'000'000'000'000} * static_cast<Wide>(number) * rate.denominator, rate.numerator);
-}
-
-std::uint64_t plain_pixel_ps(const PlainCamera& camera, int column, int row) {
-  // (row + column / width * 52.15 / 63.56) line times of 10^12 / rate / (525 / 480 * height) ps
-  const Wide width = camera.width;
-  const Wide lines = row * width * 6356 + Wide{column} * 5215;  // of 6356 * width
-  return rounded(lines * 480 * 1'000'000'000'000 * camera.rate.denominator,
-                 width * 6356 * 525 * camera.height * camera.rate.numerator);
-}
 
 PlainCapture plain_capture(const PlainBoard& board, const std::vector<std::uint8_t>& pixels,
                            const std::vector<PlainAnswer>& answers) {

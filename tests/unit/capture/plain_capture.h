@@ -5,23 +5,11 @@
 #include <utility>
 #include <vector>
 
-// The camera's times and the capture board written again from contract section 3, one pixel and one word at a
-// time. Shares no code with the models.
+#include "tests/support/plain_clock.h"
+
+// The capture board written again from contract section 3, one pixel and one word at a time. Shares no code
+// with the models.
 namespace stereotlm::test {
-
-// numerator / denominator Hz
-struct PlainRate {
-  std::int64_t numerator = 2997;
-  std::int64_t denominator = 100;
-};
-struct PlainCamera {
-  int width = 0;
-  int height = 0;
-  PlainRate rate;
-};
-
-std::uint64_t plain_frame_ps(const PlainRate& rate, std::uint64_t number);
-std::uint64_t plain_pixel_ps(const PlainCamera& camera, int column, int row);
 
 // How the bus dealt with one request.
 struct PlainAnswer {

@@ -41,7 +41,7 @@ void TestBus::ask() {
   turn_ = plan ? plan(requests_ps.size()) : turn;
   requests_ps.push_back(now_ps());
   address_clock_ = std::max(clock_.edge_at_or_after(now_ps()) + turn_.busy_clocks, free_clock_);
-  begin_.notify(Clock::to_time(clock_.edge_ps(address_clock_) + (turn_.late ? 1 : 0) - now_ps()));
+  begin_.notify(Clock::to_time(clock_.edge_ps(address_clock_) - now_ps()));
 }
 
 void TestBus::begin() {
@@ -64,6 +64,13 @@ void TestBus::begin() {
   bursts.push_back(burst);
   end_.notify(Clock::to_time(burst.end_ps - now_ps()));
   if (burst_begins) burst_begins(burst);
+}
+
+pci::BurstResult TestBus::transferred() const {
+  pci::BurstResult so_far = bursts.back().result;
+  const auto has_left = [this](std::size_t word) { return left_ps(bursts.back(), word) <= now_ps(); };
+  while (so_far.words > 0 && !has_left(so_far.words - 1)) --so_far.words;
+  return so_far;
 }
 
 void TestBus::end() {

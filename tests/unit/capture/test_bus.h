@@ -18,7 +18,6 @@ struct BusTurn {
   std::uint64_t wait_clocks = 0;  // between the address clock and the first data clock
   std::size_t limit = std::numeric_limits<std::size_t>::max();  // words, after which `cut` ends the burst
   pci::BurstEnd cut = pci::BurstEnd::kLatencyTimer;
-  bool late = false;  // begins the burst 1 ps after the edge
 };
 
 // A PCI bus with one place, which does what the test plans and records it.
@@ -44,6 +43,7 @@ class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
   TestBus(const sc_core::sc_module_name& name, double clock_mhz);
 
   const Clock& clock() const override { return clock_; }
+  pci::BurstResult transferred() const override;
   // When a word of a burst has left its master.
   std::uint64_t left_ps(const Burst& burst, std::size_t word) const {
     return clock_.edge_ps(burst.result.first_data_clock + word + 1);

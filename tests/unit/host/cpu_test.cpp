@@ -23,7 +23,19 @@ constexpr std::uint64_t kMemoryBase = 0x8000'0000;
 constexpr std::uint64_t kMemoryBytes = 0x1000;
 const sc_time kAccessTime(300, sc_core::SC_NS);
 
-using Line = sc_core::sc_signal<bool, sc_core::SC_MANY_WRITERS>;
+class Line : public InterruptIf {
+ public:
+  void write(bool asserted) {
+    asserted_ = asserted;
+    changed_.notify(sc_core::SC_ZERO_TIME);
+  }
+  bool is_asserted() const override { return asserted_; }
+  const sc_core::sc_event& changed_event() const override { return changed_; }
+
+ private:
+  bool asserted_ = false;
+  sc_core::sc_event changed_;
+};
 
 class LambdaProgram : public Program {
  public:
@@ -74,8 +86,8 @@ class CpuTest : public testing::Test {
   Cpu cpu{"cpu", {2, kMemoryBase}, program};
   test::ScriptedTarget registers{"registers"};
   HostMemory memory{"memory", kMemoryBytes};
-  Line line_0{"line_0"};
-  Line line_1{"line_1"};
+  Line line_0;
+  Line line_1;
   tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE;
   std::vector<std::pair<bool, std::uint64_t>> accesses;
   std::vector<std::uint32_t> written;
@@ -122,7 +134,7 @@ TEST_F(CpuTest, WaitsForAnyOfItsInterrupts) {
   simulate([&](HostBus& bus) {
     bus.wait_for_interrupt();
     times.push_back(sc_core::sc_time_stamp());
-    while (line_1.read()) bus.read(0);
+    while (line_1.is_asserted()) bus.read(0);
     bus.wait_for_interrupt();
     times.push_back(sc_core::sc_time_stamp());
   });

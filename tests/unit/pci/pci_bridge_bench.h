@@ -131,7 +131,6 @@ class PciBridgeBench : public testing::Test {
     binder.bind(dut->local, local.socket, "bridge_to_local");
     bus->stops[1].bind(dut->stop);
     dut->doorbell(doorbell);
-    dut->interrupt(interrupt);
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
   static void run(double microseconds) { sc_core::sc_start(microseconds, sc_core::SC_US); }
@@ -203,7 +202,6 @@ class PciBridgeBench : public testing::Test {
   TestMaster master{"master"};
   LocalTarget local{"local"};
   sc_core::sc_signal<bool> doorbell{"doorbell"};
-  sc_core::sc_signal<bool> interrupt{"interrupt"};
 };
 
 }  // namespace stereotlm::pci

@@ -122,21 +122,21 @@ TEST_F(PciBridgeSlave, RaisesTheInterruptForWhatIsEnabledUntilItIsCleared) {
   build();
   doorbell = true;
   run(1);
-  EXPECT_FALSE(interrupt.read());
+  EXPECT_FALSE(dut->interrupt->is_asserted());
   EXPECT_EQ(status(), bridge::kDoorbell);
   write_register(bridge::kInterruptEnable, bridge::kDoorbell);
-  EXPECT_TRUE(interrupt.read());
+  EXPECT_TRUE(dut->interrupt->is_asserted());
   write_register(bridge::kInterruptStatus, bridge::kAllInterrupts & ~bridge::kDoorbell);
-  EXPECT_TRUE(interrupt.read());
+  EXPECT_TRUE(dut->interrupt->is_asserted());
   write_register(bridge::kInterruptStatus, bridge::kDoorbell);
-  EXPECT_FALSE(interrupt.read());
+  EXPECT_FALSE(dut->interrupt->is_asserted());
   run(1);  // the line from the FPGA is still high: it rings when it rises
   EXPECT_EQ(status(), 0U);
   doorbell = false;
   run(1);
   doorbell = true;
   run(1);
-  EXPECT_TRUE(interrupt.read());
+  EXPECT_TRUE(dut->interrupt->is_asserted());
 }
 
 TEST_F(PciBridgeSlave, RefusesRegisterAccessesThatDoNotExist) {

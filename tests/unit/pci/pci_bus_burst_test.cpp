@@ -17,7 +17,7 @@ TEST(PciBus, TransfersAWordAClockAfterAddressAndWaitClocks) {
   ASSERT_EQ(master.ended.size(), 1U);
   const auto& burst = master.ended[0];
   EXPECT_EQ(burst.address_ps, bench.edge(10));
-  EXPECT_EQ(burst.granted_ps, bench.edge(10) + 1);
+  EXPECT_EQ(burst.granted_ps, bench.edge(10));
   EXPECT_EQ(burst.result.end, BurstEnd::kComplete);
   EXPECT_EQ(burst.result.words, 5U);
   EXPECT_EQ(burst.result.first_data_clock, 10U + kWait + 1);
