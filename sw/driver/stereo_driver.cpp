@@ -163,8 +163,8 @@ void StereoDriver::handle_captures() {
   side_done_ = {};
   ++captures_.ended;
   const auto frame = [this](std::uint64_t board) {
-    return std::uint64_t{bus_->read(board + capture_map::kFrameNumberHigh)} << 32U |
-           bus_->read(board + capture_map::kFrameNumberLow);
+    const std::uint64_t high = bus_->read(board + capture_map::kFrameNumberHigh);
+    return high << 32U | bus_->read(board + capture_map::kFrameNumberLow);
   };
   camera_frames_.push_back(frame(boards[0]));
   if (frame(boards[1]) != camera_frames_.back()) fail("the capture boards have taken different frames");

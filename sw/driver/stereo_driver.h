@@ -47,7 +47,7 @@ class FrameListener {
 // Uploads the tables, then keeps the books of the buffers: a capture is armed when its buffer is free, the
 // core starts when a pair and a free output buffer are there, results are read back by DMA. Each stage counts
 // the frames that it has begun and ended; a buffer is free when the stage behind has ended with the frame
-// that it held.
+// that it held. README.md lists every access.
 //
 // With capture_to_host captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
 // board. run() ends with the last of `frames` deliveries. Throws std::runtime_error if the hardware reports

@@ -1,6 +1,7 @@
 #include "tests/support/plain_capture_board.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace stereotlm::test {
 
@@ -78,6 +79,7 @@ void PlainCaptureBoard::request_or_finish() {
     capturing_ = false;
     done_ = true;
     done_frame_ = frame_;
+    done_ps_ = events_.now();
     return;
   }
   const bool line_has_ended = fifo_.front().row < row_;
@@ -96,6 +98,7 @@ PlainBurst PlainCaptureBoard::burst() {
     if (word.pixels < 4 || word.place != fifo_.front().place + burst.words.size()) break;
     burst.words.push_back(word.value);
   }
+  burst_words_ = burst.words.size();
   return burst;
 }
 
@@ -104,9 +107,49 @@ void PlainCaptureBoard::word_gone() {
   --owed_;
 }
 
+void PlainCaptureBoard::lost() {
+  for (std::size_t word = 0; word < burst_words_; ++word) word_gone();
+  stats_.lost_words += burst_words_;
+}
+
 void PlainCaptureBoard::ended(const PlainWords& /*words*/) {
   has_bus_ = false;
   request_or_finish();
+}
+
+void PlainCaptureRegisters::write(std::uint64_t word, const PlainWords& words) {
+  const std::uint32_t value = words.at(0);
+  switch (static_cast<PlainCaptureRegister>(word)) {
+    case PlainCaptureRegister::kControl:
+      if ((value & kPlainArm) != 0) board_.arm(place_of_(buffer_));
+      if ((value & kPlainTrigger) != 0) trigger_();
+      break;
+    case PlainCaptureRegister::kStatus:
+      if ((value & kPlainDone) != 0) board_.clear_done();
+      break;
+    case PlainCaptureRegister::kBuffer:
+      buffer_ = value;
+      break;
+    case PlainCaptureRegister::kFrameLow:
+    case PlainCaptureRegister::kFrameHigh:
+      throw std::logic_error("plain capture board: a write of a register that is only read");
+  }
+}
+
+void PlainCaptureRegisters::read(std::uint64_t word, std::size_t /*count*/, PlainTime /*end_ps*/,
+                                 std::function<void(PlainWords)> answer) {
+  switch (static_cast<PlainCaptureRegister>(word)) {
+    case PlainCaptureRegister::kStatus:
+      return answer({board_.done() ? kPlainDone : 0});
+    case PlainCaptureRegister::kFrameLow:
+      return answer({static_cast<std::uint32_t>(board_.frame_number())});
+    case PlainCaptureRegister::kFrameHigh:
+      return answer({static_cast<std::uint32_t>(board_.frame_number() >> 32U)});
+    case PlainCaptureRegister::kControl:
+    case PlainCaptureRegister::kBuffer:
+      break;
+  }
+  throw std::logic_error("plain capture board: a read of a register that the program only writes");
 }
 
 }  // namespace stereotlm::test

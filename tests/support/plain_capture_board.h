@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "tests/support/plain_clock.h"
@@ -34,9 +35,10 @@ class PlainCaptureBoard : private PlainMaster {
     std::uint64_t dropped_busy = 0;
     std::uint64_t dropped_by_partner = 0;
     std::uint64_t dropped_pixels = 0;
+    std::uint64_t lost_words = 0;
   };
 
-  PlainCaptureBoard(PlainEvents& events, PlainPciBus& bus, const PlainCaptureConfig& config)
+  PlainCaptureBoard(PlainEvents& events, PlainBus& bus, const PlainCaptureConfig& config)
       : events_(events), bus_(bus), config_(config), master_(bus.add(*this)) {}
 
   // For the program.
@@ -44,6 +46,7 @@ class PlainCaptureBoard : private PlainMaster {
   bool done() const { return done_; }
   void clear_done() { done_ = false; }
   std::uint64_t frame_number() const { return done_frame_; }
+  PlainTime done_ps() const { return done_ps_; }
 
   // A frame of the camera begins now; `partner_is_ready`: the other side can start with it.
   Readiness readiness() const;
@@ -63,6 +66,7 @@ class PlainCaptureBoard : private PlainMaster {
 
   PlainBurst burst() override;
   void word_gone() override;
+  void lost() override;
   void ended(const PlainWords& words) override;
 
   void await_pixel();
@@ -72,7 +76,7 @@ class PlainCaptureBoard : private PlainMaster {
   void request_or_finish();
 
   PlainEvents& events_;
-  PlainPciBus& bus_;
+  PlainBus& bus_;
   PlainCaptureConfig config_;
   std::size_t master_;
 
@@ -80,6 +84,7 @@ class PlainCaptureBoard : private PlainMaster {
   PlainPicturePlace next_place_;
   bool done_ = false;
   std::uint64_t done_frame_ = 0;
+  PlainTime done_ps_ = 0;
 
   bool capturing_ = false;
   std::uint64_t frame_ = 0;
@@ -93,7 +98,31 @@ class PlainCaptureBoard : private PlainMaster {
   std::size_t owed_ = 0;  // words in it that were complete at the last grant
   bool asks_ = false;
   bool has_bus_ = false;
+  std::size_t burst_words_ = 0;  // of the burst that has the bus
   Stats stats_;
+};
+
+// Its registers on the PCI bus, in words.
+enum class PlainCaptureRegister : std::uint64_t { kControl, kStatus, kBuffer, kFrameLow, kFrameHigh };
+inline constexpr std::uint32_t kPlainArm = 1;
+inline constexpr std::uint32_t kPlainTrigger = 2;
+inline constexpr std::uint32_t kPlainDone = 4;
+
+class PlainCaptureRegisters : public PlainTarget {
+ public:
+  // `place_of` says what a buffer address stands for; `trigger` begins a frame of the cameras.
+  PlainCaptureRegisters(PlainCaptureBoard& board, std::function<PlainPicturePlace(std::uint32_t)> place_of,
+                        std::function<void()> trigger)
+      : board_(board), place_of_(std::move(place_of)), trigger_(std::move(trigger)) {}
+  void write(std::uint64_t word, const PlainWords& words) override;
+  void read(std::uint64_t word, std::size_t count, PlainTime end_ps,
+            std::function<void(PlainWords)> answer) override;
+
+ private:
+  PlainCaptureBoard& board_;
+  std::function<PlainPicturePlace(std::uint32_t)> place_of_;
+  std::function<void()> trigger_;
+  std::uint32_t buffer_ = 0;
 };
 
 }  // namespace stereotlm::test

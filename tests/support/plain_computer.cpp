@@ -7,6 +7,7 @@
 
 #include "tests/support/plain_bridge.h"
 #include "tests/support/plain_events.h"
+#include "tests/support/plain_load.h"
 
 namespace stereotlm::test {
 namespace {
@@ -31,99 +32,6 @@ class HostMemory : public PlainTarget {
 
  private:
   PlainWords words_;
-};
-
-// The registers of a capture board, in words.
-enum class CaptureRegister : std::uint64_t { kControl, kStatus, kBuffer, kFrameLow, kFrameHigh };
-constexpr std::uint32_t kArm = 1;
-constexpr std::uint32_t kTrigger = 2;
-constexpr std::uint32_t kDone = 4;
-
-class CaptureRegisters : public PlainTarget {
- public:
-  CaptureRegisters(PlainCaptureBoard& board, std::function<PlainPicturePlace(std::uint32_t)> place_of,
-                   std::function<void()> trigger)
-      : board_(board), place_of_(std::move(place_of)), trigger_(std::move(trigger)) {}
-  void write(std::uint64_t word, const PlainWords& words) override {
-    const std::uint32_t value = words.at(0);
-    switch (static_cast<CaptureRegister>(word)) {
-      case CaptureRegister::kControl:
-        if ((value & kArm) != 0) board_.arm(place_of_(buffer_));
-        if ((value & kTrigger) != 0) trigger_();
-        break;
-      case CaptureRegister::kStatus:
-        if ((value & kDone) != 0) board_.clear_done();
-        break;
-      case CaptureRegister::kBuffer:
-        buffer_ = value;
-        break;
-      case CaptureRegister::kFrameLow:
-      case CaptureRegister::kFrameHigh:
-        throw std::logic_error("plain computer: a write of a register that is only read");
-    }
-  }
-  void read(std::uint64_t word, std::size_t /*count*/, PlainTime /*end_ps*/,
-            std::function<void(PlainWords)> answer) override {
-    switch (static_cast<CaptureRegister>(word)) {
-      case CaptureRegister::kStatus:
-        return answer({board_.done() ? kDone : 0});
-      case CaptureRegister::kFrameLow:
-        return answer({static_cast<std::uint32_t>(board_.frame_number())});
-      case CaptureRegister::kFrameHigh:
-        return answer({static_cast<std::uint32_t>(board_.frame_number() >> 32U)});
-      case CaptureRegister::kControl:
-      case CaptureRegister::kBuffer:
-        break;
-    }
-    throw std::logic_error("plain computer: a read of a register that is only written");
-  }
-
- private:
-  PlainCaptureBoard& board_;
-  std::function<PlainPicturePlace(std::uint32_t)> place_of_;
-  std::function<void()> trigger_;
-  std::uint32_t buffer_ = 0;
-};
-
-// Reads its own device again and again.
-class Load : private PlainMaster, private PlainTarget {
- public:
-  Load(PlainEvents& events, PlainPciBus& bus, const PlainLoad& load)
-      : events_(events), bus_(bus), load_(load), master_(bus.add(*this)) {
-    await_transfer();
-  }
-
- private:
-  void await_transfer() {
-    const PlainTime due = load_.first_ps + transfers_ * load_.interval_ps;
-    events_.at(std::max(due, events_.now()), PlainPhase::kEffects, [this] { bus_.request(master_); });
-  }
-  PlainBurst burst() override {
-    return {false, this, 0, 0, PlainWords(static_cast<std::size_t>(load_.burst_words) - words_done_)};
-  }
-  void ended(const PlainWords& words) override {
-    words_done_ += words.size();
-    if (words_done_ < static_cast<std::size_t>(load_.burst_words)) {
-      bus_.request(master_);
-      return;
-    }
-    words_done_ = 0;
-    ++transfers_;
-    await_transfer();
-  }
-  void read(std::uint64_t /*word*/, std::size_t count, PlainTime end_ps,
-            std::function<void(PlainWords)> answer) override {
-    events_.at(end_ps + load_.access_ps, PlainPhase::kEffects,
-               [count, answer] { answer(PlainWords(count)); });
-  }
-  void write(std::uint64_t /*word*/, const PlainWords& /*words*/) override {}
-
-  PlainEvents& events_;
-  PlainPciBus& bus_;
-  PlainLoad load_;
-  std::size_t master_;
-  std::uint64_t transfers_ = 0;
-  std::size_t words_done_ = 0;
 };
 
 // The processor: an access to a register is a PCI transaction of one word, asked for until it is taken.
@@ -287,17 +195,17 @@ class Computer {
 
   void handle_captures() {
     for (std::size_t side = 0; side < 2; ++side) {
-      CaptureRegisters& registers = side == 0 ? left_registers_ : right_registers_;
-      if (side_done_[side] || (read(registers, CaptureRegister::kStatus) & kDone) == 0) continue;
-      write(registers, CaptureRegister::kStatus, kDone);
+      PlainCaptureRegisters& registers = side == 0 ? left_registers_ : right_registers_;
+      if (side_done_[side] || (read(registers, PlainCaptureRegister::kStatus) & kPlainDone) == 0) continue;
+      write(registers, PlainCaptureRegister::kStatus, kPlainDone);
       side_done_[side] = true;
     }
     if (!side_done_[0] || !side_done_[1]) return;
     side_done_ = {};
     ++captures_.ended;
-    const auto frame = [this](CaptureRegisters& registers) {
-      const std::uint64_t high = read(registers, CaptureRegister::kFrameHigh);
-      return high << 32U | read(registers, CaptureRegister::kFrameLow);
+    const auto frame = [this](PlainCaptureRegisters& registers) {
+      const std::uint64_t high = read(registers, PlainCaptureRegister::kFrameHigh);
+      return high << 32U | read(registers, PlainCaptureRegister::kFrameLow);
     };
     captured_.push_back(frame(left_registers_));
     if (frame(right_registers_) != captured_.back())
@@ -352,10 +260,11 @@ class Computer {
       right = kSlaveWindow + kPlainApertureWords;
     }
     ++captures_.begun;
-    write(left_registers_, CaptureRegister::kBuffer, static_cast<std::uint32_t>(left));
-    write(right_registers_, CaptureRegister::kBuffer, static_cast<std::uint32_t>(right));
-    write(right_registers_, CaptureRegister::kControl, kArm);
-    write(left_registers_, CaptureRegister::kControl, kArm | (input_.on_demand ? kTrigger : 0));
+    write(left_registers_, PlainCaptureRegister::kBuffer, static_cast<std::uint32_t>(left));
+    write(right_registers_, PlainCaptureRegister::kBuffer, static_cast<std::uint32_t>(right));
+    write(right_registers_, PlainCaptureRegister::kControl, kPlainArm);
+    write(left_registers_, PlainCaptureRegister::kControl,
+          kPlainArm | (input_.on_demand ? kPlainTrigger : 0));
   }
 
   void copy_pair() {
@@ -427,10 +336,10 @@ class Computer {
   void write(PlainCoreRegister which, std::uint32_t value) {
     processor_.write(bridge_.slave(), core_word(which), value, input_.bridge_wait_clocks);
   }
-  void write(CaptureRegisters& registers, CaptureRegister which, std::uint32_t value) {
+  void write(PlainCaptureRegisters& registers, PlainCaptureRegister which, std::uint32_t value) {
     processor_.write(registers, static_cast<std::uint64_t>(which), value, input_.bridge_wait_clocks);
   }
-  std::uint32_t read(CaptureRegisters& registers, CaptureRegister which) {
+  std::uint32_t read(PlainCaptureRegisters& registers, PlainCaptureRegister which) {
     return processor_.read(registers, static_cast<std::uint64_t>(which), input_.bridge_wait_clocks);
   }
 
@@ -486,9 +395,9 @@ class Computer {
   PlainCaptureBoard right_;
   PlainBoard board_;
   PlainBridge bridge_;
-  CaptureRegisters left_registers_;
-  CaptureRegisters right_registers_;
-  std::optional<Load> load_;
+  PlainCaptureRegisters left_registers_;
+  PlainCaptureRegisters right_registers_;
+  std::optional<PlainLoadMaster> load_;
 
   std::uint64_t camera_frames_ = 0;               // begun
   bool undecided_ = false;                        // whether the last of them is captured

@@ -10,6 +10,7 @@
 #include "tests/support/plain_capture_board.h"
 #include "tests/support/plain_clock.h"
 #include "tests/support/plain_core.h"
+#include "tests/support/plain_load.h"
 #include "tests/support/plain_pci_bus.h"
 #include "tests/support/random_board.h"
 
@@ -17,14 +18,6 @@
 // time, with the program of the driver's guide (sw/driver/README.md). It shares no code with the models and
 // exists to be compared with them.
 namespace stereotlm::test {
-
-// A third party on the bus (board key `pci.load`).
-struct PlainLoad {
-  int burst_words = 0;
-  PlainTime first_ps = 0;
-  PlainTime interval_ps = 0;
-  PlainTime access_ps = 0;
-};
 
 struct PlainComputerInput {
   PlainBoardInput board;

@@ -42,12 +42,24 @@ class PlainMaster {
   virtual PlainBurst burst() = 0;
   // The data clock of a word has ended.
   virtual void word_gone() {}
+  // Nobody has taken the words of the burst, which ends now.
+  virtual void lost() {}
   // The last data clock has ended, or the address clock of a burst of which no word was taken. `words`: those
   // transferred.
   virtual void ended(const PlainWords& words) = 0;
 };
 
-class PlainPciBus {
+// A bus, as its masters see it.
+class PlainBus {
+ public:
+  virtual ~PlainBus() = default;
+  // Masters take turns in the order in which they are added.
+  virtual std::size_t add(PlainMaster& master) = 0;
+  // From now on, until it is granted.
+  virtual void request(std::size_t master) = 0;
+};
+
+class PlainPciBus : public PlainBus {
  public:
   struct MasterStats {
     std::uint64_t transactions = 0;
@@ -60,10 +72,8 @@ class PlainPciBus {
         clock_(mhz),
         latency_timer_clocks_(static_cast<std::uint64_t>(latency_timer_clocks)) {}
 
-  // Masters take turns in the order in which they are added.
-  std::size_t add(PlainMaster& master);
-  // From now on, until it is granted.
-  void request(std::size_t master);
+  std::size_t add(PlainMaster& master) override;
+  void request(std::size_t master) override;
 
   // Up to now.
   std::uint64_t clocks() const { return clock_.clocks_by(events_.now()); }
