@@ -157,6 +157,42 @@ TEST(PciBus, GivesAMasterThatAsksAgainWhenItGivesTheBusBackTheNextClock) {
   EXPECT_EQ(bench.bus->stats().busy_clocks, 2U);
 }
 
+// What happens at the very time of the edge counts, in whatever delta cycle; what happens 1 ps later does not.
+TEST(PciBus, DecidesFromTheStateAtTheEdgeOfTheClock) {
+  PciBusBench bench(PciBusBench::with_window(0));
+  bench.bind_stop();
+  std::size_t room = 0;
+  bench.targets[0]->writable = [&room](auto, auto words) { return std::min(room, words); };
+  bench.masters[0]->bursts = {write_of(4)};
+  bench.request_at(bench.edge(5) - 1);
+  bench.at(
+      bench.edge(5), [&room] { room = 2; }, 4);
+  bench.at(bench.edge(5) + 1, [&room] { room = 4; });
+  sc_core::sc_start();
+  ASSERT_EQ(bench.masters[0]->ended.size(), 1U);
+  EXPECT_EQ(bench.masters[0]->ended[0].address_ps, bench.edge(5));
+  EXPECT_EQ(bench.masters[0]->ended[0].result.words, 2U);
+}
+
+// Each waits with its decision until nothing else is pending.
+TEST(PciBus, DecidesBesideAnotherBusWithTheSameEdges) {
+  struct Machine : sc_core::sc_module {
+    explicit Machine(const sc_core::sc_module_name& name) : sc_module(name) {}
+    PciBusBench bench{PciBusBench::with_window(0)};
+  };
+  Machine left("left");
+  Machine right("right");
+  for (Machine* machine : {&left, &right}) {
+    machine->bench.masters[0]->bursts = {write_of(2), write_of(2)};
+    machine->bench.request_at(machine->bench.edge(5));
+  }
+  sc_core::sc_start();
+  for (const Machine* machine : {&left, &right}) {
+    ASSERT_EQ(machine->bench.masters[0]->ended.size(), 2U);
+    EXPECT_EQ(machine->bench.masters[0]->ended[1].address_ps, machine->bench.edge(5 + 4));
+  }
+}
+
 TEST(PciBus, HasTheClockOfEachSlot) {
   PciBusBench bench(PciBusBench::with_window(0), 1);
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
