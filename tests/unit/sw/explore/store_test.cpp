@@ -85,6 +85,18 @@ TEST_F(StoreTest, KeepsTheFirstOfTwoEqualPoints) {
   EXPECT_THAT(rows(file("a.db"), "SELECT cycles FROM points"), ElementsAre("7"));
 }
 
+TEST_F(StoreTest, AddsAPointAfterOneWithTheSameNewColumnsThatCouldNotBeAdded) {
+  Store store(file("a.db"), kVersion);
+  StoredPoint broken = point("h1");
+  broken.blame.push_back(broken.blame.front());  // twice the same row
+  EXPECT_THAT(message_of([&] { store.add(broken); }), HasSubstr("UNIQUE constraint failed"));
+  EXPECT_FALSE(store.has("h1"));
+  EXPECT_THAT(rows(file("a.db"), "SELECT count(*) FROM pragma_table_info('points')"), ElementsAre("5"));
+  EXPECT_TRUE(store.add(point("h1")));
+  EXPECT_THAT(rows(file("a.db"), "SELECT hash, \"image.width\", cycles FROM points"),
+              ElementsAre("h1|640|7"));
+}
+
 TEST_F(StoreTest, TakesPointsWithOtherFigures) {
   Store store(file("a.db"), kVersion);
   store.add(point("h1"));
