@@ -79,7 +79,6 @@ class CoreTiming {
     KnownGroups::Group* group;
     Progress room;
     Progress begin;
-    std::uint64_t match_state;
     CoreControl::Counts counts;
   };
 
