@@ -28,6 +28,7 @@ struct Burst {
   std::size_t bank = 0;
   bool write = false;
   int words = 1;
+  std::uint64_t waits = 0;  // cycles, routed, before it asks
 };
 
 struct Setting {
@@ -129,6 +130,7 @@ class Timing {
     if (done()) return;
     timing_.host_route_changes();
     arbitration_.route(Port::kHost, burst.bank, burst.write);
+    way_ == Way::kAhead ? run_to(cycle_ + burst.waits) : step_to(cycle_ + burst.waits);
     for (int words = 0; words < burst.words && !done();) words += int{step(true)};
     timing_.host_route_changes();
     arbitration_.unroute(Port::kHost);
@@ -248,6 +250,7 @@ void run_beside_host(test::SplitMix64& random, const Setting& setting, Timing& s
     burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));
     burst.write = random.chance(50);
     burst.words = random.mostly_small(1, 8, 100);
+    if (random.chance(30)) burst.waits = static_cast<std::uint64_t>(random.between(1, 500));
     stepped.step_to(burst.cycle);
     ahead.run_to(burst.cycle);
     stepped.serve(burst);

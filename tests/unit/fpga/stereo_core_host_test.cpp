@@ -241,6 +241,15 @@ TEST_P(StereoCoreStarved, GoesOnAfterShorterThanItsPatience) {
   EXPECT_EQ(done_at.size(), 1U);
 }
 
+TEST_P(StereoCoreStarved, IsNotReportedOfAFrameThatBeginsLate) {
+  StereoCoreConfig board = small_board();
+  board.patience_cycles = kPatience;
+  build(board);
+  for (const std::uint64_t cycle : {2 * kPatience, 5 * kPatience}) at(edge(cycle), [this] { start(); });
+  run_until(edge(6 * kPatience));
+  EXPECT_EQ(done_at.size(), 2U);
+}
+
 TEST_P(StereoCoreStarved, SaysWhoWaitsForWhat) {
   write_for(30'000);
   // Not thrown, so that the address sanitizer need not follow it through SystemC's stacks.
