@@ -295,15 +295,18 @@ TEST(CoreTiming, RecordsInWhichRowsAPortIsStalled) {
   setting.bank_of[memory::index_of(Port::kLeftLut)] = setting.bank_of[memory::index_of(Port::kLeftPixel)];
   setting.left_entries = setting.right_entries = kernels::identity_table(640, 480).entries;
   Timing timing(setting, Timing::Way::kAhead, true);
-  timing.start(0);
-  timing.run_to(kNever);
-  const RowProfile rows = timing.rows();
-  ASSERT_EQ(rows.size(), 480U);
-  EXPECT_EQ(rows.back().cycles + 16, 4'288'597U);
-  EXPECT_EQ(rows.back().stalls, (std::array<std::uint64_t, kCorePortCount>{2'137'602, 0, 0, 0, 0}));
-  for (std::size_t row = 10; row < 400; ++row) {
-    EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
-    EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
+  for (const std::uint64_t first_cycle : {0U, 10'000'000U}) {
+    timing.start(first_cycle);
+    timing.run_to(kNever);
+    const RowProfile rows = timing.rows();
+    ASSERT_EQ(rows.size(), 480U);
+    EXPECT_EQ(rows.back().cycles + 16, 4'288'597U);
+    EXPECT_EQ(rows.back().stalls, (std::array<std::uint64_t, kCorePortCount>{2'137'602, 0, 0, 0, 0}));
+    for (std::size_t row = 10; row < 400; ++row) {
+      EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
+      EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
+    }
+    timing.finish();
   }
 }
 

@@ -73,7 +73,7 @@ TEST(SadColumns, HoldThemOverAWholeFrameOfColumns) {
 TEST(SadColumns, BeginAFrameAsTheFirst) {
   test::SplitMix64 random(3);
   SadColumns used(3, 16);
-  for (const auto& column : random_columns(50, 3, false, random))
+  for (const auto& column : random_columns(2500, 3, false, random))
     used.push_column(column.data(), column.data());
   used.start_frame();
   SadColumns fresh(3, 16);
