@@ -99,7 +99,7 @@ std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
     control_.skip_to(group->begin->control, skipped.columns, skipped.words);
     arbitration_.skip_to(group->begin->arbitration, cycle, skipped.cycles);
   }
-  if (group->next == nullptr && holds_group(left)) begin_group(*group, left, cycle);
+  if (group->next == nullptr && holds_group(left)) begin_group(*group, cycle);
   return cycle;
 }
 
@@ -147,25 +147,22 @@ bool CoreTiming::holds_group(const Progress& room) const {
   return room.columns >= 4 && room.left_slots >= slots && room.right_slots >= slots;
 }
 
-void CoreTiming::begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle) {
-  stepped_ = {&group, room, progress(cycle), control_.counts()};
+void CoreTiming::begin_group(KnownGroups::Group& group, std::uint64_t cycle) {
+  stepped_ = {&group, progress(cycle), control_.counts()};
   arbitration_.begin_recording();
 }
 
-// It is known now, unless something became different on the way. (Where the matcher's state has, the group's
-// own does not come again in this frame.)
+// It is known now. Something may have become different on the way: of other slots look_at_slots() forgets it
+// at once; behind the last slot, and behind another state of the matcher, its own state does not come again
+// in this frame.
 void CoreTiming::end_group(std::uint64_t cycle) {
-  const Stepped stepped = *stepped_;
-  stepped_.reset();
-  Progress progress = this->progress(cycle);
-  progress.subtract(stepped.begin);
-  const Progress& room = stepped.room;
-  if (progress.left_slots > room.left_slots || progress.right_slots > room.right_slots) return;
-  KnownGroups::Group& group = *stepped.group;
-  group.progress = progress;
-  group.counts = CoreControl::difference(control_.counts(), stepped.counts);
+  KnownGroups::Group& group = *stepped_->group;
+  group.progress = progress(cycle);
+  group.progress.subtract(stepped_->begin);
+  group.counts = CoreControl::difference(control_.counts(), stepped_->counts);
   group.decided = arbitration_.take_recorded();
   group.next = &known_.at(state(cycle));
+  stepped_.reset();
 }
 
 // Since the frame began, or some other cycle.
