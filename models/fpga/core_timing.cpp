@@ -25,12 +25,8 @@ void CoreTiming::start_frame(const FrameLatencies& latencies) {
 void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern& left,
                              const SlotPattern& right) {
   start_frame(latencies);
-  // Where no entry is valid the port is never granted, and the bank's round-robin place stays.
-  const auto looks = [this](memory::Port port, const SlotPattern& pattern) {
-    return !arbitration_.is_alone(port) || pattern.pixel_accesses() == 0;
-  };
-  left_ = {&left, looks(memory::Port::kLeftPixel, left)};
-  right_ = {&right, looks(memory::Port::kRightPixel, right)};
+  left_ = {&left, !arbitration_.is_alone(memory::Port::kLeftPixel)};
+  right_ = {&right, !arbitration_.is_alone(memory::Port::kRightPixel)};
 }
 
 void CoreTiming::host_route_changes() {
@@ -103,8 +99,7 @@ std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
     control_.skip_to(group->begin->control, skipped.columns, skipped.words);
     arbitration_.skip_to(group->begin->arbitration, cycle, skipped.cycles);
   }
-  // Behind the last column alike the state is another than that of the group.
-  if (group->next == nullptr && holds_group(left)) begin_group(*group, left, cycle);
+  if (group->next == nullptr && holds_group(left)) begin_group(*group, cycle);
   return cycle;
 }
 
@@ -144,33 +139,30 @@ Progress CoreTiming::room(std::uint64_t cycle, std::uint64_t end) const {
           rows_.next_words() - control_.result().words_written() - 1};
 }
 
-// Whether four columns may be alike. Less is not worth noting.
+// Whether four columns may be alike. (Behind the last column alike a walk has ended at the group of a state
+// that is not the core's: nothing may be noted there.)
 bool CoreTiming::holds_group(const Progress& room) const {
   const std::uint64_t slots =
       control_.match().draining() ? 0 : 4 * static_cast<std::uint64_t>(control_.geometry().slots_per_column);
   return room.columns >= 4 && room.left_slots >= slots && room.right_slots >= slots;
 }
 
-void CoreTiming::begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle) {
-  stepped_ = {&group, room, progress(cycle), control_.match().state(), control_.counts()};
+void CoreTiming::begin_group(KnownGroups::Group& group, std::uint64_t cycle) {
+  stepped_ = {&group, progress(cycle), control_.counts()};
   arbitration_.begin_recording();
 }
 
-// It is known now, unless something became different on the way.
+// It is known now. Something may have become different on the way: of other slots look_at_slots() forgets it
+// at once; behind the last slot, and behind another state of the matcher, its own state does not come again
+// in this frame.
 void CoreTiming::end_group(std::uint64_t cycle) {
-  const Stepped stepped = *stepped_;
-  stepped_.reset();
-  Progress progress = this->progress(cycle);
-  progress.subtract(stepped.begin);
-  const bool is_alike =
-      progress.columns <= stepped.room.columns && progress.left_slots <= stepped.room.left_slots &&
-      progress.right_slots <= stepped.room.right_slots && control_.match().state() == stepped.match_state;
-  if (!is_alike) return;
-  KnownGroups::Group& group = *stepped.group;
-  group.progress = progress;
-  group.counts = CoreControl::difference(control_.counts(), stepped.counts);
+  KnownGroups::Group& group = *stepped_->group;
+  group.progress = progress(cycle);
+  group.progress.subtract(stepped_->begin);
+  group.counts = CoreControl::difference(control_.counts(), stepped_->counts);
   group.decided = arbitration_.take_recorded();
   group.next = &known_.at(state(cycle));
+  stepped_.reset();
 }
 
 // Since the frame began, or some other cycle.

@@ -77,9 +77,7 @@ class CoreTiming {
   // A group that is being stepped, to be known from then on.
   struct Stepped {
     KnownGroups::Group* group;
-    Progress room;
     Progress begin;
-    std::uint64_t match_state;
     CoreControl::Counts counts;
   };
 
@@ -97,7 +95,7 @@ class CoreTiming {
   std::uint64_t alike_to(const LaneControl& lane, const Side& side) const;
   Progress room(std::uint64_t cycle, std::uint64_t end) const;
   bool holds_group(const Progress& room) const;
-  void begin_group(KnownGroups::Group& group, const Progress& room, std::uint64_t cycle);
+  void begin_group(KnownGroups::Group& group, std::uint64_t cycle);
   void end_group(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   KnownGroups::State state(std::uint64_t cycle) const {

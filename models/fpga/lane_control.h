@@ -125,11 +125,12 @@ class LaneControl {
       return a.counts == b.counts && a.marks == b.marks;
     }
   };
+  // After a cycle in which the matcher has consumed: the lane then holds fewer than kMostSlots slots.
   State state() const {
     const std::uint64_t place = handled_ % kMostSlots;
     const std::uint64_t waiting = taken_ - handled_;
     const std::uint64_t rotated = place == 0 ? marks_ : marks_ >> place | marks_ << (kMostSlots - place);
-    const std::uint64_t kept = waiting == kMostSlots ? ~std::uint64_t{0} : (std::uint64_t{1} << waiting) - 1;
+    const std::uint64_t kept = (std::uint64_t{1} << waiting) - 1;
     return {(taken_ - consumed_) | (handled_ - consumed_) << 8U | (arrived_entries_ - consumed_) << 16U |
                 (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |
                 std::uint64_t{arrived_entries_ != 0} << 33U,

@@ -87,7 +87,7 @@ bool StereoCore::buffers_are_apart() const {
          }) == 1;  // itself
 }
 
-// With the last write.
+// With the last write. No table is told of a change: buffers_are_apart().
 void StereoCore::write_frame() {
   const std::uint64_t words = control().geometry().result_words;
   std::uint64_t answered = 0;
@@ -97,7 +97,6 @@ void StereoCore::write_frame() {
       fail("direct access to the disparities was taken back within a frame");
     } else {
       std::copy(disparities_.begin(), disparities_.end(), buffer);
-      crossbar_.changes(buffer_of(Port::kResult).first, words * 4);
     }
     answered = static_cast<std::uint64_t>(
         std::count_if(disparities_.begin(), disparities_.end(),

@@ -112,7 +112,6 @@ class Sweep {
     }
     WorkOrder order = worker.order();
     if (++deaths_[order.first] == kMostDeaths) {
-      deaths_.erase(order.first);
       fail(order.first,
            fmt::format("its process has {}, {} times: to try again, delete this row and give the "
                        "same command",

@@ -285,8 +285,9 @@ class Refusals(ProgramTest):
         self.assertEqual((self.out / "table1.csv").read_text(), "mine")
 
     def test_no_place_for_temporary_files(self):
-        place = {**os.environ, "TMPDIR": "/nonexistent"}
-        self.refused_in_one_line(run("paper", "--out", self.out, env=place), "error: TMPDIR = /nonexistent: must be a folder\n")
+        none = self.folder / "none"
+        place = {**os.environ, "TMPDIR": str(none)}
+        self.refused_in_one_line(run("paper", "--out", self.out, env=place), f"error: TMPDIR = {none}: must be a folder\n")
         self.assertFalse(self.out.exists())
         self.assertEqual(len(self.refused(run("paper", "--out", self.left, env=place), "TMPDIR = ", "not a folder")), 2)
 

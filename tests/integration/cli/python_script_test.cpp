@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <stdexcept>
+#include <string>
+
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -10,29 +13,40 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(PythonScript, SaysThatPythonIsMissing) {
-  EXPECT_THAT([] { become_script("plot_all.py", {}, "/nowhere/python3"); },
+class PythonScript : public testing::Test {
+ protected:
+  // That is not there.
+  std::string path(const std::string& name) const { return (folder_.path() / "none" / name).string(); }
+
+ private:
+  test::ScratchFolder folder_;
+};
+
+TEST_F(PythonScript, SaysThatPythonIsMissing) {
+  const std::string python = path("python3");
+  EXPECT_THAT([&] { become_script("plot_all.py", {}, python); },
               ThrowsMessage<std::runtime_error>(
-                  HasSubstr("'/nowhere/python3', which draws the figures: cannot be started: No such file")));
+                  HasSubstr("'" + python + "', which draws the figures: cannot be started: No such file")));
 }
 
-TEST(PythonScript, SaysThatTheScriptIsMissing) {
+TEST_F(PythonScript, SaysThatTheScriptIsMissing) {
   EXPECT_THAT([] { become_script("plot_nothing.py", {}); },
               ThrowsMessage<std::runtime_error>(HasSubstr("/plots/plot_nothing.py': not found")));
 }
 
-TEST(PythonScript, SaysSoToWhoeverWaitsForItsEndToo) {
-  EXPECT_THAT([] { run_script("plot_paper.py", {}, "/nowhere/python3"); },
+TEST_F(PythonScript, SaysSoToWhoeverWaitsForItsEndToo) {
+  const std::string python = path("python3");
+  EXPECT_THAT([&] { run_script("plot_paper.py", {}, python); },
               ThrowsMessage<std::runtime_error>(
-                  HasSubstr("'/nowhere/python3', which draws the figures: cannot be started: No such file")));
+                  HasSubstr("'" + python + "', which draws the figures: cannot be started: No such file")));
   EXPECT_THAT([] { run_script("plot_nothing.py", {}); },
               ThrowsMessage<std::runtime_error>(HasSubstr("/plots/plot_nothing.py': not found")));
 }
 
-TEST(PythonScript, TellsHowAScriptHasEnded) {
-  const auto end = run_script("plot_paper.py", {"--out=/nowhere", "--", "/nowhere"});
+TEST_F(PythonScript, TellsHowAScriptHasEnded) {
+  const auto end = run_script("plot_paper.py", {"--out=" + path("out"), "--", path("in")});
   EXPECT_EQ(end.status, 1);
-  EXPECT_THAT(end.errors, HasSubstr("/nowhere/table1.csv"));
+  EXPECT_THAT(end.errors, HasSubstr(path("in/table1.csv")));
 }
 
 }  // namespace

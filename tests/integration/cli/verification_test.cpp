@@ -9,6 +9,7 @@
 #include "platform/area.h"
 #include "platform/board_yaml.h"
 #include "platform/tables.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -61,12 +62,14 @@ TEST_F(VerificationTest, NamesTheFramesAndFiguresThatDiffer) {
 }
 
 TEST_F(VerificationTest, NamesThePicturesThatCannotBeReadAnyMoreAndWhy) {
-  options.pictures.pair = {"/nowhere/left.png", "/nowhere/right.png"};
+  const test::ScratchFolder empty;
+  const std::string left = empty.path() / "left.png";
+  const std::string right = empty.path() / "right.png";
+  options.pictures.pair = {left, right};
   const std::string rule = "a picture must be a readable regular file";
   EXPECT_EQ(failed_of({{0, {}, 123}}, {}),
-            "--verify: the run at fidelity cycle: the pictures cannot be read any more: --left "
-            "'/nowhere/left.png': no such file: " +
-                rule + "; --right '/nowhere/right.png': no such file: " + rule + "\n");
+            "--verify: the run at fidelity cycle: the pictures cannot be read any more: --left '" + left +
+                "': no such file: " + rule + "; --right '" + right + "': no such file: " + rule + "\n");
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ struct Burst {
   std::size_t bank = 0;
   bool write = false;
   int words = 1;
+  std::uint64_t waits = 0;  // cycles, routed, before it asks
 };
 
 struct Setting {
@@ -129,6 +130,7 @@ class Timing {
     if (done()) return;
     timing_.host_route_changes();
     arbitration_.route(Port::kHost, burst.bank, burst.write);
+    way_ == Way::kAhead ? run_to(cycle_ + burst.waits) : step_to(cycle_ + burst.waits);
     for (int words = 0; words < burst.words && !done();) words += int{step(true)};
     timing_.host_route_changes();
     arbitration_.unroute(Port::kHost);
@@ -248,6 +250,7 @@ void run_beside_host(test::SplitMix64& random, const Setting& setting, Timing& s
     burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));
     burst.write = random.chance(50);
     burst.words = random.mostly_small(1, 8, 100);
+    if (random.chance(30)) burst.waits = static_cast<std::uint64_t>(random.between(1, 500));
     stepped.step_to(burst.cycle);
     ahead.run_to(burst.cycle);
     stepped.serve(burst);
@@ -292,15 +295,18 @@ TEST(CoreTiming, RecordsInWhichRowsAPortIsStalled) {
   setting.bank_of[memory::index_of(Port::kLeftLut)] = setting.bank_of[memory::index_of(Port::kLeftPixel)];
   setting.left_entries = setting.right_entries = kernels::identity_table(640, 480).entries;
   Timing timing(setting, Timing::Way::kAhead, true);
-  timing.start(0);
-  timing.run_to(kNever);
-  const RowProfile rows = timing.rows();
-  ASSERT_EQ(rows.size(), 480U);
-  EXPECT_EQ(rows.back().cycles + 16, 4'288'597U);
-  EXPECT_EQ(rows.back().stalls, (std::array<std::uint64_t, kCorePortCount>{2'137'602, 0, 0, 0, 0}));
-  for (std::size_t row = 10; row < 400; ++row) {
-    EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
-    EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
+  for (const std::uint64_t first_cycle : {0U, 10'000'000U}) {
+    timing.start(first_cycle);
+    timing.run_to(kNever);
+    const RowProfile rows = timing.rows();
+    ASSERT_EQ(rows.size(), 480U);
+    EXPECT_EQ(rows.back().cycles + 16, 4'288'597U);
+    EXPECT_EQ(rows.back().stalls, (std::array<std::uint64_t, kCorePortCount>{2'137'602, 0, 0, 0, 0}));
+    for (std::size_t row = 10; row < 400; ++row) {
+      EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
+      EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
+    }
+    timing.finish();
   }
 }
 

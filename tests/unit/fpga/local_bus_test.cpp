@@ -199,6 +199,23 @@ TEST_F(LocalBusTest, TransfersTheWordsBesideOneThatIsRefused) {
   EXPECT_EQ(host.answers.at(2).status, tlm::TLM_OK_RESPONSE);
 }
 
+TEST_F(LocalBusTest, EndsAReadThatIsRefusedWithItsGrant) {
+  host.request(TLM_READ_COMMAND, kWords * 4, 0);
+  grant(3 * kLocalPs);
+  run_until(local(20));
+  EXPECT_EQ(host.answers.at(0).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(host.answers.at(0).at, local(4));
+}
+
+TEST_F(LocalBusTest, AnswersABurstAsTheFirstOfItsRefusedWords) {
+  // A register that cannot be read, ones that can, and none behind the last.
+  host.request(TLM_READ_COMMAND, kLocalRegisters + registers::kControl,
+               std::vector<std::uint32_t>(registers::kEnd / 4 + 1));
+  run_until(local(20));
+  EXPECT_EQ(host.answers.at(0).status, tlm::TLM_COMMAND_ERROR_RESPONSE);
+  EXPECT_EQ(bus.stats().errors, 2U);
+}
+
 TEST_F(LocalBusTest, RefusesAtOnceWhatIsNoBurst) {
   const auto status = [this](tlm::tlm_command command, std::uint64_t address, std::size_t words) {
     EXPECT_EQ(host.request(command, address, std::vector<std::uint32_t>(words)), tlm::TLM_COMPLETED);

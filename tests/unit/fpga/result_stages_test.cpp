@@ -182,6 +182,12 @@ TEST_F(ResultWriterTest, ReportsAWriteFromAnEmptyQueue) {
   EXPECT_THROW(writer.write(sc_core::SC_ZERO_TIME), sc_core::sc_report);
 }
 
+TEST_F(ResultWriterTest, KeepsTheMostWordsOfAllFrames) {
+  for (const std::uint64_t most_queued : {2U, 3U, 1U}) writer.count({10, most_queued, 0});
+  EXPECT_EQ(writer.stats().writes, 30U);
+  EXPECT_EQ(writer.stats().most_queued_words, 3U);
+}
+
 TEST_F(ResultWriterTest, CountsWordsThatMemoryRefuses) {
   for (int word = 0; word < 5; ++word) {
     writer.words_in->push({7});

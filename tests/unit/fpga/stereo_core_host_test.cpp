@@ -223,10 +223,10 @@ class StereoCoreStarved : public StereoCoreHost {
  protected:
   static constexpr std::uint64_t kPatience = 10'000;
 
-  void write_for(std::uint64_t cycles) {
+  void write_for(std::uint64_t cycles, std::uint64_t patience = kPatience) {
     StereoCoreConfig board = small_board();
     board.memory.banks.assign(kBankCount, {65'536});
-    board.patience_cycles = kPatience;
+    board.patience_cycles = patience;
     build(board);
     start();
     at(edge(1), [this, cycles] {
@@ -241,6 +241,15 @@ TEST_P(StereoCoreStarved, GoesOnAfterShorterThanItsPatience) {
   EXPECT_EQ(done_at.size(), 1U);
 }
 
+TEST_P(StereoCoreStarved, IsNotReportedOfAFrameThatBeginsLate) {
+  StereoCoreConfig board = small_board();
+  board.patience_cycles = kPatience;
+  build(board);
+  for (const std::uint64_t cycle : {2 * kPatience, 5 * kPatience}) at(edge(cycle), [this] { start(); });
+  run_until(edge(6 * kPatience));
+  EXPECT_EQ(done_at.size(), 2U);
+}
+
 TEST_P(StereoCoreStarved, SaysWhoWaitsForWhat) {
   write_for(30'000);
   // Not thrown, so that the address sanitizer need not follow it through SystemC's stacks.
@@ -253,6 +262,15 @@ TEST_P(StereoCoreStarved, SaysWhoWaitsForWhat) {
                                      "lane is full; right_lut is blocked: its lane is full; "
                                      "left_pixel asks for bank number 0, lost 2[0-9]+ cycles to host; "
                                      "right_pixel is starved; result is idle; host asks for bank number 0"));
+}
+
+// It is checked every 8192 cycles.
+TEST_P(StereoCoreStarved, IsReportedAsSoonAsItsPatienceHasPassed) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/core", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+  const test::ExpectedReport expected("/stereotlm/core");
+  write_for(40'000, 2 * 8192);
+  run_until(edge(30'000));
+  EXPECT_THAT(expected.text(), testing::HasSubstr("no result written for 16384 cycles"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreHost, testing::Values(Fidelity::kCycle, Fidelity::kFast),

@@ -134,14 +134,16 @@ class HostedRun {
     sc_core::wait(sc_core::sc_time::from_value(ps));
   }
 
-  // Where the buffers of the next frame lie.
+  // Where the buffers of the next frame lie; now and then the disparities over the left image, so that it is
+  // done cycle by cycle.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> bases(SplitMix64& random) const {
     const auto in_any_bank = [&](std::uint32_t word) {
       return registers::base(static_cast<std::uint32_t>(random.between(0, banks() - 1)), word);
     };
-    return {{registers::kLeftImageBase, in_any_bank(kLeftImage)},
+    const std::uint32_t left_image = in_any_bank(kLeftImage);
+    return {{registers::kLeftImageBase, left_image},
             {registers::kRightImageBase, in_any_bank(kRightImage)},
-            {registers::kDisparityBase, in_any_bank(kDisparity)},
+            {registers::kDisparityBase, random.chance(15) ? left_image : in_any_bank(kDisparity)},
             {registers::kLeftLutBase, in_any_bank(kLeftTable)},
             {registers::kRightLutBase, in_any_bank(kRightTable)}};
   }

@@ -65,6 +65,14 @@ TEST_P(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
   EXPECT_EQ(done_at[0], edge(11 + frame_cycles_alone(4)));
 }
 
+TEST_P(StereoCoreTest, BeginsAfterTheDelayThatItsStrobeCarries) {
+  build(small_board());
+  at(edge(10), [this] { registers.write(registers::kControl, registers::kControlStart, edge(3)); });
+  finish();
+  ASSERT_EQ(done_at.size(), 1U);
+  EXPECT_EQ(done_at[0], edge(13 + frame_cycles_alone(4)));
+}
+
 TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   build(small_board());
   at(edge(0), [this] { start(); });

@@ -118,6 +118,31 @@ TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
   }
 }
 
+// What enters there is anything.
+TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
+  constexpr int kWidth = 12;
+  constexpr int kHeight = 4;
+  constexpr int kBelow = 20;
+  SplitMix64 random(8);
+  for (const int size : {3, 7}) {
+    const int half = (size - 1) / 2;
+    const RandomBoard board = noise_board(kWidth, kHeight, 3, differences_kernel(size), random);
+    std::vector<std::uint8_t> pixels = board.pictures[0].left;
+    for (int pixel = 0; pixel < kBelow * kWidth; ++pixel) pixels.push_back(pixels[pixels.size() - kWidth]);
+    const auto expected = test::reference_filter(kWidth, kHeight + kBelow, pixels, board.filter);
+    ColumnFilter filter(kWidth, kHeight, 1, test::filter_kernel(board.filter));
+    const int first_seen = half * kWidth + half;
+    for (int count = 0; count < (kHeight + kBelow) * kWidth; ++count) {
+      const auto at = static_cast<std::size_t>(count);
+      const auto anything = static_cast<std::uint8_t>(random.between(0, 255));
+      ASSERT_TRUE(filter.push({count < kHeight * kWidth ? pixels[at] : anything, true}));
+      if (count < first_seen) continue;
+      ASSERT_EQ(int{filter.output().values[0]}, expected[at - static_cast<std::size_t>(first_seen)])
+          << size << ' ' << count;
+    }
+  }
+}
+
 // 255 * 65793 is the last multiple of 255 below 2^24, the limit of a float's exact integers; every shift
 // keeps the lowest bits of the sum apart somewhere.
 TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {

@@ -69,6 +69,22 @@ TEST(SadColumns, HoldThemOverAWholeFrameOfColumns) {
   expect_literal_sums(sums, 3, 64, false, 5000, random);
 }
 
+// Where a disparity leads to before the first column too.
+TEST(SadColumns, BeginAFrameAsTheFirst) {
+  test::SplitMix64 random(3);
+  SadColumns used(3, 16);
+  for (const auto& column : random_columns(2500, 3, false, random))
+    used.push_column(column.data(), column.data());
+  used.start_frame();
+  SadColumns fresh(3, 16);
+  const PixelColumns left = random_columns(20, 3, false, random);
+  const PixelColumns right = random_columns(20, 3, false, random);
+  for (std::size_t at = 0; at < left.size(); ++at) {
+    for (SadColumns* const sums : {&used, &fresh}) sums->push_column(left[at].data(), right[at].data());
+    for (int d = 0; d < 16; ++d) ASSERT_EQ(used.window_sums()[d], fresh.window_sums()[d]) << at << ' ' << d;
+  }
+}
+
 TEST(SadColumns, HoldTheLargestSum) {
   SadColumns sums(31, 254);
   const std::vector<std::uint8_t> white(31, 255);

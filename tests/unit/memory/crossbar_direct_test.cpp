@@ -66,6 +66,13 @@ TEST_F(CrossbarWatch, SeesAnAccessThatWritesAmongTheWords) {
   }
 }
 
+TEST_F(CrossbarWatch, RemembersAWriteBehindWhichOthersCame) {
+  build_and_look();
+  write(Port::kHost, kFirst, 0);
+  write(Port::kHost, kEnd, 1);
+  EXPECT_TRUE(has_changed());
+}
+
 TEST_F(CrossbarWatch, DoesNotMindAnotherBankOrARead) {
   build_and_look();
   write(Port::kHost, kFirst, 0, kFlowThrough);
@@ -154,18 +161,20 @@ TEST_F(CrossbarDirect, CountsWhatItIsToldByBankAndByRoute) {
   EXPECT_EQ(crossbar->direct_accesses(kBurst), 8U);
 }
 
-// A bank that grants direct access to half of its words, or not at all, and takes it back.
+// A bank that grants direct access to its words 0 and 1, or not at all, and takes it back; to words 2 and 3
+// apart from them.
 class CrossbarRevoked : public testing::Test {
  protected:
   CrossbarRevoked() {
     binder.bind(crossbar.banks[0], target.socket, "bank");
     target.on_dmi = [this](tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
       ++asked;
-      const bool is_behind = access.get_address() >= first.size();
-      if (memory == nullptr || is_behind || (reads_only && access.is_write())) return false;
-      dmi.set_dmi_ptr(memory);
-      dmi.set_start_address(0);
-      dmi.set_end_address(7);
+      const std::uint64_t start = access.get_address() / 8 * 8;
+      unsigned char* const granted = start == 0 ? memory : start == 8 ? memory_behind : nullptr;
+      if (granted == nullptr || (reads_only && access.is_write())) return false;
+      dmi.set_dmi_ptr(granted);
+      dmi.set_start_address(start);
+      dmi.set_end_address(start + 7);
       reads_only ? dmi.allow_read() : dmi.allow_read_write();
       return true;
     };
@@ -174,6 +183,7 @@ class CrossbarRevoked : public testing::Test {
   std::array<unsigned char, 8> first{};
   std::array<unsigned char, 8> second{};
   unsigned char* memory = first.data();
+  unsigned char* memory_behind = nullptr;
   bool reads_only = false;
   int asked = 0;
   Crossbar crossbar{"crossbar", {ArbiterConfig{}, {{16}}}};
@@ -185,6 +195,16 @@ TEST_F(CrossbarRevoked, AsksTheBankOnce) {
   EXPECT_EQ(crossbar.direct(0, 8), first.data());
   EXPECT_EQ(crossbar.direct(4, 4), first.data() + 4);
   EXPECT_EQ(asked, 1);
+}
+
+TEST_F(CrossbarRevoked, AsksAgainForWordsThatAreGrantedApart) {
+  memory_behind = second.data();
+  EXPECT_EQ(crossbar.direct(0, 8), first.data());
+  EXPECT_EQ(crossbar.direct(12, 4), second.data() + 4);
+  EXPECT_EQ(crossbar.direct(8, 8), second.data());
+  EXPECT_EQ(crossbar.direct(4, 4), first.data() + 4);
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(crossbar.direct(4, 8), nullptr);
 }
 
 TEST_F(CrossbarRevoked, AsksAgainWhenTheBankHasTakenItBack) {

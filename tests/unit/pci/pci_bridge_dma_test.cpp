@@ -1,5 +1,6 @@
 // The bridge's DMA channels.
 #include <ostream>
+#include <string>
 
 #include "tests/unit/pci/pci_bridge_bench.h"
 
@@ -115,12 +116,58 @@ TEST_F(PciBridgeDma, RunsBothChannelsSideBySide) {
   EXPECT_EQ(on_board(0, 300), numbers(300));
   EXPECT_EQ(get(kData + 0x1000, 300), on_board(1ULL << 28U, 300));
   EXPECT_EQ(status(), bridge::kDmaDone | bridge::kDmaDone << 1U);
-  bool alternated = false;
-  for (std::size_t i = 2; i < local.bursts.size() && !alternated; ++i) {
-    alternated = local.bursts[i].write != local.bursts[i - 1].write &&
-                 local.bursts[i].write == local.bursts[i - 2].write;
+}
+
+// Bursts of the local bus that go through one by one; channel 0 and 1 write to banks of their own, posted
+// writes go to bank 0.
+class PciBridgeTurns : public PciBridgeDma {
+ protected:
+  void build_held() {
+    build({4, 64, kCore});
+    local.held = true;
   }
-  EXPECT_TRUE(alternated);
+  void start_both(std::uint32_t words) {
+    for (const std::uint32_t channel : {0U, 1U})
+      start(channel, kChain + 0x40 * channel, {{kData, (1 + channel) << 26U, words}});
+    run(20);
+  }
+  void post() { burst(true, kSlave, 1); }
+  // The burst under way ends, and the next one begins and is held.
+  void let_one_through() {
+    local.release();
+    run(0.001);
+    local.held = true;
+    run(20);
+  }
+  // Of the bursts so far: 'p' posted, or the number of the channel.
+  std::string order() const {
+    std::string order;
+    for (const auto& burst : local.bursts) order += "p01"[burst.address >> 28U];
+    return order;
+  }
+};
+
+TEST_F(PciBridgeTurns, GoToTheChannelThatWasNotServedLast) {
+  build_held();
+  post();
+  start_both(8);
+  let_one_through();
+  EXPECT_EQ(order(), "p1");
+  post();
+  let_one_through();
+  EXPECT_EQ(order(), "p1p");  // posted writes go first: now both channels wait
+  for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
+  EXPECT_EQ(order(), "p1p010");
+}
+
+TEST_F(PciBridgeTurns, MoveOnWhenNothingWaits) {
+  build_held();
+  for (const char* const expected : {"p10", "p10p01", "p10p01p10"}) {
+    post();
+    start_both(4);
+    for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
+    EXPECT_EQ(order(), expected);
+  }
 }
 
 struct Broken {
@@ -166,14 +213,17 @@ INSTANTIATE_TEST_SUITE_P(PciBridge, PciBridgeDmaError,
 
 TEST_F(PciBridgeDma, RefusesAStartWhileItIsBusy) {
   build();
-  local.held = true;
-  start(0, kChain, {{kData, 0, 4}});
-  write_register(bridge::kDmaControl, 1);
-  EXPECT_EQ(status(), bridge::kDmaError);
-  local.release();
-  run(5);
-  EXPECT_EQ(status(), bridge::kDmaError | bridge::kDmaDone);
-  EXPECT_EQ(local.bursts.size(), 1U);
+  for (const std::uint32_t channel : {0U, 1U}) {
+    local.held = true;
+    start(channel, kChain, {{kData, 0, 4}});
+    write_register(bridge::kDmaControl + channel * bridge::kChannelStride, 1);
+    EXPECT_EQ(status(), bridge::kDmaError << channel);
+    local.release();
+    run(5);
+    EXPECT_EQ(status(), (bridge::kDmaError | bridge::kDmaDone) << channel);
+    EXPECT_EQ(local.bursts.size(), channel + 1U);
+    write_register(bridge::kInterruptStatus, bridge::kAllInterrupts);
+  }
 }
 
 }  // namespace

@@ -140,6 +140,20 @@ TEST(PciBus, PassesAGrantThatIsGivenBackToTheNextInTheSameClock) {
   EXPECT_EQ(bench.bus->stats().masters[0].transactions, 0U);
 }
 
+TEST(PciBus, TakesTheTurnOfAMasterThatGivesItsGrantBack) {
+  PciBusBench bench(PciBusBench::with_window(0), 2);
+  bench.request_at(0, 0);  // with nothing to transfer
+  bench.at(bench.edge(5), [&bench] {
+    for (auto& master : bench.masters) {
+      master->bursts = {write_of(1)};
+      master->request();
+    }
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(bench.masters[0]->grants, 2);
+  EXPECT_EQ(order_of(bench), (std::vector<std::size_t>{1, 0}));
+}
+
 TEST(PciBus, GivesAMasterThatAsksAgainWhenItGivesTheBusBackTheNextClock) {
   PciBusBench bench(PciBusBench::with_window(0), 1);
   TestMaster& master = *bench.masters[0];

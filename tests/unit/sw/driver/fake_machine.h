@@ -31,13 +31,16 @@ class FakeMachine : public host::HostBus {
   static std::uint32_t pair_word(std::uint64_t capture, std::size_t side) {
     return static_cast<std::uint32_t>(capture * 2 + side + 1);
   }
+  static std::uint64_t camera_frame(std::uint64_t capture) { return capture << 32U | capture * 3; }
   static std::uint32_t result_word(std::uint32_t left, std::uint32_t right) { return left * 100'000 + right; }
 
   std::map<std::uint32_t, std::uint32_t> board;  // by board word
   std::uint64_t core_starts = 0;
   std::uint64_t captures = 0;  // pairs armed
   std::uint64_t triggers = 0;
-  std::optional<std::uint64_t> failing_capture;  // loses words
+  std::optional<std::uint64_t> failing_capture;    // loses words
+  std::optional<std::uint64_t> diverging_capture;  // its sides take different frames
+  bool failing_write = false;                      // the board refuses one that was posted
   bool failing_core = false;
   std::optional<std::uint32_t> failing_channel;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> uploads;  // board word, words; of DMA to the board
@@ -52,9 +55,11 @@ class FakeMachine : public host::HostBus {
     for (std::size_t side = 0; side < 2; ++side) {
       const std::uint64_t base = capture_base(side);
       if (address == base + capture::registers::kStatus) return capture_[side].status;
-      if (address == base + capture::registers::kFrameNumberLow)
-        return static_cast<std::uint32_t>(capture_[side].frame * 3);
-      if (address == base + capture::registers::kFrameNumberHigh) return 0;
+      const std::uint64_t frame = camera_frame(capture_[side].frame) +
+                                  (side == 1 && diverging_capture == capture_[side].frame ? 1 : 0);
+      if (address == base + capture::registers::kFrameNumberLow) return static_cast<std::uint32_t>(frame);
+      if (address == base + capture::registers::kFrameNumberHigh)
+        return static_cast<std::uint32_t>(frame >> 32U);
     }
     throw host::BusError("read of " + std::to_string(address));
   }
@@ -165,7 +170,10 @@ class FakeMachine : public host::HostBus {
       bases_[offset] = value;
       return;
     }
-    if ((value & regs::kControlAcknowledge) != 0) core_done_ = false;
+    if ((value & regs::kControlAcknowledge) != 0) {
+      EXPECT_TRUE(core_done_) << "nothing is to be acknowledged";
+      core_done_ = false;
+    }
     if ((value & regs::kControlStart) == 0) return;
     EXPECT_FALSE(core_busy_);
     EXPECT_FALSE(core_done_) << "not acknowledged: the doorbell would not ring again";
@@ -180,6 +188,7 @@ class FakeMachine : public host::HostBus {
     core_busy_ = false;
     core_done_ = true;
     interrupts_ |= pci::bridge::kDoorbell;
+    if (failing_write) interrupts_ |= pci::bridge::kPostedError;
     board[running_[2]] = result_word(board.at(running_[0]), board.at(running_[1]));
   }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <optional>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -79,7 +81,7 @@ TEST_P(StereoDriverBuffers, DeliverEveryFrameOnceAndInOrder) {
       EXPECT_EQ(listener.frames[frame], frame);
       EXPECT_EQ(listener.words[frame],
                 FakeMachine::result_word(FakeMachine::pair_word(frame, 0), FakeMachine::pair_word(frame, 1)));
-      EXPECT_EQ(listener.camera_frames[frame], frame * 3);
+      EXPECT_EQ(listener.camera_frames[frame], FakeMachine::camera_frame(frame));
     }
   }
 }
@@ -127,35 +129,50 @@ TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
   }
 }
 
-TEST(StereoDriver, StopsWithTheErrorOfACapture) {
+struct Failure {
+  const char* name;
+  std::function<void(FakeMachine&)> happens;
+  std::string said;
+  std::size_t most_frames;
+  bool copies = false;  // pairs, by DMA, and no tables
+};
+void PrintTo(const Failure& failure, std::ostream* out) { *out << failure.name; }
+
+class StereoDriverFailure : public testing::TestWithParam<Failure> {};
+
+TEST_P(StereoDriverFailure, EndsTheRun) {
+  const Failure& failure = GetParam();
+  DriverConfig config = small(2, 2, 10);
+  config.capture_to_host = failure.copies;
+  if (failure.copies) config.buffers.left_lut = config.buffers.right_lut = std::nullopt;
   Listener listener;
   FakeMachine machine(1);
-  machine.failing_capture = 3;
-  StereoDriver driver(small(2, 2, 10), kLeftTable, kRightTable, listener);
-  EXPECT_THROW(driver.run(machine), std::runtime_error);
-  EXPECT_LE(listener.words.size(), 3U);
+  failure.happens(machine);
+  const std::vector<std::uint32_t> none;
+  StereoDriver driver(config, failure.copies ? none : kLeftTable, failure.copies ? none : kRightTable,
+                      listener);
+  EXPECT_THAT([&] { driver.run(machine); },
+              testing::ThrowsMessage<std::runtime_error>("stereo driver: " + failure.said));
+  EXPECT_LE(listener.words.size(), failure.most_frames);
 }
 
-TEST(StereoDriver, StopsWithTheErrorOfTheCore) {
-  Listener listener;
-  FakeMachine machine(1);
-  machine.failing_core = true;
-  StereoDriver driver(small(2, 2, 10), kLeftTable, kRightTable, listener);
-  EXPECT_THROW(driver.run(machine), std::runtime_error);
-  EXPECT_TRUE(listener.words.empty());
-}
-
-TEST(StereoDriver, StopsWithTheErrorOfADmaChannel) {
-  for (const std::uint32_t channel : {0U, 1U}) {
-    Listener listener;
-    FakeMachine machine(1);
-    machine.failing_channel = channel;
-    StereoDriver driver(small(2, 2, 10), kLeftTable, kRightTable, listener);
-    EXPECT_THROW(driver.run(machine), std::runtime_error);
-    EXPECT_TRUE(listener.words.empty());
-    EXPECT_EQ(machine.core_starts > 0, channel == 1);  // without tables the core is not started
-  }
-}
+INSTANTIATE_TEST_SUITE_P(
+    StereoDriver, StereoDriverFailure,
+    testing::Values(Failure{"words_lost", [](FakeMachine& machine) { machine.failing_capture = 3; },
+                            "a capture board could not write its words", 3},
+                    Failure{"frames_differ", [](FakeMachine& machine) { machine.diverging_capture = 3; },
+                            "the capture boards have taken different frames", 3},
+                    Failure{"core", [](FakeMachine& machine) { machine.failing_core = true; },
+                            "the core has met an error", 0},
+                    Failure{"posted_write", [](FakeMachine& machine) { machine.failing_write = true; },
+                            "the board has refused a write", 0},
+                    Failure{"upload", [](FakeMachine& machine) { machine.failing_channel = 0; },
+                            "the tables could not be uploaded", 0},
+                    Failure{"copy", [](FakeMachine& machine) { machine.failing_channel = 0; },
+                            "DMA channel 0 has met an error", 0, true},
+                    Failure{"read_back", [](FakeMachine& machine) { machine.failing_channel = 1; },
+                            "DMA channel 1 has met an error", 0}),
+    [](const auto& tested) { return tested.param.name; });
 
 // Looks at the driver whenever it waits, or time passes with an access.
 class WatchedMachine : public FakeMachine {

@@ -54,25 +54,29 @@ TEST(Placements, ThatFitAreTold) {
 // Every way to put the buffers into banks, and which of them are the same but for an exchange of banks that
 // are alike.
 TEST(Placements, AreOneOfEachKindOfWayWithBanksThatDiffer) {
-  const BoardConfig board =
-      fpl2003({"ssram.banks={a: {}, b: {words: 1048576}, c: {}, d: {kind: zbt_flow_through}}",
-               "allocation={left_image: a, right_image: a, disparity: [a, b], left_lut: c, "
-               "right_lut: none}"});
-  const std::size_t buffers = platform::buffers(board.allocation).size();
-  ASSERT_EQ(buffers, 5U);
-  for (int most_banks = 1; most_banks <= 4; ++most_banks) {
-    std::set<Placement> expected;
-    for (int code = 0; code < 1024; ++code) {
-      Placement placement;
-      for (int i = 0; i < 5; ++i) placement.push_back(code >> (2 * i) & 3);
-      if (banks_used(placement) > most_banks) continue;
-      Placement exchanged = placement;  // a and c, which are alike
-      for (int& bank : exchanged) bank = bank == 0 ? 2 : bank == 2 ? 0 : bank;
-      expected.insert(std::min(placement, exchanged));
+  // Banks a and c are alike.
+  for (const char* const banks :
+       {"{a: {}, b: {words: 1048576}, c: {}, d: {kind: zbt_flow_through}}",
+        "{a: {kind: sync_burst, turnaround_cycles: 2}, b: {kind: sync_burst, turnaround_cycles: 1}, "
+        "c: {kind: sync_burst, turnaround_cycles: 2}, d: {}}"}) {
+    const BoardConfig board = fpl2003({std::string("ssram.banks=") + banks,
+                                       "allocation={left_image: a, right_image: a, disparity: [a, b], "
+                                       "left_lut: c, right_lut: none}"});
+    ASSERT_EQ(platform::buffers(board.allocation).size(), 5U);
+    for (int most_banks = 1; most_banks <= 4; ++most_banks) {
+      std::set<Placement> expected;
+      for (int code = 0; code < 1024; ++code) {
+        Placement placement;
+        for (int i = 0; i < 5; ++i) placement.push_back(code >> (2 * i) & 3);
+        if (banks_used(placement) > most_banks) continue;
+        Placement exchanged = placement;
+        for (int& bank : exchanged) bank = bank == 0 ? 2 : bank == 2 ? 0 : bank;
+        expected.insert(std::min(placement, exchanged));
+      }
+      const auto found = placements_of(board, most_banks);
+      EXPECT_EQ(std::set<Placement>(found.begin(), found.end()), expected) << banks << ' ' << most_banks;
+      EXPECT_EQ(found.size(), expected.size()) << "each once";
     }
-    const auto found = placements_of(board, most_banks);
-    EXPECT_EQ(std::set<Placement>(found.begin(), found.end()), expected) << most_banks;
-    EXPECT_EQ(found.size(), expected.size()) << "each once";
   }
 }
 
@@ -168,6 +172,55 @@ TEST(AllocationSearch, FindsTheBestForEachNumberOfBanks) {
   EXPECT_EQ(all.back().outcome.cycles, 2000U);
   EXPECT_EQ(all[2].outcome.cycles, 2000U) << "five banks are enough for the five buffers of each frame";
   EXPECT_EQ(all[0].outcome.cycles, 6000U);
+}
+
+TEST(AllocationSearch, FailsEachPlacementOfWhichAFrameFails) {
+  const BoardConfig board = fpl2003();
+  AllocationSearch search = core_search(board, 8);
+  const std::string failing = allocation_text(*search.point(1).board);
+  for (const std::size_t number : search.next()) {
+    AllocationOutcome outcome;
+    outcome.cycles = 1000;
+    if (number == 1) outcome = {0, 0, {}, false, "no slot consumed"};
+    search.record(number, outcome);
+  }
+  std::map<int, std::uint64_t> expected;  // by banks
+  for (const Placement& placement : placements_of(board, 8)) {
+    if (!fits(board, placement)) continue;
+    const bool fails = allocation_text(board_of_frame(board, placement, 0)) == failing ||
+                       allocation_text(board_of_frame(board, placement, 1)) == failing;
+    expected[banks_used(placement)] += std::uint64_t{fails};
+  }
+  std::uint64_t failed = 0;
+  for (const BestPlacement& best : search.best()) {
+    EXPECT_EQ(best.failed, expected[best.banks]) << best.banks;
+    EXPECT_EQ(best.reached_by, best.placements - best.failed) << "all others need the same cycles";
+    failed += best.failed;
+  }
+  EXPECT_GT(failed, 0U);
+  EXPECT_EQ(search.first_failure(), failing + ": no slot consumed");
+}
+
+TEST(AllocationSearch, TakesNoRateOfAPlacementThatLosesPixelsOrFails) {
+  const BoardConfig board = fpl2003();
+  AllocationSearch search(board, 3, {true, 0, ""}, no_bound);
+  const std::vector<std::size_t> numbers = search.next();  // as many banks each
+  ASSERT_GT(numbers.size(), 3U);
+  search.record(numbers[0], {1000, 50, 50, true, ""});
+  search.record(numbers[1], {1000, 40, 40, false, "no slot consumed"});
+  EXPECT_EQ(search.rate_to_reach(numbers[3]), 0);
+  ASSERT_EQ(search.best().size(), 1U);
+  EXPECT_EQ(search.best()[0].reached_by, 0U);
+  search.record(numbers[2], {1000, 20, 20, false, ""});
+  EXPECT_NEAR(search.rate_to_reach(numbers[3]), 20, 1e-6);
+  const BestPlacement best = search.best()[0];
+  EXPECT_EQ(best.known, 3U);
+  EXPECT_EQ(best.losing, 1U);
+  EXPECT_EQ(best.failed, 1U);
+  EXPECT_EQ(best.reached_by, 1U);
+  EXPECT_EQ(best.frames_per_second, 20);
+  EXPECT_EQ(placed(board, best.witness).allocation.left_image,
+            search.point(numbers[2]).board->allocation.left_image);
 }
 
 // Made-up rates of a computer, from 10 to 20 frames/s, and bounds by up to a tenth above them.

@@ -50,6 +50,19 @@ TEST(Conditions, MayBeAskedAgainForOtherBoards) {
   EXPECT_TRUE(conditions.hold(values_of(platform::load_board("fpl2003"))));
   EXPECT_FALSE(conditions.hold(values_of(platform::load_board("fpl2003", {"image.width=320"}))));
   EXPECT_TRUE(conditions.hold(values_of(platform::load_board("fpl2003"))));
+  Conditions of_load({"pci.\"load.burst_words\" = 8"});
+  EXPECT_TRUE(of_load.hold(
+      values_of(platform::load_board("fpl2003", {"pci.load={burst_words: 8, interval_us: 10}"}))));
+  EXPECT_FALSE(of_load.hold(values_of(platform::load_board("fpl2003"))));
+}
+
+TEST(Conditions, CountAsBanksWhatLiesBelowThem) {
+  const std::int64_t one = 1;
+  EXPECT_TRUE(Conditions({"ssram.banks = 2"})
+                  .hold({{"ssram.banks.a.words", one},
+                         {"ssram.default.words", one},
+                         {"ssram.banks.a.turnaround_cycles", one},
+                         {"ssram.banks.words.words", one}}));
 }
 
 std::string refusal(const std::string& text) {

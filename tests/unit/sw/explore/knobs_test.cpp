@@ -162,6 +162,13 @@ TEST(KnobSteps, MoveAllBuffersOfABankIntoAnother) {
   }
 }
 
+TEST(KnobSteps, LeaveBanksWithoutBuffersAlone) {
+  const BoardConfig board =
+      board_with({"ssram.banks={a: {words: 1048576}, spare: {words: 1048576}}",
+                  "allocation={left_image: a, right_image: a, disparity: a, left_lut: a, right_lut: none}"});
+  EXPECT_THAT(texts_of("a bank less", board), IsEmpty());
+}
+
 TEST(KnobSteps, OfTheBoardAloneLeaveTheComputerAsItIs) {
   std::set<std::string> knobs;
   for (const KnobStep& step : knob_steps(board_with({}), false)) knobs.insert(step.knob);

@@ -85,6 +85,18 @@ TEST_F(StoreTest, KeepsTheFirstOfTwoEqualPoints) {
   EXPECT_THAT(rows(file("a.db"), "SELECT cycles FROM points"), ElementsAre("7"));
 }
 
+TEST_F(StoreTest, AddsAPointAfterOneWithTheSameNewColumnsThatCouldNotBeAdded) {
+  Store store(file("a.db"), kVersion);
+  StoredPoint broken = point("h1");
+  broken.blame.push_back(broken.blame.front());  // twice the same row
+  EXPECT_THAT(message_of([&] { store.add(broken); }), HasSubstr("UNIQUE constraint failed"));
+  EXPECT_FALSE(store.has("h1"));
+  EXPECT_THAT(rows(file("a.db"), "SELECT count(*) FROM pragma_table_info('points')"), ElementsAre("5"));
+  EXPECT_TRUE(store.add(point("h1")));
+  EXPECT_THAT(rows(file("a.db"), "SELECT hash, \"image.width\", cycles FROM points"),
+              ElementsAre("h1|640|7"));
+}
+
 TEST_F(StoreTest, TakesPointsWithOtherFigures) {
   Store store(file("a.db"), kVersion);
   store.add(point("h1"));
@@ -185,7 +197,8 @@ TEST_F(StoreTest, KeepsColumnsWhoseNamesAreWordsOfSql) {
 TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
   StoredPoint wide = point("h2");
   wide.keys = {{"matcher.window", std::int64_t{7}}};
-  wide.figures = {{"banks.bank10.reads", std::int64_t{1}}, {"banks.bank2.reads", std::int64_t{2}}};
+  for (const char* const bank : {"bank10", "bank2", "bank1", "bank12", "bank"})
+    wide.figures.push_back({std::string("banks.") + bank + ".reads", std::int64_t{1}});
   { Store(file("a.db"), kVersion).add(point("h3")); }
   {
     Store b(file("b.db"), kVersion);
@@ -203,8 +216,8 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
   EXPECT_EQ(read_file(file("ab.db")), read_file(file("all.db")));
   EXPECT_THAT(rows(file("ab.db"), "SELECT hash FROM points"), ElementsAre("h1", "h2", "h3"));
   EXPECT_THAT(rows(file("ab.db"), "SELECT name FROM pragma_table_info('points') WHERE cid > 4"),
-              ElementsAre("banks.bank2.reads", "banks.bank10.reads", "cycles", "image.width",
-                          "matcher.window", "rate"));
+              ElementsAre("banks.bank.reads", "banks.bank1.reads", "banks.bank2.reads", "banks.bank10.reads",
+                          "banks.bank12.reads", "cycles", "image.width", "matcher.window", "rate"));
   EXPECT_THAT(rows(file("ab.db"), "SELECT hash, cycles FROM blame"), ElementsAre("h1|3", "h2|3", "h3|3"));
   merge_stores({file("ab.db")}, file("again.db"));
   EXPECT_EQ(read_file(file("again.db")), read_file(file("ab.db")));
@@ -308,7 +321,11 @@ TEST_F(StoreTest, DoesNotReplaceWhatIsNoStore) {
 
 TEST_F(StoreTest, LeavesFilesOfOthersBesideIt) {
   { Store(file("a.db"), kVersion).add(point("h1")); }
-  const std::vector<std::string> others = {"a.db.new", "a.db.merging-mine", "a.db.merging-0123456789abcdeX",
+  const std::vector<std::string> others = {"a.db.new",
+                                           "a.db.merging-mine",
+                                           "a.db.merging-0123456789abcdeX",
+                                           "a.db.merging-0123456789abcde",
+                                           "a.db.merging-0123456789abcdef0",
                                            "b.db.merging-0123456789abcdef"};
   for (const std::string& other : others) test::write_file(file(other), "mine");
   merge_stores({file("a.db")}, file("a.db"));

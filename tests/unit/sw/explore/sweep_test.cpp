@@ -16,6 +16,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "sw/explore/ended_by_signal.h"
@@ -155,6 +156,25 @@ TEST_F(SweepTest, GoesOnWhereItWasStopped) {
   } while (counts.done() < counts.total);
   EXPECT_GT(restarts, 1U);
   EXPECT_EQ(read_file(file("a.db")), expected);
+}
+
+// A plan's points again and again: more than could be handed out.
+class EndlessPoints : public Points {
+ public:
+  explicit EndlessPoints(Plan plan) : plan_(std::move(plan)) {}
+  std::uint64_t size() const override { return 1'000'000'000'000; }
+  Point point(std::uint64_t number) const override { return plan_.point(number % plan_.size()); }
+  const std::vector<std::string>& conditions() const override { return plan_.conditions(); }
+
+ private:
+  Plan plan_;
+};
+
+TEST_F(SweepTest, HandsOutNoPointsOnceItIsStopped) {
+  const SweepCounts counts = sweep(EndlessPoints(plan()), evaluate, options("a.db", 2),
+                                   [](const SweepCounts& now) { return now.done() == 0; });
+  EXPECT_GT(counts.done(), 0U);
+  EXPECT_LT(counts.done(), 1000U);
 }
 
 TEST_F(SweepTest, DoesNotRunAPointThatIsThere) {

@@ -65,6 +65,13 @@ TEST(SettingsTable, HasLongValuesInFull) {
   EXPECT_EQ(lines[3], "    B  none");
 }
 
+TEST(SettingsTable, HasAColumnForAsManyCharactersAsFit) {
+  const std::string fits(26, 'k');
+  const auto in_full = lines_of(settings_table("board", {{"filter", fits}}, {{"filter", fits + "k"}}));
+  EXPECT_EQ(in_full.size(), 4U);
+  EXPECT_EQ(lines_of(settings_table("board", {{"filter", fits}}, {integer("filter", 1)})).size(), 2U);
+}
+
 TEST(SettingsTable, EndsAfterTheMost) {
   Values a;
   for (std::size_t i = 0; i < kMostSettings; ++i) a.push_back(integer("file" + std::to_string(i), 1));
@@ -118,6 +125,19 @@ TEST(FramesTable, ShowsThoseThatCostOrGainMost) {
   EXPECT_EQ(words(lines[1]), "frame 2 1000 1003 +3");
   EXPECT_EQ(words(lines[3]), "frame 4 1000 900 -100");
   EXPECT_EQ(words(lines.back()), "2 more lines, in all +3");
+}
+
+TEST(FramesTable, WeighsALineWithAllItsFrames) {
+  std::vector<std::uint64_t> a(20, 1000);
+  std::vector<std::uint64_t> b(20, 1001);
+  for (std::size_t line = 0; line < kMostLines; ++line) {
+    a.push_back(1000);
+    b.push_back(1002 + line);
+  }
+  const auto lines = lines_of(frames_table(a, b));
+  ASSERT_EQ(lines.size(), kMostLines + 2);
+  EXPECT_EQ(words(lines[1]), "each of 20 frames, the first is 0 1000 1001 +1");
+  EXPECT_EQ(words(lines.back()), "1 more lines, in all +2");
 }
 
 fpga::RowProfile rows_of(const std::vector<std::uint64_t>& ends, std::uint64_t stalls) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <climits>
 #include <cstdlib>
+#include <string>
 
 #include "tests/support/scratch_folder.h"
 
@@ -49,17 +51,22 @@ TEST_F(TemporaryFolderTest, GoesWithItsFiles) {
 }
 
 TEST_F(TemporaryFolderTest, NamesAPlaceThatIsNoFolder) {
-  set("TMPDIR", "/nonexistent");
-  EXPECT_EQ(refusal(), "TMPDIR = /nonexistent: must be a folder");
   const std::string file = test::write_file(scratch_.path() / "file", "");
-  set("TMPDIR", file);
-  EXPECT_EQ(refusal(), "TMPDIR = " + file + ": must be a folder");
-  set("TMPDIR", file + "/below");
-  EXPECT_EQ(refusal(), "TMPDIR = " + file + "/below: must be a folder");
-  unsetenv("TMPDIR");
-  set("TEMP", "/proc");
+  for (const std::string& place : {(scratch_.path() / "none").string(), file, file + "/below"}) {
+    set("TMPDIR", place);
+    EXPECT_EQ(refusal(), "TMPDIR = " + place + ": must be a folder");
+  }
+}
+
+TEST_F(TemporaryFolderTest, NamesAFolderThatTakesNoFiles) {
+  // The path of a folder in it would be longer than a path can be.
+  fs::path deep = scratch_.path();
+  while (deep.native().size() + 102 < PATH_MAX) deep /= std::string(100, 'd');
+  deep /= std::string(PATH_MAX - 2 - deep.native().size(), 'd');
+  fs::create_directories(deep);
+  set("TEMP", deep);
   EXPECT_EQ(refusal(),
-            "TEMP = /proc: must be a folder that takes temporary files: No such file or directory");
+            "TEMP = " + deep.string() + ": must be a folder that takes temporary files: File name too long");
 }
 
 }  // namespace
