@@ -201,7 +201,6 @@ class FullDisk(ProgramTest):
         self.assertFalse(self.out.exists())
 
     def test_found_when_writing_leaves_no_file(self):
-        self.skip_under_address_sanitizer()
         process = self.run_with_file_limit(100)
         self.assertEqual((process.returncode, process.stdout), (1, ""))
         self.assertEqual(len(process.stderr.splitlines()), 1)
@@ -209,7 +208,6 @@ class FullDisk(ProgramTest):
         self.assertFalse(self.out.exists())
 
     def test_found_when_writing_keeps_the_earlier_result(self):
-        self.skip_under_address_sanitizer()
         self.succeeds(self.run_small("--out", self.out))
         earlier = self.result()
         largest = max(len(data) for data in earlier.values())
@@ -220,7 +218,6 @@ class FullDisk(ProgramTest):
         self.assertNotEqual(self.result(), earlier)
 
     def test_a_small_file_system(self):
-        self.skip_under_address_sanitizer()
         disk = self.folder / "disk"
         disk.mkdir()
         mount = f'mount -t tmpfs -o size=16k none "{disk}" && '
