@@ -42,6 +42,7 @@ auto* const kAbort = displaced<void(void*, void*)>("_ZN7sc_core13sc_cor_pkg_qt5a
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
 extern "C" void __sanitizer_start_switch_fiber(void** fake_stack, const void* bottom, std::size_t bytes) {
   const bool is_main = bottom == nullptr;
   kStartSwitch(fake_stack, is_main ? kMainStack.bottom : bottom, is_main ? kMainStack.bytes : bytes);

@@ -1,5 +1,7 @@
 """calibrate and --calibration: what is refused; the grid to print."""
 
+import os
+
 import program
 from calibrate_test import DISPARITIES, GRID, CalibrateTest
 from program import ProgramTest, pgm, run
@@ -27,14 +29,22 @@ class RefusedCalibrations(CalibrateTest):
         text = rig.read_text()
         for damaged, problem in (
             (text[: text.index("P2:")], "P2: missing: a calibration has this key"),
-            (text[: text.index("P2:") + 60], "P2: no matrix"),
+            (text[: text.index("P2:") + 60], "line 77: P2.data: no list: must be a list"),
             (text.replace("disparity_offset: 0", "disparity_offset: 1"), "must be those that its tables were made with"),
             (text.replace("image_height: 480", "image_height: tall"), "image_height: no integer"),
             ("", "must be %YAML:1.0"),
             (text.replace("Q: !!opencv-matrix", "Q: [1, 2"), "must be OpenCV FileStorage YAML"),
+            ("%YAML:1.0\n---\nM1:\n   a: 1\n   : : x\n", "image_width: missing"),
+            ("%YAML:1.0\n---\na: " + "[" * 50000, "line 3: nested too deeply"),
+            ("%YAML:1.0\n---\na: " + "1" * 2**20, "1048592 bytes: must be 1000000 at most"),
         ):
             rig.write_text(damaged)
-            self.refused_with(rig, problem)
+            self.refused_with(rig, f"--calibration '{rig}': {problem}")
+
+    def test_whose_table_is_too_long(self):
+        rig = self.copy_of_rig()
+        os.truncate(self.folder / "rig_left.lut", 2**40)
+        self.refused_with(rig, f"--calibration '{self.folder}/rig_left.lut': {2**40} bytes: must be 1228800 at most")
 
     def test_whose_tables_are_others(self):
         rig = self.copy_of_rig()
