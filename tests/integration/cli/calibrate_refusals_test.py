@@ -38,7 +38,7 @@ class RefusedCalibrations(CalibrateTest):
              "line 81: end of sequence flow not found: must be OpenCV FileStorage YAML"),
             ("%YAML:1.0\n---\nM1:\n   a: 1\n   : : x\n", "image_width: missing"),
             ("%YAML:1.0\n---\na: " + "[" * 50000, "line 3: nested too deeply"),
-            ("%YAML:1.0\n---\na: " + "1" * 2**20, "1048592 bytes: must be 1000000 at most"),
+            ("%YAML:1.0\n---\na: " + "1" * 2**20, "1048593 bytes: must be 1000000 at most"),
         ):
             rig.write_text(damaged)
             self.refused_with(rig, f"--calibration '{rig}': {problem}")
