@@ -173,7 +173,7 @@ std::optional<std::uint64_t> pnm_number(const Bytes& bytes, int index) {
   for (int field = 0; field <= index; ++field) {
     while (at < bytes.size() && std::isdigit(bytes[at]) == 0) {
       if (bytes[at] == '#') {
-        while (at < bytes.size() && bytes[at] != '\n') ++at;
+        while (at < bytes.size() && bytes[at] != '\n' && bytes[at] != '\r') ++at;
       } else {
         ++at;
       }

@@ -99,6 +99,11 @@ class RefusedPictures(CalibrateTest):
         self.refused_pictures(self.calibrate("--left", *left, "--right", self.pictures / "right_0[01].png"),
                               f"'{self.folder}/left_99.png': 32x24 pixels: must be as large as", "640x480")
 
+    def test_that_are_larger_than_a_boards_by_their_headers(self):
+        large = self.file("left_99.pgm", b"P5\n2052 2052\n255\n")
+        self.refused_pictures(self.calibrate("--left", large, "--right", self.pictures / "right_00.png"),
+                              f"--left '{large}': 2052x2052 pixels: a board's images are 2048x2048 at most")
+
     def test_that_are_none(self):
         broken = self.file("left_99.png", b"no picture")
         self.refused_pictures(self.calibrate("--left", broken, "--right", self.pictures / "right_00.png"),
