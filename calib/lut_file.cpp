@@ -15,8 +15,12 @@ std::string lut_bytes(const kernels::RectificationTable& table) {
   return bytes;
 }
 
+std::size_t lut_byte_count(int width, int height) {
+  return 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
 kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height) {
-  const std::size_t expected = 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const std::size_t expected = lut_byte_count(width, height);
   if (bytes.size() != expected) {
     throw std::runtime_error(std::to_string(bytes.size()) + " bytes: a table for " + std::to_string(width) +
                              "x" + std::to_string(height) + " pixels has " + std::to_string(expected));

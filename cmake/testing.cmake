@@ -2,10 +2,6 @@ find_package(GTest REQUIRED)
 find_package(rapidcheck REQUIRED)
 include(GoogleTest)
 
-# SystemC 2.3.4 leaves the leak sanitizer with the bounds of a process's stack for the main one; where part of that
-# memory is unmapped at the end, scanning it crashes.
-set(STEREOTLM_SYSTEMC_ENVIRONMENT LSAN_OPTIONS=use_stacks=0)
-
 set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test programs, behind all others")
 
 option(STEREOTLM_SLOW_TESTS "Build the tests with the label slow" ON)
@@ -39,15 +35,13 @@ function(stereotlm_add_test name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stereotlm_warnings)
   target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS} -fpch-preprocess)
-  set(environment)
   if(arg_SYSTEMC)
     target_link_libraries(${name} PRIVATE stereotlm_systemc_test_main)
     target_precompile_headers(${name} REUSE_FROM stereotlm_systemc_test_headers)
-    set(environment ENVIRONMENT ${STEREOTLM_SYSTEMC_ENVIRONMENT})
   else()
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
     target_precompile_headers(${name} REUSE_FROM stereotlm_test_headers)
   endif()
-  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${environment}
+  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
     DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "calib/calibration_reader.h"
 #include "calib/lut_file.h"
+#include "calib/storage_yaml.h"
 #include "calib/tables.h"
-#include "sw/cli/calibration_library.h"
 #include "sw/cli/rig_files.h"
 #include "sw/report/sha256.h"
 #include "sw/report/whole_file.h"
@@ -34,7 +35,7 @@ void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
 
 kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
                                        report::InputFile& file) {
-  const std::string content = report::read_whole_file(path);
+  const std::string content = report::read_whole_file(path, calib::lut_byte_count(rig.width, rig.height));
   file = described(path, content);
   if (file.sha256 != sha256) {
     throw std::runtime_error(
@@ -43,7 +44,7 @@ kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& r
   }
   try {
     return calib::parse_lut(content, rig.width, rig.height);
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("'{}': {}", path.string(), error.what()));
   }
 }
@@ -70,13 +71,12 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
-    const std::string content = report::read_whole_file(files.calibration);
+    const std::string content = report::read_whole_file(files.calibration, calib::kMostStorageBytes);
     input.described.file = described(files.calibration, content);
     try {
-      input.calibration =
-          std::make_shared<const calib::Calibration>(calibration_functions().parse_calibration(content));
+      input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));
       if (board != nullptr) check_board(input.calibration->rig, *board);
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       throw at_path(error.what());
     }
     const calib::Calibration& calibration = *input.calibration;

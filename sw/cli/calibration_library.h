@@ -17,7 +17,6 @@ struct CalibrationFunctions {
   // calibrate.h, calibration_yaml.h, matched_rows.h
   calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);
   std::string (*calibration_yaml)(const calib::Calibration& calibration);
-  calib::Calibration (*parse_calibration)(const std::string& text);
   calib::MatchedRows (*matched_rows)(const kernels::GrayImage& left, const kernels::GrayImage& right,
                                      int disparities);
   // drawings.h

@@ -8,7 +8,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/cli/calibration_library.h"
+#include "calib/calibration_reader.h"
+#include "calib/storage_yaml.h"
 #include "sw/report/whole_file.h"
 
 namespace stereotlm::cli {
@@ -108,7 +109,7 @@ void CalibrationOutput::check_earlier() const {
   if (makes_pictures_) check_folder(files_.pictures, kPictures);
   if (!is_there(files_.calibration)) return;
   try {
-    calibration_functions().parse_calibration(report::read_whole_file(files_.calibration));
+    calib::parse_calibration(report::read_whole_file(files_.calibration, calib::kMostStorageBytes));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("'{}': exists and is no calibration ({}): must be moved away",
                                          files_.calibration.string(), error.what()));

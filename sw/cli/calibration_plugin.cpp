@@ -13,11 +13,6 @@ int say_nothing(int /*status*/, const char* /*function*/, const char* /*message*
   return 0;
 }
 
-calib::Calibration parse(const std::string& text) {
-  cv::redirectError(say_nothing);
-  return calib::parse_calibration(text);
-}
-
 calib::CalibrationResult calibrate(const calib::CalibrationRequest& request) {
   cv::redirectError(say_nothing);
   return calib::calibrate(request);
@@ -31,7 +26,6 @@ extern const stereotlm::cli::CalibrationFunctions stereotlm_calibration_function
 const stereotlm::cli::CalibrationFunctions stereotlm_calibration_functions = {
     calibrate,
     calib::calibration_yaml,
-    parse,
     calib::matched_rows,
     calib::encode_corners_png,
     calib::encode_rectified_pair_png,

@@ -10,6 +10,7 @@ template <typename Text>
 void TypedOption<Text>::add_to(CLI::App& command, const std::string& name, const std::string& value,
                                const std::string& meaning) {
   option_ = command.add_option(name, text, meaning)->option_text(value);
+  option_->each([this](const std::string& /*word*/) { is_given_ = true; });
 }
 
 template <typename Text>
@@ -20,11 +21,6 @@ void TypedOption<Text>::takes(int least, int most) {
 template <typename Text>
 void TypedOption<Text>::takes_one_at_a_time() {
   option_->allow_extra_args(false);
-}
-
-template <typename Text>
-bool TypedOption<Text>::is_given() const {
-  return option_->count() > 0;
 }
 
 template struct TypedOption<std::string>;

@@ -27,7 +27,7 @@ struct MediaFunctions {
 
 // video.h
 struct VideoFunctions {
-  std::unique_ptr<media::Video> (*open_video)(const std::string& path);
+  std::unique_ptr<media::Video> (*open_video)(const std::string& path, const media::VideoSizeCheck& check);
 };
 
 // Throw std::runtime_error if the library cannot be loaded; it lies beside the program, as installed.

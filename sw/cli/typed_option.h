@@ -20,7 +20,7 @@ class Option;
 
 namespace stereotlm::cli {
 
-// An option as it was typed.
+// An option as it was typed. It stays where it is between add_to() and the end of parsing, which writes to it.
 template <typename Text>
 struct TypedOption {
   Text text;
@@ -33,11 +33,11 @@ struct TypedOption {
   // Of a list: one value each time that it is given, any number of times.
   void takes_one_at_a_time();
 
-  // As long as the command is there.
-  bool is_given() const;
+  bool is_given() const { return is_given_; }
 
  private:
-  CLI::Option* option_ = nullptr;
+  CLI::Option* option_ = nullptr;  // while the command is set up: its CLI::App goes when it is parsed
+  bool is_given_ = false;
 };
 using Typed = TypedOption<std::string>;
 using TypedList = TypedOption<std::vector<std::string>>;

@@ -14,21 +14,21 @@ namespace {
 
 using kernels::GrayImage;
 
-void check_size(const std::string& file, const media::Video& video, const PictureOptions::Video& options,
-                const platform::BoardConfig& board) {
+void check_size(const std::string& file, int video_width, int video_height,
+                const PictureOptions::Video& options, const platform::BoardConfig& board) {
   if (options.layout == VideoLayout::kTwo) {
-    if (const auto problem = size_problem(video.width(), video.height(), board))
+    if (const auto problem = size_problem(video_width, video_height, board))
       throw std::runtime_error(fmt::format("'{}'{}", file, *problem));
     return;
   }
   const int width = board.image.width * (options.layout == VideoLayout::kSideBySide ? 2 : 1);
   const int height = board.image.height * (options.layout == VideoLayout::kTopBottom ? 2 : 1);
-  if (video.width() == width && video.height() == height) return;
+  if (video_width == width && video_height == height) return;
   throw std::runtime_error(
       fmt::format("'{}': {}x{} pixels: must be as large as two of the board's images, {}x{}, with "
                   "--video-layout {}: {}x{}",
-                  file, video.width(), video.height(), board.image.width, board.image.height,
-                  options.layout_name, width, height));
+                  file, video_width, video_height, board.image.width, board.image.height, options.layout_name,
+                  width, height));
 }
 
 // The part of `image` of this size whose top left pixel is at (column, row).
@@ -56,9 +56,11 @@ VideoPairs::Contents VideoPairs::open(const PictureOptions::Video& options,
                                       const platform::BoardConfig* board) {
   Contents contents;
   for (const std::string& file : options.files) {
-    contents.videos.push_back(video_functions().open_video(file));
+    const auto check = [&](int width, int height) {
+      if (board != nullptr) check_size(file, width, height, options, *board);
+    };
+    contents.videos.push_back(video_functions().open_video(file, check));
     const media::Video& video = *contents.videos.back();
-    if (board != nullptr) check_size(file, video, options, *board);
     if (video.frames() < video.stated_frames()) {
       contents.notes.push_back(fmt::format("--video '{}': {} frames can be decoded; its header says {}", file,
                                            video.frames(), video.stated_frames()));

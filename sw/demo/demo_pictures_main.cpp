@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/calibration_yaml.h"
+#include "calib/calibration_reader.h"
 #include "calib/depth.h"
 #include "calib/lut_file.h"
 #include "models/kernels/stereo.h"

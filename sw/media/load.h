@@ -7,9 +7,10 @@
 
 namespace stereotlm::media {
 
-// Both functions take any format that OpenCV reads; the content decides, not the name. A picture is decoded
-// as stored: an EXIF orientation is not applied. Each throws one std::runtime_error `'path': what was found:
-// rule` for a file that is missing, not regular, empty, truncated, damaged, or no picture, and for alpha,
+// Both functions take the formats of kPictureFormats; the content decides, not the name. A picture is decoded
+// as stored: an EXIF orientation is not applied. One that is larger than the images of a board is not decoded
+// at all: its header says so. Each throws one std::runtime_error `'path': what was found: rule` for a file
+// that is missing, not regular, empty, truncated, damaged, too large, or no picture, and for alpha,
 // transparency, 16-bit, float, and grey of fewer than 8 bits (PNG of 1, 2, 4 bits; PNM with a maximum other
 // than 255), whose levels OpenCV would stretch or not, depending on the format. They print nothing: whatever
 // a decoder writes to the process's standard error goes aside during the call, so no other thread may write

@@ -7,14 +7,17 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <vector>
 
+#include "models/fpga/core_config.h"
 #include "sw/media/captured_stderr.h"
 #include "sw/media/media_file.h"
+#include "sw/media/picture_header.h"
 
 namespace stereotlm::media {
 namespace {
@@ -23,9 +26,14 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr const char* kRule = "a picture must be 8-bit grey or 8-bit colour, without alpha";
 
+// A file of the largest picture that a board takes: text, or colour with much beside it.
+constexpr std::uintmax_t kMostBytes = 16 * fpga::kWidthRule.max * fpga::kHeightRule.max;
+
 Bytes read_bytes(const std::string& path) {
   constexpr const char* kFileRule = "a picture must be a readable regular file";
   check_regular_file(path, kFileRule);
+  if (const std::uintmax_t size = std::filesystem::file_size(path); size > kMostBytes)
+    refuse(path, fmt::format("{} bytes", size), fmt::format("a picture must have {} at most", kMostBytes));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) refuse(path, std::strerror(errno), kFileRule);
   Bytes bytes;
@@ -43,9 +51,15 @@ bool starts_with(const Bytes& bytes, const std::string& text) {
   return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
 }
 
-// Walks the segments to the end-of-image marker. OpenCV 4.6 fills what a truncated sequential JPEG lacks and
-// reports nothing; every other format's truncation it notices when it decodes from memory.
-bool jpeg_is_complete(const Bytes& bytes) {
+struct JpegSegments {
+  int scans = 0;
+  bool is_complete = false;  // the end-of-image marker is there
+};
+
+// OpenCV 4.6 fills what a truncated sequential JPEG lacks and reports nothing; every other format's
+// truncation it notices when it decodes from memory.
+JpegSegments jpeg_segments(const Bytes& bytes) {
+  JpegSegments found;
   std::size_t at = 2;  // behind the start-of-image marker
   while (at + 1 < bytes.size()) {
     const int marker = bytes[at + 1];
@@ -56,13 +70,15 @@ bool jpeg_is_complete(const Bytes& bytes) {
     } else if (without_length) {
       at += 2;
     } else if (marker == 0xD9) {
-      return true;
+      found.is_complete = true;
+      return found;
     } else {
-      if (at + 3 >= bytes.size()) return false;
+      if (at + 3 >= bytes.size()) return found;
+      if (marker == 0xDA) ++found.scans;
       at += 2U + (static_cast<std::size_t>(bytes[at + 2]) << 8U | bytes[at + 3]);
     }
   }
-  return false;
+  return found;
 }
 
 bool png_has_chunk(const Bytes& bytes, const char* type) {
@@ -75,33 +91,17 @@ bool png_has_chunk(const Bytes& bytes, const char* type) {
   return false;
 }
 
-// The third number of a PGM or PPM header, where comments may stand between numbers; -1 if there is none.
-int pnm_maximum(const Bytes& bytes) {
-  std::size_t at = 2;
-  int number = -1;
-  for (int field = 0; field < 3; ++field) {
-    while (at < bytes.size() && std::isdigit(bytes[at]) == 0) {
-      if (bytes[at] == '#') {
-        while (at < bytes.size() && bytes[at] != '\n') ++at;
-      } else {
-        ++at;
-      }
-    }
-    number = -1;
-    while (at < bytes.size() && std::isdigit(bytes[at]) != 0 && number < 65536) {
-      number = (number < 0 ? 0 : number) * 10 + (bytes[at] - '0');
-      ++at;
-    }
-  }
-  return number;
-}
+// Of a progressive JPEG. An encoder makes a dozen; each is a pass over all pixels, and may be empty.
+constexpr int kMostScans = 100;
 
-// MAXVAL of a PAM header; -1 if there is none.
-int pam_maximum(const Bytes& bytes) {
-  const std::string header(
-      bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(1024, bytes.size())));
-  const std::size_t at = header.find("MAXVAL ");
-  return at == std::string::npos ? -1 : std::atoi(header.c_str() + at + 7);
+// Whether it may be decoded: OpenCV would reserve memory for whatever a header says.
+void check_size(const std::string& path, const std::optional<PictureSize>& size) {
+  if (!size) refuse(path, "truncated or damaged in its header", "a picture must be complete");
+  const auto width = static_cast<std::uint64_t>(fpga::kWidthRule.max);
+  const auto height = static_cast<std::uint64_t>(fpga::kHeightRule.max);
+  if (size->width <= width && size->height <= height) return;
+  refuse(path, fmt::format("{}x{} pixels", size->width, size->height),
+         fmt::format("a board's images are {}x{} at most", width, height));
 }
 
 // What OpenCV hides: levels that it stretches, transparency that it drops, greys that it takes for black.
@@ -124,9 +124,9 @@ void check_stored_form(const std::string& path, const Bytes& bytes) {
   const bool is_pnm = bytes.size() > 2 && bytes[0] == 'P' && std::isspace(bytes[2]) != 0;
   if (is_pnm && (bytes[1] == '1' || bytes[1] == '4')) refuse(path, "1-bit black and white", kRule);
   if (is_pnm && bytes[1] >= '2' && bytes[1] <= '7') {
-    const int maximum = bytes[1] == '7' ? pam_maximum(bytes) : pnm_maximum(bytes);
-    if (maximum >= 0 && maximum != 255) {
-      refuse(path, fmt::format("a maximum level of {}", maximum), "a PGM, PPM or PAM must state 255");
+    const auto maximum = bytes[1] == '7' ? pam_number(bytes, "MAXVAL") : pnm_number(bytes, 2);
+    if (maximum && *maximum != 255) {
+      refuse(path, fmt::format("a maximum level of {}", *maximum), "a PGM, PPM or PAM must state 255");
     }
   }
 }
@@ -146,26 +146,32 @@ std::string description(const cv::Mat& picture) {
 
 cv::Mat read_picture(const std::string& path) {
   const Bytes bytes = read_bytes(path);
+  const std::optional<PictureHeader> header = read_header(bytes);
+  if (!header) {
+    refuse(path, "not a picture in a format that is read",
+           fmt::format("a picture must be {}", kPictureFormats));
+  }
+  check_size(path, header->size);
+  const JpegSegments jpeg = header->is_jpeg ? jpeg_segments(bytes) : JpegSegments{1, true};
+  if (jpeg.scans > kMostScans) {
+    refuse(path, fmt::format("{} scans", jpeg.scans), fmt::format("a JPEG must have {} at most", kMostScans));
+  }
   cv::Mat picture;
-  bool known_format = true;
   std::string complaint;
   {
     CapturedStderr captured;
     try {
       picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-      if (picture.empty()) known_format = cv::haveImageReader(path);
     } catch (const cv::Exception&) {
       picture.release();
     }
     complaint = captured.text();
   }
-  if (!known_format) refuse(path, "not a picture in a format that OpenCV reads", kRule);
-  const bool is_jpeg = starts_with(bytes, "\xFF\xD8");
-  if (picture.empty() || (is_jpeg && !jpeg_is_complete(bytes))) {
-    refuse(path, "truncated, damaged or too large to decode", "a picture must be complete");
+  if (picture.empty() || !jpeg.is_complete) {
+    refuse(path, "truncated or damaged", "a picture must be complete");
   }
   // A warning of libjpeg only: it puts grey where scan data are damaged and carries on.
-  if (is_jpeg && complaint.find("Corrupt JPEG data") != std::string::npos) {
+  if (header->is_jpeg && complaint.find("Corrupt JPEG data") != std::string::npos) {
     refuse(path, "a damaged JPEG", "a picture must be complete");
   }
   if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3)) {

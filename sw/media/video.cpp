@@ -1,13 +1,17 @@
 #include "sw/media/video.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <stdexcept>
 
+#include "models/fpga/core_config.h"
 #include "sw/media/captured_stderr.h"
 #include "sw/media/media_file.h"
 
@@ -23,6 +27,20 @@ constexpr const char* kOptions =
 constexpr const char* kRule =
     "a video must be an AVI, Matroska, WebM, MP4, MPEG, Ogg, ASF, FLV or Y4M file that FFmpeg decodes";
 
+// A frame has the pictures of a pair beside each other or on top of each other.
+constexpr std::int64_t kMostWidth = 2 * fpga::kWidthRule.max;
+constexpr std::int64_t kMostHeight = 2 * fpga::kHeightRule.max;
+
+// A frame may be larger than the file's header says. No block of FFmpeg's memory is larger than the pixels of
+// such a pair take, 16 bits for each of four channels; a frame that needs more cannot be decoded.
+void limit_memory() {
+  constexpr std::size_t kMostBytes = 8 * 2 * fpga::kWidthRule.max * fpga::kHeightRule.max;
+  using Limit = void(std::size_t);
+  // OpenCV's own FFmpeg, which has no header here.
+  static auto* const limit = reinterpret_cast<Limit*>(dlsym(RTLD_DEFAULT, "av_max_alloc"));
+  if (limit != nullptr) limit(kMostBytes);
+}
+
 // The first line, without the address in "[h264 @ 0x5603dadfee80] ..".
 std::string first_complaint(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
@@ -33,13 +51,15 @@ std::string first_complaint(const std::string& text) {
 
 class FfmpegVideo : public Video {
  public:
-  explicit FfmpegVideo(const std::string& path) : path_(path) {
+  FfmpegVideo(const std::string& path, const VideoSizeCheck& check) : path_(path) {
     check_regular_file(path, "a video must be a readable regular file");
     CapturedStderr captured;
+    limit_memory();
     if (!open()) {
       const std::string complaint = captured.text();
       refuse(path_, complaint.empty() ? "no video" : "'" + first_complaint(complaint) + "'", kRule);
     }
+    check_header(check);
     const double stated = capture_.get(cv::CAP_PROP_FRAME_COUNT);
     if (stated >= 1 && stated < 1e15) stated_frames_ = static_cast<std::uint64_t>(stated);
     count();
@@ -48,6 +68,7 @@ class FfmpegVideo : public Video {
       refuse(path_, fmt::format("'{}'", first_complaint(complaint)), "a video must decode without errors");
     }
     if (frames_ == 0) refuse(path_, "no frame can be decoded", kRule);
+    check(size_.width, size_.height);
   }
 
   int width() const override { return size_.width; }
@@ -80,6 +101,16 @@ class FfmpegVideo : public Video {
     return is_open;
   }
 
+  void check_header(const VideoSizeCheck& check) const {
+    const auto width = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
+    const auto height = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
+    if (width > kMostWidth || height > kMostHeight) {
+      refuse(path_, fmt::format("{}x{} pixels", width, height),
+             fmt::format("two of a board's images are {}x{} at most", kMostWidth, kMostHeight));
+    }
+    check(width, height);
+  }
+
   // Leaves the video open at its end. OpenCV gives all frames the size of the first.
   void count() {
     for (; capture_.read(picture_); ++frames_) size_ = picture_.size();
@@ -104,6 +135,8 @@ class FfmpegVideo : public Video {
 
 }  // namespace
 
-std::unique_ptr<Video> open_video(const std::string& path) { return std::make_unique<FfmpegVideo>(path); }
+std::unique_ptr<Video> open_video(const std::string& path, const VideoSizeCheck& check) {
+  return std::make_unique<FfmpegVideo>(path, check);
+}
 
 }  // namespace stereotlm::media

@@ -1,6 +1,7 @@
 #include "sw/report/whole_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,7 +22,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
   file.close();
 }
 
-std::string read_whole_file(const std::filesystem::path& path) {
+std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   namespace fs = std::filesystem;
   const auto refuse = [&path](const std::string& cause) {
     throw std::runtime_error("'" + path.string() + "': " + cause);
@@ -31,6 +32,9 @@ std::string read_whole_file(const std::filesystem::path& path) {
   if (status.type() == fs::file_type::not_found) refuse("no such file");
   if (error) refuse(error.message());
   if (!fs::is_regular_file(status)) refuse("must be a regular file");
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error) refuse(error.message());
+  if (bytes > most_bytes) refuse(fmt::format("{} bytes: must be {} at most", bytes, most_bytes));
   std::ifstream file(path, std::ios::binary);
   std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file.is_open() || file.bad()) refuse(std::strerror(errno));

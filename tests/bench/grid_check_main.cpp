@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/calibration_yaml.h"
+#include "calib/calibration_reader.h"
 #include "calib/grid.h"
 #include "calib/grid_assessment.h"
 #include "sw/media/load.h"

@@ -122,6 +122,7 @@ class Allocate(ProgramTest):
         said, _, _ = self.compare(BURST, "preloaded", 1)
         self.assertIn("each allocation is a run of the first turn of its lists", said)
 
+    @program.slow
     def test_of_the_computer_is_the_best_of_all(self):
         said, rows, best = self.compare(BOARD, "camera", 13)
         self.assertIn("frames/s: 13 frames, from time 0 to the last delivery, without losing a pixel", said)
@@ -160,6 +161,7 @@ class Allocate(ProgramTest):
             said = self.succeeds(self.allocate("--source", "preloaded", "--keep-fps", "100", "--set", f"fpga.pipeline_latency_cycles={pipeline}", banks=1, board=self.board(KEPT)))
             self.assertRegex(said, r"100 % of it is kept with 1 banks \([\d.]+ frames/s, 100.00 %\), and not with fewer")
 
+    @program.slow
     def test_what_loses_pixels_does_not_count(self):
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=2))
         self.assertRegex(said, r" 1 +\d+ +\d+ +all lose pixels\n")
@@ -170,6 +172,7 @@ class Allocate(ProgramTest):
         self.assertIn("No allocation counts.", said)
         self.assertNotIn("are the same", said)
 
+    @program.slow
     def test_what_could_not_be_simulated_does_not_count(self):
         for source in ("preloaded", "camera"):
             before = self.succeeds(self.allocate("--source", source))
@@ -191,6 +194,7 @@ class Allocate(ProgramTest):
             self.assertEqual(self.rows(self.succeeds(self.allocate("--source", source)))[1][0], best[0])
             self.store.unlink()
 
+    @program.slow
     def test_too_many_allocations_are_refused(self):
         banks = ", ".join(f"x{depth}: {{words: {524288 + depth}}}" for depth in range(8))
         many = self.board("extends: fpl2003\nname: many\nssram: {banks: {" + banks + "}}\n"

@@ -1,5 +1,7 @@
 """calibrate and --calibration: what is refused; the grid to print."""
 
+import os
+
 import program
 from calibrate_test import DISPARITIES, GRID, CalibrateTest
 from program import ProgramTest, pgm, run
@@ -27,14 +29,24 @@ class RefusedCalibrations(CalibrateTest):
         text = rig.read_text()
         for damaged, problem in (
             (text[: text.index("P2:")], "P2: missing: a calibration has this key"),
-            (text[: text.index("P2:") + 60], "P2: no matrix"),
-            (text.replace("disparity_offset: 0", "disparity_offset: 1"), "must be those that its tables were made with"),
-            (text.replace("image_height: 480", "image_height: tall"), "image_height: no integer"),
-            ("", "must be %YAML:1.0"),
-            (text.replace("Q: !!opencv-matrix", "Q: [1, 2"), "must be OpenCV FileStorage YAML"),
+            (text[: text.index("P2:") + 60], "line 77: P2.data: no list: must be a list"),
+            (text.replace("disparity_offset: 0", "disparity_offset: 1"),
+             "matrices and disparity_offset: must be those that its tables were made with"),
+            (text.replace("image_height: 480", "image_height: tall"), "line 4: image_height: no integer"),
+            ("", "line 1: another beginning: must be %YAML:1.0"),
+            (text.replace("Q: !!opencv-matrix", "Q: [1, 2"),
+             "line 81: end of sequence flow not found: must be OpenCV FileStorage YAML"),
+            ("%YAML:1.0\n---\nM1:\n   a: 1\n   : : x\n", "image_width: missing"),
+            ("%YAML:1.0\n---\na: " + "[" * 50000, "line 3: nested too deeply"),
+            ("%YAML:1.0\n---\na: " + "1" * 2**20, "1048593 bytes: must be 1000000 at most"),
         ):
             rig.write_text(damaged)
-            self.refused_with(rig, problem)
+            self.refused_with(rig, f"--calibration '{rig}': {problem}")
+
+    def test_whose_table_is_too_long(self):
+        rig = self.copy_of_rig()
+        os.truncate(self.folder / "rig_left.lut", 2**40)
+        self.refused_with(rig, f"--calibration '{self.folder}/rig_left.lut': {2**40} bytes: must be 1228800 at most")
 
     def test_whose_tables_are_others(self):
         rig = self.copy_of_rig()
@@ -86,6 +98,11 @@ class RefusedPictures(CalibrateTest):
         left = [self.file("left_00.png", (self.pictures / "left_00.png").read_bytes()), self.folder / "left_99.png"]
         self.refused_pictures(self.calibrate("--left", *left, "--right", self.pictures / "right_0[01].png"),
                               f"'{self.folder}/left_99.png': 32x24 pixels: must be as large as", "640x480")
+
+    def test_that_are_larger_than_a_boards_by_their_headers(self):
+        large = self.file("left_99.pgm", b"P5\n2052 2052\n255\n")
+        self.refused_pictures(self.calibrate("--left", large, "--right", self.pictures / "right_00.png"),
+                              f"--left '{large}': 2052x2052 pixels: a board's images are 2048x2048 at most")
 
     def test_that_are_none(self):
         broken = self.file("left_99.png", b"no picture")

@@ -47,6 +47,7 @@ class Sources(DiffTest):
         process = run("diff", "a", "./b/", cwd=self.folder)
         self.assertIn("no difference", self.succeeds(process))
 
+    @program.slow
     def test_a_calibration(self):
         rig = self.folder / "rig.yaml"
         self.succeeds(run("calibrate", "--synthetic", "3", "--grid", "9x6", "--square-mm", "25", "--out", rig))

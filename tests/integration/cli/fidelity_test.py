@@ -164,6 +164,7 @@ class Verify(FidelityTest):
         self.assertNotIn("verify", json.loads((self.out / "run.json").read_text()))
         self.assertTrue(self.gone(child))
 
+    @program.slow
     def test_shows_how_far_the_comparison_is(self):
         frames = ["--timing-only", "--frames", "12"]
         terminal = Terminal(["run", "fpl2003", *PRELOADED, *frames, "--verify"])
@@ -199,6 +200,7 @@ class Verify(FidelityTest):
         terminal.finish()
         self.assertTrue(self.gone(child))
 
+    @program.slow
     def test_says_what_became_of_a_second_run_that_was_killed(self):
         terminal, child = self.start(*CYCLE, "--frames", "2000")
         os.kill(child, signal.SIGKILL)

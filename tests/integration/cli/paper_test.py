@@ -80,6 +80,7 @@ class Paper(ProgramTest):
             said = self.succeeds(run(*shlex.split(row["size_command"])[1:]))
             self.assertIn(f"({float(row['model_slices_percent']):.2f} %)", said)
 
+    @program.slow
     def test_banks_are_those_of_allocate(self):
         for claim in ("banks", "banks_of_matching"):
             rows = [row for row in self.table("banks") if row["claim"] == claim]
@@ -91,6 +92,7 @@ class Paper(ProgramTest):
                        rf"+{float(row['bound_frames_per_second']):.3f} +{row['reached_by']}  {row['allocation']}\n"
                 self.assertRegex(said, line)
 
+    @program.slow
     def test_a_run_of_the_computer_uses_the_banks_that_it_is_said_to(self):
         rows = [row for row in self.table("banks") if row["claim"] == "banks_of_computer"]
         self.assertEqual([row["banks"] for row in rows], ["5", "6", "7", "8"])
@@ -140,6 +142,7 @@ class Paper(ProgramTest):
         self.succeeds(subprocess.run(script, capture_output=True, text=True, timeout=300, check=False))
         return (folder / f"{name}.svg").read_text()
 
+    @program.slow
     def test_figures_take_numbers_and_boards_from_the_tables(self):
         self.assertEqual(self.texts_drawn("table1"), self.files["table1.svg"].decode())
         self.assertIn("640x480, 80 disparities, no filter, 40 MHz.", self.texts_drawn("table1"))
@@ -211,6 +214,7 @@ class Paper(ProgramTest):
             self.assertGreater(height, 500)
             self.assertIn("</svg>", self.files[name + ".svg"].decode())
 
+    @program.slow
     def test_is_written_again_over_itself_and_leaves_other_files(self):
         self.out.mkdir()
         (self.out / "run").write_text("script")
@@ -244,12 +248,14 @@ class Meanwhile(ProgramTest):
         self.assertEqual(self.end(process), (130, "stereotlm: note: interrupted: nothing was written\n"))
         self.assertFalse(self.out.exists())
 
+    @program.slow
     def test_a_second_one_into_the_folder_is_refused(self):
         process = self.begin()
         self.refused_in_one_line(run("paper", "--out", self.out), f"'{self.out}': in use by another run")
         self.assertEqual(self.end(process), (0, ""))
         self.assertEqual(sorted(self.result()), FILES)
 
+    @program.slow
     def test_what_comes_into_its_way_leaves_the_earlier_files(self):
         self.out.mkdir()
         for name in ("paper.md", "table1.csv"):

@@ -3,6 +3,7 @@
 The path of the program is the first argument of each test script.
 """
 
+import functools
 import json
 import os
 import pathlib
@@ -31,6 +32,20 @@ def run(*arguments, **options):
     """The finished process, with text output."""
     command = [PROGRAM] + [str(argument) for argument in arguments]
     return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+
+
+def has_address_sanitizer():
+    return b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()
+
+
+def slow(test):
+    """A test that is left out under the sanitizers: it takes seconds there, and others run the same code."""
+    @functools.wraps(test)
+    def wrapper(self):
+        if has_address_sanitizer():
+            self.skipTest("slow under the sanitizers")
+        test(self)
+    return wrapper
 
 
 def pgm(width, height, pixels):
@@ -165,11 +180,6 @@ class ProgramTest(unittest.TestCase):
 
     def refused_in_one_line(self, process, *texts):
         self.assertEqual(len(self.refused(process, *texts)), 1, process.stderr)
-
-    def skip_under_address_sanitizer(self):
-        """It takes an exception that is thrown after a simulation for damage: SystemC switches stacks."""
-        if b"__asan_init" in pathlib.Path(PROGRAM).read_bytes():
-            self.skipTest("the address sanitizer does not follow SystemC's stacks")
 
     def result(self, folder=None):
         """The bytes of all files of a result folder, by name."""

@@ -10,7 +10,6 @@
 
 #include "models/kernels/stereo.h"
 #include "platform/board_yaml.h"
-#include "tests/support/address_sanitizer.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/noise_picture.h"
@@ -194,7 +193,6 @@ TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
 }
 
 TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
-  if (test::kAddressSanitizer) GTEST_SKIP() << test::kNoExceptions;
   pairs.failing_frame = 5;
   build(100);
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
@@ -202,7 +200,6 @@ TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
 }
 
 TEST_F(CameraSimulationTest, SaysWhoWaitsForWhatWhenNothingGoesOn) {
-  if (test::kAddressSanitizer) GTEST_SKIP() << test::kNoExceptions;
   // A camera whose error is not thrown sends no lines: its capture never ends.
   sc_core::sc_report_handler::set_actions("/stereotlm/camera", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
   const test::ExpectedReport expected("/stereotlm/camera");

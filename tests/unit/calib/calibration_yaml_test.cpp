@@ -6,9 +6,14 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "calib/calibration_reader.h"
 #include "calib/opencv_types.h"
+#include "calib/storage_yaml.h"
 #include "calib/synthetic_rig.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -95,22 +100,66 @@ TEST(CalibrationYaml, WithoutHeldOutPairsIsRead) {
 }
 
 TEST(CalibrationYaml, ThatIsNoneIsRefused) {
-  EXPECT_THAT(refusal(""), HasSubstr("first line: another: must be %YAML:1.0"));
-  EXPECT_THAT(refusal("P5\n2 2\n255\n0000"), HasSubstr("first line: another: must be %YAML:1.0"));
-  EXPECT_THAT(refusal("%YAML:1.0\n---\nM1: [1, 2\n"), HasSubstr("must be OpenCV FileStorage YAML"));
-  EXPECT_THAT(refusal("%YAML:1.0\n---\nother: 1\n"), HasSubstr("image_width: missing"));
+  const std::string begin = "%YAML:1.0\n---\n";
+  const std::string no_storage = ": must be OpenCV FileStorage YAML";
+  for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
+           {"", "line 1: another beginning: must be %YAML:1.0"},
+           {"P5\n2 2\n255\n0000", "line 1: another beginning: must be %YAML:1.0"},
+           {begin, "line 3: no map of keys and values" + no_storage},
+           {begin + "- 1\n", "line 3: no map of keys and values" + no_storage},
+           {begin + "other: 1\n", "image_width: missing: a calibration has this key"},
+           {begin + "a: 1\nM1: [1, 2\n", "line 5: end of sequence flow not found" + no_storage},
+           {begin + "M1:\n   a: 1\n   : : x\n", "image_width: missing: a calibration has this key"},
+           {begin + "a: 1\nb: 2\na: 3\n", "line 5: a: must be there once"},
+           {begin + "a: &x 1\n", "line 3: an anchor or alias" + no_storage},
+           {begin + "[a, b]: 1\n", "line 3: a key that is a map or list" + no_storage},
+           {begin + "a: 1\n---\nb: 2\n", "line 4: a second document: must be the only one"},
+           {begin + "a: 1\nb: \x04\n", "line 4: control character 0x04" + no_storage},
+       }) {
+    EXPECT_EQ(refusal(text), problem) << text;
+  }
+}
+
+TEST(CalibrationYaml, WithoutBoundIsRefusedWithoutBoundlessWork) {
+  const std::string begin = "%YAML:1.0\n---\na: ";
+  for (const std::string part : {"[", "{a: ", "- ", "\n- ", "? ", "a: ", "[a, ", "\"", "!", "!!a ", "&a ",
+                                 "*a ", "#", "\n ", "|\n ", ",", ": ", "[1,"}) {
+    std::string text = begin;
+    while (text.size() + part.size() <= kMostStorageBytes) text += part;
+    EXPECT_NE(refusal(text), "not refused") << part;
+  }
+  const std::string deep = "line 3: nested too deeply: 8 maps and lists in each other at most";
+  EXPECT_EQ(refusal(begin + std::string(50'000, '[')), deep);
+  EXPECT_EQ(refusal(begin + "1 " + std::string(kMostStorageBytes, '#')),
+            "1000019 bytes: must be 1000000 at most");
+}
+
+TEST(CalibrationYaml, ThatCouldNotBeReadIsNotWritten) {
+  Calibration made = calibration();
+  made.sources.assign(2000, {std::string(250, 'l'), std::string(250, 'r'), 54});
+  EXPECT_THAT(test::message_of([&] { calibration_yaml(made); }),
+              HasSubstr("a calibration of 2000 pairs = 11"));
 }
 
 TEST(CalibrationYaml, ThatIsDamagedIsRefusedWithItsKey) {
   const std::string text = calibration_yaml(calibration());
   EXPECT_THAT(refusal(replaced(text, "image_width: 320", "image_width: 0")),
-              HasSubstr("image_width: 0: must be"));
+              HasSubstr("line 3: image_width: 0: must be"));
   EXPECT_THAT(refusal(replaced(text, "image_width: 320", "image_width: wide")),
               HasSubstr("image_width: no integer"));
   EXPECT_THAT(refusal(replaced(text, "disparity_offset: -7", "offset: -7")),
               HasSubstr("disparity_offset: missing"));
   EXPECT_THAT(refusal(replaced(text, "M2:", "M3:")), HasSubstr("M2: missing"));
-  EXPECT_THAT(refusal(replaced(text, "rows: 3\n   cols: 1", "rows: 1\n   cols: 3")), HasSubstr("T: "));
+  EXPECT_THAT(refusal(replaced(text, "rows: 3\n   cols: 1", "rows: 1\n   cols: 3")),
+              HasSubstr("T: 1x3 of d: must be 3x1 of d, doubles"));
+  EXPECT_THAT(refusal(replaced(text, "rows: 3\n   cols: 1\n   dt: d", "rows: 3\n   cols: 1\n   dt: f")),
+              HasSubstr("T: 3x1 of f: must be 3x1 of d, doubles"));
+  EXPECT_THAT(refusal(replaced(text, "0., 0., 1. ]", "0., 1. ]")),
+              HasSubstr("M1.data: 8 numbers: must be 9"));
+  EXPECT_THAT(refusal(replaced(text, "0., 0., 1. ]", "0., 0., one ]")),
+              HasSubstr("line 14: M1.data: no number: must hold numbers"));
+  EXPECT_THAT(refusal(replaced(text, "square_mm: ", "square_mm: mm")),
+              HasSubstr("grid.square_mm: no number"));
   EXPECT_THAT(refusal(text.substr(0, text.find("P2:"))), HasSubstr("P2: missing"));
   EXPECT_THAT(refusal(text.substr(0, text.find("quality:"))), HasSubstr("quality: missing"));
 }
@@ -130,7 +179,7 @@ TEST(CalibrationYaml, WithMatricesThatCannotBeIsRefused) {
   EXPECT_THAT(refusal(calibration_yaml(made)), HasSubstr("M1: no camera"));
   made = calibration();
   made.rig.translation.x() = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(refusal(calibration_yaml(made)), HasSubstr("T: not finite"));
+  EXPECT_THAT(refusal(calibration_yaml(made)), HasSubstr("T.data: not finite"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -16,6 +17,7 @@
 namespace stereotlm::media {
 namespace {
 
+namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 std::string encoded(const char* extension, const cv::Mat& picture, const std::vector<int>& parameters = {}) {
@@ -197,9 +199,10 @@ TEST_F(LoadTest, RefusesWhatIsNotAReadableFile) {
 
 TEST_F(LoadTest, RefusesWhatIsNotAPicture) {
   EXPECT_THAT(refusal_of_bytes(""), HasSubstr("an empty file: "));
-  EXPECT_THAT(refusal_of_bytes("x"), HasSubstr("not a picture in a format that OpenCV reads: "));
+  EXPECT_THAT(refusal_of_bytes("x"),
+              HasSubstr("not a picture in a format that is read: a picture must be PNG, "));
   EXPECT_THAT(refusal_of_bytes(std::string(5000, 't')),
-              HasSubstr("not a picture in a format that OpenCV reads: "));
+              HasSubstr("not a picture in a format that is read: a picture must be PNG, "));
 }
 
 // Every prefix of a file either lacks pixels, and is refused, or holds them all, and gives the same picture.
@@ -246,7 +249,7 @@ TEST_F(LoadTest, RefusesATruncatedFileOfAnyFormat) {
 }
 
 TEST_F(LoadTest, SaysThatATruncatedFileIsTruncated) {
-  const std::string expected = "truncated, damaged or too large to decode: a picture must be complete";
+  const std::string expected = "truncated or damaged: a picture must be complete";
   for (const char* extension : {".png", ".jpg", ".bmp"}) {
     const std::string whole = encoded(extension, noise(CV_8UC1));
     EXPECT_EQ(refusal_of_bytes(whole.substr(0, whole.size() / 2)), expected) << extension;
@@ -280,12 +283,79 @@ TEST_F(LoadTest, RefusesDamagedFiles) {
   EXPECT_THAT(refusal_of_bytes(png), HasSubstr("damaged"));
 }
 
-TEST_F(LoadTest, RefusesAPictureTooLargeToDecode) {
+TEST_F(LoadTest, RefusesAPictureThatIsLargerThanABoardsByItsHeader) {
+  struct Format {
+    const char* extension;
+    std::vector<int> parameters;
+    int type = CV_8UC1;
+  };
+  const std::string rule = " pixels: a board's images are 2048x2048 at most";
+  for (const Format& format : {Format{".png", {}},
+                               {".jpg", {}},
+                               {".jpg", {cv::IMWRITE_JPEG_PROGRESSIVE, 1}},
+                               {".bmp", {}},
+                               {".pgm", {}},
+                               {".ppm", {cv::IMWRITE_PXM_BINARY, 0}, CV_8UC3},
+                               {".pam", {}},
+                               {".tiff", {}},
+                               {".webp", {}, CV_8UC3},
+                               {".webp", {cv::IMWRITE_WEBP_QUALITY, 101}, CV_8UC3},  // lossless
+                               {".webp", {}, CV_8UC4},
+                               {".jp2", {}},
+                               {".ras", {}, CV_8UC3}}) {
+    const auto bytes = [&format](int width, int height) {
+      return encoded(format.extension, cv::Mat(height, width, format.type, cv::Scalar::all(99)),
+                     format.parameters);
+    };
+    EXPECT_EQ(refusal_of_bytes(bytes(2049, 32)), "2049x32" + rule) << format.extension;
+    EXPECT_EQ(refusal_of_bytes(bytes(32, 2049)), "32x2049" + rule) << format.extension;
+    if (format.type == CV_8UC4) continue;  // has alpha
+    EXPECT_EQ(load_gray(file(bytes(2048, 32))).image.width, 2048) << format.extension;
+    EXPECT_EQ(load_gray(file(bytes(32, 2048))).image.height, 2048) << format.extension;
+  }
+}
+
+// The pixels alone would take gigabytes.
+TEST_F(LoadTest, DecodesNothingOfAPictureThatIsTooLarge) {
   const std::string png = encoded(".png", noise(CV_8UC1));
   std::string header = png.substr(16, 13);
-  header.replace(0, 8, std::string("\0\1\0\0\0\1\0\0", 8));  // 65536 x 65536
+  header.replace(0, 8, std::string("\0\0\xFF\0\0\0\xFF\0", 8));
   EXPECT_THAT(refusal_of_bytes(png.substr(0, 8) + png_chunk("IHDR", header) + png.substr(33)),
-              HasSubstr("too large to decode"));
+              HasSubstr("65280x65280 pixels: "));
+  std::string jpeg = encoded(".jpg", noise(CV_8UC1));
+  jpeg.replace(jpeg.find("\xFF\xC0") + 5, 4, "\xFF\x10\xFF\x20");
+  EXPECT_THAT(refusal_of_bytes(jpeg), HasSubstr("65312x65296 pixels: "));
+  // One tile, or one strip, that is larger than the picture.
+  std::string tiff = encoded(".tiff", noise(CV_8UC1), {cv::IMWRITE_TIFF_COMPRESSION, 1});
+  const std::size_t rows_per_strip = tiff.find(std::string("\x16\x01\x03\0\x01\0\0\0", 8));
+  ASSERT_NE(rows_per_strip, std::string::npos);
+  EXPECT_THAT(refusal_of_bytes(std::string(tiff).replace(rows_per_strip + 8, 2, "\xFF\xFF")),
+              HasSubstr("48x65535 pixels: "));
+  EXPECT_THAT(refusal_of_bytes(std::string("P5\n# 1 1\n99999999999 1\n255\n") + "x"),
+              HasSubstr("1000000000x1 pixels: "));
+}
+
+TEST_F(LoadTest, DecodesAHundredScansOfAJpegAtMost) {
+  const std::string jpeg = encoded(".jpg", noise(CV_8UC1), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  const std::size_t last = jpeg.rfind("\xFF\xDA");
+  int scans = 0;
+  for (std::size_t at = jpeg.find("\xFF\xDA"); at != std::string::npos; at = jpeg.find("\xFF\xDA", at + 1))
+    ++scans;
+  const auto with_scans = [&](int number) {
+    std::string more = jpeg;
+    for (; number > scans; --number) more.insert(last, jpeg, last, jpeg.size() - 2 - last);
+    return more;
+  };
+  EXPECT_NO_THROW(load_gray(file(with_scans(100))));
+  EXPECT_EQ(refusal_of_bytes(with_scans(101)), "101 scans: a JPEG must have 100 at most");
+}
+
+TEST_F(LoadTest, ReadsNothingOfAFileThatIsTooLong) {
+  const std::string path = file("P5\n2 1\n255\nab");
+  fs::resize_file(path, 16 * 2048 * 2048);
+  EXPECT_NO_THROW(load_gray(path));
+  fs::resize_file(path, std::uintmax_t{1} << 40U);
+  EXPECT_EQ(refusal(path), "'" + path + "': 1099511627776 bytes: a picture must have 67108864 at most");
 }
 
 TEST_F(LoadTest, TruthIsGreyWithItsScale) {

@@ -34,6 +34,10 @@ std::vector<std::uint8_t> grey_pixels_of(const cv::Mat& colour) {
   return pixels_of(grey);
 }
 
+std::unique_ptr<Video> open_video(const std::string& path) {
+  return media::open_video(path, [](int /*width*/, int /*height*/) {});
+}
+
 class VideoTest : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return scratch_.path() / name; }
@@ -162,6 +166,28 @@ TEST_F(VideoTest, RefusesAPlaylistWhoseFilesNobodyHasNamed) {
                                        "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXTINF:1,\na.mp4\n"
                                        "#EXT-X-ENDLIST\n")),
               StartsWith("'[hls] Format not on whitelist"));
+}
+
+TEST_F(VideoTest, LooksAtTheSizeBeforeItDecodesAFrame) {
+  const std::string large = written("large.avi", "FFV1", 1, CV_8UC1, {4098, 32});
+  EXPECT_EQ(refusal(large), "4098x32 pixels: two of a board's images are 4096x4096 at most");
+  EXPECT_EQ(open_video(written("wide.avi", "FFV1", 1, CV_8UC1, {4096, 32}))->width(), 4096);
+  std::string bytes = test::read_file(written("m.avi", "MJPG", 3));
+  bytes.replace(bytes.size() / 2, 200, std::string(200, 'x'));
+  const std::string damaged = test::write_file(path("damaged.avi"), bytes);
+  EXPECT_THAT(refusal(damaged), HasSubstr("a video must decode without errors"));
+  const auto check = [](int width, int height) {
+    throw std::runtime_error(std::to_string(width) + "x" + std::to_string(height));
+  };
+  EXPECT_EQ(test::message_of([&] { media::open_video(damaged, check); }), "64x48");
+}
+
+TEST_F(VideoTest, ReservesNoMemoryForAFrameThatIsLargerThanTheHeaderSays) {
+  std::string bytes = test::read_file(written("png.avi", "MPNG", 2));
+  const std::size_t at = bytes.rfind("IHDR");
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at + 4, 8, std::string("\0\0\x3E\x80\0\0\x3E\x80", 8));  // 16000x16000
+  EXPECT_THAT(refusal(test::write_file(path("png.avi"), bytes)), StartsWith("'[png] get_buffer() failed'"));
 }
 
 TEST_F(VideoTest, RefusesADamagedVideo) {
