@@ -95,7 +95,7 @@ std::string path_problem(const std::string& path) {
     if (known.empty()) return fmt::format("{} has no keys below it", schema);
     const bool is_bank = schema == "ssram.banks" && !part.empty();
     if (!is_bank && std::find(known.begin(), known.end(), part) == known.end()) {
-      return "unknown key; nearest known key: " + nearest_path(path);
+      return unknown_key_text(path);
     }
     schema += (schema.empty() ? "" : ".") + (is_bank ? "NAME" : part);
   }
@@ -118,9 +118,8 @@ BoardDraft::BoardDraft(const std::string& board) {
     const std::vector<std::string> names = preset_names();
     if (std::find(names.begin(), names.end(), board) == names.end()) {
       fail(board.empty() ? "(empty)" : board,
-           fmt::format(
-               "not a preset, and not a path, which has a / or ends in .yaml; nearest: {}; presets: {}",
-               nearest_word(board, names), listed(names)));
+           fmt::format("not a preset, and not a path, which has a / or ends in .yaml{}; presets: {}",
+                       nearest_text(board, names), listed(names)));
     }
     board_name_ = "preset " + board;
     text = preset_text(board);
@@ -167,8 +166,7 @@ void BoardDraft::resolve_extends() {
       report(value.place, value, misuse);
     } else if (!is_known) {
       report(value.place, value,
-             fmt::format("not a preset; nearest: {}; presets: {}",
-                         nearest_word(value.is_scalar() ? value.text : "", names), listed(names)));
+             fmt::format("not a preset{}; presets: {}", nearest_text(value.text, names), listed(names)));
     }
     if (is_known) base = of_preset(value.text).tree_;
     is_whole_ = is_known;

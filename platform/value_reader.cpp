@@ -63,7 +63,7 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
     if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
       const bool is_bank = path == "ssram.banks";
       report(entry.key.place, full, short_text(entry.value),
-             is_bank ? kBankNameRule : "unknown key; nearest known key: " + nearest_path(full));
+             is_bank ? kBankNameRule : unknown_key_text(full));
     } else if (const auto [first, is_new] = entries.emplace(entry.key.text, &entry); !is_new) {
       report_repeated(entry, *first->second, full);
     }

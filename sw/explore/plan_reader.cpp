@@ -133,9 +133,8 @@ class PlanReader {
       const std::string full = platform::below(path, name);
       const auto [at, is_new] = first.emplace(name, entry.key.place);
       if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) {
-        report(entry.key.place,
-               fmt::format("{} = {}: unknown key; nearest: {}; keys: {}", full, short_text(entry.value),
-                           platform::nearest_word(name, known), platform::listed(known)));
+        report(entry.key.place, fmt::format("{} = {}: unknown key{}; keys: {}", full, short_text(entry.value),
+                                            platform::nearest_text(name, known), platform::listed(known)));
       } else if (!is_new) {
         report(entry.key.place, fmt::format("{} = {}: repeated key, first at {}:{}", full,
                                             short_text(entry.value), at->second.line, at->second.column));
