@@ -243,6 +243,11 @@ std::optional<std::size_t> slips_of_path(std::string_view path, std::string_view
   return slips(path, known);
 }
 
+bool is_below(std::string_view path, std::string_view section) {
+  return path.size() > section.size() && path[section.size()] == '.' &&
+         path.substr(0, section.size()) == section;
+}
+
 std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
 // The known path nearest to one that is not known; empty if none is near. Below `ssram.banks` any name of a
@@ -257,11 +262,12 @@ std::string nearest_path(const std::string& path) {
     best_distance = *distance;
   };
   const auto offer_known = [&](const std::string& known) {
-    if (schema.compare(0, known.size() + 1, known + '.') == 0) return;  // the section that it is in
+    if (is_below(schema, known)) return;  // the section that it is in
     offer(known, slips_of_path(schema, known));
     // The right key in the wrong place costs less than most wrong keys in the right place.
     if (const auto moved = slips(last_part(schema), last_part(known))) offer(known, *moved + 2);
   };
+  offer_known("extends");
   for (const Key& key : board_keys()) {
     for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
       offer_known(key.path.substr(0, dot));
@@ -326,6 +332,17 @@ const Key& board_key(std::string_view path) {
 const std::vector<std::string>& child_keys(std::string_view path) { return names_below(path).all; }
 
 const std::vector<std::string>& required_keys(std::string_view path) { return names_below(path).required; }
+
+std::size_t required_count(std::string_view path) {
+  const auto& names = required_keys(path);
+  const bool is_key = std::any_of(board_keys().begin(), board_keys().end(),
+                                  [path](const Key& key) { return key.path == path; });
+  if (is_key || names.empty()) return 1;
+  std::size_t count = 0;
+  for (const std::string& name : names)
+    count += required_count(path.empty() ? name : std::string(path) + '.' + name);
+  return count;
+}
 
 std::string rule_text(std::string_view path) {
   for (const Key& key : board_keys()) {

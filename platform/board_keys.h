@@ -58,6 +58,9 @@ const std::vector<std::string>& child_keys(std::string_view path);
 // Those of child_keys() that are not optional.
 const std::vector<std::string>& required_keys(std::string_view path);
 
+// How many keys a board needs at the path or below it; 1 for the banks. "" is all of them.
+std::size_t required_count(std::string_view path);
+
 // The rule of a key, or for a map what it holds: "a map of width, height".
 std::string rule_text(std::string_view path);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -42,6 +43,21 @@ board.yaml:9:72: matcher.fetch = columns: column or line_buffer
 board.yaml:9:95: matcher.lr_tolerance = false: not an integer (decimal digits, not in quotes); 0..253 or off
 board.yaml:10:1: << = {x: 1}: unknown key, and no known key is near
 board.yaml:11:1: [a, b] = 3: unknown key, and no known key is near)");
+}
+
+TEST(BoardSyntax, CountsWhatIsWrongBeyondTwentyLines) {
+  const auto refusal = [](int count) {
+    std::string text = "extends: fpl2003\n";
+    for (int i = 0; i < count; ++i) text += fmt::format("x{}: 1\n", i);
+    return refusal_of(text);
+  };
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n') + 1; };
+  const auto last = [](const std::string& text) { return text.substr(text.rfind('\n') + 1); };
+  EXPECT_EQ(lines(refusal(20)), 20);
+  EXPECT_EQ(last(refusal(20)), "board.yaml:21:1: x19 = 1: unknown key, and no known key is near");
+  EXPECT_EQ(lines(refusal(21)), 21);
+  EXPECT_EQ(last(refusal(21)), "and 1 error more");
+  EXPECT_EQ(last(refusal(100'000)), "and 99980 errors more");
 }
 
 TEST(BoardSyntax, CountsColumnsInCharacters) {
