@@ -39,6 +39,8 @@ constexpr unsigned kMostJobs = 1024;
 constexpr std::uint64_t kMostShards = 1000;  // of a job array: merge opens all their files
 constexpr std::uint64_t kDefaultShards = 16;
 constexpr std::chrono::seconds kBetweenCounts{2};
+constexpr std::chrono::seconds kBriefPatience{
+    5};  // with who keeps a database locked that is looked at once more
 
 constexpr const char* kFooter =
     "A plan is a YAML file, such as\n"
@@ -310,6 +312,17 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   return kInterrupted;
 }
 
+// What is said behind an error: nothing where the database cannot be read.
+std::string kept_text(const std::string& store) {
+  try {
+    explore::Database(store, explore::Database::Access::kRead, kBriefPatience)
+        .number("SELECT count(*) FROM points");
+    return "; what is done is kept: the same command goes on with it";
+  } catch (const explore::DatabaseError&) {
+    return "";
+  }
+}
+
 // The file of --progress, if there is any.
 class ProgressFile {
  public:
@@ -367,10 +380,12 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
         });
     progress.erase();
     file.write(counts);
+  } catch (const explore::StoreGone&) {
+    progress.erase();
+    throw;
   } catch (const std::exception& error) {
     progress.erase();
-    throw std::runtime_error(
-        fmt::format("{}; what is done is kept: the same command goes on with it", error.what()));
+    throw std::runtime_error(error.what() + kept_text(options.sweep.store));
   }
   return report(counts, options);
 }

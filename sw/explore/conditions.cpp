@@ -59,7 +59,7 @@ bool is_bank_words(const std::string& path) {
 }  // namespace
 
 Conditions::Conditions(const std::vector<std::string>& texts)
-    : database_(":memory:", Database::Access::kCreate) {
+    : database_("where", Database::Access::kMemory) {
   for (const std::string& text : texts) {
     try {
       statements_.push_back(std::make_unique<Statement>(database_, query(text)));

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <variant>
 
 namespace stereotlm::explore {
@@ -40,16 +41,24 @@ int flags_of(Database::Access access) {
     case Database::Access::kWrite:
       return SQLITE_OPEN_READWRITE;
     case Database::Access::kCreate:
+    case Database::Access::kMemory:
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   }
   return 0;
+}
+
+// "" and ":memory:" are no file for SQLite, and "file:.." may be a URI.
+std::string absolute(const std::string& path) {
+  const std::filesystem::path file(path);
+  return file.is_absolute() ? path : (std::filesystem::current_path() / file).string();
 }
 
 }  // namespace
 
 Database::Database(const std::string& path, Access access, std::chrono::milliseconds patience) : path_(path) {
   // Of one thread each.
-  const int code = sqlite3_open_v2(path.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
+  const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) {
     const std::string text =
         fmt::format("{}: {}", path, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
@@ -73,6 +82,12 @@ void Database::fail(int code) const {
 void Database::execute(const std::string& sql) {
   const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code);
+}
+
+void Database::attach(const std::string& path, const std::string& name) {
+  Statement statement(*this, "ATTACH ? AS " + quoted_name(name));
+  statement.bind(1, absolute(path));
+  statement.run();
 }
 
 std::int64_t Database::number(const std::string& sql) {

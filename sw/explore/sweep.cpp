@@ -50,19 +50,30 @@ class Sweep {
     {  // What is wrong with the file is said once.
       const Store made(options_.store, options_.version, options_.patience);
     }
+    try {
+      run_points(lock, go_on);
+      merge_stores({options_.store}, options_.store);
+    } catch (const std::exception&) {
+      lock.check();  // or it would be taken for what has failed
+      throw;
+    }
+    return counts_;
+  }
+
+ private:
+  void run_points(const StoreLock& lock, const std::function<bool(const SweepCounts&)>& go_on) {
     workers_.resize(std::min<std::uint64_t>(options_.jobs, counts_.total));
     for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
     while (is_busy()) {
       if (!go_on(counts_)) shared_.stop() = true;
       wait();
+      lock.check();
     }
     workers_.clear();
     go_on(counts_);
-    merge_stores({options_.store}, options_.store);
-    return counts_;
+    lock.check();
   }
 
- private:
   bool is_busy() const {
     return std::any_of(workers_.begin(), workers_.end(),
                        [](const auto& worker) { return worker->order().count > 0; });

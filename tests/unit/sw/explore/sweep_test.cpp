@@ -22,6 +22,7 @@
 #include "sw/explore/merge_stores.h"
 #include "sw/explore/plan.h"
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::explore {
@@ -341,6 +342,20 @@ TEST_F(SweepTest, EndsIfItsStoreIsLockedMeanwhile) {
   const SweepCounts counts = sweep(plan(), evaluate, impatient, always);
   EXPECT_GE(counts.known, 5U) << "what was done is kept";
   EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, EndsWhenItsStoreHasGone) {
+  for (const bool is_last : {false, true}) {  // at once, or seen only in the end
+    std::uint64_t done = 0;
+    const auto remove = [&](const SweepCounts& counts) {
+      done = counts.done();
+      if (done >= (is_last ? 60U : 10U)) std::filesystem::remove(file("a.db"));
+      return true;
+    };
+    EXPECT_THROW(sweep(plan(), evaluate, options("a.db"), remove), StoreGone);
+    EXPECT_TRUE(is_last || done < 60);
+    EXPECT_FALSE(std::filesystem::exists(file("a.db")));
+  }
 }
 
 TEST_F(SweepTest, KeepsOtherSweepsOut) {
