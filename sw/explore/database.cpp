@@ -12,8 +12,14 @@ namespace stereotlm::explore {
 namespace {
 
 // `error`: of the system, at an error of input or output or when a file cannot be opened.
-std::string meaning_of(int code, int error, const char* message) {
+std::string meaning_of(const std::string& path, int code, int error, const char* message) {
   const int kind = code & 0xFF;
+  if (code == SQLITE_READONLY_ROLLBACK) {
+    return fmt::format(
+        "{0}-journal is there, of a change that was not finished, and this command only reads: "
+        "`stereotlm merge {0} {0}` takes the change back",
+        path);
+  }
   const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
   if (is_of_system && (error == ENOSPC || error == EDQUOT)) return "the disk is full";
   switch (kind) {
@@ -60,8 +66,8 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
   const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
   const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) {
-    const std::string text =
-        fmt::format("{}: {}", path, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
+    const std::string text = fmt::format(
+        "{}: {}", path, meaning_of(path, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
     sqlite3_close(handle_);
     throw DatabaseError(text);
   }
@@ -75,8 +81,8 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
 Database::~Database() { sqlite3_close(handle_); }
 
 void Database::fail(int code) const {
-  throw DatabaseError(
-      fmt::format("{}: {}", path_, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
+  throw DatabaseError(fmt::format(
+      "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
 }
 
 void Database::execute(const std::string& sql) {

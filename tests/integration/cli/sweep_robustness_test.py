@@ -150,6 +150,32 @@ class FullDisk(RobustnessTest):
         self.finished(expected)
 
 
+class UnfinishedChange(RobustnessTest):
+    """What a process leaves that is killed while it changes a finished database."""
+
+    def test_in_a_database_that_is_only_read_is_said_with_the_cure(self):
+        expected = self.expected()
+        self.succeeds(self.sweep())
+        change = ("import os, sqlite3, sys\n"
+                  "connection = sqlite3.connect(sys.argv[1], isolation_level=None)\n"
+                  "connection.execute('PRAGMA cache_size = 1')\n"
+                  "connection.execute('BEGIN')\n"
+                  "connection.execute('DELETE FROM points')\n"
+                  "connection.execute('UPDATE keys SET name = name || \\'x\\'')\n"
+                  "os._exit(0)\n")
+        subprocess.run([sys.executable, "-c", change, str(self.store)], check=True)
+        self.assertTrue((self.disk / "points.db-journal").exists())
+        rule = (f"{self.store}: {self.store}-journal is there, of a change that was not finished, and this command only "
+                f"reads: `stereotlm merge {self.store} {self.store}` takes the change back")
+        more = self.folder / "more.db"
+        self.refused_in_one_line(self.sweep("--known", self.store, store=more), f"--known {rule}")
+        self.refused_in_one_line(run("merge", more, self.store), rule)
+        self.assertFalse(more.exists())
+        self.succeeds(run("merge", self.store, self.store))
+        self.assertTrue(self.store.read_bytes() == expected)
+        self.assertEqual([path.name for path in self.disk.iterdir()], ["points.db"])
+
+
 class LockedDatabase(RobustnessTest):
     def lock(self, begin):
         connection = sqlite3.connect(self.store, isolation_level=None)
