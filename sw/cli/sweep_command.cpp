@@ -342,8 +342,18 @@ class ProgressFile {
   std::chrono::steady_clock::time_point next_;
 };
 
+void check_open_files(std::uint64_t jobs, std::uint64_t points) {
+  const std::uint64_t workers = std::min(jobs, points);
+  const std::uint64_t most = explore::workers_with_files(workers);
+  if (most == workers) return;
+  const std::string rule =
+      fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): ", jobs);
+  refuse(rule + (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+}
+
 int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
                const std::optional<CalibrationInput>& calibration) {
+  check_open_files(options.sweep.jobs, plan.size());
   ProgressFile file(options.progress.text);
   try {
     if (!options.sweep.known.empty()) {

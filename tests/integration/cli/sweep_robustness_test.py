@@ -4,6 +4,7 @@ import ctypes
 import os
 import pathlib
 import random
+import re
 import resource
 import signal
 import sqlite3
@@ -148,6 +149,30 @@ class FullDisk(RobustnessTest):
         process = run("sweep", self.plan, "--out", self.store, preexec_fn=limit, restore_signals=False)
         self.fails(process, "points.db: disk I/O error; what is done is kept")
         self.finished(expected)
+
+
+class OpenFiles(RobustnessTest):
+    def test_that_are_too_few_are_refused_with_how_many_jobs_they_are_enough_for(self):
+        def sweep_with(files, jobs):
+            return run("sweep", self.plan, "--known", self.whole, "--out", self.store, "--jobs", jobs,
+                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files)))
+
+        self.succeeds(self.sweep(plan=self.file("one.yaml", PLAN.replace("to: 40", "to: 1").encode()), store=self.whole))
+        rule = "--jobs = 8: too many for the limit on open files (ulimit -n): "
+        enough = None
+        for files in range(12, 60):
+            process = sweep_with(files, 8)
+            if process.returncode == 0:
+                break
+            self.refused_in_one_line(process, rule)
+            self.assertEqual(list(self.disk.iterdir()), [])
+            enough = re.search(r"lower --jobs to (\d+), or raise the limit\n", process.stderr)
+            if enough:
+                self.succeeds(sweep_with(files, enough[1]))
+                self.store.unlink()
+            else:
+                self.assertTrue(process.stderr.endswith(f"{rule}raise it\n"), process.stderr)
+        self.assertEqual(enough[1], "7", "the limit before the first that is enough for 8")
 
 
 class UnfinishedChange(RobustnessTest):
