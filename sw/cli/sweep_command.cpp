@@ -23,6 +23,7 @@
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
+#include "sw/explore/conditions.h"
 #include "sw/explore/plan.h"
 #include "sw/explore/shard_folder.h"
 #include "sw/explore/slurm_sweep.h"
@@ -313,11 +314,11 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
 }
 
 // What is said behind an error: nothing where the database cannot be read.
-std::string kept_text(const std::string& store) {
+std::string kept_text(const std::string& store, const std::string& advice) {
   try {
     explore::Database(store, explore::Database::Access::kRead, kBriefPatience)
         .number("SELECT count(*) FROM points");
-    return "; what is done is kept: the same command goes on with it";
+    return "; what is done is kept: " + advice;
   } catch (const explore::DatabaseError&) {
     return "";
   }
@@ -393,9 +394,13 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
   } catch (const explore::StoreGone&) {
     progress.erase();
     throw;
+  } catch (const explore::ConditionError& error) {
+    progress.erase();
+    throw std::runtime_error(error.what() + kept_text(options.sweep.store, "correct the plan"));
   } catch (const std::exception& error) {
     progress.erase();
-    throw std::runtime_error(error.what() + kept_text(options.sweep.store));
+    throw std::runtime_error(error.what() +
+                             kept_text(options.sweep.store, "the same command goes on with it"));
   }
   return report(counts, options);
 }

@@ -192,6 +192,29 @@ class Refusals(SweepTest):
         self.assertEqual(lines[-1], f"{plan}: the plan would have {POINTS} points")
         self.assertFalse(self.store.exists())
 
+    def test_of_conditions_name_their_place_and_leave_out_nothing_in_silence(self):
+        for condition, reason in (
+            ("abs(-9223372036854775808) > 0", "integer overflow"),
+            ("name MATCH 'fpl*'", "not an SQL expression over keys: match() depends on more than its arguments"),
+            ("random() > 0", "not an SQL expression over keys: random() depends on more than its arguments"),
+            ("image.width > ?1", "not an SQL expression over keys: parameters such as ? and :x have no value"),
+            ("1)) /*", 'not an SQL expression over keys: near ")": syntax error'),
+            ("board.name = 'fpl", "not an SQL expression over keys: unrecognized token: \"'fpl\""),
+        ):
+            plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
+            lines = self.refused(self.sweep(plan=plan))
+            self.assertEqual(lines, [f"{plan}:10:5: where = {condition}: {reason}",
+                                     f"{plan}: the plan would have {POINTS} points"])
+        self.assertFalse(self.store.exists())
+
+    def test_of_a_condition_that_one_point_shows_to_be_wrong_do_not_advise_to_repeat_it(self):
+        condition = "iif(matcher.window = 5, json('{' || image.width), 1)"
+        plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
+        process = self.sweep(plan=plan)
+        self.assertEqual(process.returncode, 1, process.stderr)
+        self.assertEqual(process.stderr, f"stereotlm: error: {plan}:10:5: where = {condition}: malformed JSON; what is done "
+                                         "is kept: correct the plan\n")
+
     def test_of_options(self):
         self.refused_in_one_line(self.sweep("--jobs", 0), "--jobs = 0: must be 1..1024")
         for shard in ("3/3", "1", "x/2", "-1/2", "1/0"):

@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "sw/explore/conditions.h"
 #include "sw/explore/ended_by_signal.h"
 #include "sw/explore/merge_stores.h"
 #include "sw/explore/plan.h"
@@ -306,6 +307,21 @@ TEST_F(SweepTest, EndsWhereTheMachineLacksSomething) {
   EXPECT_GE(points_in(file("a.db")), 18) << "what was done is kept";
   sweep(plan(), evaluate, options("a.db"), always);
   EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, EndsAtAConditionThatCannotBeComputedForAPoint) {
+  test::write_file(file("plan.yaml"),
+                   "board: fpl2003\nvary: {matcher.window: [3, 5, 7]}\n"
+                   "where: iif(matcher.window = 5, json('{' || matcher.window), 1)\n");
+  try {
+    sweep(plan(), evaluate, options("a.db"), always);
+    FAIL() << "there is no such point";
+  } catch (const ConditionError& error) {
+    EXPECT_EQ(error.what(),
+              file("plan.yaml") +
+                  ":3:8: where = iif(matcher.window = 5, json('{' || matcher.window), 1): malformed JSON");
+  }
+  EXPECT_EQ(points_in(file("a.db")), 1) << "what was done is kept";
 }
 
 TEST_F(SweepTest, SaysThatItsStoreIsLocked) {
