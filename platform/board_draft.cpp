@@ -76,6 +76,22 @@ std::string not_a_map(const std::string& path) {
   return fmt::format("{} is not a map here; set it as a whole", path);
 }
 
+// A file that lacks most keys was meant to extend a preset: that is said in place of each key.
+void say_what_to_extend(std::vector<Finding>& findings) {
+  const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
+  std::size_t missing = 0;
+  for (const Finding& finding : findings) {
+    if (is_missing(finding)) missing += required_count(finding.missing);
+  }
+  const std::size_t all = required_count("");
+  if (2 * missing <= all) return;
+  findings.erase(std::remove_if(findings.begin(), findings.end(), is_missing), findings.end());
+  const std::string text = fmt::format(
+      "{} of the {} keys of a board are missing: begin the file with `extends: {}`, which supplies them",
+      missing, all, preset_names().front());
+  findings.insert(findings.begin(), {{Place::kBoard, 1, 1}, text, false, ""});
+}
+
 void set_source(YamlNode& node, int source) {
   node.place.source = source;
   for (YamlNode& item : node.items) set_source(item, source);
@@ -95,7 +111,7 @@ std::string path_problem(const std::string& path) {
     if (known.empty()) return fmt::format("{} has no keys below it", schema);
     const bool is_bank = schema == "ssram.banks" && !part.empty();
     if (!is_bank && std::find(known.begin(), known.end(), part) == known.end()) {
-      return "unknown key; nearest known key: " + nearest_path(path);
+      return unknown_key_text(path);
     }
     schema += (schema.empty() ? "" : ".") + (is_bank ? "NAME" : part);
   }
@@ -118,9 +134,8 @@ BoardDraft::BoardDraft(const std::string& board) {
     const std::vector<std::string> names = preset_names();
     if (std::find(names.begin(), names.end(), board) == names.end()) {
       fail(board.empty() ? "(empty)" : board,
-           fmt::format(
-               "not a preset, and not a path, which has a / or ends in .yaml; nearest: {}; presets: {}",
-               nearest_word(board, names), listed(names)));
+           fmt::format("not a preset, and not a path, which has a / or ends in .yaml{}; presets: {}",
+                       nearest_text(board, names), listed(names)));
     }
     board_name_ = "preset " + board;
     text = preset_text(board);
@@ -147,12 +162,13 @@ void BoardDraft::resolve_extends() {
     return entry.key.is_scalar() && entry.key.text == "extends";
   };
   const auto report = [this](const Place& place, const YamlNode& value, const std::string& rule) {
-    findings_.push_back({place, fmt::format("extends = {}: {}", short_text(value), rule)});
+    findings_.push_back({place, fmt::format("extends = {}: {}", short_text(value), rule), false, ""});
   };
   std::optional<YamlNode> base;
   for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
     const YamlNode::Entry& entry = tree_.entries[i];
     if (!is_extends(entry)) continue;
+    has_extends_ = true;
     if (base || !is_whole_) {
       report(entry.key.place, entry.value, "repeated key");
       continue;
@@ -167,8 +183,7 @@ void BoardDraft::resolve_extends() {
       report(value.place, value, misuse);
     } else if (!is_known) {
       report(value.place, value,
-             fmt::format("not a preset; nearest: {}; presets: {}",
-                         nearest_word(value.is_scalar() ? value.text : "", names), listed(names)));
+             fmt::format("not a preset{}; presets: {}", nearest_text(value.text, names), listed(names)));
     }
     if (is_known) base = of_preset(value.text).tree_;
     is_whole_ = is_known;
@@ -192,7 +207,7 @@ void BoardDraft::set(const std::string& assignment) {
     YamlNode value;
     value.kind = YamlNode::Kind::kScalar;
     value.text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
-    findings_.push_back({place, fmt::format("{} = {}: {}", path, short_text(value), rule)});
+    findings_.push_back({place, fmt::format("{} = {}: {}", path, short_text(value), rule), false, ""});
   };
   if (equals == std::string::npos) return report("--set needs path=value");
   if (const std::string problem = path_problem(path); !problem.empty()) return report(problem);
@@ -217,12 +232,14 @@ void BoardDraft::replace(const std::string& path, YamlNode value, const std::str
     const std::string way = put(tree_, path, std::move(value), place);
     if (!way.empty()) problem = not_a_map(way);
   }
-  if (!problem.empty()) findings_.push_back({place, fmt::format("{} = {}: {}", path, text, problem)});
+  if (!problem.empty())
+    findings_.push_back({place, fmt::format("{} = {}: {}", path, text, problem), false, ""});
 }
 
 BoardConfig BoardDraft::read() const {
   std::vector<Finding> findings = findings_;
   BoardConfig config = read_board(tree_, is_whole_, findings);
+  if (!has_extends_) say_what_to_extend(findings);
   if (findings.empty()) return config;
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return std::tie(a.place.source, a.place.line, a.place.column) <

@@ -53,6 +53,7 @@ class BoardDraft {
   std::string board_name_;       // of the file or preset, for messages
   std::vector<Source> sources_;  // of the values that were replaced, by Place::source - Place::kFirstSet
   YamlNode tree_;
+  bool has_extends_ = false;
   bool is_whole_ = true;  // false: the preset that it extends could not be found
   std::vector<Finding> findings_;
 };

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -200,26 +201,86 @@ std::vector<Key> make_keys() {
   };
 }
 
+// How many characters have to be changed, added, left out or exchanged with their neighbour.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  constexpr std::size_t kLongest = 200;  // a longer word is near to nothing
-  a = a.substr(0, kLongest);
+  std::vector<std::size_t> above_last(b.size() + 1);
+  std::vector<std::size_t> above(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    above_last.swap(above);
+    above.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j - 1] + 1, row[j] + 1, changed});
+      row[j] = std::min({row[j - 1] + 1, above[j] + 1, above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      const bool is_exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (is_exchanged) row[j] = std::min(row[j], above_last[j - 2] + 1);
     }
   }
   return row[b.size()];
 }
 
-std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+// The distance of a word from a known one, if it can be meant: with at most a slip for each three characters,
+// or without its end from an underscore on, such as its unit.
+std::optional<std::size_t> slips(std::string_view word, std::string_view known) {
+  const bool is_begin = !word.empty() && word.size() < known.size() && known[word.size()] == '_' &&
+                        known.substr(0, word.size()) == word;
+  if (is_begin) return 1;
+  const auto [shorter, longer] = std::minmax({word.size(), known.size()});
+  const std::size_t most = (longer + 2) / 3;
+  if (longer - shorter > most) return std::nullopt;
+  const std::size_t distance = edit_distance(word, known);
+  return distance <= most && distance < longer ? std::optional(distance) : std::nullopt;
+}
 
-// What the paths below a path begin with.
+// The same of two paths, without the sections in front that are equal.
+std::optional<std::size_t> slips_of_path(std::string_view path, std::string_view known) {
+  for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
+    if (path.substr(0, dot + 1) != known.substr(0, dot + 1)) break;
+    path.remove_prefix(dot + 1);
+    known.remove_prefix(dot + 1);
+  }
+  return slips(path, known);
+}
+
+bool is_below(std::string_view path, std::string_view section) {
+  return path.size() > section.size() && path[section.size()] == '.' &&
+         path.substr(0, section.size()) == section;
+}
+
+std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
+
+// The known path nearest to one that is not known; empty if none is near. Below `ssram.banks` any name of a
+// bank is known.
+std::string nearest_path(const std::string& path) {
+  const std::string schema = schema_path(path);
+  std::string best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  const auto offer = [&](const std::string& known, std::optional<std::size_t> distance) {
+    if (!distance || *distance >= best_distance) return;
+    best = known;
+    best_distance = *distance;
+  };
+  const auto offer_known = [&](const std::string& known) {
+    if (is_below(schema, known)) return;  // the section that it is in
+    offer(known, slips_of_path(schema, known));
+    // The right key in the wrong place costs less than most wrong keys in the right place.
+    if (const auto moved = slips(last_part(schema), last_part(known))) offer(known, *moved + 2);
+  };
+  offer_known("extends");
+  for (const Key& key : board_keys()) {
+    for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
+      offer_known(key.path.substr(0, dot));
+    }
+    offer_known(key.path);
+  }
+  const std::string name = "ssram.banks.NAME";
+  if (schema.compare(0, name.size(), name) == 0 && best.compare(0, name.size(), name) == 0) {
+    const std::size_t begin = name.size() - 4;
+    best = path.substr(0, path.find('.', begin)) + best.substr(name.size());
+  }
+  return best;
+}
 
 struct Names {
   std::vector<std::string> all;
@@ -233,7 +294,7 @@ const Names& names_below(std::string_view path) {
     const auto add = [&found](const std::string& full, bool is_required) {
       const std::size_t dot = full.rfind('.');
       Names& names = found[dot == std::string::npos ? "" : full.substr(0, dot)];
-      const std::string name = last_part(full);
+      const std::string name(last_part(full));
       if (!names.all.empty() && names.all.back() == name) return;
       names.all.push_back(name);
       if (is_required) names.required.push_back(name);
@@ -272,6 +333,17 @@ const std::vector<std::string>& child_keys(std::string_view path) { return names
 
 const std::vector<std::string>& required_keys(std::string_view path) { return names_below(path).required; }
 
+std::size_t required_count(std::string_view path) {
+  const auto& names = required_keys(path);
+  const bool is_key = std::any_of(board_keys().begin(), board_keys().end(),
+                                  [path](const Key& key) { return key.path == path; });
+  if (is_key || names.empty()) return 1;
+  std::size_t count = 0;
+  for (const std::string& name : names)
+    count += required_count(path.empty() ? name : std::string(path) + '.' + name);
+  return count;
+}
+
 std::string rule_text(std::string_view path) {
   for (const Key& key : board_keys()) {
     if (key.path == path) return key.rule_text;
@@ -287,38 +359,22 @@ std::string schema_path(const std::string& path) {
   return banks + "NAME" + (end == std::string::npos ? "" : path.substr(end));
 }
 
-std::string nearest_path(const std::string& path) {
-  const std::string schema = schema_path(path);
-  std::string best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  const auto offer = [&](const std::string& known) {
-    // The right key in the wrong place costs less than most wrong keys in the right place.
-    const std::size_t moved = edit_distance(last_part(schema), last_part(known)) + 2;
-    const std::size_t distance = std::min(edit_distance(schema, known), moved);
-    if (distance < best_distance) {
-      best = known;
-      best_distance = distance;
-    }
-  };
-  for (const Key& key : board_keys()) {
-    for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
-      offer(key.path.substr(0, dot));
-    }
-    offer(key.path);
-  }
-  const std::string name = "ssram.banks.NAME";
-  if (schema.compare(0, name.size(), name) == 0 && best.compare(0, name.size(), name) == 0) {
-    const std::size_t begin = name.size() - 4;
-    best = path.substr(0, path.find('.', begin)) + best.substr(name.size());
-  }
-  return best;
+std::string unknown_key_text(const std::string& path) {
+  const std::string nearest = nearest_path(path);
+  return nearest.empty() ? "unknown key, and no known key is near"
+                         : "unknown key; nearest known key: " + nearest;
 }
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
-  const auto nearest = std::min_element(words.begin(), words.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
-  return nearest == words.end() ? "" : *nearest;
+std::string nearest_text(std::string_view word, const std::vector<std::string>& words) {
+  const std::string* nearest = nullptr;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const std::string& known : words) {
+    const auto distance = slips(word, known);
+    if (!distance || *distance >= least) continue;
+    nearest = &known;
+    least = *distance;
+  }
+  return nearest == nullptr ? "" : "; nearest: " + *nearest;
 }
 
 std::string listed(const std::vector<std::string>& words) {

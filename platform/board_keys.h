@@ -58,14 +58,18 @@ const std::vector<std::string>& child_keys(std::string_view path);
 // Those of child_keys() that are not optional.
 const std::vector<std::string>& required_keys(std::string_view path);
 
+// How many keys a board needs at the path or below it; 1 for the banks. "" is all of them.
+std::size_t required_count(std::string_view path);
+
 // The rule of a key, or for a map what it holds: "a map of width, height".
 std::string rule_text(std::string_view path);
 
-// The known path nearest to one that is not known. Below `ssram.banks` any name of a bank is known.
-std::string nearest_path(const std::string& path);
+// What a message says of a path that is not known: "unknown key; nearest known key: PATH", or that none is
+// near.
+std::string unknown_key_text(const std::string& path);
 
-// The nearest of `words` by edit distance, the first of equals; empty if there are none.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+// "; nearest: WORD" with the nearest of `words` by edit distance, the first of equals; empty if none is near.
+std::string nearest_text(std::string_view word, const std::vector<std::string>& words);
 
 // `path` with NAME for the name of a bank: `ssram.banks.bank0.words` is `ssram.banks.NAME.words`.
 std::string schema_path(const std::string& path);

@@ -299,6 +299,13 @@ class BoardReader {
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
     const std::string path = "ssram.banks";
+    // Their number first: of banks without end nothing else is worth a look.
+    if (node.is_map() && !memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
+      Place place = node.place;
+      for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
+      return values_.report(place, path, short_text(node),
+                            fmt::format("{} banks; {}", node.entries.size(), rule_text(path)));
+    }
     std::vector<std::string> names;
     for (const YamlNode::Entry& entry : node.entries) {
       if (is_bank_name(entry.key.text)) names.push_back(entry.key.text);
@@ -307,12 +314,6 @@ class BoardReader {
     const auto entries = values_.read_entries(path, node, node.place, names, {});
     if (!entries) return;
     const bool names_sound = values_.finding_count() == before;
-    if (!memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
-      Place place = node.place;
-      for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
-      return values_.report(place, path, short_text(node),
-                            fmt::format("{} banks; {}", node.entries.size(), rule_text(path)));
-    }
     board_.banks.clear();
     bool default_lacks_turnaround = false;
     for (const YamlNode::Entry& entry : node.entries) {  // in the order of the file

@@ -84,8 +84,8 @@ class RuleChecker {
     for (const BankConfig& bank : board_.banks) names.push_back(bank.name);
     for (const Buffer& buffer : buffers(board_.allocation)) {
       if (!sound_(buffer.key) || std::find(names.begin(), names.end(), buffer.bank) != names.end()) continue;
-      found_.push_back({fmt::format("{} = {}: not a bank of this board; nearest: {}", buffer.key, buffer.bank,
-                                    nearest_word(buffer.bank, names)),
+      found_.push_back({fmt::format("{} = {}: not a bank of this board{}", buffer.key, buffer.bank,
+                                    nearest_text(buffer.bank, names)),
                         {buffer.path(), "ssram.banks"}});
     }
   }

@@ -11,19 +11,24 @@
 namespace stereotlm::platform {
 namespace {
 
-std::string all_lines(const std::vector<Diagnostic>& diagnostics) {
-  std::string lines;
+std::string lines_of(const std::vector<Diagnostic>& diagnostics, const std::string& note) {
+  std::vector<std::string> lines;
   for (const Diagnostic& diagnostic : diagnostics) {
-    if (!lines.empty()) lines += '\n';
-    lines += diagnostic.place + ": " + diagnostic.text;
+    if (lines.size() == BoardError::kMostLines) {
+      const std::size_t more = diagnostics.size() - lines.size();
+      lines.push_back(fmt::format("and {} error{} more", more, more == 1 ? "" : "s"));
+      break;
+    }
+    lines.push_back(diagnostic.place + ": " + diagnostic.text);
   }
-  return lines;
+  if (!note.empty()) lines.push_back(note);
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 }  // namespace
 
-BoardError::BoardError(std::vector<Diagnostic> diagnostics)
-    : std::runtime_error(all_lines(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+BoardError::BoardError(std::vector<Diagnostic> diagnostics, const std::string& note)
+    : std::runtime_error(lines_of(diagnostics, note)), diagnostics_(std::move(diagnostics)) {}
 
 BoardConfig load_board(const std::string& board, const std::vector<std::string>& sets) {
   BoardDraft draft(board);

@@ -19,10 +19,12 @@ struct Diagnostic {
 };
 
 // Everything wrong with a board, in the order of its file, then of the `--set` options. what() has one line
-// for each: `place: text`.
+// for each of the first kMostLines, `place: text`, one that counts the others, and the note, if there is one.
 class BoardError : public std::runtime_error {
  public:
-  explicit BoardError(std::vector<Diagnostic> diagnostics);
+  static constexpr std::size_t kMostLines = 20;
+
+  explicit BoardError(std::vector<Diagnostic> diagnostics, const std::string& note = "");
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
  private:

@@ -14,13 +14,13 @@ std::string below(const std::string& path, const std::string& name) {
 }
 
 void ValueReader::report_between_keys(const Place& place, std::string text) {
-  findings_.push_back({place, std::move(text), true});
+  findings_.push_back({place, std::move(text), true, ""});
 }
 
 void ValueReader::report(const Place& place, const std::string& path, const std::string& value,
                          const std::string& rule) {
   findings_.push_back(
-      {place, fmt::format("{} = {}: {}", path.empty() ? "the board" : path, value, rule), false});
+      {place, fmt::format("{} = {}: {}", path.empty() ? "the board" : path, value, rule), false, ""});
 }
 
 void ValueReader::report(const std::string& path, const YamlNode& node, const std::string& rule) {
@@ -28,7 +28,7 @@ void ValueReader::report(const std::string& path, const YamlNode& node, const st
 }
 
 void ValueReader::report_missing(const Place& place, const std::string& path, const std::string& rule) {
-  if (report_missing_) findings_.push_back({place, fmt::format("{}: missing: {}", path, rule), false});
+  if (report_missing_) findings_.push_back({place, fmt::format("{}: missing: {}", path, rule), false, path});
 }
 
 void ValueReader::accept(const std::string& path, const Place& place) {
@@ -63,7 +63,7 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
     if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
       const bool is_bank = path == "ssram.banks";
       report(entry.key.place, full, short_text(entry.value),
-             is_bank ? kBankNameRule : "unknown key; nearest known key: " + nearest_path(full));
+             is_bank ? kBankNameRule : unknown_key_text(full));
     } else if (const auto [first, is_new] = entries.emplace(entry.key.text, &entry); !is_new) {
       report_repeated(entry, *first->second, full);
     }

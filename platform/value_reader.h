@@ -16,6 +16,7 @@ struct Finding {
   Place place;
   std::string text;
   bool is_between_keys = false;
+  std::string missing;  // the path of a key or section that is not there; else empty
 };
 
 // "image" and "width" make "image.width"; below the top, "", the name alone.

@@ -1,7 +1,6 @@
 #include "platform/yaml_tree.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/mark.h>
@@ -55,15 +54,26 @@ void check_characters(const std::string& text, int source) {
   }
 }
 
-// yaml-cpp counts lines and columns from 0, and columns in bytes.
-Place place_of(const std::string& text, const YAML::Mark& mark, int source) {
-  if (mark.is_null()) return {source, 1, 1};
-  const std::size_t end = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text.size());
-  const std::size_t column = std::min(static_cast<std::size_t>(std::max(mark.column, 0)), end);
-  const auto begin = text.begin() + static_cast<std::ptrdiff_t>(end - column);
-  const auto inside = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(column), continues_character);
-  return {source, mark.line + 1, mark.column + 1 - static_cast<int>(inside)};
-}
+// The places of yaml-cpp's marks, which count lines and columns from 0, and columns in bytes. A place costs
+// the same however long its line is.
+class Places {
+ public:
+  Places(const std::string& text, int source) : source_(source), continuing_(text.size() + 1) {
+    for (std::size_t i = 0; i < text.size(); ++i)
+      continuing_[i + 1] = continuing_[i] + (continues_character(text[i]) ? 1 : 0);
+  }
+
+  Place of(const YAML::Mark& mark) const {
+    if (mark.is_null()) return {source_, 1, 1};
+    const std::size_t end = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), continuing_.size() - 1);
+    const std::size_t column = std::min(static_cast<std::size_t>(std::max(mark.column, 0)), end);
+    return {source_, mark.line + 1, mark.column + 1 - (continuing_[end] - continuing_[end - column])};
+  }
+
+ private:
+  int source_;
+  std::vector<int> continuing_;  // bytes before each byte that continue a character
+};
 
 // Whether the quoted scalar that begins at `at` has its closing quote; true for any other text.
 bool is_closed(const std::string& text, std::size_t at) {
@@ -82,13 +92,13 @@ bool is_closed(const std::string& text, std::size_t at) {
 
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(const std::string& text, int source) : text_(text), source_(source) {}
+  TreeBuilder(const std::string& text, const Places& places) : text_(text), places_(places) {}
 
   bool has_document() const { return documents_ > 0; }
   YamlNode take_root() { return std::move(root_); }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++documents_ > 1) throw YamlError(place_of(text_, mark, source_), "one YAML document only");
+    if (++documents_ > 1) throw YamlError(places_.of(mark), "one YAML document only");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -116,16 +126,19 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    open_.push_back({make(YamlNode::Kind::kList, mark, tag, anchor), {}, false});
+    open(make(YamlNode::Kind::kList, mark, tag, anchor));
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
-    open_.push_back({make(YamlNode::Kind::kMap, mark, tag, anchor), {}, false});
+    open(make(YamlNode::Kind::kMap, mark, tag, anchor));
   }
   void OnMapEnd() override { close(); }
 
  private:
+  // Far above what a board or a plan needs, and below the limit of yaml-cpp, which does not say where it is.
+  static constexpr std::size_t kMostLevels = 100;
+
   struct Open {
     YamlNode node;
     YamlNode key;  // of the entry whose value comes next
@@ -135,10 +148,15 @@ class TreeBuilder : public YAML::EventHandler {
   YamlNode make(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     YamlNode node;
     node.kind = kind;
-    node.place = place_of(text_, mark, source_);
+    node.place = places_.of(mark);
     if (anchor != 0) node.misuse = "anchors and aliases are not allowed in a board";
     if (!tag.empty() && tag != "?" && tag != "!") node.misuse = "tags are not allowed in a board";
     return node;
+  }
+  void open(YamlNode node) {
+    if (open_.size() == kMostLevels)
+      throw YamlError(node.place, fmt::format("nested too deeply: at most {} levels", kMostLevels));
+    open_.push_back({std::move(node), {}, false});
   }
   void close() {
     YamlNode node = std::move(open_.back().node);
@@ -167,7 +185,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   const std::string& text_;
-  int source_;
+  const Places& places_;
   int documents_ = 0;
   YamlNode root_;
   std::vector<Open> open_;
@@ -211,16 +229,15 @@ std::string syntax_rule(const std::string& text, std::size_t size, const YAML::E
 // `size`: of what somebody wrote; the rest of the text was put behind it.
 YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   check_characters(text, source);
-  TreeBuilder builder(text, source);
+  const Places places(text, source);
+  TreeBuilder builder(text, places);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }
-  } catch (const YAML::DeepRecursion& error) {
-    throw YamlError(place_of(text, error.mark, source), "nested too deeply");
   } catch (const YAML::Exception& error) {
-    throw YamlError(place_of(text, error.mark, source), syntax_rule(text, size, error));
+    throw YamlError(places.of(error.mark), syntax_rule(text, size, error));
   }
   if (!builder.has_document()) throw YamlError({source, 1, 1}, "empty: a board is a map of keys and values");
   return builder.take_root();

@@ -51,8 +51,8 @@ void check_first_argument(const CLI::App& program, int argc, const char* const* 
   if (is_known) return;
   if (first.empty()) refuse("a command is missing: one of " + all);
   if (first[0] == '-') refuse(fmt::format("'{}': a command comes first: one of {}", first, all));
-  refuse(fmt::format("'{}': unknown command; nearest: {}; commands: {}", first,
-                     platform::nearest_word(first, commands), all));
+  refuse(fmt::format("'{}': unknown command{}; commands: {}", first, platform::nearest_text(first, commands),
+                     all));
 }
 
 std::string help_of(const CLI::App& program) {
@@ -71,8 +71,8 @@ void check_options(const CLI::App& program) {
     for (const std::string& argument : command->remaining()) {
       if (argument.empty() || argument[0] != '-') continue;
       const std::string name = argument.substr(0, argument.find('='));
-      problems.add(fmt::format("{}: unknown option; nearest: {} (see {})", name,
-                               platform::nearest_word(name, known), help_of(program)));
+      problems.add(fmt::format("{}: unknown option{} (see {})", name, platform::nearest_text(name, known),
+                               help_of(program)));
     }
   }
   problems.check();

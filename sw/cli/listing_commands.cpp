@@ -37,8 +37,8 @@ int list_boards() {
 int show_board(const std::string& name) {
   const auto names = platform::preset_names();
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    refuse(fmt::format("--show = {}: not a preset; nearest: {}; presets: {}", name,
-                       platform::nearest_word(name, names), platform::listed(names)));
+    refuse(fmt::format("--show = {}: not a preset{}; presets: {}", name, platform::nearest_text(name, names),
+                       platform::listed(names)));
   }
   print(platform::preset_text(name));
   return kDone;

@@ -23,6 +23,7 @@
 #include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/version.h"
+#include "sw/explore/conditions.h"
 #include "sw/explore/plan.h"
 #include "sw/explore/shard_folder.h"
 #include "sw/explore/slurm_sweep.h"
@@ -39,6 +40,8 @@ constexpr unsigned kMostJobs = 1024;
 constexpr std::uint64_t kMostShards = 1000;  // of a job array: merge opens all their files
 constexpr std::uint64_t kDefaultShards = 16;
 constexpr std::chrono::seconds kBetweenCounts{2};
+constexpr std::chrono::seconds kBriefPatience{
+    5};  // with who keeps a database locked that is looked at once more
 
 constexpr const char* kFooter =
     "A plan is a YAML file, such as\n"
@@ -310,6 +313,17 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   return kInterrupted;
 }
 
+// What is said behind an error: nothing where the database cannot be read.
+std::string kept_text(const std::string& store, const std::string& advice) {
+  try {
+    explore::Database(store, explore::Database::Access::kRead, kBriefPatience)
+        .number("SELECT count(*) FROM points");
+    return "; what is done is kept: " + advice;
+  } catch (const explore::DatabaseError&) {
+    return "";
+  }
+}
+
 // The file of --progress, if there is any.
 class ProgressFile {
  public:
@@ -329,8 +343,18 @@ class ProgressFile {
   std::chrono::steady_clock::time_point next_;
 };
 
+void check_open_files(std::uint64_t jobs, std::uint64_t points) {
+  const std::uint64_t workers = std::min(jobs, points);
+  const std::uint64_t most = explore::workers_with_files(workers);
+  if (most == workers) return;
+  const std::string rule =
+      fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): ", jobs);
+  refuse(rule + (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+}
+
 int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
                const std::optional<CalibrationInput>& calibration) {
+  check_open_files(options.sweep.jobs, plan.size());
   ProgressFile file(options.progress.text);
   try {
     if (!options.sweep.known.empty()) {
@@ -367,10 +391,16 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
         });
     progress.erase();
     file.write(counts);
+  } catch (const explore::StoreGone&) {
+    progress.erase();
+    throw;
+  } catch (const explore::ConditionError& error) {
+    progress.erase();
+    throw std::runtime_error(error.what() + kept_text(options.sweep.store, "correct the plan"));
   } catch (const std::exception& error) {
     progress.erase();
-    throw std::runtime_error(
-        fmt::format("{}; what is done is kept: the same command goes on with it", error.what()));
+    throw std::runtime_error(error.what() +
+                             kept_text(options.sweep.store, "the same command goes on with it"));
   }
   return report(counts, options);
 }

@@ -115,12 +115,12 @@ class AllocationPoints : public Points {
       : search_(search), numbers_(std::move(numbers)) {}
   std::uint64_t size() const override { return numbers_.size(); }
   Point point(std::uint64_t number) const override { return search_.point(numbers_.at(number)); }
-  const std::vector<std::string>& conditions() const override { return none_; }
+  const std::vector<Condition>& conditions() const override { return none_; }
 
  private:
   const AllocationSearch& search_;
   std::vector<std::size_t> numbers_;
-  std::vector<std::string> none_;
+  std::vector<Condition> none_;
 };
 
 }  // namespace stereotlm::explore

@@ -1,10 +1,11 @@
 #include "sw/explore/conditions.h"
 
 #include <fmt/format.h>
+#include <sqlite3.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
-#include <stdexcept>
 
 #include "platform/board_keys.h"
 
@@ -30,8 +31,8 @@ const std::vector<std::string>& names() {
   return kNames;
 }
 
-// "SELECT (text) FROM (SELECT ?1 AS width, ..) AS image, .."
-std::string query(const std::string& text) {
+// The tables of a point: "(SELECT ?1 AS width, ..) AS image, .."; without a point all values are NULL.
+std::string tables_text(bool has_point) {
   std::vector<std::string> tables;
   std::map<std::string, std::string> columns;
   for (std::size_t i = 0; i < names().size(); ++i) {
@@ -40,13 +41,27 @@ std::string query(const std::string& text) {
     const std::string table = name.substr(0, dot);
     std::string& list = columns[table];
     if (list.empty()) tables.push_back(table);
-    list += fmt::format("{}?{} AS \"{}\"", list.empty() ? "" : ", ", i + 1, name.substr(dot + 1));
+    list += fmt::format("{}{} AS \"{}\"", list.empty() ? "" : ", ",
+                        has_point ? fmt::format("?{}", i + 1) : "NULL", name.substr(dot + 1));
   }
-  std::string from;
+  std::string text;
   for (const std::string& table : tables) {
-    from += fmt::format("{}(SELECT {}) AS {}", from.empty() ? "" : ", ", columns[table], table);
+    text += fmt::format("{}(SELECT {}) AS {}", text.empty() ? "" : ", ", columns[table], table);
   }
-  return fmt::format("SELECT (({}\n)) FROM {}", text, from);
+  return text;
+}
+
+// The functions whose result depends on their arguments alone. SQLite counts those of dates among them, but
+// they take 'now'.
+std::set<std::string> pure_functions(const Database& database) {
+  Statement list(database,
+                 fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));
+  std::set<std::string> names;
+  while (list.step()) names.insert(list.text(0));
+  for (const char* const of_dates :
+       {"date", "datetime", "julianday", "strftime", "time", "timediff", "unixepoch"})
+    names.erase(of_dates);
+  return names;
 }
 
 bool is_bank_words(const std::string& path) {
@@ -58,20 +73,53 @@ bool is_bank_words(const std::string& path) {
 
 }  // namespace
 
-Conditions::Conditions(const std::vector<std::string>& texts)
-    : database_(":memory:", Database::Access::kCreate) {
-  for (const std::string& text : texts) {
-    try {
-      statements_.push_back(std::make_unique<Statement>(database_, query(text)));
-    } catch (const DatabaseError& error) {
-      const std::string place = database_.path() + ": ";
-      throw std::invalid_argument(std::string(error.what()).substr(place.size()));
-    }
+// Each text is compiled twice. Behind WHERE, at the end, it has to be whole: quotes, comments and brackets that
+// do not match are errors of its own, and messages of SQLite quote nothing else. In brackets it has to be one
+// expression, without a clause behind it.
+Conditions::Conditions(const std::vector<Condition>& conditions)
+    : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
+  sqlite3_set_authorizer(database_.handle(), authorize, this);
+  static const std::string kNoPoint = tables_text(false);
+  static const std::string kPoint = tables_text(true);
+  for (const Condition& condition : conditions) {
+    const auto alone = compile(fmt::format("SELECT 1 FROM {} WHERE {}", kNoPoint, condition.text));
+    if (sqlite3_bind_parameter_count(alone->handle()) > 0)
+      throw std::invalid_argument("parameters such as ? and :x have no value");
+    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, kPoint))});
   }
 }
 
+std::unique_ptr<Statement> Conditions::compile(const std::string& sql) {
+  refusal_.clear();
+  try {
+    return std::make_unique<Statement>(database_, sql);
+  } catch (const DatabaseError& error) {
+    throw std::invalid_argument(refusal_.empty() ? reason_of(error) : refusal_);
+  }
+}
+
+int Conditions::authorize(void* conditions, int action, const char* /*first*/, const char* second,
+                          const char* /*database*/, const char* /*trigger*/) {
+  auto& self = *static_cast<Conditions*>(conditions);
+  if (action == SQLITE_SELECT) return SQLITE_OK;
+  if (action == SQLITE_FUNCTION) {
+    std::string function = second;
+    std::transform(function.begin(), function.end(), function.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (self.functions_.count(function) > 0) return SQLITE_OK;
+    self.refusal_ = function + "() depends on more than its arguments";
+  } else {
+    self.refusal_ = "reads more than the point";
+  }
+  return SQLITE_DENY;
+}
+
+std::string Conditions::reason_of(const DatabaseError& error) const {
+  return std::string(error.what()).substr(database_.path().size() + 2);  // "where: .."
+}
+
 bool Conditions::hold(const std::vector<BoardValue>& values) {
-  if (statements_.empty()) return true;
+  if (compiled_.empty()) return true;
   std::vector<const BoardValue*> given(names().size());
   const auto place_of = [](const std::string& name) {
     return static_cast<std::size_t>(std::find(names().begin(), names().end(), name) - names().begin());
@@ -83,14 +131,21 @@ bool Conditions::hold(const std::vector<BoardValue>& values) {
     if (place < given.size()) given[place] = &value;
   }
   given[place_of(kBankCount)] = &banks;
-  for (const auto& statement : statements_) {
-    statement->clear_bindings();
+  for (const Compiled& compiled : compiled_) {
+    Statement& statement = *compiled.statement;
+    statement.clear_bindings();
     for (std::size_t i = 0; i < given.size(); ++i) {
-      if (given[i] != nullptr) statement->bind(static_cast<int>(i) + 1, *given[i]);
+      if (given[i] != nullptr) statement.bind(static_cast<int>(i) + 1, *given[i]);
     }
-    const bool is_true = statement->step() && statement->is_true(0);
-    statement->reset();
-    if (!is_true) return false;
+    try {
+      const bool is_true = statement.step() && statement.is_true(0);
+      statement.reset();
+      if (!is_true) return false;
+    } catch (const DatabaseError& error) {
+      const std::string reason = reason_of(error);
+      throw ConditionError(
+          fmt::format("{}: {}: {}", compiled.condition.place, compiled.condition.name, reason), reason);
+    }
   }
   return true;
 }

@@ -5,14 +5,21 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <variant>
 
 namespace stereotlm::explore {
 namespace {
 
 // `error`: of the system, at an error of input or output or when a file cannot be opened.
-std::string meaning_of(int code, int error, const char* message) {
+std::string meaning_of(const std::string& path, int code, int error, const char* message) {
   const int kind = code & 0xFF;
+  if (code == SQLITE_READONLY_ROLLBACK) {
+    return fmt::format(
+        "{0}-journal is there, of a change that was not finished, and this command only reads: "
+        "`stereotlm merge {0} {0}` takes the change back",
+        path);
+  }
   const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
   if (is_of_system && (error == ENOSPC || error == EDQUOT)) return "the disk is full";
   switch (kind) {
@@ -40,19 +47,27 @@ int flags_of(Database::Access access) {
     case Database::Access::kWrite:
       return SQLITE_OPEN_READWRITE;
     case Database::Access::kCreate:
+    case Database::Access::kMemory:
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   }
   return 0;
+}
+
+// "" and ":memory:" are no file for SQLite, and "file:.." may be a URI.
+std::string absolute(const std::string& path) {
+  const std::filesystem::path file(path);
+  return file.is_absolute() ? path : (std::filesystem::current_path() / file).string();
 }
 
 }  // namespace
 
 Database::Database(const std::string& path, Access access, std::chrono::milliseconds patience) : path_(path) {
   // Of one thread each.
-  const int code = sqlite3_open_v2(path.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
+  const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) {
-    const std::string text =
-        fmt::format("{}: {}", path, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
+    const std::string text = fmt::format(
+        "{}: {}", path, meaning_of(path, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
     sqlite3_close(handle_);
     throw DatabaseError(text);
   }
@@ -66,13 +81,19 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
 Database::~Database() { sqlite3_close(handle_); }
 
 void Database::fail(int code) const {
-  throw DatabaseError(
-      fmt::format("{}: {}", path_, meaning_of(code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
+  throw DatabaseError(fmt::format(
+      "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
 }
 
 void Database::execute(const std::string& sql) {
   const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code);
+}
+
+void Database::attach(const std::string& path, const std::string& name) {
+  Statement statement(*this, "ATTACH ? AS " + quoted_name(name));
+  statement.bind(1, absolute(path));
+  statement.run();
 }
 
 std::int64_t Database::number(const std::string& sql) {

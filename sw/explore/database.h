@@ -22,18 +22,21 @@ class DatabaseError : public std::runtime_error {
 // used across fork().
 class Database {
  public:
-  enum class Access { kRead, kWrite, kCreate };
+  enum class Access { kRead, kWrite, kCreate, kMemory };
 
   // For how long it waits for a process that keeps the file locked.
   static constexpr std::chrono::milliseconds kPatience = std::chrono::minutes(1);
 
-  // ":memory:" is a database of its own.
+  // kMemory: a database of its own, which is no file. Else any path names a file, also those that SQLite would
+  // take for something else.
   Database(const std::string& path, Access access, std::chrono::milliseconds patience = kPatience);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
   void execute(const std::string& sql);
+  // Another file, to be read or written under that name.
+  void attach(const std::string& path, const std::string& name);
   std::int64_t number(const std::string& sql);  // the first column of the first row; 0 if there is none
   const std::string& path() const { return path_; }
   sqlite3* handle() const { return handle_; }

@@ -40,12 +40,12 @@ class BoardPoints : public Points {
       : boards_(std::move(boards)), run_(run) {}
   std::uint64_t size() const override { return boards_.size(); }
   Point point(std::uint64_t number) const override { return make_point(number, boards_.at(number), run_); }
-  const std::vector<std::string>& conditions() const override { return none_; }
+  const std::vector<Condition>& conditions() const override { return none_; }
 
  private:
   std::vector<platform::BoardConfig> boards_;
   PointRun run_;
-  std::vector<std::string> none_;
+  std::vector<Condition> none_;
 };
 
 }  // namespace stereotlm::explore

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -18,6 +17,8 @@
 #include <system_error>
 
 #include "sw/explore/store_layout.h"
+#include "sw/explore/store_lock.h"
+#include "sw/report/replaced_file.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -270,8 +271,11 @@ class MergedFile {
   const std::string& path() const { return path_; }
 
   void replace(const std::string& store) {
-    if (std::rename(path_.c_str(), store.c_str()) != 0)
-      throw DatabaseError(fmt::format("{}: cannot be replaced: {}", store, std::strerror(errno)));
+    try {
+      report::take_place(path_, store);
+    } catch (const std::system_error& error) {
+      throw DatabaseError(fmt::format("{}: cannot be replaced: {}", store, error.code().message()));
+    }
     path_.clear();
   }
 
@@ -297,7 +301,8 @@ class MergedFile {
 
 }  // namespace
 
-void merge_stores(const std::vector<std::string>& inputs, const std::string& out) {
+void merge_stores(const std::vector<std::string>& inputs, const std::string& store) {
+  const std::string out = behind_links(store);
   std::error_code none;
   if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
   std::vector<std::unique_ptr<Reader>> readers;
@@ -310,9 +315,7 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& out
     database.execute(
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
     if (inputs.size() == 1) {
-      Statement attach(database, "ATTACH ? AS input");
-      attach.bind(1, inputs.front());
-      attach.run();
+      database.attach(inputs.front(), "input");
     }
     database.execute("BEGIN");
     std::vector<std::string> columns = all_columns(readers);

@@ -31,7 +31,7 @@ class Plan : public Points {
   std::uint64_t size() const override { return sample_ ? sample_->points : product_; }
   // number: 0..size()-1. What it costs is reading a board.
   Point point(std::uint64_t number) const override;
-  const std::vector<std::string>& conditions() const override { return conditions_; }
+  const std::vector<Condition>& conditions() const override { return conditions_; }
   // Paths that vary, in the order of the file.
   std::vector<std::string> varied() const;
   // Of the banks of all points.
@@ -84,7 +84,7 @@ class Plan : public Points {
   PointRun run_;
   std::vector<Axis> axes_;  // the last varies fastest
   std::uint64_t product_ = 1;
-  std::vector<std::string> conditions_;
+  std::vector<Condition> conditions_;
   std::optional<Sample> sample_;
 };
 

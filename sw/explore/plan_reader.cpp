@@ -94,6 +94,7 @@ class PlanReader {
       count_points();
       if (const YamlNode* sample = find(*sections, "sample")) read_sample(*sample);
     }
+    if (diagnostics_.empty()) compute_conditions();
     if (!diagnostics_.empty()) fail();
     plan_.banks_ = {banks_.begin(), banks_.end()};
     return std::move(plan_);
@@ -133,9 +134,8 @@ class PlanReader {
       const std::string full = platform::below(path, name);
       const auto [at, is_new] = first.emplace(name, entry.key.place);
       if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) {
-        report(entry.key.place,
-               fmt::format("{} = {}: unknown key; nearest: {}; keys: {}", full, short_text(entry.value),
-                           platform::nearest_word(name, known), platform::listed(known)));
+        report(entry.key.place, fmt::format("{} = {}: unknown key{}; keys: {}", full, short_text(entry.value),
+                                            platform::nearest_text(name, known), platform::listed(known)));
       } else if (!is_new) {
         report(entry.key.place, fmt::format("{} = {}: repeated key, first at {}:{}", full,
                                             short_text(entry.value), at->second.line, at->second.column));
@@ -389,10 +389,27 @@ class PlanReader {
         continue;
       }
       try {
-        const Conditions condition({item.text});
-        plan_.conditions_.push_back(item.text);
+        const Condition condition = {item.text, place_text(item.place), "where = " + short_text(item)};
+        const Conditions compiled({condition});
+        plan_.conditions_.push_back(condition);
       } catch (const std::invalid_argument& error) {
         report("where", item, fmt::format("not an SQL expression over keys: {}", error.what()));
+      }
+    }
+  }
+
+  // For the first and the last point: what cannot be computed at all is known before anything runs.
+  void compute_conditions() {
+    if (plan_.conditions_.empty()) return;
+    const auto first = plan_.point(0).values;
+    const auto last = plan_.point(plan_.size() - 1).values;
+    for (const Condition& condition : plan_.conditions_) {
+      try {
+        Conditions compiled({condition});
+        compiled.hold(first);
+        compiled.hold(last);
+      } catch (const ConditionError& error) {
+        diagnostics_.push_back({condition.place, condition.name + ": " + error.reason});
       }
     }
   }

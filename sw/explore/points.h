@@ -47,14 +47,20 @@ Point make_point(std::uint64_t number, const platform::BoardConfig& board, const
 // Fills in what follows from the rest; `identity`: what its hash is of, beside the run.
 void complete_point(const std::string& identity, Point& point);
 
+// What leaves out the points that do not make it true, see Conditions.
+struct Condition {
+  std::string text;
+  std::string place;  // "plan.yaml:3:9"
+  std::string name;   // for messages: "where = image.width > 4"
+};
+
 // Points that are made one by one, from their numbers.
 class Points {
  public:
   virtual ~Points() = default;
   virtual std::uint64_t size() const = 0;
   virtual Point point(std::uint64_t number) const = 0;  // number: 0..size()-1
-  // What leaves points out, see Conditions.
-  virtual const std::vector<std::string>& conditions() const = 0;
+  virtual const std::vector<Condition>& conditions() const = 0;
 
  protected:
   Points() = default;

@@ -91,7 +91,7 @@ std::uint64_t ShardedSweep::points_of(std::uint64_t shard) const {
 }
 
 ShardFolder::ShardFolder(const std::string& store)
-    : store_(fs::weakly_canonical(fs::absolute(store)).string()), path_(store_ + kEnding) {}
+    : store_(fs::weakly_canonical(fs::absolute(behind_links(store))).string()), path_(store_ + kEnding) {}
 
 ShardFolder::~ShardFolder() {
   if (lock_ >= 0) close(lock_);

@@ -7,9 +7,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <thread>
 
-#include "sw/explore/database.h"
+#include "sw/report/replaced_file.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -49,11 +50,20 @@ Outcome try_lock(int file, const std::string& store) {
 
 }  // namespace
 
-StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patience) : store_(store) {
+std::string behind_links(const std::string& store) {
+  try {
+    return report::linked_file(store).string();
+  } catch (const std::system_error& error) {
+    throw DatabaseError(fmt::format("{}: cannot be opened: {}", store, error.code().message()));
+  }
+}
+
+StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patience)
+    : store_(store), path_(behind_links(store)) {
   const auto end = std::chrono::steady_clock::now() + patience;
   for (;;) {
     open_store();
-    const Outcome outcome = try_lock(file_, store);
+    const Outcome outcome = try_lock(file_, path_);
     if (outcome == Outcome::kLocked) return;
     const int error = errno;
     close(file_);
@@ -68,15 +78,19 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patienc
 
 void StoreLock::open_store() {
   constexpr mode_t kMode = 0644;
-  file_ = open(store_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
   is_made_ = file_ >= 0;
-  if (file_ < 0 && errno == EEXIST) file_ = open(store_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+  if (file_ < 0 && errno == EEXIST) file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
   if (file_ < 0)
     throw DatabaseError(fmt::format("{}: cannot be opened to write: {}", store_, std::strerror(errno)));
 }
 
+void StoreLock::check() const {
+  if (!is_of(file_, path_)) throw StoreGone(store_);
+}
+
 StoreLock::~StoreLock() {
-  if (is_made_ && is_empty(file_) && is_of(file_, store_)) unlink(store_.c_str());
+  if (is_made_ && is_empty(file_) && is_of(file_, path_)) unlink(path_.c_str());
   close(file_);
 }
 

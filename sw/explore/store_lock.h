@@ -3,7 +3,19 @@
 #include <chrono>
 #include <string>
 
+#include "sw/explore/database.h"
+
 namespace stereotlm::explore {
+
+// The file of a store, behind all symbolic links. Throws DatabaseError.
+std::string behind_links(const std::string& store);
+
+// The file of a store has gone, or another has taken its place, and with it all that was added to it.
+class StoreGone : public DatabaseError {
+ public:
+  explicit StoreGone(const std::string& store)
+      : DatabaseError(store + ": has been removed or replaced meanwhile: what was done is gone with it") {}
+};
 
 // Keeps a store for one writer: the merge at the end of a sweep replaces the file, and points that another
 // process added meanwhile would be lost. The lock is of the system and ends with this object, or with this
@@ -20,10 +32,14 @@ class StoreLock {
   StoreLock(const StoreLock&) = delete;
   StoreLock& operator=(const StoreLock&) = delete;
 
+  // Throws StoreGone unless the file that is locked still has its name.
+  void check() const;
+
  private:
   void open_store();
 
   std::string store_;
+  std::string path_;  // behind links
   int file_ = -1;
   bool is_made_ = false;  // by this lock
 };

@@ -1,14 +1,17 @@
 #include "sw/explore/sweep.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <deque>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -46,23 +49,39 @@ class Sweep {
   }
 
   SweepCounts run(const std::function<bool(const SweepCounts&)>& go_on) {
+    const std::uint64_t workers = std::min<std::uint64_t>(options_.jobs, counts_.total);
+    if (const std::uint64_t most = workers_with_files(workers); most < workers) {
+      throw std::runtime_error(fmt::format(
+          "{} worker processes: the limit on open files (ulimit -n) is enough for {}", workers, most));
+    }
+    workers_.resize(workers);
     const StoreLock lock(options_.store);
     {  // What is wrong with the file is said once.
       const Store made(options_.store, options_.version, options_.patience);
     }
-    workers_.resize(std::min<std::uint64_t>(options_.jobs, counts_.total));
-    for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
-    while (is_busy()) {
-      if (!go_on(counts_)) shared_.stop() = true;
-      wait();
+    try {
+      run_points(lock, go_on);
+      merge_stores({options_.store}, options_.store);
+    } catch (const std::exception&) {
+      lock.check();  // or it would be taken for what has failed
+      throw;
     }
-    workers_.clear();
-    go_on(counts_);
-    merge_stores({options_.store}, options_.store);
     return counts_;
   }
 
  private:
+  void run_points(const StoreLock& lock, const std::function<bool(const SweepCounts&)>& go_on) {
+    for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
+    while (is_busy()) {
+      if (!go_on(counts_)) shared_.stop() = true;
+      wait();
+      lock.check();
+    }
+    workers_.clear();
+    go_on(counts_);
+    lock.check();
+  }
+
   bool is_busy() const {
     return std::any_of(workers_.begin(), workers_.end(),
                        [](const auto& worker) { return worker->order().count > 0; });
@@ -171,6 +190,20 @@ class Sweep {
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on) {
   return Sweep(points, evaluate, options).run(go_on);
+}
+
+// Opens as many as they would have, for a moment. What a worker itself opens (its stores with their journals,
+// the pipe of what simulates) comes on top of what it inherits: two ends of pipes for each worker.
+std::uint64_t workers_with_files(std::uint64_t workers) {
+  constexpr std::uint64_t kOfAWorker = 16;
+  std::vector<int> files;
+  while (files.size() < 2 * workers + kOfAWorker) {
+    const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (file < 0) break;
+    files.push_back(file);
+  }
+  for (const int file : files) close(file);
+  return files.size() < kOfAWorker ? 0 : (files.size() - kOfAWorker) / 2;
 }
 
 }  // namespace stereotlm::explore

@@ -35,9 +35,14 @@ struct SweepOptions {
 // whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun again,
 // and is one that has failed when it has died kMostDeaths times, with a reason that says how to try again.
 // Throws DatabaseError, also if another sweep is at work on the store, and std::runtime_error; all points
-// that were finished are kept.
+// that were finished are kept. Throws StoreGone (store_lock.h) once the file of the store has gone,
+// ConditionError (conditions.h) if a condition cannot be computed for a point.
+// Throws also if the limit on open files is too low for the workers, see workers_with_files().
 inline constexpr int kMostDeaths = 3;
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& go_on);
+
+// How many workers the limit on open files leaves room for; `workers` at most.
+std::uint64_t workers_with_files(std::uint64_t workers);
 
 }  // namespace stereotlm::explore

@@ -21,10 +21,18 @@ namespace {
 
 // What a worker tells: the end of a point, or of itself with a text.
 struct Report {
+  enum class Kind : std::uint8_t { kPoint, kFailure, kConditionError };
+
+  Kind kind = Kind::kPoint;
   PointEnd end = PointEnd::kNotBegun;
-  bool is_failure = false;
   std::uint32_t text_bytes = 0;
 };
+
+void report_end(int to, Report::Kind kind, const std::string& text) {
+  const Report report = {kind, PointEnd::kNotBegun, static_cast<std::uint32_t>(text.size())};
+  write_all(to, &report, sizeof report);
+  write_all(to, text.data(), text.size());
+}
 
 // A figure with the path of a key is another column: bridge.posted_words is what the bridge can hold, and
 // bridge.posted_words.counted what it has taken.
@@ -123,12 +131,11 @@ int be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions
     return 1;  // a signal that does not end it
   } catch (const std::bad_alloc&) {
     return kOutOfMemory;
+  } catch (const ConditionError& error) {
+    report_end(to, Report::Kind::kConditionError, error.what());
+    return 1;
   } catch (const std::exception& error) {
-    const std::string text = error.what();
-    report.is_failure = true;
-    report.text_bytes = static_cast<std::uint32_t>(text.size());
-    write_all(to, &report, sizeof report);
-    write_all(to, text.data(), text.size());
+    report_end(to, Report::Kind::kFailure, error.what());
     return 1;
   }
 }
@@ -171,9 +178,10 @@ std::optional<PointEnd> Worker::receive() {
     }
     return std::nullopt;
   }
-  if (report.is_failure) {
+  if (report.kind != Report::Kind::kPoint) {
     std::string text(report.text_bytes, '\0');
     read_all(descriptor(), text.data(), text.size());
+    if (report.kind == Report::Kind::kConditionError) throw ConditionError(text, text);
     throw std::runtime_error(text);
   }
   order_.first += order_.step;

@@ -38,7 +38,7 @@ class Worker {
 
   int descriptor() const { return reports_.read_end(); }  // readable when there is something to receive()
   // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with
-  // what it could not go on for.
+  // what it could not go on for, ConditionError (conditions.h) if that was a condition.
   std::optional<PointEnd> receive();
   std::string death() const { return death_; }  // "ended with signal 9 (Killed)"
 

@@ -77,9 +77,10 @@ class Boards(ProgramTest):
             self.assertEqual(self.summary(copy), self.summary(name))
 
     def test_refuses_an_unknown_name_with_the_nearest(self):
-        for name in ("fpl2003-trible", ""):
-            self.refused_in_one_line(run("boards", "--show", name), f"--show = {name}: not a preset; nearest: fpl2003")
-        self.refused_in_one_line(run("boards", "--show", "fpl2003-trible"), "nearest: fpl2003-triple;")
+        self.refused_in_one_line(run("boards", "--show", "fpl2003-trible"),
+                                 "--show = fpl2003-trible: not a preset; nearest: fpl2003-triple; presets: fpl2003, ")
+        for name in ("", "bumblebee"):
+            self.refused_in_one_line(run("boards", "--show", name), f"--show = {name}: not a preset; presets: fpl2003, ")
 
 
 class Keys(ProgramTest):

@@ -195,6 +195,17 @@ class Usage(DiffTest):
         self.assertEqual((self.folder / "rows.csv.part").read_bytes(), b"precious")
         self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "rows.csv", "rows.csv.part", "left.pgm", "right.pgm"})
 
+    def test_a_table_behind_a_link_is_replaced_and_the_link_stays(self):
+        self.write(self.a)
+        target = self.file("table", b"old")
+        target.chmod(0o640)
+        link = self.folder / "rows.csv"
+        link.symlink_to("table")
+        self.lines("--csv", link, b=self.a)
+        self.assertTrue(link.is_symlink())
+        self.assertTrue(target.read_text().startswith("frame,row,"))
+        self.assertEqual(target.stat().st_mode & 0o7777, 0o640)
+
     def test_a_table_that_cannot_be_written(self):
         self.write(self.a)
         path = self.folder / "none" / "rows.csv"

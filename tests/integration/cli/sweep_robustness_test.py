@@ -4,6 +4,7 @@ import ctypes
 import os
 import pathlib
 import random
+import re
 import resource
 import signal
 import sqlite3
@@ -148,6 +149,56 @@ class FullDisk(RobustnessTest):
         process = run("sweep", self.plan, "--out", self.store, preexec_fn=limit, restore_signals=False)
         self.fails(process, "points.db: disk I/O error; what is done is kept")
         self.finished(expected)
+
+
+class OpenFiles(RobustnessTest):
+    def test_that_are_too_few_are_refused_with_how_many_jobs_they_are_enough_for(self):
+        def sweep_with(files, jobs):
+            return run("sweep", self.plan, "--known", self.whole, "--out", self.store, "--jobs", jobs,
+                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files)))
+
+        self.succeeds(self.sweep(plan=self.file("one.yaml", PLAN.replace("to: 40", "to: 1").encode()), store=self.whole))
+        rule = "--jobs = 8: too many for the limit on open files (ulimit -n): "
+        enough = None
+        for files in range(12, 60):
+            process = sweep_with(files, 8)
+            if process.returncode == 0:
+                break
+            self.refused_in_one_line(process, rule)
+            self.assertEqual(list(self.disk.iterdir()), [])
+            enough = re.search(r"lower --jobs to (\d+), or raise the limit\n", process.stderr)
+            if enough:
+                self.succeeds(sweep_with(files, enough[1]))
+                self.store.unlink()
+            else:
+                self.assertTrue(process.stderr.endswith(f"{rule}raise it\n"), process.stderr)
+        self.assertEqual(enough[1], "7", "the limit before the first that is enough for 8")
+
+
+class UnfinishedChange(RobustnessTest):
+    """What a process leaves that is killed while it changes a finished database."""
+
+    def test_in_a_database_that_is_only_read_is_said_with_the_cure(self):
+        expected = self.expected()
+        self.succeeds(self.sweep())
+        change = ("import os, sqlite3, sys\n"
+                  "connection = sqlite3.connect(sys.argv[1], isolation_level=None)\n"
+                  "connection.execute('PRAGMA cache_size = 1')\n"
+                  "connection.execute('BEGIN')\n"
+                  "connection.execute('DELETE FROM points')\n"
+                  "connection.execute('UPDATE keys SET name = name || \\'x\\'')\n"
+                  "os._exit(0)\n")
+        subprocess.run([sys.executable, "-c", change, str(self.store)], check=True)
+        self.assertTrue((self.disk / "points.db-journal").exists())
+        rule = (f"{self.store}: {self.store}-journal is there, of a change that was not finished, and this command only "
+                f"reads: `stereotlm merge {self.store} {self.store}` takes the change back")
+        more = self.folder / "more.db"
+        self.refused_in_one_line(self.sweep("--known", self.store, store=more), f"--known {rule}")
+        self.refused_in_one_line(run("merge", more, self.store), rule)
+        self.assertFalse(more.exists())
+        self.succeeds(run("merge", self.store, self.store))
+        self.assertTrue(self.store.read_bytes() == expected)
+        self.assertEqual([path.name for path in self.disk.iterdir()], ["points.db"])
 
 
 class LockedDatabase(RobustnessTest):

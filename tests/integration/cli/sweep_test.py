@@ -128,12 +128,92 @@ class Sweep(SweepTest):
                                    stats["cameras"][0]["frames"]))
 
 
+class Links(SweepTest):
+    """A link to a file is the name of that file, for whatever writes one."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "real").mkdir()
+        self.store.symlink_to("real/points.db")
+        self.real = self.folder / "real" / "points.db"
+
+    def of_link(self, count, process):
+        self.succeeds(process)
+        self.assertTrue(self.store.is_symlink())
+        self.assertEqual(self.query("SELECT count(*) FROM points", self.real), [(count,)])
+        self.assertEqual([path.name for path in self.real.parent.iterdir()], ["points.db"])
+
+    def test_to_databases_and_their_modes_stay(self):
+        self.of_link(POINTS, self.sweep())
+        self.real.chmod(0o640)
+        more = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[7, 9]").encode())
+        self.of_link(POINTS + 4, self.sweep(plan=more))
+        other = self.folder / "other.db"
+        self.succeeds(self.sweep(plan=self.file("last.yaml", PLAN.replace("[3, 5, 7]", "[11]").encode()), store=other))
+        self.of_link(POINTS + 8, run("merge", self.store, other, self.store))
+        self.succeeds(run("allocate", "fpl2003", "--source", "preloaded", "--banks", 4, "--out", self.store,
+                          *program.SMALL))
+        self.assertTrue(self.store.is_symlink())
+        self.assertEqual([path.name for path in self.real.parent.iterdir()], ["points.db"])
+        self.assertEqual(self.real.stat().st_mode & 0o7777, 0o640)
+
+    def test_to_files_of_progress_stay(self):
+        progress = self.folder / "progress"
+        target = self.file("counts", b"")
+        target.chmod(0o640)
+        progress.symlink_to(target)
+        self.succeeds(self.sweep("--progress", progress))
+        self.assertTrue(progress.is_symlink())
+        self.assertIn(f"total {POINTS}\n", target.read_text())
+        self.assertEqual(target.stat().st_mode & 0o7777, 0o640)
+
+
+class Names(SweepTest):
+    def test_that_sqlite_would_take_for_no_file_are_files(self):
+        for name in (":memory:", "file:x.db", "file::memory:?cache=shared"):
+            process = run("sweep", self.plan, "--out", name, cwd=self.folder)
+            self.assertIn(f"\n{name}: {POINTS} points\n", self.succeeds(process))
+            self.assertEqual(self.query_file(name), POINTS)
+            self.assertIn(f"{POINTS} there already", self.succeeds(
+                run("sweep", self.plan, "--out", "known.db", "--known", name, cwd=self.folder)))
+            self.succeeds(run("merge", "file:merged.db", name, cwd=self.folder))
+            self.assertEqual(self.query_file("file:merged.db"), POINTS)
+
+    def query_file(self, name):
+        connection = sqlite3.connect(self.folder / name)
+        self.addCleanup(connection.close)
+        return connection.execute("SELECT count(*) FROM points").fetchone()[0]
+
+
 class Refusals(SweepTest):
     def test_of_plans_name_place_value_and_rule(self):
         plan = self.file("wrong.yaml", PLAN.replace("[3, 5, 7]", "[3, 4, 7]").encode())
         lines = self.refused(self.sweep(plan=plan), f"{plan}:6:23: matcher.window = 4: ")
         self.assertEqual(lines[-1], f"{plan}: the plan would have {POINTS} points")
         self.assertFalse(self.store.exists())
+
+    def test_of_conditions_name_their_place_and_leave_out_nothing_in_silence(self):
+        for condition, reason in (
+            ("abs(-9223372036854775808) > 0", "integer overflow"),
+            ("name MATCH 'fpl*'", "not an SQL expression over keys: match() depends on more than its arguments"),
+            ("random() > 0", "not an SQL expression over keys: random() depends on more than its arguments"),
+            ("image.width > ?1", "not an SQL expression over keys: parameters such as ? and :x have no value"),
+            ("1)) /*", 'not an SQL expression over keys: near ")": syntax error'),
+            ("board.name = 'fpl", "not an SQL expression over keys: unrecognized token: \"'fpl\""),
+        ):
+            plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
+            lines = self.refused(self.sweep(plan=plan))
+            self.assertEqual(lines, [f"{plan}:10:5: where = {condition}: {reason}",
+                                     f"{plan}: the plan would have {POINTS} points"])
+        self.assertFalse(self.store.exists())
+
+    def test_of_a_condition_that_one_point_shows_to_be_wrong_do_not_advise_to_repeat_it(self):
+        condition = "iif(matcher.window = 5, json('{' || image.width), 1)"
+        plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
+        process = self.sweep(plan=plan)
+        self.assertEqual(process.returncode, 1, process.stderr)
+        self.assertEqual(process.stderr, f"stereotlm: error: {plan}:10:5: where = {condition}: malformed JSON; what is done "
+                                         "is kept: correct the plan\n")
 
     def test_of_options(self):
         self.refused_in_one_line(self.sweep("--jobs", 0), "--jobs = 0: must be 1..1024")
@@ -243,6 +323,31 @@ class Interrupted(SweepTest):
         self.assertEqual(errors, "stereotlm: note: interrupted: the same command goes on where this one has ended\n")
         self.succeeds(self.sweep(plan=self.many))
         self.assertEqual(self.store.read_bytes(), self.expected())
+
+    def test_by_the_loss_of_its_database_it_does_not_say_that_anything_is_kept(self):
+        for another in (None, b"", b"another file"):
+            process = self.start()
+            self.wait_for_points(3)
+            self.store.unlink()
+            if another is not None:
+                self.store.write_bytes(another)
+            out, errors = process.communicate(timeout=60)
+            self.assertEqual((process.returncode, out), (1, ""), errors)
+            self.assertEqual(errors, f"stereotlm: error: {self.store}: has been removed or replaced meanwhile: what was "
+                                     "done is gone with it\n")
+            for left in self.folder.glob("points.db*"):
+                left.unlink()
+
+    def test_by_damage_to_its_database_it_does_not_say_that_anything_is_kept(self):
+        process = self.start()
+        self.wait_for_points(3)
+        with open(self.store, "r+b") as damaged:
+            damaged.write(b"damage" * 1000)
+        (self.folder / "points.db-wal").write_bytes(b"")
+        out, errors = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (1, ""), errors)
+        self.assertIn("points.db", errors)
+        self.assertNotIn("is kept", errors)
 
     def test_when_killed_it_keeps_what_was_done(self):
         process = self.start("--jobs", "2")

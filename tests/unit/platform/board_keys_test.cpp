@@ -1,3 +1,5 @@
+#include "platform/board_keys.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +13,39 @@
 
 namespace stereotlm::platform::testing {
 namespace {
+
+TEST(NearestKey, IsNamedWhereItCanBeMeant) {
+  const std::vector<std::pair<std::string, std::string>> meant = {
+      {"imge.width", "image.width"},
+      {"image.widht", "image.width"},
+      {"widht", "image.width"},
+      {"image.clock_mhz", "pci.clock_mhz"},
+      {"pci.lode", "pci.load"},
+      {"matcher.filter.sift", "matcher.filter.shift"},
+      {"matcher.windows", "matcher.window"},
+      {"ssram.banks.b.wrods", "ssram.banks.b.words"},
+      {"ssram.default.kin", "ssram.default.kind"},
+      {"alocation", "allocation"},
+      {"fpga.clock", "fpga.clock_mhz"},
+      {"latency_timer", "pci.latency_timer_clocks"},
+  };
+  for (const auto& [typed, key] : meant)
+    EXPECT_EQ(unknown_key_text(typed), "unknown key; nearest known key: " + key) << typed;
+  for (const std::string typed :
+       {"matcher.cost", "matcher.size", "x", "", "image.x", "image.", "matcher.filter.x", "cost", "größe",
+        "<<", "ssram.banks.b.size", "matcher.a_key_that_is_longer_than_any_other"})
+    EXPECT_EQ(unknown_key_text(typed), "unknown key, and no known key is near") << typed;
+}
+
+TEST(NearestWord, IsNamedWhereItCanBeMeant) {
+  const std::vector<std::string> words = {"bank0", "bank1", "left_bank", "a"};
+  EXPECT_EQ(nearest_text("bank9", words), "; nearest: bank0");
+  EXPECT_EQ(nearest_text("bakn1", words), "; nearest: bank1");
+  EXPECT_EQ(nearest_text("lft_bnk", words), "; nearest: left_bank");
+  for (const std::string typed : {"x", "", "none", "memory"})
+    EXPECT_EQ(nearest_text(typed, words), "") << typed;
+  EXPECT_EQ(nearest_text("x", {}), "");
+}
 
 // One key: values at and inside its limits, values beyond them, and the rule as messages give it.
 struct KeyCase {

@@ -163,8 +163,8 @@ TEST(BoardAllocation, NamesBanksOfTheBoard) {
                        "allocation: {disparity: [bank4, bonk5], left_lut: bank66, right_image: [x, none]}\n"),
             "board.yaml:2:33: allocation.disparity = bonk5: not a bank of this board; nearest: bank5\n"
             "board.yaml:2:51: allocation.left_lut = bank66: not a bank of this board; nearest: bank6\n"
-            "board.yaml:2:73: allocation.right_image = x: not a bank of this board; nearest: bank0\n"
-            "board.yaml:2:76: allocation.right_image = none: not a bank of this board; nearest: bank0");
+            "board.yaml:2:73: allocation.right_image = x: not a bank of this board\n"
+            "board.yaml:2:76: allocation.right_image = none: not a bank of this board");
   EXPECT_EQ(refusal_of(kBase + "allocation: {disparity: [bank4, [bank5], null]}\n"),
             "board.yaml:2:33: allocation.disparity = [bank5]: a bank, or a list of 1 to 3 banks\n"
             "board.yaml:2:42: allocation.disparity = null: a bank, or a list of 1 to 3 banks");

@@ -128,8 +128,8 @@ TEST(BoardSet, NamesTheNearestKeyForAnUnknownPath) {
             "--set image.widht: image.widht = 4: unknown key; nearest known key: image.width\n"
             "--set ssram.banks.bank0.knd: ssram.banks.bank0.knd = x: unknown key; nearest known key: "
             "ssram.banks.bank0.kind\n"
-            "--set :  = 4: unknown key; nearest known key: pci\n"
-            "--set image.: image. = 4: unknown key; nearest known key: image\n"
+            "--set :  = 4: unknown key, and no known key is near\n"
+            "--set image.: image. = 4: unknown key, and no known key is near\n"
             "--set image..width: image..width = 4: unknown key; nearest known key: image.width\n"
             "--set  image.width:  image.width = 4: unknown key; nearest known key: image.width\n"
             "--set capture.clock_mhz: capture.clock_mhz = 4: unknown key; nearest known key: pci.clock_mhz");

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -33,15 +34,30 @@ board.yaml:3:41: cameras.trigger = off: free_running or on_demand
 board.yaml:5:11: fpga.device = xc2v600: xc2v6000
 board.yaml:6:3: fpga.arbitration = (nothing): fixed_priority or round_robin
 board.yaml:7:63: fpga.priority = left_lut: repeated; each of the six ports once
-board.yaml:8:1: größe = {ü: 1}: unknown key; nearest known key: bridge
+board.yaml:8:1: größe = {ü: 1}: unknown key, and no known key is near
 board.yaml:9:11: matcher.filter.shift: missing: 0..31
 board.yaml:9:40: matcher.filter.kernel = [1, 2]: a row of 3 entries, as many as there are rows
 board.yaml:9:52: matcher.filter.kernel = 40000: entries -32768..32767
 board.yaml:9:59: matcher.filter.kernel = x: not an integer (decimal digits, not in quotes); entries -32768..32767
 board.yaml:9:72: matcher.fetch = columns: column or line_buffer
 board.yaml:9:95: matcher.lr_tolerance = false: not an integer (decimal digits, not in quotes); 0..253 or off
-board.yaml:10:1: << = {x: 1}: unknown key; nearest known key: pci
-board.yaml:11:1: [a, b] = 3: unknown key; nearest known key: name)");
+board.yaml:10:1: << = {x: 1}: unknown key, and no known key is near
+board.yaml:11:1: [a, b] = 3: unknown key, and no known key is near)");
+}
+
+TEST(BoardSyntax, CountsWhatIsWrongBeyondTwentyLines) {
+  const auto refusal = [](int count) {
+    std::string text = "extends: fpl2003\n";
+    for (int i = 0; i < count; ++i) text += fmt::format("x{}: 1\n", i);
+    return refusal_of(text);
+  };
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n') + 1; };
+  const auto last = [](const std::string& text) { return text.substr(text.rfind('\n') + 1); };
+  EXPECT_EQ(lines(refusal(20)), 20);
+  EXPECT_EQ(last(refusal(20)), "board.yaml:21:1: x19 = 1: unknown key, and no known key is near");
+  EXPECT_EQ(lines(refusal(21)), 21);
+  EXPECT_EQ(last(refusal(21)), "and 1 error more");
+  EXPECT_EQ(last(refusal(100'000)), "and 99980 errors more");
 }
 
 TEST(BoardSyntax, CountsColumnsInCharacters) {

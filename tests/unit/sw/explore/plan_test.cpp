@@ -224,9 +224,31 @@ TEST(Plan, OfAMillionPointsTakesNoTimeToLoad) {
 }
 
 TEST(Plan, KeepsItsConditions) {
-  EXPECT_THAT(plan_of(kBoard + "where: image.width > 4\n").conditions(), ElementsAre("image.width > 4"));
-  EXPECT_THAT(plan_of(kBoard + "where: [image.width > 4, 'matcher.window = 7']\n").conditions(),
+  const auto texts = [](const std::string& where) {
+    std::vector<std::string> found;
+    const Plan plan = plan_of(kBoard + "where: " + where + "\n");
+    for (const Condition& condition : plan.conditions()) found.push_back(condition.text);
+    return found;
+  };
+  EXPECT_THAT(texts("image.width > 4"), ElementsAre("image.width > 4"));
+  EXPECT_THAT(texts("[image.width > 4, 'matcher.window = 7']"),
               ElementsAre("image.width > 4", "matcher.window = 7"));
+}
+
+TEST(PlanRefusals, AreForConditionsThatCannotBeComputed) {
+  const std::string vary = kBoard + "vary: {matcher.window: [3, 5]}\n";
+  const std::string points = ": the plan would have 2 points";
+  EXPECT_THAT(refusals(vary + "where: [1, abs(-9223372036854775808) > 0, \"json('{bad')\"]\n"),
+              ElementsAre(":3:12: where = abs(-9223372036854775808) > 0: integer overflow",
+                          ":3:43: where = \"json('{bad')\": malformed JSON", points));
+  EXPECT_THAT(
+      refusals(vary + "where: board.name MATCH 'fpl*'\n"),
+      ElementsAre(HasSubstr(":3:8: where = board.name MATCH 'fpl*': not an SQL expression over keys: "),
+                  points));
+  for (const std::string only : {"3", "5"}) {  // of the last point, or of the first
+    EXPECT_THAT(refusals(vary + "where: iif(matcher.window = " + only + ", json('{bad'), 1)\n"),
+                ElementsAre(HasSubstr(": malformed JSON"), points));
+  }
 }
 
 TEST(PlanRefusals, NameThePlaceTheValueAndTheRule) {

@@ -104,6 +104,30 @@ TEST_F(StoreLockTest, LeavesAFileThatHasTakenThePlaceOfItsOwn) {
   EXPECT_TRUE(std::filesystem::exists(store()));
 }
 
+TEST_F(StoreLockTest, IsOfTheFileBehindALink) {
+  namespace fs = std::filesystem;
+  const std::string target = store() + ".target";
+  fs::create_symlink(target, store());
+  {
+    const StoreLock lock(store());
+    EXPECT_TRUE(fs::is_regular_file(target));
+    EXPECT_THAT(message_of([&] { const StoreLock second(target, 0ms); }), EndsWith("give another file"));
+  }
+  EXPECT_TRUE(fs::is_symlink(store()));
+  EXPECT_FALSE(fs::exists(target)) << "it was made by the lock, and is empty";
+}
+
+TEST_F(StoreLockTest, SaysThatItsFileHasGone) {
+  for (const bool is_replaced : {false, true}) {
+    const StoreLock lock(store());
+    lock.check();
+    std::filesystem::remove(store());
+    if (is_replaced) test::write_file(store(), "another");
+    EXPECT_EQ(message_of([&] { lock.check(); }),
+              store() + ": has been removed or replaced meanwhile: what was done is gone with it");
+  }
+}
+
 TEST_F(StoreLockTest, SaysWhyItCannotBe) {
   EXPECT_EQ(message_of([&] { const StoreLock lock(store() + "/none.db"); }),
             store() + "/none.db: cannot be opened to write: No such file or directory");

@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -338,6 +340,39 @@ TEST_F(StoreTest, RemovesWhatAMergeThatWasKilledHasLeft) {
   test::write_file(file("a.db.merging-0123456789abcdef"), "half");
   merge_stores({file("a.db")}, file("a.db"));
   EXPECT_THAT(names(), ElementsAre("a.db"));
+}
+
+TEST_F(StoreTest, BehindALinkIsMergedInItsPlaceWithItsModeAndOwner) {
+  namespace fs = std::filesystem;
+  constexpr uid_t kOther = 4711;
+  fs::create_directory(file("real"));
+  fs::create_symlink("real/b.db", file("b.db"));
+  { Store(file("a.db"), kVersion).add(point("h1")); }
+  { Store(file("b.db"), kVersion).add(point("h2")); }
+  ASSERT_EQ(chmod(file("real/b.db").c_str(), 0640), 0);
+  const bool is_given_away = chown(file("real/b.db").c_str(), kOther, kOther) == 0;  // only root can
+  merge_stores({file("a.db"), file("b.db")}, file("b.db"));
+  EXPECT_TRUE(fs::is_symlink(file("b.db")));
+  EXPECT_THAT(hashes(file("real/b.db")), ElementsAre("h1", "h2"));
+  struct stat now = {};
+  ASSERT_EQ(stat(file("real/b.db").c_str(), &now), 0);
+  EXPECT_EQ(now.st_mode & 07777U, 0640U);
+  EXPECT_EQ(now.st_uid, is_given_away ? kOther : geteuid());
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("real")), {}), 1) << "without its journal";
+}
+
+TEST_F(StoreTest, IsAFileOfAnyName) {
+  std::filesystem::current_path(std::filesystem::path(file("x")).parent_path());
+  std::size_t files = 0;
+  for (const std::string name : {":memory:", "file:a.db", "file::memory:", "file:b.db?mode=memory", " "}) {
+    { Store(name, kVersion).add(point("h1")); }
+    EXPECT_THAT(hashes(file(name)), ElementsAre("h1")) << name;
+    merge_stores({name}, name);
+    EXPECT_TRUE(FinishedStore(name, kVersion).has("h1"));
+    EXPECT_THAT(names(), Contains(name));
+    EXPECT_EQ(names().size(), ++files) << "nothing else is made";
+  }
+  EXPECT_THROW(Store("", kVersion), DatabaseError);
 }
 
 TEST_F(StoreTest, MergesIntoAnEmptyFile) {

@@ -19,10 +19,12 @@
 #include <utility>
 #include <vector>
 
+#include "sw/explore/conditions.h"
 #include "sw/explore/ended_by_signal.h"
 #include "sw/explore/merge_stores.h"
 #include "sw/explore/plan.h"
 #include "sw/explore/store.h"
+#include "sw/explore/store_lock.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::explore {
@@ -327,6 +329,21 @@ TEST_F(SweepTest, EndsWhereTheMachineLacksSomething) {
   EXPECT_EQ(read_file(file("a.db")), reference());
 }
 
+TEST_F(SweepTest, EndsAtAConditionThatCannotBeComputedForAPoint) {
+  test::write_file(file("plan.yaml"),
+                   "board: fpl2003\nvary: {matcher.window: [3, 5, 7]}\n"
+                   "where: iif(matcher.window = 5, json('{' || matcher.window), 1)\n");
+  try {
+    sweep(plan(), evaluate, options("a.db"), always);
+    FAIL() << "there is no such point";
+  } catch (const ConditionError& error) {
+    EXPECT_EQ(error.what(),
+              file("plan.yaml") +
+                  ":3:8: where = iif(matcher.window = 5, json('{' || matcher.window), 1): malformed JSON");
+  }
+  EXPECT_EQ(points_in(file("a.db")), 1) << "what was done is kept";
+}
+
 TEST_F(SweepTest, SaysThatItsStoreIsLocked) {
   SweepOptions impatient = options("a.db");
   impatient.patience = std::chrono::milliseconds(50);
@@ -361,6 +378,20 @@ TEST_F(SweepTest, EndsIfItsStoreIsLockedMeanwhile) {
   const SweepCounts counts = sweep(plan(), evaluate, impatient, always);
   EXPECT_GE(counts.known, 5U) << "what was done is kept";
   EXPECT_EQ(read_file(file("a.db")), reference());
+}
+
+TEST_F(SweepTest, EndsWhenItsStoreHasGone) {
+  for (const bool is_last : {false, true}) {  // at once, or seen only in the end
+    std::uint64_t done = 0;
+    const auto remove = [&](const SweepCounts& counts) {
+      done = counts.done();
+      if (done >= (is_last ? 60U : 10U)) std::filesystem::remove(file("a.db"));
+      return true;
+    };
+    EXPECT_THROW(sweep(plan(), evaluate, options("a.db"), remove), StoreGone);
+    EXPECT_TRUE(is_last || done < 60);
+    EXPECT_FALSE(std::filesystem::exists(file("a.db")));
+  }
 }
 
 TEST_F(SweepTest, KeepsOtherSweepsOut) {

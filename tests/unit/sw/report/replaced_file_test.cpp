@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <iterator>
@@ -78,6 +79,44 @@ TEST_F(ReplacedFileTest, LeavesNothingBehindWhereItFails) {
   EXPECT_EQ(files(), 0);
   fs::create_directory(path_);
   EXPECT_THROW(replace_file(path_, "no file can take its name"), std::system_error);
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(ReplacedFileTest, IsWhatALinkLeadsToAndTheLinkStays) {
+  fs::create_directory(scratch_.path() / "real");
+  const fs::path target = scratch_.path() / "real" / "target";
+  fs::create_symlink("real/target", scratch_.path() / "second");
+  fs::create_symlink(scratch_.path() / "second", path_);
+  for (const char* const bytes : {"of a link to nothing", "of a link to a file"}) {
+    replace_file(path_, bytes);
+    EXPECT_EQ(test::read_file(target), bytes);
+    EXPECT_TRUE(fs::is_symlink(path_) && fs::is_symlink(scratch_.path() / "second"));
+    EXPECT_EQ(files(), 3);
+  }
+  fs::create_symlink("round", scratch_.path() / "round");
+  EXPECT_THROW(replace_file(scratch_.path() / "round", ""), std::system_error);
+}
+
+TEST_F(ReplacedFileTest, HasTheModeAndTheOwnerThatItHad) {
+  constexpr uid_t kOther = 4711;
+  struct stat now = {};
+  for (const mode_t mode : {0600U, 0664U, 0755U, 0440U}) {
+    test::write_file(path_, "old");
+    ASSERT_EQ(chmod(path_.c_str(), mode), 0);
+    const bool is_given_away = chown(path_.c_str(), kOther, kOther) == 0;  // only root can
+    replace_file(path_, "new");
+    ASSERT_EQ(stat(path_.c_str(), &now), 0);
+    EXPECT_EQ(now.st_mode & 07777U, mode);
+    EXPECT_EQ(now.st_uid, is_given_away ? kOther : geteuid());
+    EXPECT_EQ(now.st_gid, is_given_away ? kOther : getegid());
+    fs::remove(path_);
+  }
+}
+
+TEST_F(ReplacedFileTest, IsARegularFile) {
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_THROW(ReplacedFile{path_}, std::system_error);
+  EXPECT_TRUE(fs::is_fifo(path_));
   EXPECT_EQ(files(), 1);
 }
 
