@@ -56,7 +56,7 @@ TEST(Conditions, MayBeAskedAgainForOtherBoards) {
   EXPECT_TRUE(conditions.hold(values_of(platform::load_board("fpl2003"))));
   EXPECT_FALSE(conditions.hold(values_of(platform::load_board("fpl2003", {"image.width=320"}))));
   EXPECT_TRUE(conditions.hold(values_of(platform::load_board("fpl2003"))));
-  Conditions of_load({"pci.\"load.burst_words\" = 8"});
+  Conditions of_load = of({"pci.\"load.burst_words\" = 8"});
   EXPECT_TRUE(of_load.hold(
       values_of(platform::load_board("fpl2003", {"pci.load={burst_words: 8, interval_us: 10}"}))));
   EXPECT_FALSE(of_load.hold(values_of(platform::load_board("fpl2003"))));
@@ -64,7 +64,7 @@ TEST(Conditions, MayBeAskedAgainForOtherBoards) {
 
 TEST(Conditions, CountAsBanksWhatLiesBelowThem) {
   const std::int64_t one = 1;
-  EXPECT_TRUE(Conditions({"ssram.banks = 2"})
+  EXPECT_TRUE(of({"ssram.banks = 2"})
                   .hold({{"ssram.banks.a.words", one},
                          {"ssram.default.words", one},
                          {"ssram.banks.a.turnaround_cycles", one},

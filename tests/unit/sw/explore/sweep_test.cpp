@@ -166,7 +166,7 @@ class EndlessPoints : public Points {
   explicit EndlessPoints(Plan plan) : plan_(std::move(plan)) {}
   std::uint64_t size() const override { return 1'000'000'000'000; }
   Point point(std::uint64_t number) const override { return plan_.point(number % plan_.size()); }
-  const std::vector<std::string>& conditions() const override { return plan_.conditions(); }
+  const std::vector<Condition>& conditions() const override { return plan_.conditions(); }
 
  private:
   Plan plan_;
