@@ -126,10 +126,11 @@ class Calibrator {
 
   // The folder of drawings is replaced whole.
   void check_pictures_survive(Problems& problems) const {
-    const fs::path drawings = fs::weakly_canonical(output_->files().drawings);
+    std::error_code none;  // what cannot be found was not read either
+    const fs::path drawings = fs::weakly_canonical(output_->files().drawings, none);
     for (const calib::PicturePair& pair : request_.pictures) {
       for (const std::string& name : {pair.left_name, pair.right_name}) {
-        if (fs::weakly_canonical(name).parent_path() != drawings) continue;
+        if (fs::weakly_canonical(name, none).parent_path() != drawings) continue;
         problems.add(fmt::format("'{}': in '{}', which is replaced whole: a picture must lie elsewhere", name,
                                  output_->files().drawings.string()));
       }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "models/fpga/core_config.h"
@@ -23,7 +24,8 @@ using Names = std::vector<std::string>;
 Names files_of(const std::string& option, const Names& patterns, Problems& problems) {
   Names files;
   for (const std::string& pattern : patterns) {
-    if (std::filesystem::exists(pattern)) {
+    std::error_code none;
+    if (std::filesystem::exists(pattern, none)) {
       files.push_back(pattern);
       continue;
     }

@@ -167,7 +167,8 @@ struct SweepCommandOptions {
       return;
     }
     std::error_code none;
-    if (std::filesystem::exists(progress.text, none) && !is_counts_file(progress.text)) {
+    const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(progress.text, none));
+    if (is_there && !is_counts_file(progress.text)) {
       problems.add(
           fmt::format("--progress = {}: is there, and not as a file of --progress: remove it, or give "
                       "another file",
@@ -405,11 +406,19 @@ std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t 
 int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
                    const std::optional<CalibrationInput>& calibration) {
   ProgressLine progress;
-  explore::SlurmSweep sweep(sharded(options, plan, calibration), options.sweep.store, options.sbatch_options,
-                            [&progress](const std::string& note) {
-                              progress.erase();
-                              say("note", note);
-                            });
+  const auto say_note = [&progress](const std::string& note) {
+    progress.erase();
+    say("note", note);
+  };
+  const auto opened = [&] {
+    try {
+      return explore::SlurmSweep(sharded(options, plan, calibration), options.sweep.store,
+                                 options.sbatch_options, say_note);
+    } catch (const std::system_error& error) {
+      refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
+    }
+  };
+  explore::SlurmSweep sweep = opened();
   catch_interrupts();
   try {
     sweep.begin();
