@@ -20,6 +20,7 @@
 #include "sw/cli/grid_pictures.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
+#include "sw/report/replaced_file.h"
 #include "sw/report/sha256.h"
 #include "sw/report/whole_file.h"
 
@@ -42,6 +43,7 @@ int print_grid(const CalibrateOptions& options) {
     const CalibrationFunctions& functions = calibration_functions();
     const std::string sheet =
         is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
+    report::remove_left_aside(options.out);
     if (!fs::exists(fs::symlink_status(options.out))) {
       report::replace_file(options.out, sheet);
     } else if (report::read_whole_file(options.out) != sheet) {

@@ -29,6 +29,7 @@
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"
 #include "sw/explore/sweep.h"
+#include "sw/report/replaced_file.h"
 #include "sw/report/whole_file.h"
 #include "sw/simulation/simulate_point.h"
 
@@ -314,7 +315,9 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
 // The file of --progress, if there is any.
 class ProgressFile {
  public:
-  explicit ProgressFile(const std::string& path) : path_(path) {}
+  explicit ProgressFile(const std::string& path) : path_(path) {
+    if (!path.empty()) report::remove_left_aside(path);
+  }
   void show(const explore::SweepCounts& counts) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= next_) write(counts);

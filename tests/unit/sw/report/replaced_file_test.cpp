@@ -1,15 +1,15 @@
 #include "sw/report/replaced_file.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <csignal>
 #include <iterator>
 #include <system_error>
 #include <vector>
 
 #include "sw/report/whole_file.h"
 #include "tests/support/file_size_limit.h"
+#include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::report {
@@ -46,16 +46,42 @@ TEST_F(ReplacedFileTest, IsAsItWasWithoutACommit) {
 }
 
 TEST_F(ReplacedFileTest, LeavesAllOtherFilesAlone) {
-  const auto taken = [this](int number) {
-    return scratch_.path() / fmt::format(".stereotlm_{}_{}", getpid(), number);
-  };
-  const std::vector<fs::path> others = {path_.string() + ".part", taken(0), taken(1)};
-  for (const fs::path& other : others) test::write_file(other, "precious");
+  for (const char* name : {"file.part", ".file.writing-", ".file.writing-0123456789abcdeg",
+                           ".file.writing-0123456789abcdef0", ".other.writing-0123456789abcdef"})
+    test::write_file(scratch_.path() / name, "precious");
+  fs::create_directory(scratch_.path() / ".file.writing-0123456789abcdef");
+  fs::create_symlink("file.part", scratch_.path() / ".file.writing-0123456789abcde0");
+  remove_left_aside(path_);
   replace_file(path_, "new");
   { ReplacedFile(path_).write("newer"); }
   EXPECT_EQ(test::read_file(path_), "new");
-  for (const fs::path& other : others) EXPECT_EQ(test::read_file(other), "precious");
-  EXPECT_EQ(files(), 4);
+  EXPECT_EQ(test::read_file(scratch_.path() / "file.part"), "precious");
+  EXPECT_EQ(files(), 8);
+}
+
+TEST_F(ReplacedFileTest, WhatAKilledProcessHasLeftAsideGoes) {
+  const auto killed = test::run_in_child([this] {
+    ReplacedFile file(path_);
+    file.write("half");
+    raise(SIGKILL);
+    return "";
+  });
+  EXPECT_EQ(killed.exit_status, 128 + SIGKILL);
+  EXPECT_EQ(files(), 1);
+  ReplacedFile living(path_);
+  EXPECT_EQ(files(), 2);
+  remove_left_aside(path_);
+  EXPECT_EQ(files(), 1);
+  living.write("whole");
+  living.commit();
+  EXPECT_EQ(test::read_file(path_), "whole");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(ReplacedFileTest, TakesTheLongestName) {
+  const fs::path longest = scratch_.path() / std::string(255, 'n');
+  replace_file(longest, "new");
+  EXPECT_EQ(test::read_file(longest), "new");
 }
 
 TEST_F(ReplacedFileTest, TwoAtOnceDoNotMeet) {
