@@ -193,21 +193,24 @@ class RefusedPictures(CalibrateTest):
 
     def test_with_something_of_the_users_under_the_name_of_the_folder_aside(self):
         aside = self.file("new.partial", b"precious")
-        self.refused(self.calibrate(*self.sources()), f"'{aside}': the name of a folder that calibrate uses")
+        self.refused(self.calibrate(*self.sources()), "holds 'new.partial', which is no folder")
         self.assertEqual(aside.read_bytes(), b"precious")
         aside.unlink()
         aside.mkdir()
         thesis = self.file("new.partial/thesis.txt", b"precious")
         (self.folder / "new.yaml").symlink_to("new.yaml")
-        self.refused(self.calibrate(*self.sources()), f"'{thesis}'")
+        self.refused(self.calibrate(*self.sources()), "holds 'new.partial/thesis.txt': no killed run has left that")
         self.assertEqual(thesis.read_bytes(), b"precious")
 
     def test_after_a_run_that_was_killed(self):
         few = self.sources("left_0[0-2].png", "right_0[0-2].png")
         self.succeeds(self.calibrate(*few))
         aside = self.folder / "new.partial"
-        aside.mkdir()
-        (self.folder / "new.yaml").rename(aside / "new.yaml")
+        (aside / "earlier").mkdir(parents=True)
+        (aside / "new").mkdir()
+        (aside / "new" / "new.yaml").write_bytes(b"half")
+        (aside / "names").write_bytes(b"new.yaml\n")
+        (self.folder / "new.yaml").rename(aside / "earlier" / "new.yaml")
         self.succeeds(self.calibrate(*few))
         self.assertFalse(aside.exists())
 
