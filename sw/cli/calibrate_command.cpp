@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -18,6 +22,7 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/grid_pictures.h"
+#include "sw/cli/interrupt.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
 #include "sw/report/replaced_file.h"
@@ -86,6 +91,7 @@ class Calibrator {
   }
 
   int run() {
+    catch_interrupts();
     Problems problems;
     try {
       output_ = std::make_unique<CalibrationOutput>(options_.out, options_.synthetic.has_value());
@@ -93,15 +99,13 @@ class Calibrator {
       problems.add(fmt::format("--out {}", error.what()));
     }
     load_pictures(problems);
+    if (interrupted()) return leave();
     problems.check();
-    try {
-      result_ = calibration_functions().calibrate(request_);
-    } catch (const std::exception& error) {
-      refuse_step("", error);
-    }
+    calibrate();
     for (const std::string& picture : result_.skipped) say("note", picture + ": the pair is skipped");
     try {
       write();
+      if (interrupted()) return leave();
       output_->commit();
     } catch (const std::runtime_error& error) {
       refuse_step("--out", error);
@@ -111,6 +115,27 @@ class Calibrator {
   }
 
  private:
+  static int leave() {
+    say("note", "interrupted: nothing was written");
+    return kInterrupted;
+  }
+
+  // On a thread of its own: OpenCV cannot be asked to stop. An interrupt ends the process.
+  void calibrate() {
+    constexpr std::chrono::milliseconds kBetweenLooks{50};
+    auto result = std::async(std::launch::async, calibration_functions().calibrate, std::cref(request_));
+    while (result.wait_for(kBetweenLooks) != std::future_status::ready) {
+      if (!interrupted()) continue;
+      output_.reset();
+      std::_Exit(leave());
+    }
+    try {
+      result_ = result.get();
+    } catch (const std::exception& error) {
+      refuse_step("", error);
+    }
+  }
+
   void load_pictures(Problems& problems) {
     if (!options_.synthetic) {
       request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
@@ -155,6 +180,7 @@ class Calibrator {
   void draw(const fs::path& folder) {
     const CalibrationFunctions& functions = calibration_functions();
     for (const calib::CalibratedPair& pair : result_.pairs) {
+      if (interrupted()) return;
       const calib::PicturePair& pictures = request_.pictures[pair.picture];
       const auto named = [](const std::string& path, const kernels::GrayImage& image) {
         return calib::CaptionedImage{fs::path(path).filename(), image};
@@ -181,6 +207,7 @@ class Calibrator {
   void write_synthetic(const fs::path& folder) {
     const MediaFunctions& media = media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {
+      if (interrupted()) return;
       output_->add(pictures.left_name, media.encode_png_gray(pictures.left));
       output_->add(pictures.right_name, media.encode_png_gray(pictures.right));
     }

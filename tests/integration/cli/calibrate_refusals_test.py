@@ -1,6 +1,9 @@
 """calibrate and --calibration: what is refused; the grid to print."""
 
 import os
+import signal
+import subprocess
+import time
 
 import program
 from calibrate_test import DISPARITIES, GRID, CalibrateTest
@@ -218,6 +221,27 @@ class RefusedPictures(CalibrateTest):
         for folder in (self.folder / "none", self.left):
             self.refused(run("calibrate", *self.sources(), *GRID, "--out", folder / "new.yaml"),
                          f"--out '{folder}': no such folder")
+
+
+class Interrupted(CalibrateTest):
+    def test_writes_nothing(self):
+        for number, has_earlier, delay in ((signal.SIGINT, False, 0), (signal.SIGTERM, True, 0), (signal.SIGINT, True, 0.2)):
+            if has_earlier:
+                self.copy_of_rig()
+            earlier = self.result(self.folder)
+            process = subprocess.Popen(
+                [program.PROGRAM, "calibrate", *map(str, self.sources()), *GRID, "--disparities", str(DISPARITIES), "--out",
+                 self.folder / "rig.yaml"],
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            end = time.monotonic() + 60
+            while not (self.folder / "rig.partial" / "new").exists() and time.monotonic() < end:
+                time.sleep(0.005)
+            time.sleep(delay)
+            process.send_signal(number)
+            out, errors = process.communicate(timeout=60)
+            self.assertEqual((process.returncode, out, errors), (130, "", "stereotlm: note: interrupted: nothing was written\n"))
+            self.assertEqual(self.result(self.folder), earlier)
+            self.assertFalse((self.folder / "rig.partial").exists())
 
 
 class Usage(ProgramTest):
