@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -18,8 +22,10 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/grid_pictures.h"
+#include "sw/cli/interrupt.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
+#include "sw/report/replaced_file.h"
 #include "sw/report/sha256.h"
 #include "sw/report/whole_file.h"
 
@@ -42,6 +48,7 @@ int print_grid(const CalibrateOptions& options) {
     const CalibrationFunctions& functions = calibration_functions();
     const std::string sheet =
         is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
+    report::remove_left_aside(options.out);
     if (!fs::exists(fs::symlink_status(options.out))) {
       report::replace_file(options.out, sheet);
     } else if (report::read_whole_file(options.out) != sheet) {
@@ -84,6 +91,7 @@ class Calibrator {
   }
 
   int run() {
+    catch_interrupts();
     Problems problems;
     try {
       output_ = std::make_unique<CalibrationOutput>(options_.out, options_.synthetic.has_value());
@@ -91,15 +99,13 @@ class Calibrator {
       problems.add(fmt::format("--out {}", error.what()));
     }
     load_pictures(problems);
+    if (interrupted()) return leave();
     problems.check();
-    try {
-      result_ = calibration_functions().calibrate(request_);
-    } catch (const std::exception& error) {
-      refuse_step("", error);
-    }
+    calibrate();
     for (const std::string& picture : result_.skipped) say("note", picture + ": the pair is skipped");
     try {
       write();
+      if (interrupted()) return leave();
       output_->commit();
     } catch (const std::runtime_error& error) {
       refuse_step("--out", error);
@@ -109,6 +115,27 @@ class Calibrator {
   }
 
  private:
+  static int leave() {
+    say("note", "interrupted: nothing was written");
+    return kInterrupted;
+  }
+
+  // On a thread of its own: OpenCV cannot be asked to stop. An interrupt ends the process.
+  void calibrate() {
+    constexpr std::chrono::milliseconds kBetweenLooks{50};
+    auto result = std::async(std::launch::async, calibration_functions().calibrate, std::cref(request_));
+    while (result.wait_for(kBetweenLooks) != std::future_status::ready) {
+      if (!interrupted()) continue;
+      output_.reset();
+      std::_Exit(leave());
+    }
+    try {
+      result_ = result.get();
+    } catch (const std::exception& error) {
+      refuse_step("", error);
+    }
+  }
+
   void load_pictures(Problems& problems) {
     if (!options_.synthetic) {
       request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
@@ -126,10 +153,11 @@ class Calibrator {
 
   // The folder of drawings is replaced whole.
   void check_pictures_survive(Problems& problems) const {
-    const fs::path drawings = fs::weakly_canonical(output_->files().drawings);
+    std::error_code none;  // what cannot be found was not read either
+    const fs::path drawings = fs::weakly_canonical(output_->files().drawings, none);
     for (const calib::PicturePair& pair : request_.pictures) {
       for (const std::string& name : {pair.left_name, pair.right_name}) {
-        if (fs::weakly_canonical(name).parent_path() != drawings) continue;
+        if (fs::weakly_canonical(name, none).parent_path() != drawings) continue;
         problems.add(fmt::format("'{}': in '{}', which is replaced whole: a picture must lie elsewhere", name,
                                  output_->files().drawings.string()));
       }
@@ -152,6 +180,7 @@ class Calibrator {
   void draw(const fs::path& folder) {
     const CalibrationFunctions& functions = calibration_functions();
     for (const calib::CalibratedPair& pair : result_.pairs) {
+      if (interrupted()) return;
       const calib::PicturePair& pictures = request_.pictures[pair.picture];
       const auto named = [](const std::string& path, const kernels::GrayImage& image) {
         return calib::CaptionedImage{fs::path(path).filename(), image};
@@ -178,6 +207,7 @@ class Calibrator {
   void write_synthetic(const fs::path& folder) {
     const MediaFunctions& media = media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {
+      if (interrupted()) return;
       output_->add(pictures.left_name, media.encode_png_gray(pictures.left));
       output_->add(pictures.right_name, media.encode_png_gray(pictures.right));
     }

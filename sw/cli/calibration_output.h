@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "sw/cli/rig_files.h"
+#include "sw/report/output_folder.h"
 
 namespace stereotlm::cli {
 
 // What calibrate writes: an earlier calibration of that name, or none, until commit(), and the new one whole
-// after it. New files are written aside, into the folder F.partial beside F.yaml.
+// after it. An OutputFolder whose mark is F.yaml; what else is in its folder stays. New files are written
+// aside, into the folder F.partial beside F.yaml.
 class CalibrationOutput {
  public:
   // Proves that the folder can be written to. Throws std::runtime_error, having changed nothing, if it
@@ -20,29 +22,18 @@ class CalibrationOutput {
   // touches it.
   CalibrationOutput(const std::string& calibration, bool makes_pictures);
 
-  // Without commit(): removes what was written aside.
-  ~CalibrationOutput();
-  CalibrationOutput(const CalibrationOutput&) = delete;
-  CalibrationOutput& operator=(const CalibrationOutput&) = delete;
-
   const RigFiles& files() const { return files_; }
 
   // `file`: one of files(), or one in a folder of theirs. Throws std::runtime_error if it cannot be stored.
   void add(const std::filesystem::path& file, std::string_view bytes);
   void add(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes);
 
-  // Replaces the earlier calibration. Throws std::runtime_error if that fails; a calibration whose tables are
-  // not all in place is refused by whoever loads it.
-  void commit();
+  // Replaces the earlier calibration. Throws std::runtime_error if that fails, with all back in place.
+  void commit() { folder_.commit(); }
 
  private:
-  void check_aside() const;
-  void check_earlier() const;
-  std::filesystem::path aside(const std::filesystem::path& file) const;
-
   RigFiles files_;
-  bool makes_pictures_;
-  std::filesystem::path aside_;
+  report::OutputFolder folder_;
 };
 
 }  // namespace stereotlm::cli

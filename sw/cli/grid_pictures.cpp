@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "models/fpga/core_config.h"
+#include "sw/cli/interrupt.h"
 #include "sw/cli/media_library.h"
 #include "sw/cli/streams.h"
 #include "sw/report/sha256.h"
@@ -23,7 +25,8 @@ using Names = std::vector<std::string>;
 Names files_of(const std::string& option, const Names& patterns, Problems& problems) {
   Names files;
   for (const std::string& pattern : patterns) {
-    if (std::filesystem::exists(pattern)) {
+    std::error_code none;
+    if (std::filesystem::exists(pattern, none)) {
       files.push_back(pattern);
       continue;
     }
@@ -155,6 +158,7 @@ std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Name
   Loader loader(problems);
   std::vector<calib::PicturePair> pairs;
   for (std::size_t i = 0; i < left_files.size(); ++i) {
+    if (interrupted()) return {};
     pairs.push_back({left_files[i], right_files[i], loader.load("--left", left_files[i]),
                      loader.load("--right", right_files[i])});
   }

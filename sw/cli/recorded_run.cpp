@@ -127,9 +127,12 @@ std::optional<RecordedRun> load_recorded_run(const std::string& argument, const 
     }
   };
   const std::string rule = "A and B must be folders that run --out has written: ";
-  if (!fs::is_directory(folder)) {
-    problems.add(
-        fmt::format("{}'{}': {}", rule, folder, fs::exists(folder) ? "not a folder" : "no such folder"));
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (!fs::is_directory(status)) {
+    const bool is_missing = status.type() == fs::file_type::not_found;
+    const std::string found = is_missing ? "no such folder" : error ? error.message() : "not a folder";
+    problems.add(fmt::format("{}'{}': {}", rule, folder, found));
     return std::nullopt;
   }
   const auto read = [&](const char* name, std::string& text, const std::function<void()>& use) {

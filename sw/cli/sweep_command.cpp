@@ -30,6 +30,7 @@
 #include "sw/explore/store.h"
 #include "sw/explore/store_lock.h"
 #include "sw/explore/sweep.h"
+#include "sw/report/replaced_file.h"
 #include "sw/report/whole_file.h"
 #include "sw/simulation/simulate_point.h"
 
@@ -170,7 +171,8 @@ struct SweepCommandOptions {
       return;
     }
     std::error_code none;
-    if (std::filesystem::exists(progress.text, none) && !is_counts_file(progress.text)) {
+    const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(progress.text, none));
+    if (is_there && !is_counts_file(progress.text)) {
       problems.add(
           fmt::format("--progress = {}: is there, and not as a file of --progress: remove it, or give "
                       "another file",
@@ -327,7 +329,9 @@ std::string kept_text(const std::string& store, const std::string& advice) {
 // The file of --progress, if there is any.
 class ProgressFile {
  public:
-  explicit ProgressFile(const std::string& path) : path_(path) {}
+  explicit ProgressFile(const std::string& path) : path_(path) {
+    if (!path.empty()) report::remove_left_aside(path);
+  }
   void show(const explore::SweepCounts& counts) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= next_) write(counts);
@@ -435,11 +439,19 @@ std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t 
 int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
                    const std::optional<CalibrationInput>& calibration) {
   ProgressLine progress;
-  explore::SlurmSweep sweep(sharded(options, plan, calibration), options.sweep.store, options.sbatch_options,
-                            [&progress](const std::string& note) {
-                              progress.erase();
-                              say("note", note);
-                            });
+  const auto say_note = [&progress](const std::string& note) {
+    progress.erase();
+    say("note", note);
+  };
+  const auto opened = [&] {
+    try {
+      return explore::SlurmSweep(sharded(options, plan, calibration), options.sweep.store,
+                                 options.sbatch_options, say_note);
+    } catch (const std::system_error& error) {
+      refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
+    }
+  };
+  explore::SlurmSweep sweep = opened();
   catch_interrupts();
   try {
     sweep.begin();

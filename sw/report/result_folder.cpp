@@ -48,9 +48,9 @@ std::optional<std::string> foreign_part(const fs::path& entry) {
 
 std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
   constexpr const char* kRule = "must be empty or hold run.json and only files that run writes";
-  const std::vector<fs::path> names = entries(dir);
+  std::vector<fs::path> names = entries(dir);
+  names.erase(std::remove(names.begin(), names.end(), kAsideFolder), names.end());
   for (const fs::path& name : names) {
-    if (name == kAsideFolder) continue;
     if (const auto foreign = foreign_part(dir / name)) return fmt::format("holds '{}': {}", *foreign, kRule);
   }
   if (was_left || names.empty() || is_file(dir / kRunJson)) return std::nullopt;

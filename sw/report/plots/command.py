@@ -38,10 +38,14 @@ def on_interrupt(clean_up):
 
 
 on_interrupt(lambda: None)
+os.environ.pop("MPLBACKEND", None)  # for figures on a screen; matplotlib fails if it does not know the name
 try:
     import matplotlib  # noqa: F401
 except ImportError as error:
     tell("error", f"needs matplotlib, which ./setup installs: {error}")
+    sys.exit(2)
+except Exception as error:  # whatever a matplotlibrc of the user makes of it
+    tell("error", f"matplotlib cannot be loaded: {error}")
     sys.exit(2)
 
 FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]

@@ -5,6 +5,10 @@ Every allocation is a dot. A line goes through the best of them for each number 
 combination of the keys that vary beside the allocation.
 """
 
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
+
 import command
 import lines
 from points import BANKS_USED, Unusable

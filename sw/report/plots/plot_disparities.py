@@ -1,6 +1,10 @@
 #!/usr/bin/python3
 """Frames per second and area against the disparities, a line for each combination of the other keys that vary."""
 
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
+
 import command
 import lines
 

@@ -4,6 +4,9 @@
 import argparse
 import csv
 import os
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
 from command import tell
 from drawing import BOUND_WIDTH, QUIET, Sheet, line_handle, pale, ticks_at

@@ -2,6 +2,9 @@
 """Any two columns against each other, and the Pareto front: the points than which none is better in both."""
 
 import re
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
 import command
 from drawing import LOSES_PIXELS, TOO_LARGE, Drawing, Sheet, bound_of, line_handle, mark_handle, pale, scale, title

@@ -1,6 +1,10 @@
 #!/usr/bin/python3
 """The stall cycles of each port in a frame, point by point, by the port that is to blame, or turnaround."""
 
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
+
 import bars
 import command
 from drawing import Drawing, Sheet

@@ -1,6 +1,10 @@
 #!/usr/bin/python3
 """What each port does in the cycles of a frame, point by point: granted, passed, stalled, blocked, starved or idle."""
 
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
+
 import bars
 import command
 from drawing import Drawing, Sheet

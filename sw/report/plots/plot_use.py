@@ -1,6 +1,10 @@
 #!/usr/bin/python3
 """How busy each bank is while the core works on a frame, point by point."""
 
+import sys
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
+
 import bars
 import command
 from drawing import Drawing, Sheet

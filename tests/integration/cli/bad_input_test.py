@@ -131,6 +131,43 @@ class Boards(ProgramTest):
         self.refused_in_one_line(self.run_small("--set", f"{bank}={words - 1}"), f"{bank} = {words - 1}: 1 words missing")
 
 
+class Paths(ProgramTest):
+    def test_that_lead_nowhere_are_refused_with_their_option(self):
+        self.succeeds(self.run_small("--out", self.out))
+        plan = self.file("plan.yaml", b"board: fpl2003\nvary: {matcher.window: [5, 7]}\n")
+        grid = ["--grid", "9x6", "--square-mm", "25"]
+        sweep = ["sweep", plan, "--out"]
+        for option, arguments in (
+            ("--left", ["run", "fpl2003", "--right", self.right, "--left"]),
+            ("--truth", self.run_arguments("--truth")),
+            ("--sequence", ["run", "fpl2003", "--sequence"]),
+            ("--video", ["run", "fpl2003", "--video-layout", "side_by_side", "--video"]),
+            ("--calibration", ["check", "fpl2003", "--calibration"]),
+            ("result folder", self.run_arguments("--out")),
+            ("--left", ["calibrate", *grid, "--right", self.right, "--out", self.folder / "rig.yaml", "--left"]),
+            ("--right", ["calibrate", *grid, "--left", self.left, "--out", self.folder / "rig.yaml", "--right"]),
+            ("--out", ["calibrate", *grid, "--synthetic", "1", "--out"]),
+            ("--out", ["calibrate", "--print-grid", "9x6", "--square-mm", "25", "--out"]),
+            ("A and B", ["diff", self.out]),
+            ("--csv", ["diff", self.out, self.out, "--csv"]),
+            ("--out", sweep),
+            ("--known", [*sweep, self.folder / "a.db", "--known"]),
+            ("--progress", [*sweep, self.folder / "a.db", "--progress"]),
+            ("--out", ["paper", "--out"]),
+        ):
+            ending = {"--csv": ".csv", "--calibration": ".yaml"}.get(option, "")
+            if arguments[0] == "calibrate" and option == "--out":
+                ending = ".pdf" if "--print-grid" in arguments else ".yaml"
+            loop = self.folder / f"loop{ending}"
+            if not loop.is_symlink():
+                loop.symlink_to(loop.name)
+            for path in (loop, loop / f"x{ending}", self.folder / f"{'long' * 64}{ending}", self.left / f"x{ending}"):
+                process = run(*arguments, path)
+                self.assertNotIn("filesystem error", process.stderr)
+                self.refused(process, option)
+        self.assertTrue(loop.is_symlink())
+
+
 class OutputFolders(ProgramTest):
     def refused_folder(self, folder, text):
         self.refused_in_one_line(self.run_small("--out", folder), "stereotlm: error: result folder", text)

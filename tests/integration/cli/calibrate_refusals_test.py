@@ -1,6 +1,9 @@
 """calibrate and --calibration: what is refused; the grid to print."""
 
 import os
+import signal
+import subprocess
+import time
 
 import program
 from calibrate_test import DISPARITIES, GRID, CalibrateTest
@@ -193,21 +196,24 @@ class RefusedPictures(CalibrateTest):
 
     def test_with_something_of_the_users_under_the_name_of_the_folder_aside(self):
         aside = self.file("new.partial", b"precious")
-        self.refused(self.calibrate(*self.sources()), f"'{aside}': the name of a folder that calibrate uses")
+        self.refused(self.calibrate(*self.sources()), "holds 'new.partial', which is no folder")
         self.assertEqual(aside.read_bytes(), b"precious")
         aside.unlink()
         aside.mkdir()
         thesis = self.file("new.partial/thesis.txt", b"precious")
         (self.folder / "new.yaml").symlink_to("new.yaml")
-        self.refused(self.calibrate(*self.sources()), f"'{thesis}'")
+        self.refused(self.calibrate(*self.sources()), "holds 'new.partial/thesis.txt': no killed run has left that")
         self.assertEqual(thesis.read_bytes(), b"precious")
 
     def test_after_a_run_that_was_killed(self):
         few = self.sources("left_0[0-2].png", "right_0[0-2].png")
         self.succeeds(self.calibrate(*few))
         aside = self.folder / "new.partial"
-        aside.mkdir()
-        (self.folder / "new.yaml").rename(aside / "new.yaml")
+        (aside / "earlier").mkdir(parents=True)
+        (aside / "new").mkdir()
+        (aside / "new" / "new.yaml").write_bytes(b"half")
+        (aside / "names").write_bytes(b"new.yaml\n")
+        (self.folder / "new.yaml").rename(aside / "earlier" / "new.yaml")
         self.succeeds(self.calibrate(*few))
         self.assertFalse(aside.exists())
 
@@ -215,6 +221,27 @@ class RefusedPictures(CalibrateTest):
         for folder in (self.folder / "none", self.left):
             self.refused(run("calibrate", *self.sources(), *GRID, "--out", folder / "new.yaml"),
                          f"--out '{folder}': no such folder")
+
+
+class Interrupted(CalibrateTest):
+    def test_writes_nothing(self):
+        for number, has_earlier, delay in ((signal.SIGINT, False, 0), (signal.SIGTERM, True, 0), (signal.SIGINT, True, 0.2)):
+            if has_earlier:
+                self.copy_of_rig()
+            earlier = self.result(self.folder)
+            process = subprocess.Popen(
+                [program.PROGRAM, "calibrate", *map(str, self.sources()), *GRID, "--disparities", str(DISPARITIES), "--out",
+                 self.folder / "rig.yaml"],
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            end = time.monotonic() + 60
+            while not (self.folder / "rig.partial" / "new").exists() and time.monotonic() < end:
+                time.sleep(0.005)
+            time.sleep(delay)
+            process.send_signal(number)
+            out, errors = process.communicate(timeout=60)
+            self.assertEqual((process.returncode, out, errors), (130, "", "stereotlm: note: interrupted: nothing was written\n"))
+            self.assertEqual(self.result(self.folder), earlier)
+            self.assertFalse((self.folder / "rig.partial").exists())
 
 
 class Usage(ProgramTest):

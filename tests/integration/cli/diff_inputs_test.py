@@ -227,6 +227,18 @@ class Interrupted(DiffTest):
         self.assertEqual(shown(terminal.text), ["stereotlm: note: interrupted: nothing is compared", ""])
         self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "left.pgm", "right.pgm"})
 
+    def test_by_a_kill_leaves_nothing_for_long(self):
+        self.write_timing(self.a, "--frames", "20000", "--set", "image.height=1")
+        path = self.folder / "rows.csv"
+        terminal = Terminal(["diff", self.a, self.a, "--csv", path])
+        terminal.read_until(re.compile(r"\d+/20000 frames compared"))
+        terminal.process.kill()
+        terminal.finish()
+        self.assertEqual(len(list(self.folder.glob(".rows.csv.*"))), 1)
+        self.write_timing(self.a, "--frames", "2")
+        self.lines("--csv", path, b=self.a)
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "rows.csv", "left.pgm", "right.pgm"})
+
 
 if __name__ == "__main__":
     program.main()

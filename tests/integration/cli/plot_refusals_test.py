@@ -143,8 +143,11 @@ class Refusals(PlotTest):
 
     def test_without_matplotlib(self):
         self.file("matplotlib.py", b"raise ImportError('not there')\n")
-        process = run("plot", self.store, "--out", self.out, env={**os.environ, "PYTHONPATH": str(self.folder)})
+        process = self.script("plot_all.py", self.store, "--out", self.out, PYTHONPATH=str(self.folder))
         self.refused_in_one_line(process, "stereotlm: error: needs matplotlib, which ./setup installs: not there")
+        self.file("matplotlib.py", b"raise ValueError('no such setting')\n")
+        process = self.script("plot_all.py", self.store, "--out", self.out, PYTHONPATH=str(self.folder))
+        self.refused_in_one_line(process, "stereotlm: error: matplotlib cannot be loaded: no such setting")
 
     def test_without_scripts(self):
         (self.folder / "bin").mkdir()
@@ -152,6 +155,22 @@ class Refusals(PlotTest):
         process = subprocess.run([alone, "plot", str(self.store), "--out", str(self.out)], capture_output=True, text=True,
                                  timeout=60, check=False)
         self.refused_in_one_line(process, f"'{self.folder}/share/stereotlm/plots/plot_all.py': not found")
+
+
+class Environment(PlotTest):
+    @program.slow
+    def test_has_no_effect(self):
+        store = self.sweep(SMALL_BOARD + "vary: {matcher.window: [3, 5]}\n")
+        self.file("matplotlib.py", b"raise ImportError('another one')\n")
+        expected = None
+        for variables in ({}, {"MPLBACKEND": "nonsense"}, {"PYTHONSAFEPATH": "1"}, {"PYTHONPATH": str(self.folder)},
+                          {"PYTHONHOME": str(self.folder)}, {"PYTHONOPTIMIZE": "2"}):
+            process = run("plot", store, "--out", self.out, env={**os.environ, **variables})
+            self.assertEqual((process.returncode, process.stderr), (0, ""), variables)
+            expected = expected or self.result()
+            self.assertEqual(self.result(), expected, variables)
+        for name in ("plot_window.py", "plot_all.py"):
+            self.succeeds(self.script(name, store, "--out", self.out, MPLBACKEND="nonsense", PYTHONSAFEPATH="1"))
 
 
 class Interrupted(PlotTest):

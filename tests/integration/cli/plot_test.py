@@ -74,10 +74,11 @@ class PlotTest(ProgramTest):
         self.succeeds(run("sweep", self.file(name + ".yaml", plan.encode()), "--out", store))
         return store
 
-    def script(self, name, *arguments):
-        """A figure's own script."""
+    def script(self, name, *arguments, **variables):
+        """A figure's own script, with these variables in its environment."""
         command = [PYTHON, "-B", SCRIPTS / name, *arguments]
-        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300, check=False)
+        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300, check=False,
+                              env={**os.environ, **variables})
 
     def table(self, name, folder=None):
         with open((folder or self.out) / f"{name}.csv", newline="") as file:

@@ -173,6 +173,11 @@ class Folders(SlurmCommands):
         self.refused_in_one_line(
             run("sweep", self.plan, "--out", self.folder / "none" / "a.db", "--launcher", "slurm", env=self.environment),
             f"{self.folder}/none/a.db.shards: cannot be made: No such file or directory")
+        loop = self.folder / "loop.db"
+        loop.symlink_to(loop.name)
+        self.refused_in_one_line(
+            run("sweep", self.plan, "--out", loop, "--launcher", "slurm", env=self.environment),
+            f"--out {loop}: Too many levels of symbolic links")
 
     def test_beside_what_is_no_database(self):
         self.store.write_bytes(b"x" * 5000)

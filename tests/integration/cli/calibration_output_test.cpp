@@ -1,0 +1,217 @@
+#include "sw/cli/calibration_output.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdarg>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "calib/calibration_yaml.h"
+#include "calib/synthetic_rig.h"
+#include "sw/report/folder_entries.h"
+#include "tests/support/fork.h"
+#include "tests/support/scratch_folder.h"
+
+namespace {
+
+enum class Fault { kKill, kFailOnce, kFailFromThenOn };
+
+int steps_left = -1;  // calls that change a file system and go well; below 0: all
+Fault fault = Fault::kKill;
+int failures = 0;
+
+// Whether the call that asks fails, with errno.
+bool fails() {
+  if (steps_left < 0) return false;
+  if (steps_left > 0) {
+    --steps_left;
+    return false;
+  }
+  if (fault == Fault::kKill) raise(SIGKILL);
+  if (fault == Fault::kFailOnce) steps_left = -1;
+  ++failures;
+  errno = EIO;
+  return true;
+}
+
+int call(long number, long a, long b, long c = 0, long d = 0) {
+  return fails() ? -1 : static_cast<int>(syscall(number, a, b, c, d));
+}
+long address(const char* path) { return reinterpret_cast<long>(path); }
+
+}  // namespace
+
+// They take the place of those of the C library.
+extern "C" {
+int fsync(int /*file*/) { return fails() ? -1 : 0; }  // which takes its time
+int rename(const char* from, const char* to) noexcept {
+  return call(SYS_renameat, AT_FDCWD, address(from), AT_FDCWD, address(to));
+}
+int mkdir(const char* path, mode_t mode) noexcept {
+  return call(SYS_mkdirat, AT_FDCWD, address(path), static_cast<long>(mode));
+}
+int unlinkat(int folder, const char* path, int flags) noexcept {
+  return call(SYS_unlinkat, folder, address(path), flags);
+}
+int unlink(const char* path) noexcept { return call(SYS_unlinkat, AT_FDCWD, address(path)); }
+int rmdir(const char* path) noexcept { return call(SYS_unlinkat, AT_FDCWD, address(path), AT_REMOVEDIR); }
+int remove(const char* path) noexcept {
+  const int file = unlink(path);
+  return file != 0 && errno == EISDIR ? rmdir(path) : file;
+}
+ssize_t write(int file, const void* bytes, size_t count) {
+  return fails() ? -1 : syscall(SYS_write, file, bytes, count);
+}
+int open(const char* path, int flags, ...) {
+  va_list more;
+  va_start(more, flags);
+  const long mode = (flags & O_CREAT) != 0 ? static_cast<long>(va_arg(more, mode_t)) : 0;
+  va_end(more);
+  if ((flags & O_CREAT) != 0 && fails()) return -1;
+  return static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, flags, mode));
+}
+}
+
+namespace stereotlm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Files = std::map<std::string, std::string>;  // contents by name
+
+std::string calibration_text() {
+  calib::Calibration made;
+  made.grid = {9, 6, 25.4};
+  made.rig = calib::SyntheticRig(2, 320, 240).rig();
+  made.rectification = calib::rectify(made.rig);
+  made.disparities = 80;
+  return calib::calibration_yaml(made);
+}
+
+// A calibration; one that differs for each `what`.
+Files calibration(const std::string& what, bool has_pictures) {
+  static const std::string text = calibration_text();
+  Files files = {{"rig.yaml", text + "# " + what + '\n'},
+                 {"rig_left.lut", what},
+                 {"rig_right.lut", what},
+                 {"rig_drawings/corners_00.png", what},
+                 {"rig_drawings/displacement.png", what}};
+  if (has_pictures) files["rig_pictures/left_00.png"] = what;
+  return files;
+}
+
+class CalibrationOutputTest : public ::testing::Test {
+ protected:
+  void write(const Files& files) const {
+    CalibrationOutput output(folder_ / "rig.yaml", files.count("rig_pictures/left_00.png") > 0);
+    for (const auto& [name, bytes] : files) output.add(folder_ / name, bytes);
+    output.commit();
+  }
+  // As a run that is given up before it has calibrated.
+  void begin(bool makes_pictures) const {
+    const CalibrationOutput output(folder_ / "rig.yaml", makes_pictures);
+  }
+
+  void begin_with(const Files& files) const {
+    fs::remove_all(folder_);
+    for (const auto& [name, bytes] : files) test::write_file(folder_ / name, bytes);
+    test::write_file(folder_ / "other_left.lut", "precious");
+  }
+  Files files() const {
+    Files files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+      if (report::is_file(entry.path()))
+        files[entry.path().lexically_relative(folder_)] = test::read_file(entry.path());
+    }
+    EXPECT_EQ(files["other_left.lut"], "precious");
+    files.erase("other_left.lut");
+    return files;
+  }
+
+  // The files of `fresh` in place of the earlier ones; pictures that it does not make stay.
+  static Files after(const Files& earlier, const Files& fresh) {
+    Files files = fresh;
+    const auto pictures = earlier.find("rig_pictures/left_00.png");
+    if (pictures != earlier.end()) files.insert(*pictures);
+    return files;
+  }
+
+  // Lets each call in turn fail, from the first one to that where all go well. `attempt`: with the number of
+  // calls that go well; false if none has failed.
+  template <typename Attempt>
+  void at_every_step(const Files& earlier, const Files& fresh, const Attempt& attempt) const {
+    int steps = 0;
+    for (bool has_failed = true; has_failed; ++steps) {
+      begin_with(earlier);
+      has_failed = attempt(steps, fresh);
+      begin(earlier.count("rig_pictures/left_00.png") > 0);
+      const Files found = files();
+      EXPECT_TRUE(found == earlier || found == after(earlier, fresh)) << steps;
+      EXPECT_TRUE(has_failed || found == after(earlier, fresh));
+      write(fresh);
+      EXPECT_EQ(files(), after(earlier, fresh)) << steps;
+    }
+    EXPECT_GT(steps, 30);
+  }
+
+  test::ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path() / "rigs";
+};
+
+TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAKillAnywhere) {
+  const auto attempt = [this](int steps, const Files& fresh) {
+    const auto end = test::run_in_child([&] {
+      fault = Fault::kKill;
+      steps_left = steps;
+      write(fresh);
+      steps_left = -1;
+      return "";
+    });
+    return end.exit_status == 128 + SIGKILL;
+  };
+  at_every_step({}, calibration("new", false), attempt);
+  at_every_step(calibration("old", false), calibration("new", false), attempt);
+  at_every_step(calibration("old", false), calibration("new", true), attempt);
+  at_every_step(calibration("old", true), calibration("new", false), attempt);
+}
+
+TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAFailureAnywhere) {
+  for (const Fault kind : {Fault::kFailOnce, Fault::kFailFromThenOn}) {
+    const auto attempt = [this, kind](int steps, const Files& fresh) {
+      fault = kind;
+      steps_left = steps;
+      failures = 0;
+      try {
+        write(fresh);
+      } catch (const std::runtime_error&) {
+        EXPECT_GT(failures, 0);
+      }
+      steps_left = -1;
+      return failures > 0;
+    };
+    at_every_step({}, calibration("new", true), attempt);
+    at_every_step(calibration("old", true), calibration("new", false), attempt);
+  }
+}
+
+TEST_F(CalibrationOutputTest, TakesTurnsWithAnotherRunOfTheSameNameAlone) {
+  begin_with(calibration("old", false));
+  {
+    const CalibrationOutput first(folder_ / "rig.yaml", false);
+    EXPECT_THAT(test::message_of([&] { CalibrationOutput(folder_ / "rig.yaml", false); }),
+                testing::HasSubstr("in use by another run"));
+    const CalibrationOutput other(folder_ / "rig2.yaml", false);
+  }
+  EXPECT_EQ(files(), calibration("old", false));
+}
+
+}  // namespace
+}  // namespace stereotlm::cli
