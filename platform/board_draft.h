@@ -33,8 +33,22 @@ class BoardDraft {
   // `file:line:column`, as the value has them.
   void replace(const std::string& path, YamlNode value, const std::string& file);
 
+  // What is wrong with such a value whatever the other keys are. It costs nothing of the rest of the board.
+  std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value,
+                                      const std::string& file) const;
+
+  // A board, and everything that is wrong with it. If all that is between keys, the board has all values.
+  struct Reading {
+    BoardConfig board;
+    std::vector<Diagnostic> problems;
+  };
+  Reading read_with_problems() const;
+
   // Throws BoardError with everything that is wrong.
   BoardConfig read() const;
+
+  // As a file that is read to the same board, or refused for the same, in other words than it was written.
+  std::string to_yaml() const { return yaml_text(tree_); }
 
  private:
   // Where a value comes from.

@@ -31,6 +31,12 @@ void ValueReader::report_missing(const Place& place, const std::string& path, co
   if (report_missing_) findings_.push_back({place, fmt::format("{}: missing: {}", path, rule), false, path});
 }
 
+void ValueReader::report_missing_beside(const Place& place, const std::string& path,
+                                        const std::string& rule) {
+  report_missing(place, path, rule);
+  if (report_missing_) findings_.back().is_between_keys = true;
+}
+
 void ValueReader::accept(const std::string& path, const Place& place) {
   sound_.insert_or_assign(path, place);
 }

@@ -36,6 +36,8 @@ class ValueReader {
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
   void report_missing(const Place& place, const std::string& path, const std::string& rule);
+  // Of a key that is needed beside the value of another one.
+  void report_missing_beside(const Place& place, const std::string& path, const std::string& rule);
   std::size_t finding_count() const { return findings_.size(); }
 
   void accept(const std::string& path, const Place& place);

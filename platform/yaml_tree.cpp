@@ -274,6 +274,55 @@ void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
   }
 }
 
+// A scalar that is safe in flow style: as it was written where that is, else in quotes, in which a text without
+// quotes means the same.
+std::string flow_scalar(const YamlNode& node) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-";
+  if (node.kind == YamlNode::Kind::kNull) return "~";
+  const bool is_plain = !node.quoted && !node.text.empty() && node.text != "-" &&
+                        node.text.find_first_not_of(kPlain) == std::string::npos;
+  return is_plain ? node.text : quoted_text(node.text);
+}
+
+void append_flow(const YamlNode& node, std::string& out) {
+  const char* separator = "";
+  if (node.is_list()) {
+    out += '[';
+    for (const YamlNode& item : node.items) {
+      out += std::exchange(separator, ", ");
+      append_flow(item, out);
+    }
+    out += ']';
+  } else if (node.is_map()) {
+    out += '{';
+    for (const YamlNode::Entry& entry : node.entries) {
+      out += std::exchange(separator, ", ");
+      append_flow(entry.key, out);
+      out += ": ";
+      append_flow(entry.value, out);
+    }
+    out += '}';
+  } else {
+    out += flow_scalar(node);
+  }
+}
+
+void append_block(const YamlNode& map, const std::string& indent, std::string& out) {
+  for (const YamlNode::Entry& entry : map.entries) {
+    out += indent;
+    append_flow(entry.key, out);
+    out += ':';
+    if (entry.value.is_map() && !entry.value.entries.empty()) {
+      out += '\n';
+      append_block(entry.value, indent + "  ", out);
+    } else {
+      out += ' ';
+      append_flow(entry.value, out);
+      out += '\n';
+    }
+  }
+}
+
 }  // namespace
 
 const YamlNode::Entry* YamlNode::find(const std::string& key) const {
@@ -334,6 +383,12 @@ std::string quoted_text(const std::string& text) {
 std::string flow_text(const YamlNode& node) {
   std::string out;
   append_text(node, out.max_size(), out);
+  return out;
+}
+
+std::string yaml_text(const YamlNode& map) {
+  std::string out;
+  append_block(map, "", out);
   return out;
 }
 
