@@ -263,7 +263,8 @@ std::string nearest_path(const std::string& path) {
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   const auto offer = [&](const std::string& known, std::optional<std::size_t> distance) {
-    if (!distance || *distance >= best_distance) return;
+    const bool is_near = distance && *distance > 0;  // 0: of a bank without a name
+    if (!is_near || *distance >= best_distance) return;
     best = known;
     best_distance = *distance;
   };

@@ -271,16 +271,16 @@ class PlanReader {
     }
   }
 
-  // Each is checked by itself: what another key can make right is left to the points. Nothing if there are none.
+  // Each is checked by itself: what another key can make right is left to the points. Nothing if there are
+  // none.
   std::optional<PlanValues> values_of(const std::string& section, const YamlNode::Entry& entry) {
     const std::string& path = entry.key.text;
     const YamlNode& node = entry.value;
     const std::string name = section + ": " + path;
     if (node.is_list() && !node.items.empty()) {
-      take_banks(entry.key, node.items.front());
       for (const YamlNode& value : node.items) {
         take_all(problems_of(path, value));
-        if (value.is_map()) take_banks(entry.key, value);
+        take_banks(entry.key, value);
       }
       return PlanValues(node.items);
     }
