@@ -263,13 +263,13 @@ std::string nearest_path(const std::string& path) {
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   const auto offer = [&](const std::string& known, std::optional<std::size_t> distance) {
-    const bool is_near = distance && *distance > 0;  // 0: of a bank without a name
-    if (!is_near || *distance >= best_distance) return;
+    if (!distance || *distance >= best_distance) return;
     best = known;
     best_distance = *distance;
   };
   const auto offer_known = [&](const std::string& known) {
     if (is_below(schema, known)) return;  // the section that it is in
+    if (schema == known) return;          // a bank without a name
     offer(known, slips_of_path(schema, known));
     // The right key in the wrong place costs less than most wrong keys in the right place.
     if (const auto moved = slips(last_part(schema), last_part(known))) offer(known, *moved + 2);

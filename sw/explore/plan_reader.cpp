@@ -146,7 +146,7 @@ class PlanReader {
       for (const YamlNode::Entry& entry : *entries) {
         take_path("set", entry.key);
         plan_.base_->replace(entry.key.text, entry.value, plan_.path_);
-        take_banks(entry.key, entry.value);
+        take_banks(entry.key, {entry.value});
       }
     }
     base = plan_.base_->read_with_problems();
@@ -216,11 +216,13 @@ class PlanReader {
     return rule.empty() && is_new;
   }
 
-  // The names of banks that a value brings, of `ssram.banks` or of a key below.
-  void take_banks(const YamlNode& key, const YamlNode& value) {
+  // The names of banks that values bring, of `ssram.banks` or of a key below.
+  void take_banks(const YamlNode& key, const std::vector<YamlNode>& values) {
     static const std::string kBanks = "ssram.banks";
     if (key.text == kBanks) {
-      for (const YamlNode::Entry& bank : value.entries) take_bank(bank.key.text, bank.key.place);
+      for (const YamlNode& value : values) {
+        for (const YamlNode::Entry& bank : value.entries) take_bank(bank.key.text, bank.key.place);
+      }
     } else if (key.text.rfind(kBanks + '.', 0) == 0) {
       const std::size_t begin = kBanks.size() + 1;
       take_bank(key.text.substr(begin, key.text.find('.', begin) - begin), key.place);
@@ -278,10 +280,8 @@ class PlanReader {
     const YamlNode& node = entry.value;
     const std::string name = section + ": " + path;
     if (node.is_list() && !node.items.empty()) {
-      for (const YamlNode& value : node.items) {
-        take_all(problems_of(path, value));
-        take_banks(entry.key, value);
-      }
+      for (const YamlNode& value : node.items) take_all(problems_of(path, value));
+      take_banks(entry.key, node.items);
       return PlanValues(node.items);
     }
     if (!node.is_map() || node.find("from") == nullptr) {
@@ -290,7 +290,7 @@ class PlanReader {
     }
     const auto range = range_of(name, node);
     if (!range) return std::nullopt;
-    take_banks(entry.key, node);
+    take_banks(entry.key, {});
     PlanValues values(*range, node.place);
     check_range(name, path, node, *range, values);
     return values;
