@@ -83,7 +83,8 @@ std::string put(YamlNode& tree, const std::string& path, YamlNode value, const P
   return "";
 }
 
-// A file that lacks most keys was meant to extend a preset: that is said in place of each key.
+// Replaces the findings of missing keys by a single one if most keys are missing: the writer meant to extend
+// a preset.
 void say_what_to_extend(std::vector<Finding>& findings) {
   const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
   std::size_t missing = 0;
@@ -96,7 +97,7 @@ void say_what_to_extend(std::vector<Finding>& findings) {
   const std::string text = fmt::format(
       "{} of the {} keys of a board are missing: begin the file with `extends: {}`, which supplies them",
       missing, all, preset_names().front());
-  findings.insert(findings.begin(), {{Place::kBoard, 1, 1}, text, false, ""});
+  findings.insert(findings.begin(), Finding({Place::kBoard, 1, 1}, text));
 }
 
 void set_source(YamlNode& node, int source) {
@@ -169,7 +170,7 @@ void BoardDraft::resolve_extends() {
     return entry.key.is_scalar() && entry.key.text == "extends";
   };
   const auto report = [this](const Place& place, const YamlNode& value, const std::string& rule) {
-    findings_.push_back({place, fmt::format("extends = {}: {}", short_text(value), rule), false, ""});
+    findings_.emplace_back(place, fmt::format("extends = {}: {}", short_text(value), rule));
   };
   std::optional<YamlNode> base;
   for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
@@ -214,7 +215,7 @@ void BoardDraft::set(const std::string& assignment) {
     YamlNode value;
     value.kind = YamlNode::Kind::kScalar;
     value.text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
-    findings_.push_back({place, fmt::format("{} = {}: {}", path, short_text(value), rule), false, ""});
+    findings_.emplace_back(place, fmt::format("{} = {}: {}", path, short_text(value), rule));
   };
   if (equals == std::string::npos) return report("--set needs path=value");
   if (const std::string problem = path_problem(path); !problem.empty()) return report(problem);
@@ -236,11 +237,11 @@ void BoardDraft::replace(const std::string& path, YamlNode value, const std::str
   const std::string text = short_text(value);
   std::string problem = path_problem(path);
   if (problem.empty()) problem = put(tree_, path, std::move(value), place);
-  if (!problem.empty())
-    findings_.push_back({place, fmt::format("{} = {}: {}", path, text, problem), false, ""});
+  if (!problem.empty()) findings_.emplace_back(place, fmt::format("{} = {}: {}", path, text, problem));
 }
 
-// Read in a tree that has nothing else; a key that is missing counts if it should be in the value.
+// Reads a tree that holds this value alone. A missing key is a problem of the value only if it belongs inside
+// it.
 std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const YamlNode& value,
                                                 const std::string& file) const {
   std::vector<Finding> findings;
@@ -252,8 +253,7 @@ std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const Y
     put(alone, path, value, value.place);
     read_board(alone, value.is_map(), findings);
   } else {
-    findings.push_back(
-        {value.place, fmt::format("{} = {}: {}", path, short_text(value), problem), false, ""});
+    findings.emplace_back(value.place, fmt::format("{} = {}: {}", path, short_text(value), problem));
   }
   std::vector<Diagnostic> problems;
   for (Finding& finding : findings) {

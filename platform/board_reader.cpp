@@ -301,7 +301,7 @@ class BoardReader {
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
     const std::string path = "ssram.banks";
-    // Their number first: of banks without end nothing else is worth a look.
+    // The number of banks is checked first: the checks of their names take time that grows with its square.
     if (node.is_map() && !memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
       Place place = node.place;
       for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/board_keys.h"
@@ -13,6 +14,8 @@ namespace stereotlm::platform {
 // Something wrong with a board, and where. The text is `path = value: rule`. Of a rule between keys, each may
 // keep its own.
 struct Finding {
+  Finding(const Place& its_place, std::string its_text) : place(its_place), text(std::move(its_text)) {}
+
   Place place;
   std::string text;
   bool is_between_keys = false;

@@ -296,11 +296,11 @@ class PlanReader {
     return values;
   }
 
-  // Said once: of a million values nobody wants to read a line each.
+  // One line for all values of a range.
   void check_range(const std::string& name, const std::string& path, const YamlNode& node,
                    const DecimalRange& range, const PlanValues& values) {
     RefusedOfRange refused = refused_by_rule(path, range);
-    // Else all are refused or none.
+    // A key without a rule for numbers takes all of them or none.
     if (refused.count == 0 && !problems_of(path, values.at(0)).empty()) refused = {range.count, 0};
     if (refused.count == 0) return;
     const std::vector<Diagnostic> first = problems_of(path, values.at(refused.first));
@@ -400,7 +400,7 @@ class PlanReader {
     }
   }
 
-  // A key that is missing is so in all points: no value of another one is to blame.
+  // A key that is missing beside those that the plan gives is missing in all points.
   void check_first_point() {
     const auto [draft, run] = plan_.combination(0);
     for (const Diagnostic& problem : draft.read_with_problems().problems) {
@@ -408,7 +408,7 @@ class PlanReader {
     }
   }
 
-  // For the first and the last point: what cannot be computed at all is known before anything runs.
+  // Computes each condition for the first and the last point, so that what can never be computed is refused.
   void compute_conditions() {
     if (plan_.conditions_.empty()) return;
     const auto first = plan_.point(0).values;

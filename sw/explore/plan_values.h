@@ -11,7 +11,7 @@
 
 namespace stereotlm::explore {
 
-// The values that a plan gives one key: those of a list, or of a range, which are made when they are asked for.
+// The values that a plan gives one key: a list, or a range, whose values are made one by one by at().
 class PlanValues {
  public:
   explicit PlanValues(std::vector<platform::YamlNode> list) : list_(std::move(list)) {}

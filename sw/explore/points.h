@@ -43,12 +43,12 @@ struct Point {
 // The point of a board.
 Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run);
 
-// The point of a combination that is no board: what was asked for, as text and by its values, and why there is
-// no such board.
+// The point of a combination that is no board. `yaml` and `asked_for` are what the combination asks for, and
+// `reason` is why there is no such board.
 Point impossible_point(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& asked_for,
                        const PointRun& run, const std::string& reason);
 
-// What leaves out the points that do not make it true, see Conditions.
+// An SQL expression; a point for which it is not true is left out. See Conditions.
 struct Condition {
   std::string text;
   std::string place;  // "plan.yaml:3:9"
