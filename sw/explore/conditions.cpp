@@ -8,6 +8,7 @@
 #include <map>
 
 #include "platform/board_keys.h"
+#include "platform/yaml_tree.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -114,8 +115,12 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
   return SQLITE_DENY;
 }
 
+// SQLite quotes the text from an error on, with all its lines.
 std::string Conditions::reason_of(const DatabaseError& error) const {
-  return std::string(error.what()).substr(database_.path().size() + 2);  // "where: .."
+  platform::YamlNode reason;
+  reason.kind = platform::YamlNode::Kind::kScalar;
+  reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // behind "where: "
+  return short_text(reason);
 }
 
 bool Conditions::hold(const std::vector<BoardValue>& values) {
