@@ -44,14 +44,26 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// Puts the value at the path into the tree. Returns the path of what is in the way because it is not a map;
-// empty if nothing is.
+// Why nothing can be put at the path of the tree; empty if it can.
+std::string way_problem(const YamlNode& tree, const std::string& path) {
+  const YamlNode* at = &tree;
+  std::string passed;
+  for (const std::string& part : parts_of(path)) {
+    if (!at->is_map()) return fmt::format("{} is not a map here; set it as a whole", passed);
+    const YamlNode::Entry* const entry = at->find(part);
+    if (entry == nullptr) break;
+    at = &entry->value;
+    passed += (passed.empty() ? "" : ".") + part;
+  }
+  return "";
+}
+
+// Puts the value at the path into the tree. If that cannot be, returns way_problem().
 std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
   YamlNode* at = &tree;
   YamlNode::Entry* entry = nullptr;
-  std::string passed;
   for (const std::string& part : parts_of(path)) {
-    if (!at->is_map()) return passed;
+    if (!at->is_map()) return way_problem(tree, path);
     entry = at->find(part);
     if (entry == nullptr) {
       YamlNode key;
@@ -65,18 +77,14 @@ std::string put(YamlNode& tree, const std::string& path, YamlNode value, const P
       entry = &at->entries.back();
     }
     at = &entry->value;
-    passed += (passed.empty() ? "" : ".") + part;
   }
   entry->key.place = place;
   entry->value = std::move(value);
   return "";
 }
 
-std::string not_a_map(const std::string& path) {
-  return fmt::format("{} is not a map here; set it as a whole", path);
-}
-
-// A file that lacks most keys was meant to extend a preset: that is said in place of each key.
+// Replaces the findings of missing keys by a single one if most keys are missing: the writer meant to extend
+// a preset.
 void say_what_to_extend(std::vector<Finding>& findings) {
   const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
   std::size_t missing = 0;
@@ -89,7 +97,7 @@ void say_what_to_extend(std::vector<Finding>& findings) {
   const std::string text = fmt::format(
       "{} of the {} keys of a board are missing: begin the file with `extends: {}`, which supplies them",
       missing, all, preset_names().front());
-  findings.insert(findings.begin(), {{Place::kBoard, 1, 1}, text, false, ""});
+  findings.insert(findings.begin(), Finding({Place::kBoard, 1, 1}, text));
 }
 
 void set_source(YamlNode& node, int source) {
@@ -162,7 +170,7 @@ void BoardDraft::resolve_extends() {
     return entry.key.is_scalar() && entry.key.text == "extends";
   };
   const auto report = [this](const Place& place, const YamlNode& value, const std::string& rule) {
-    findings_.push_back({place, fmt::format("extends = {}: {}", short_text(value), rule), false, ""});
+    findings_.emplace_back(place, fmt::format("extends = {}: {}", short_text(value), rule));
   };
   std::optional<YamlNode> base;
   for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
@@ -207,15 +215,15 @@ void BoardDraft::set(const std::string& assignment) {
     YamlNode value;
     value.kind = YamlNode::Kind::kScalar;
     value.text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
-    findings_.push_back({place, fmt::format("{} = {}: {}", path, short_text(value), rule), false, ""});
+    findings_.emplace_back(place, fmt::format("{} = {}: {}", path, short_text(value), rule));
   };
   if (equals == std::string::npos) return report("--set needs path=value");
   if (const std::string problem = path_problem(path); !problem.empty()) return report(problem);
   if (is_repeated) return report("the same path was set before");
   try {
-    const std::string way =
+    const std::string problem =
         put(tree_, path, parse_flow_value(assignment.substr(equals + 1), place.source), place);
-    if (!way.empty()) report(not_a_map(way));
+    if (!problem.empty()) report(problem);
   } catch (const YamlError& error) {
     report(error.what());
   }
@@ -226,31 +234,56 @@ void BoardDraft::replace(const std::string& path, YamlNode value, const std::str
   set_source(value, next_place().source);
   const Place place = value.place;
   sources_.push_back({file, true});
+  const std::string text = short_text(value);
   std::string problem = path_problem(path);
-  std::string text = short_text(value);
+  if (problem.empty()) problem = put(tree_, path, std::move(value), place);
+  if (!problem.empty()) findings_.emplace_back(place, fmt::format("{} = {}: {}", path, text, problem));
+}
+
+// Reads a tree that holds this value alone. A missing key is a problem of the value only if it belongs inside
+// it.
+std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const YamlNode& value,
+                                                const std::string& file) const {
+  std::vector<Finding> findings;
+  std::string problem = path_problem(path);
+  if (problem.empty()) problem = way_problem(tree_, path);
   if (problem.empty()) {
-    const std::string way = put(tree_, path, std::move(value), place);
-    if (!way.empty()) problem = not_a_map(way);
+    YamlNode alone;
+    alone.kind = YamlNode::Kind::kMap;
+    put(alone, path, value, value.place);
+    read_board(alone, value.is_map(), findings);
+  } else {
+    findings.emplace_back(value.place, fmt::format("{} = {}: {}", path, short_text(value), problem));
   }
-  if (!problem.empty())
-    findings_.push_back({place, fmt::format("{} = {}: {}", path, text, problem), false, ""});
+  std::vector<Diagnostic> problems;
+  for (Finding& finding : findings) {
+    const bool is_outside = finding.missing.compare(0, path.size() + 1, path + '.') != 0;
+    if (!finding.missing.empty() && (is_outside || finding.is_between_keys)) continue;
+    problems.push_back({fmt::format("{}:{}:{}", file, finding.place.line, finding.place.column),
+                        std::move(finding.text), false});
+  }
+  return problems;
 }
 
 BoardConfig BoardDraft::read() const {
+  Reading reading = read_with_problems();
+  if (!reading.problems.empty()) throw BoardError(std::move(reading.problems));
+  return std::move(reading.board);
+}
+
+BoardDraft::Reading BoardDraft::read_with_problems() const {
   std::vector<Finding> findings = findings_;
-  BoardConfig config = read_board(tree_, is_whole_, findings);
+  Reading reading{read_board(tree_, is_whole_, findings), {}};
   if (!has_extends_) say_what_to_extend(findings);
-  if (findings.empty()) return config;
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return std::tie(a.place.source, a.place.line, a.place.column) <
            std::tie(b.place.source, b.place.line, b.place.column);
   });
-  std::vector<Diagnostic> diagnostics;
-  diagnostics.reserve(findings.size());
+  reading.problems.reserve(findings.size());
   for (Finding& finding : findings) {
-    diagnostics.push_back({text_of(finding.place), std::move(finding.text), finding.is_between_keys});
+    reading.problems.push_back({text_of(finding.place), std::move(finding.text), finding.is_between_keys});
   }
-  throw BoardError(std::move(diagnostics));
+  return reading;
 }
 
 std::string BoardDraft::text_of(const Place& place) const {

@@ -33,8 +33,24 @@ class BoardDraft {
   // `file:line:column`, as the value has them.
   void replace(const std::string& path, YamlNode value, const std::string& file);
 
+  // The problems that the value has at that path whatever the other keys are. The rest of the board is not
+  // read. Places are as for replace().
+  std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value,
+                                      const std::string& file) const;
+
+  // A board, and everything that is wrong with it. The board has all values of the draft if every problem is
+  // between keys.
+  struct Reading {
+    BoardConfig board;
+    std::vector<Diagnostic> problems;
+  };
+  Reading read_with_problems() const;
+
   // Throws BoardError with everything that is wrong.
   BoardConfig read() const;
+
+  // A board file with the same values: it is read to the same board, or refused for the same reasons.
+  std::string to_yaml() const { return yaml_text(tree_); }
 
  private:
   // Where a value comes from.

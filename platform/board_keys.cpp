@@ -62,6 +62,12 @@ Key other(const char* path, const char* meaning, const char* unit, std::string t
   return {path, meaning, unit, OtherKey{}, std::move(text)};
 }
 
+// Of numbers, and it may be of words.
+Key other_integer(const char* path, const char* meaning, const char* unit, IntegerRule rule,
+                  std::string text) {
+  return {path, meaning, unit, OtherKey{rule}, std::move(text)};
+}
+
 Key optional(Key key) {
   key.is_optional = true;
   return key;
@@ -166,18 +172,18 @@ std::vector<Key> make_keys() {
               fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
       integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
               "cycles", fpga::kPipelineLatencyRule, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
-      other("ssram.default.words", "depth of a bank that gives none of its own", "words",
-            memory::kBankWordsRule.text()),
+      other_integer("ssram.default.words", "depth of a bank that gives none of its own", "words",
+                    memory::kBankWordsRule, memory::kBankWordsRule.text()),
       other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
-      optional(other("ssram.default.turnaround_cycles",
-                     "turnaround of a sync_burst bank that gives none of its own", "cycles",
-                     turnaround_rule)),
-      optional(
-          other("ssram.banks.NAME.words", "depth of the bank NAME", "words", memory::kBankWordsRule.text())),
+      optional(other_integer("ssram.default.turnaround_cycles",
+                             "turnaround of a sync_burst bank that gives none of its own", "cycles",
+                             memory::kTurnaroundRule, turnaround_rule)),
+      optional(other_integer("ssram.banks.NAME.words", "depth of the bank NAME", "words",
+                             memory::kBankWordsRule, memory::kBankWordsRule.text())),
       optional(other("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)),
-      optional(other("ssram.banks.NAME.turnaround_cycles",
-                     "cycles lost when the bank NAME changes between reads and writes", "cycles",
-                     turnaround_rule)),
+      optional(other_integer("ssram.banks.NAME.turnaround_cycles",
+                             "cycles lost when the bank NAME changes between reads and writes", "cycles",
+                             memory::kTurnaroundRule, turnaround_rule)),
       other("allocation.left_image", "banks of the left input buffers, used in turn", "", image_rule),
       other("allocation.right_image", "banks of the right input buffers, used in turn", "", image_rule),
       other("allocation.disparity", "banks of the result buffers, used in turn", "", list_rule),
@@ -191,13 +197,13 @@ std::vector<Key> make_keys() {
       other("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
             "a square list of lists, " + kernels::kKernelSizeRule.text() + " rows, entries " +
                 kernels::kKernelEntryRule.text() + ", sum 0"),
-      other("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
-            kernels::kShiftRule.text()),
+      other_integer("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
+                    kernels::kShiftRule, kernels::kShiftRule.text()),
       word<&B::matcher, &MatcherConfig::fetch>(
           "matcher.fetch", "how often a pixel is read: in every column of its window, or once",
           {"column", "line_buffer"}),
-      other("matcher.lr_tolerance", "difference that the left-right check tolerates", "pixels",
-            kernels::kLrToleranceRule.text() + " or off"),
+      other_integer("matcher.lr_tolerance", "difference that the left-right check tolerates", "pixels",
+                    kernels::kLrToleranceRule, kernels::kLrToleranceRule.text() + " or off"),
   };
 }
 
@@ -263,6 +269,7 @@ std::string nearest_path(const std::string& path) {
   };
   const auto offer_known = [&](const std::string& known) {
     if (is_below(schema, known)) return;  // the section that it is in
+    if (schema == known) return;          // a bank without a name
     offer(known, slips_of_path(schema, known));
     // The right key in the wrong place costs less than most wrong keys in the right place.
     if (const auto moved = slips(last_part(schema), last_part(known))) offer(known, *moved + 2);

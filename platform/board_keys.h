@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -37,7 +38,9 @@ struct WordKey {
 };
 
 // A key with code of its own in the reader and the writer.
-struct OtherKey {};
+struct OtherKey {
+  std::optional<IntegerRule> numbers;  // those that it takes, if it takes any
+};
 
 struct Key {
   std::string path;     // dotted; NAME stands for the name of a bank

@@ -290,8 +290,10 @@ class BoardReader {
     // A preset's own, under a kind that the file or `--set` has put in its place, is inherited.
     if (given.place.source == Place::kPreset) return;
     const auto name = memory::kBankKindNames[static_cast<std::size_t>(*kind.value)];
-    values_.report(latest(given.place, kind.place), path + ".turnaround_cycles", std::to_string(*given.value),
-                   fmt::format("only where the kind is sync_burst, and it is {}", name));
+    values_.report_between_keys(
+        latest(given.place, kind.place),
+        fmt::format("{}.turnaround_cycles = {}: only where the kind is sync_burst, and it is {}", path,
+                    *given.value, name));
   }
   static bool is_sync_burst(int kind) {
     return static_cast<memory::BankKind>(kind) == memory::BankKind::kSyncBurst;
@@ -299,7 +301,7 @@ class BoardReader {
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
     const std::string path = "ssram.banks";
-    // Their number first: of banks without end nothing else is worth a look.
+    // The number of banks is checked first: the checks of their names take time that grows with its square.
     if (node.is_map() && !memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
       Place place = node.place;
       for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
@@ -323,8 +325,9 @@ class BoardReader {
     }
     if (names_sound) values_.accept(path, node.place);
     if (default_lacks_turnaround) {
-      values_.report_missing(latest(defaults.key, defaults.kind.place), "ssram.default.turnaround_cycles",
-                             rule_text("ssram.default.turnaround_cycles"));
+      values_.report_missing_beside(latest(defaults.key, defaults.kind.place),
+                                    "ssram.default.turnaround_cycles",
+                                    rule_text("ssram.default.turnaround_cycles"));
     }
   }
 
@@ -337,8 +340,9 @@ class BoardReader {
         own.turnaround_cycles.present ? own.turnaround_cycles : defaults.turnaround_cycles;
     if (kind.value && is_sync_burst(*kind.value) && !turnaround.present) {
       if (own.kind.present) {
-        values_.report_missing(latest(latest(own.key, own.kind.place), defaults.key),
-                               path + ".turnaround_cycles", rule_text("ssram.banks.NAME.turnaround_cycles"));
+        values_.report_missing_beside(latest(latest(own.key, own.kind.place), defaults.key),
+                                      path + ".turnaround_cycles",
+                                      rule_text("ssram.banks.NAME.turnaround_cycles"));
       } else {
         default_lacks_turnaround = true;
       }

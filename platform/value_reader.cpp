@@ -14,13 +14,13 @@ std::string below(const std::string& path, const std::string& name) {
 }
 
 void ValueReader::report_between_keys(const Place& place, std::string text) {
-  findings_.push_back({place, std::move(text), true, ""});
+  findings_.emplace_back(place, std::move(text));
+  findings_.back().is_between_keys = true;
 }
 
 void ValueReader::report(const Place& place, const std::string& path, const std::string& value,
                          const std::string& rule) {
-  findings_.push_back(
-      {place, fmt::format("{} = {}: {}", path.empty() ? "the board" : path, value, rule), false, ""});
+  findings_.emplace_back(place, fmt::format("{} = {}: {}", path.empty() ? "the board" : path, value, rule));
 }
 
 void ValueReader::report(const std::string& path, const YamlNode& node, const std::string& rule) {
@@ -28,7 +28,15 @@ void ValueReader::report(const std::string& path, const YamlNode& node, const st
 }
 
 void ValueReader::report_missing(const Place& place, const std::string& path, const std::string& rule) {
-  if (report_missing_) findings_.push_back({place, fmt::format("{}: missing: {}", path, rule), false, path});
+  if (!report_missing_) return;
+  findings_.emplace_back(place, fmt::format("{}: missing: {}", path, rule));
+  findings_.back().missing = path;
+}
+
+void ValueReader::report_missing_beside(const Place& place, const std::string& path,
+                                        const std::string& rule) {
+  report_missing(place, path, rule);
+  if (report_missing_) findings_.back().is_between_keys = true;
 }
 
 void ValueReader::accept(const std::string& path, const Place& place) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/board_keys.h"
@@ -13,6 +14,8 @@ namespace stereotlm::platform {
 // Something wrong with a board, and where. The text is `path = value: rule`. Of a rule between keys, each may
 // keep its own.
 struct Finding {
+  Finding(const Place& its_place, std::string its_text) : place(its_place), text(std::move(its_text)) {}
+
   Place place;
   std::string text;
   bool is_between_keys = false;
@@ -36,6 +39,8 @@ class ValueReader {
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
   void report_missing(const Place& place, const std::string& path, const std::string& rule);
+  // Of a key that is needed beside the value of another one.
+  void report_missing_beside(const Place& place, const std::string& path, const std::string& rule);
   std::size_t finding_count() const { return findings_.size(); }
 
   void accept(const std::string& path, const Place& place);

@@ -54,8 +54,8 @@ void check_characters(const std::string& text, int source) {
   }
 }
 
-// The places of yaml-cpp's marks, which count lines and columns from 0, and columns in bytes. A place costs
-// the same however long its line is.
+// Gives yaml-cpp's marks as places. A mark counts lines and columns from 0, and columns in bytes. The cost of
+// a place does not depend on the length of its line.
 class Places {
  public:
   Places(const std::string& text, int source) : source_(source), continuing_(text.size() + 1) {
@@ -72,7 +72,7 @@ class Places {
 
  private:
   int source_;
-  std::vector<int> continuing_;  // bytes before each byte that continue a character
+  std::vector<int> continuing_;  // for each byte: how many of the bytes before it continue a character
 };
 
 // Whether the quoted scalar that begins at `at` has its closing quote; true for any other text.
@@ -136,7 +136,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  // Far above what a board or a plan needs, and below the limit of yaml-cpp, which does not say where it is.
+  // A board or a plan needs fewer than ten. yaml-cpp has a limit too, but does not say where a text exceeds
+  // it.
   static constexpr std::size_t kMostLevels = 100;
 
   struct Open {
@@ -274,6 +275,55 @@ void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
   }
 }
 
+// A scalar in a form that flow style can hold: as it was written, or in quotes where it has characters that
+// YAML could take for something else.
+std::string flow_scalar(const YamlNode& node) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-";
+  if (node.kind == YamlNode::Kind::kNull) return "~";
+  const bool is_plain = !node.quoted && !node.text.empty() && node.text != "-" &&
+                        node.text.find_first_not_of(kPlain) == std::string::npos;
+  return is_plain ? node.text : quoted_text(node.text);
+}
+
+void append_flow(const YamlNode& node, std::string& out) {
+  const char* separator = "";
+  if (node.is_list()) {
+    out += '[';
+    for (const YamlNode& item : node.items) {
+      out += std::exchange(separator, ", ");
+      append_flow(item, out);
+    }
+    out += ']';
+  } else if (node.is_map()) {
+    out += '{';
+    for (const YamlNode::Entry& entry : node.entries) {
+      out += std::exchange(separator, ", ");
+      append_flow(entry.key, out);
+      out += ": ";
+      append_flow(entry.value, out);
+    }
+    out += '}';
+  } else {
+    out += flow_scalar(node);
+  }
+}
+
+void append_block(const YamlNode& map, const std::string& indent, std::string& out) {
+  for (const YamlNode::Entry& entry : map.entries) {
+    out += indent;
+    append_flow(entry.key, out);
+    out += ':';
+    if (entry.value.is_map() && !entry.value.entries.empty()) {
+      out += '\n';
+      append_block(entry.value, indent + "  ", out);
+    } else {
+      out += ' ';
+      append_flow(entry.value, out);
+      out += '\n';
+    }
+  }
+}
+
 }  // namespace
 
 const YamlNode::Entry* YamlNode::find(const std::string& key) const {
@@ -334,6 +384,12 @@ std::string quoted_text(const std::string& text) {
 std::string flow_text(const YamlNode& node) {
   std::string out;
   append_text(node, out.max_size(), out);
+  return out;
+}
+
+std::string yaml_text(const YamlNode& map) {
+  std::string out;
+  append_block(map, "", out);
   return out;
 }
 

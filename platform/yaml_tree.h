@@ -67,6 +67,9 @@ std::string short_text(const YamlNode& node);
 // The value in one line, flow style, in full.
 std::string flow_text(const YamlNode& node);
 
+// The map as YAML in block style. parse_yaml() reads the same values back; places and misuse are lost.
+std::string yaml_text(const YamlNode& map);
+
 bool is_utf8(std::string_view text);
 
 // `text` in double quotes, with YAML's escapes.

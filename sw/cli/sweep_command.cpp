@@ -315,7 +315,7 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   return kInterrupted;
 }
 
-// What is said behind an error: nothing where the database cannot be read.
+// What follows the text of an error; empty if the database cannot be read.
 std::string kept_text(const std::string& store, const std::string& advice) {
   try {
     explore::Database(store, explore::Database::Access::kRead, kBriefPatience)

@@ -1,12 +1,18 @@
 #include "sw/explore/bank_names.h"
 
 #include <fmt/format.h>
-#include <sqlite3.h>
 
 namespace stereotlm::explore {
 
+std::string without_case(std::string name) {
+  for (char& c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return name;
+}
+
 bool differ_in_case(const std::string& a, const std::string& b) {
-  return a != b && sqlite3_stricmp(a.c_str(), b.c_str()) == 0;
+  return a != b && without_case(a) == without_case(b);
 }
 
 std::optional<std::string> bank_names_problem(const platform::BoardConfig& board) {

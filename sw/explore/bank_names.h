@@ -10,6 +10,9 @@ namespace stereotlm::explore {
 
 // Names of columns of a database ignore the case of letters, names of banks do not.
 
+// The same for names that differ in nothing but the case of letters.
+std::string without_case(std::string name);
+
 // Whether they differ, but in nothing else.
 bool differ_in_case(const std::string& a, const std::string& b);
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "platform/board_keys.h"
+#include "platform/yaml_tree.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -51,8 +52,8 @@ std::string tables_text(bool has_point) {
   return text;
 }
 
-// The functions whose result depends on their arguments alone. SQLite counts those of dates among them, but
-// they take 'now'.
+// The functions whose result depends on nothing but their arguments. SQLite lists the functions of dates too,
+// but their argument may be 'now'.
 std::set<std::string> pure_functions(const Database& database) {
   Statement list(database,
                  fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));
@@ -73,9 +74,9 @@ bool is_bank_words(const std::string& path) {
 
 }  // namespace
 
-// Each text is compiled twice. Behind WHERE, at the end, it has to be whole: quotes, comments and brackets that
-// do not match are errors of its own, and messages of SQLite quote nothing else. In brackets it has to be one
-// expression, without a clause behind it.
+// Each text is compiled twice. The first time it ends the statement: quotes and brackets that do not match
+// are errors, and SQLite's message quotes nothing but the text. The second time it stands in brackets: a
+// clause behind the expression, such as LIMIT, and a comment without end are errors.
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
@@ -114,8 +115,12 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
   return SQLITE_DENY;
 }
 
+// SQLite quotes the text from an error on, with all its lines.
 std::string Conditions::reason_of(const DatabaseError& error) const {
-  return std::string(error.what()).substr(database_.path().size() + 2);  // "where: .."
+  platform::YamlNode reason;
+  reason.kind = platform::YamlNode::Kind::kScalar;
+  reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // behind "where: "
+  return short_text(reason);
 }
 
 bool Conditions::hold(const std::vector<BoardValue>& values) {

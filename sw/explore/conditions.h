@@ -39,15 +39,15 @@ class Conditions {
     std::unique_ptr<Statement> statement;
   };
 
-  // What SQLite asks while it compiles a text; `conditions` is this object.
+  // SQLite's authorizer: called for each function and table that a text names. `conditions` is this object.
   static int authorize(void* conditions, int action, const char* first, const char* second,
                        const char* database, const char* trigger);
   std::unique_ptr<Statement> compile(const std::string& sql);
   std::string reason_of(const DatabaseError& error) const;
 
   Database database_;
-  std::set<std::string> functions_;  // that may be called
-  std::string refusal_;              // of authorize(), for the text that is compiled
+  std::set<std::string> functions_;  // those that a text may call
+  std::string refusal_;              // why authorize() has refused the text that is being compiled
   std::vector<Compiled> compiled_;
 };
 

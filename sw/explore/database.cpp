@@ -53,7 +53,7 @@ int flags_of(Database::Access access) {
   return 0;
 }
 
-// "" and ":memory:" are no file for SQLite, and "file:.." may be a URI.
+// SQLite takes ":memory:" for no file, and "file:.." for a URI. It takes an absolute path for a file.
 std::string absolute(const std::string& path) {
   const std::filesystem::path file(path);
   return file.is_absolute() ? path : (std::filesystem::current_path() / file).string();

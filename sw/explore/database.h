@@ -27,15 +27,15 @@ class Database {
   // For how long it waits for a process that keeps the file locked.
   static constexpr std::chrono::milliseconds kPatience = std::chrono::minutes(1);
 
-  // kMemory: a database of its own, which is no file. Else any path names a file, also those that SQLite would
-  // take for something else.
+  // kMemory opens a new database in memory, for which `path` is the name in messages. Otherwise `path` is
+  // that of a file, also if it is ":memory:" or begins with "file:".
   Database(const std::string& path, Access access, std::chrono::milliseconds patience = kPatience);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
   void execute(const std::string& sql);
-  // Another file, to be read or written under that name.
+  // Opens another file as well, whose tables are then NAME.TABLE.
   void attach(const std::string& path, const std::string& name);
   std::int64_t number(const std::string& sql);  // the first column of the first row; 0 if there is none
   const std::string& path() const { return path_; }

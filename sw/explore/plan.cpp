@@ -13,18 +13,10 @@ namespace {
 
 using platform::BoardValue;
 
-std::string rules_of(const platform::BoardError& error) {
+std::string rules_of(const std::vector<platform::Diagnostic>& problems) {
   std::string text;
-  for (const platform::Diagnostic& diagnostic : error.diagnostics()) {
-    text += (text.empty() ? "" : "; ") + diagnostic.text;
-  }
+  for (const platform::Diagnostic& problem : problems) text += (text.empty() ? "" : "; ") + problem.text;
   return text;
-}
-
-BoardValue value_of(const std::string& path, const platform::YamlNode& node) {
-  if (const auto integer = platform::integer_of(node)) return {path, *integer};
-  if (const auto decimal = platform::decimal_of(node)) return {path, *decimal};
-  return {path, node.is_scalar() ? node.text : flow_text(node)};
 }
 
 bool is_of_run(const std::string& path) { return path == kSourcePath || path == kFramesPath; }
@@ -45,21 +37,24 @@ void Plan::apply_to_run(const std::string& path, const platform::YamlNode& value
   if (path == kFramesPath) run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
 }
 
+Plan::Combination Plan::combination(std::uint64_t number) const {
+  Combination made = {*base_, run_};
+  for (const PlanValue& value : values_at(number))
+    apply(value.path, value.value, path_, made.draft, made.run);
+  return made;
+}
+
 Point Plan::point(std::uint64_t number) const {
-  platform::BoardDraft draft = *base_;
-  PointRun run = run_;
-  const std::vector<PlanValue> chosen = values_at(number);
-  for (const PlanValue& value : chosen) apply(value.path, value.value, path_, draft, run);
-  try {
-    const platform::BoardConfig board = draft.read();
-    auto problem = wrong_size(board);
-    if (!problem) problem = missing_table(board);
-    if (problem)
-      return impossible_point(number, run, chosen, fmt::format("{}: {}", kCalibrationPath, *problem));
-    return make_point(number, board, run);
-  } catch (const platform::BoardError& error) {
-    return impossible_point(number, run, chosen, rules_of(error));
+  const auto [draft, run] = combination(number);
+  const platform::BoardDraft::Reading reading = draft.read_with_problems();
+  if (!reading.problems.empty()) {
+    return impossible_point(number, draft.to_yaml(), reading.board, run, rules_of(reading.problems));
   }
+  auto problem = wrong_size(reading.board);
+  if (!problem) problem = missing_table(reading.board);
+  if (!problem) return make_point(number, reading.board, run);
+  return impossible_point(number, to_yaml(reading.board), reading.board, run,
+                          fmt::format("{}: {}", kCalibrationPath, *problem));
 }
 
 std::optional<std::string> Plan::use_calibration(const std::string& sha256, int width, int height) {
@@ -96,37 +91,13 @@ std::vector<PlanValue> Plan::values_at(std::uint64_t number) const {
   std::uint64_t rest = sample_ ? ShuffledNumbers(product_, sample_->seed).at(number) : number;
   std::vector<PlanValue> chosen;
   for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
-    const auto& place = axis->values[rest % axis->values.size()];
-    rest /= axis->values.size();
-    for (std::size_t i = axis->paths.size(); i-- > 0;) chosen.push_back({axis->paths[i], place[i]});
+    const std::uint64_t place = rest % axis->size();
+    rest /= axis->size();
+    for (std::size_t i = axis->paths.size(); i-- > 0;)
+      chosen.push_back({axis->paths[i], axis->values[i].at(place)});
   }
   std::reverse(chosen.begin(), chosen.end());
   return chosen;
-}
-
-Point Plan::impossible_point(std::uint64_t number, const PointRun& run, const std::vector<PlanValue>& chosen,
-                             const std::string& reason) const {
-  Point point;
-  point.number = number;
-  point.run = run;
-  point.reason = reason;
-  point.yaml = base_yaml_;
-  point.values = platform::values_of(*base_board_);
-  std::string identity = base_yaml_;
-  for (const PlanValue& value : chosen) {
-    identity += fmt::format("{}: {}\n", value.path, flow_text(value.value));
-    if (is_of_run(value.path)) continue;
-    BoardValue given = value_of(value.path, value.value);
-    const auto same = std::find_if(point.values.begin(), point.values.end(),
-                                   [&](const BoardValue& known) { return known.path == given.path; });
-    if (same == point.values.end()) {
-      point.values.push_back(std::move(given));
-    } else {
-      *same = std::move(given);
-    }
-  }
-  complete_point(identity, point);
-  return point;
 }
 
 std::vector<std::string> Plan::varied() const {

@@ -8,6 +8,7 @@
 #include "platform/board_config.h"
 #include "platform/board_draft.h"
 #include "platform/yaml_tree.h"
+#include "sw/explore/plan_values.h"
 #include "sw/explore/points.h"
 
 namespace stereotlm::explore {
@@ -52,7 +53,9 @@ class Plan : public Points {
   // Values that move together: at place i each path takes its value i.
   struct Axis {
     std::vector<std::string> paths;
-    std::vector<std::vector<platform::YamlNode>> values;  // [place][path]
+    std::vector<PlanValues> values;  // of each path, equally many
+
+    std::uint64_t size() const { return values.front().size(); }
   };
   struct Sample {
     std::uint64_t points = 0;
@@ -61,12 +64,16 @@ class Plan : public Points {
 
   Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
   std::vector<PlanValue> values_at(std::uint64_t number) const;
+  // What the plan asks for in a point.
+  struct Combination {
+    platform::BoardDraft draft;
+    PointRun run;
+  };
+  Combination combination(std::uint64_t number) const;
   // Why a board cannot have the tables of the calibration.
   std::optional<std::string> wrong_size(const platform::BoardConfig& board) const;
   std::optional<std::string> missing_table(const platform::BoardConfig& board) const;
   bool varies(const std::string& path) const;  // the key, or one in it
-  Point impossible_point(std::uint64_t number, const PointRun& run, const std::vector<PlanValue>& chosen,
-                         const std::string& reason) const;
   static void apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
                     platform::BoardDraft& draft, PointRun& run);
   static void apply_to_run(const std::string& path, const platform::YamlNode& value, PointRun& run);
@@ -79,7 +86,6 @@ class Plan : public Points {
   int tables_height_ = 0;
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
-  std::string base_yaml_;
   std::vector<std::string> banks_;
   PointRun run_;
   std::vector<Axis> axes_;  // the last varies fastest

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <map>
-#include <set>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "platform/board_keys.h"
 #include "platform/text_file.h"
@@ -28,47 +28,10 @@ using platform::YamlNode;
 namespace {
 
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 62U;
-constexpr std::uint64_t kMostFrames = 1'000'000;
+constexpr platform::IntegerRule kFramesRule = {1, 1'000'000};
 constexpr std::int64_t kMostValues = 1'000'000;  // of one key
-constexpr int kMostRangeDigits = 18;             // of a number of a range, written with all its places
-
-// A decimal number as an integer and a number of digits behind the point.
-struct Decimal {
-  std::int64_t digits = 0;
-  int places = 0;
-};
-
-std::optional<Decimal> decimal(const YamlNode& node) {
-  if (!platform::decimal_of(node)) return std::nullopt;
-  constexpr std::size_t kMostDigits = 15;
-  std::string text = node.text;
-  const std::size_t point = text.find('.');
-  Decimal value;
-  if (point != std::string::npos) {
-    value.places = static_cast<int>(text.size() - point - 1);
-    text.erase(point, 1);
-  }
-  if (text.size() > kMostDigits) return std::nullopt;
-  value.digits = std::stoll(text);
-  return value;
-}
-
-// How many digits it has if it is written with so many places.
-int digits_with(const Decimal& value, int places) {
-  return static_cast<int>(std::to_string(std::abs(value.digits)).size()) + places - value.places;
-}
-
-void scale(Decimal& value, int places) {
-  for (; value.places < places; ++value.places) value.digits *= 10;
-}
-
-std::string text_of(const Decimal& value) {
-  std::string text = std::to_string(value.digits < 0 ? -value.digits : value.digits);
-  const auto places = static_cast<std::size_t>(value.places);
-  if (text.size() <= places) text.insert(0, places + 1 - text.size(), '0');
-  if (places > 0) text.insert(text.size() - places, ".");
-  return (value.digits < 0 ? "-" : "") + text;
-}
+constexpr std::size_t kMostConditions = 1000;
+constexpr int kMostRangeDigits = 18;  // of a number of a range, written with all its places
 
 }  // namespace
 
@@ -94,9 +57,10 @@ class PlanReader {
       count_points();
       if (const YamlNode* sample = find(*sections, "sample")) read_sample(*sample);
     }
+    if (diagnostics_.empty()) check_first_point();
     if (diagnostics_.empty()) compute_conditions();
     if (!diagnostics_.empty()) fail();
-    plan_.banks_ = {banks_.begin(), banks_.end()};
+    std::sort(plan_.banks_.begin(), plan_.banks_.end());
     return std::move(plan_);
   }
 
@@ -113,10 +77,10 @@ class PlanReader {
     report(node.place, fmt::format("{} = {}: {}", path, short_text(node), rule));
   }
   [[noreturn]] void fail() {
-    if (plan_.product_ > 1) {
-      diagnostics_.push_back({plan_.path_, fmt::format("the plan would have {} points", plan_.size())});
-    }
-    throw platform::BoardError(std::move(diagnostics_));
+    throw platform::BoardError(
+        std::move(diagnostics_),
+        plan_.product_ > 1 ? fmt::format("{}: the plan would have {} points", plan_.path_, plan_.size())
+                           : "");
   }
 
   // The entries of a map, whose keys are `known` if any are given; nullptr, and reported, if it is none.
@@ -156,32 +120,40 @@ class PlanReader {
     if (const YamlNode* run = find(sections, "run")) read_run(*run);
     const YamlNode* const board = find(sections, "board");
     if (board == nullptr) return report(tree.place, "board: missing: a preset, or the path of a board file");
-    if (!board->is_scalar()) return report("board", *board, "a preset, or the path of a board file");
-    if (plan_.board_.empty()) plan_.board_ = board->text;
+    if (!board->is_scalar() || board->text.empty())
+      return report("board", *board, "a preset, or the path of a board file");
+    const bool is_option = !plan_.board_.empty();
+    if (!is_option) plan_.board_ = board->text;
     try {
       plan_.base_.emplace(plan_.board_);
-      plan_.base_->read();
     } catch (const platform::BoardError& error) {
-      plan_.base_.reset();
-      diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
+      for (const Diagnostic& problem : error.diagnostics()) {
+        // Of the name of the board, or of a line in its file.
+        const bool is_of_name = problem.place == plan_.board_;
+        const std::string text = fmt::format("board = {}: {}", plan_.board_, problem.text);
+        diagnostics_.push_back(!is_of_name ? problem
+                               : is_option ? Diagnostic{"--board", text}
+                                           : Diagnostic{place_text(board->place), text});
+      }
       return;
     }
+    auto base = plan_.base_->read_with_problems();
+    take_all(base.problems);
+    if (!base.problems.empty()) return plan_.base_.reset();
     if (const YamlNode* set = find(sections, "set")) {
       const Entries* const entries = read_map("set", *set, {}, "a map of keys of the board and their values");
       if (entries == nullptr) return;
       for (const YamlNode::Entry& entry : *entries) {
         take_path("set", entry.key);
         plan_.base_->replace(entry.key.text, entry.value, plan_.path_);
-        take_banks(entry.key, entry.value);
+        take_banks(entry.key, {entry.value});
       }
     }
-    try {
-      plan_.base_board_ = plan_.base_->read();
-      plan_.base_yaml_ = to_yaml(*plan_.base_board_);
-      for (const platform::BankConfig& bank : plan_.base_board_->banks) take_bank(bank.name, board->place);
-    } catch (const platform::BoardError& error) {
-      diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
-    }
+    base = plan_.base_->read_with_problems();
+    take_all(base.problems);
+    if (!base.problems.empty()) return;
+    for (const platform::BankConfig& bank : base.board.banks) take_bank(bank.name, board->place);
+    plan_.base_board_ = std::move(base.board);
   }
 
   void read_run(const YamlNode& node) {
@@ -189,7 +161,10 @@ class PlanReader {
     if (entries == nullptr) return;
     for (const YamlNode::Entry& entry : *entries) {
       const std::string path = "run." + entry.key.text;
-      if (!check_run(path, entry.value)) continue;
+      if (const std::string rule = run_problem(path, entry.value); !rule.empty()) {
+        report(path, entry.value, rule);
+        continue;
+      }
       Plan::apply_to_run(path, entry.value, plan_.run_);
       if (path != kCalibrationPath) continue;
       plan_.calibration_ = entry.value.text;
@@ -197,26 +172,24 @@ class PlanReader {
     }
   }
 
-  bool check_run(const std::string& path, const YamlNode& value) {
-    const std::size_t before = diagnostics_.size();
-    if (path == kSourcePath &&
-        (!value.is_scalar() || (value.text != "preloaded" && value.text != "camera"))) {
-      report(path, value, "preloaded (the board alone) or camera (the whole computer)");
-    }
-    if (path == kFramesPath) {
-      const auto frames = platform::integer_of(value);
-      if (!frames || *frames < 1 || *frames > static_cast<std::int64_t>(kMostFrames))
-        report(path, value, fmt::format("1..{}, the frames of each point", kMostFrames));
-    }
+  static bool is_of_run(const std::string& path) { return path == kSourcePath || path == kFramesPath; }
+
+  // Empty if it keeps its rule.
+  static std::string run_problem(const std::string& path, const YamlNode& value) {
+    const bool is_source = value.is_scalar() && (value.text == "preloaded" || value.text == "camera");
+    if (path == kSourcePath && !is_source)
+      return "preloaded (the board alone) or camera (the whole computer)";
+    if (path == kFramesPath && !kFramesRule.allows(platform::integer_of(value).value_or(0)))
+      return kFramesRule.text() + ", the frames of each point";
     if (path == kCalibrationPath && (!value.is_scalar() || value.text.empty()))
-      report(path, value, "the file of a calibration, as written by stereotlm calibrate");
-    return diagnostics_.size() == before;
+      return "the file of a calibration, as written by stereotlm calibrate";
+    return "";
   }
 
   // A path may be given once in the whole plan.
   bool take_path(const std::string& section, const YamlNode& key) {
     const std::string& path = key.text;
-    const bool is_run = section != "set" && (path == kSourcePath || path == kFramesPath);
+    const bool is_run = section != "set" && is_of_run(path);
     const bool is_checked_later = section == "set";  // by the board
     const std::string rule = is_run || is_checked_later ? ""
                              : path == kCalibrationPath ? "goes with `run`: one for all points"
@@ -228,23 +201,28 @@ class PlanReader {
       report(key.place, fmt::format("{}: {}: given before, at {}:{}", section, path, first->second.line,
                                     first->second.column));
     }
-    for (const auto& [other, place] : places_) {
-      const bool is_inside =
-          path.size() > other.size() && path.compare(0, other.size() + 1, other + '.') == 0;
-      const bool is_around = other.size() > path.size() && other.compare(0, path.size() + 1, path + '.') == 0;
-      if (is_inside || is_around) {
-        report(key.place, fmt::format("{}: {}: overlaps {}, given at {}:{}", section, path, other, place.line,
-                                      place.column));
-      }
+    const auto report_overlap = [&](const auto& other) {
+      report(key.place, fmt::format("{}: {}: overlaps {}, given at {}:{}", section, path, other->first,
+                                    other->second.line, other->second.column));
+    };
+    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
+      const auto around = places_.find(path.substr(0, dot));
+      if (around != places_.end()) report_overlap(around);
+    }
+    for (auto inside = places_.lower_bound(path + '.'); inside != places_.end(); ++inside) {
+      if (inside->first.compare(0, path.size() + 1, path + '.') != 0) break;
+      report_overlap(inside);
     }
     return rule.empty() && is_new;
   }
 
-  // The names of banks that a value brings, of `ssram.banks` or of a key below.
-  void take_banks(const YamlNode& key, const YamlNode& value) {
+  // The names of banks that values bring, of `ssram.banks` or of a key below.
+  void take_banks(const YamlNode& key, const std::vector<YamlNode>& values) {
     static const std::string kBanks = "ssram.banks";
     if (key.text == kBanks) {
-      for (const YamlNode::Entry& bank : value.entries) take_bank(bank.key.text, bank.key.place);
+      for (const YamlNode& value : values) {
+        for (const YamlNode::Entry& bank : value.entries) take_bank(bank.key.text, bank.key.place);
+      }
     } else if (key.text.rfind(kBanks + '.', 0) == 0) {
       const std::size_t begin = kBanks.size() + 1;
       take_bank(key.text.substr(begin, key.text.find('.', begin) - begin), key.place);
@@ -253,9 +231,11 @@ class PlanReader {
 
   // All points of a plan have their rows in one table.
   void take_bank(const std::string& name, const Place& place) {
-    if (!banks_.insert(name).second) return;
-    for (const std::string& other : banks_) {
-      if (differ_in_case(name, other)) report(place, bank_names_problem(other, name));
+    const auto [known, is_new] = banks_.emplace(without_case(name), name);
+    if (is_new) {
+      plan_.banks_.push_back(name);
+    } else if (known->second != name) {
+      report(place, bank_names_problem(known->second, name));
     }
   }
 
@@ -265,10 +245,8 @@ class PlanReader {
     if (entries == nullptr) return;
     for (const YamlNode::Entry& entry : *entries) {
       if (!take_path("vary", entry.key)) continue;
-      Plan::Axis axis;
-      axis.paths = {entry.key.text};
-      for (YamlNode& value : values_of("vary", entry)) axis.values.push_back({std::move(value)});
-      if (!axis.values.empty()) plan_.axes_.push_back(std::move(axis));
+      if (auto values = values_of("vary", entry))
+        plan_.axes_.push_back({{entry.key.text}, {std::move(*values)}});
     }
   }
 
@@ -280,75 +258,102 @@ class PlanReader {
       Plan::Axis axis;
       for (const YamlNode::Entry& entry : *entries) {
         if (!take_path("zip", entry.key)) continue;
-        std::vector<YamlNode> values = values_of("zip", entry);
-        if (axis.values.empty()) axis.values.resize(values.size());
-        if (values.size() != axis.values.size()) {
+        auto values = values_of("zip", entry);
+        if (!values) continue;
+        if (!axis.values.empty() && values->size() != axis.size()) {
           report(entry.value.place,
                  fmt::format("zip: {}: {} values; must be as many as {} has, {}", entry.key.text,
-                             values.size(), axis.paths.front(), axis.values.size()));
+                             values->size(), axis.paths.front(), axis.size()));
           continue;
         }
         axis.paths.push_back(entry.key.text);
-        for (std::size_t i = 0; i < values.size(); ++i) axis.values[i].push_back(std::move(values[i]));
+        axis.values.push_back(std::move(*values));
       }
-      if (!axis.values.empty() && !axis.paths.empty()) plan_.axes_.push_back(std::move(axis));
+      if (!axis.values.empty()) plan_.axes_.push_back(std::move(axis));
     }
   }
 
-  // Each checked by itself: what another key can make right is left to the points.
-  std::vector<YamlNode> values_of(const std::string& section, const YamlNode::Entry& entry) {
+  // Each is checked by itself: what another key can make right is left to the points. Nothing if there are
+  // none.
+  std::optional<PlanValues> values_of(const std::string& section, const YamlNode::Entry& entry) {
     const std::string& path = entry.key.text;
     const YamlNode& node = entry.value;
-    std::vector<YamlNode> values;
+    const std::string name = section + ": " + path;
     if (node.is_list() && !node.items.empty()) {
-      values = node.items;
-    } else if (node.is_map() && node.find("from") != nullptr) {
-      values = range_of(section + ": " + path, node);
-    } else {
-      report(section + ": " + path, node,
-             "a list of values, or a range such as {from: 16, to: 128, step: 16}");
+      for (const YamlNode& value : node.items) take_all(problems_of(path, value));
+      take_banks(entry.key, node.items);
+      return PlanValues(node.items);
     }
-    for (const YamlNode& value : values) {
-      check_value(path, value);
-      take_banks(entry.key, value);
+    if (!node.is_map() || node.find("from") == nullptr) {
+      report(name, node, "a list of values, or a range such as {from: 16, to: 128, step: 16}");
+      return std::nullopt;
     }
+    const auto range = range_of(name, node);
+    if (!range) return std::nullopt;
+    take_banks(entry.key, {});
+    PlanValues values(*range, node.place);
+    check_range(name, path, node, *range, values);
     return values;
   }
 
-  void check_value(const std::string& path, const YamlNode& value) {
-    if (path == kSourcePath || path == kFramesPath) {
-      check_run(path, value);
-      return;
-    }
-    if (!plan_.base_board_) return;
-    platform::BoardDraft draft = *plan_.base_;
-    draft.replace(path, value, plan_.path_);
-    try {
-      draft.read();
-    } catch (const platform::BoardError& error) {
-      for (const Diagnostic& diagnostic : error.diagnostics()) {
-        if (!diagnostic.is_between_keys) diagnostics_.push_back(diagnostic);
-      }
-    }
+  // One line for all values of a range.
+  void check_range(const std::string& name, const std::string& path, const YamlNode& node,
+                   const DecimalRange& range, const PlanValues& values) {
+    RefusedOfRange refused = refused_by_rule(path, range);
+    // A key without a rule for numbers takes all of them or none.
+    if (refused.count == 0 && !problems_of(path, values.at(0)).empty()) refused = {range.count, 0};
+    if (refused.count == 0) return;
+    const std::vector<Diagnostic> first = problems_of(path, values.at(refused.first));
+    report(name, node,
+           fmt::format("{} of {} values refused, the first: {}", refused.count, range.count,
+                       first.empty() ? values.at(refused.first).text : first.front().text));
   }
 
-  std::vector<YamlNode> range_of(const std::string& name, const YamlNode& node) {
-    if (read_map(name, node, {"from", "to", "step"}, "a range") == nullptr) return {};
+  static RefusedOfRange refused_by_rule(const std::string& path, const DecimalRange& range) {
+    if (path == kFramesPath) return refused_of(range, kFramesRule);
+    const std::string schema = platform::schema_path(path);
+    for (const platform::Key& key : platform::board_keys()) {
+      if (key.path != schema) continue;
+      if (const auto* rule = std::get_if<platform::IntegerKey>(&key.rule))
+        return refused_of(range, rule->rule);
+      if (const auto* rule = std::get_if<platform::DecimalKey>(&key.rule)) return refused_of(range, *rule);
+      const auto* other = std::get_if<platform::OtherKey>(&key.rule);
+      if (other != nullptr && other->numbers) return refused_of(range, *other->numbers);
+    }
+    return {};
+  }
+
+  std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value) const {
+    if (is_of_run(path)) {
+      const std::string rule = run_problem(path, value);
+      if (rule.empty()) return {};
+      return {{place_text(value.place), fmt::format("{} = {}: {}", path, short_text(value), rule)}};
+    }
+    if (!plan_.base_board_) return {};
+    return plan_.base_->problems_of(path, value, plan_.path_);
+  }
+
+  void take_all(const std::vector<Diagnostic>& diagnostics) {
+    diagnostics_.insert(diagnostics_.end(), diagnostics.begin(), diagnostics.end());
+  }
+
+  std::optional<DecimalRange> range_of(const std::string& name, const YamlNode& node) {
+    if (read_map(name, node, {"from", "to", "step"}, "a range") == nullptr) return std::nullopt;
     constexpr std::array kKeys = {"from", "to", "step"};
+    const std::string rule = fmt::format("a decimal number of at most {} digits", kMostDigits);
     std::array<Decimal, kKeys.size()> numbers;
     int places = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const char* const key = kKeys[i];
-      constexpr const char* kRule = "a decimal number of at most 15 digits";
       const YamlNode::Entry* const entry = node.find(key);
       if (entry == nullptr) {
-        report(node.place, fmt::format("{}.{}: missing: {}", name, key, kRule));
-        return {};
+        report(node.place, fmt::format("{}.{}: missing: {}", name, key, rule));
+        return std::nullopt;
       }
-      const auto number = decimal(entry->value);
+      const auto number = exact_decimal(entry->value);
       if (!number) {
-        report(fmt::format("{}.{}", name, key), entry->value, kRule);
-        return {};
+        report(fmt::format("{}.{}", name, key), entry->value, rule);
+        return std::nullopt;
       }
       numbers[i] = *number;
       places = std::max(places, number->places);
@@ -358,31 +363,28 @@ class PlanReader {
         report(fmt::format("{}.{}", name, kKeys[i]), node.find(kKeys[i])->value,
                fmt::format("at most {} digits, with the {} decimal places that the range has",
                            kMostRangeDigits, places));
-        return {};
+        return std::nullopt;
       }
     }
-    for (Decimal& number : numbers) scale(number, places);
+    for (Decimal& number : numbers) {
+      for (; number.places < places; ++number.places) number.digits *= 10;
+    }
     const auto& [from, to, step] = numbers;
     const std::int64_t distance = to.digits - from.digits;
     if (step.digits <= 0 || distance < 0 || distance % step.digits != 0 ||
         distance / step.digits >= kMostValues) {
       report(name, node,
              fmt::format("to must be from plus a number of steps, at most {} values", kMostValues));
-      return {};
+      return std::nullopt;
     }
-    std::vector<YamlNode> values;
-    for (std::int64_t digits = from.digits; digits <= to.digits; digits += step.digits) {
-      YamlNode value;
-      value.kind = YamlNode::Kind::kScalar;
-      value.place = node.place;
-      value.text = text_of({digits, places});
-      values.push_back(std::move(value));
-    }
-    return values;
+    return DecimalRange{from.digits, step.digits, static_cast<std::uint64_t>(distance / step.digits) + 1,
+                        places};
   }
 
   void read_conditions(const YamlNode& node) {
     const std::vector<YamlNode> single = {node};
+    if (node.items.size() > kMostConditions)
+      return report("where", node, fmt::format("at most {} conditions", kMostConditions));
     for (const YamlNode& item : node.is_list() ? node.items : single) {
       if (!item.is_scalar()) {
         report("where", item, "an SQL expression over keys, such as image.width * image.height <= 307200");
@@ -398,7 +400,15 @@ class PlanReader {
     }
   }
 
-  // For the first and the last point: what cannot be computed at all is known before anything runs.
+  // A key that is missing beside those that the plan gives is missing in all points.
+  void check_first_point() {
+    const auto [draft, run] = plan_.combination(0);
+    for (const Diagnostic& problem : draft.read_with_problems().problems) {
+      if (!problem.is_between_keys) diagnostics_.push_back(problem);
+    }
+  }
+
+  // Computes each condition for the first and the last point, so that what can never be computed is refused.
   void compute_conditions() {
     if (plan_.conditions_.empty()) return;
     const auto first = plan_.point(0).values;
@@ -416,7 +426,7 @@ class PlanReader {
 
   void count_points() {
     for (const Plan::Axis& axis : plan_.axes_) {
-      const std::uint64_t values = axis.values.size();
+      const std::uint64_t values = axis.size();
       if (plan_.product_ > kMostPoints / values) {
         diagnostics_.push_back({plan_.path_, "more than 2^62 points"});
         plan_.product_ = 1;
@@ -451,7 +461,7 @@ class PlanReader {
   Plan plan_;
   std::vector<Diagnostic> diagnostics_;
   std::map<std::string, Place> places_;
-  std::set<std::string> banks_;
+  std::map<std::string, std::string> banks_;  // by their names without_case()
 };
 
 Plan Plan::load(const std::string& path, const std::string& board) { return PlanReader(path, board).read(); }

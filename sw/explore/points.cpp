@@ -11,27 +11,41 @@ std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board)
   return run.camera ? kCameraFrames : platform::allocation_period_frames(board);
 }
 
-Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run) {
+namespace {
+
+// What is the same for each.
+Point point_of(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& board,
+               const PointRun& run) {
   Point point;
   point.number = number;
-  point.board = board;
-  point.yaml = to_yaml(board);
-  point.run = {run.camera, frames_of(run, board), run.calibration};
+  point.yaml = yaml;
+  point.run = run;
   point.values = values_of(board);
-  complete_point(point.yaml, point);
+  const char* const source = run.camera ? "camera" : "preloaded";
+  point.values.push_back({kSourcePath, source});
+  point.values.push_back({kFramesPath, static_cast<std::int64_t>(run.frames)});
+  std::string text = fmt::format("{}run: {{source: {}, frames: {}}}\n", yaml, source, run.frames);
+  if (!run.calibration.empty()) {
+    point.values.push_back({kCalibrationPath, run.calibration});
+    text += fmt::format("calibration: {}\n", run.calibration);
+  }
+  point.hash = report::sha256_hex(text.data(), text.size());
   return point;
 }
 
-void complete_point(const std::string& identity, Point& point) {
-  const char* const source = point.run.camera ? "camera" : "preloaded";
-  point.values.push_back({kSourcePath, source});
-  point.values.push_back({kFramesPath, static_cast<std::int64_t>(point.run.frames)});
-  std::string text = fmt::format("{}run: {{source: {}, frames: {}}}\n", identity, source, point.run.frames);
-  if (!point.run.calibration.empty()) {
-    point.values.push_back({kCalibrationPath, point.run.calibration});
-    text += fmt::format("calibration: {}\n", point.run.calibration);
-  }
-  point.hash = report::sha256_hex(text.data(), text.size());
+}  // namespace
+
+Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run) {
+  Point point = point_of(number, to_yaml(board), board, {run.camera, frames_of(run, board), run.calibration});
+  point.board = board;
+  return point;
+}
+
+Point impossible_point(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& asked_for,
+                       const PointRun& run, const std::string& reason) {
+  Point point = point_of(number, yaml, asked_for, run);
+  point.reason = reason;
+  return point;
 }
 
 }  // namespace stereotlm::explore

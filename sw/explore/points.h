@@ -34,20 +34,21 @@ struct Point {
   std::uint64_t number = 0;  // among its points, from 0
   std::string hash;          // SHA-256 of the board in full and of the run, 64 hexadecimal digits
   std::optional<platform::BoardConfig> board;
-  std::string yaml;    // the board in full, as config.yaml has it; of an impossible one the base board
+  std::string yaml;    // the board in full, as config.yaml has it, also if it is impossible
   std::string reason;  // of an impossible combination: every rule that it breaks
   PointRun run;        // with its frames
-  // Of every key, and of the run; of an impossible board the base board's, and what the plan gives.
-  std::vector<platform::BoardValue> values;
+  std::vector<platform::BoardValue> values;  // of every key, and of the run
 };
 
 // The point of a board.
 Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run);
 
-// Fills in what follows from the rest; `identity`: what its hash is of, beside the run.
-void complete_point(const std::string& identity, Point& point);
+// The point of a combination that is no board. `yaml` and `asked_for` are what the combination asks for, and
+// `reason` is why there is no such board.
+Point impossible_point(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& asked_for,
+                       const PointRun& run, const std::string& reason);
 
-// What leaves out the points that do not make it true, see Conditions.
+// An SQL expression; a point for which it is not true is left out. See Conditions.
 struct Condition {
   std::string text;
   std::string place;  // "plan.yaml:3:9"

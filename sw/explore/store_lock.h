@@ -7,10 +7,10 @@
 
 namespace stereotlm::explore {
 
-// The file of a store, behind all symbolic links. Throws DatabaseError.
+// The path of the file that a store's path leads to through symbolic links. Throws DatabaseError.
 std::string behind_links(const std::string& store);
 
-// The file of a store has gone, or another has taken its place, and with it all that was added to it.
+// The file of a store was removed or replaced while it was in use: all points that were added to it are lost.
 class StoreGone : public DatabaseError {
  public:
   explicit StoreGone(const std::string& store)

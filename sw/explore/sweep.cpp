@@ -63,7 +63,7 @@ class Sweep {
       run_points(lock, go_on);
       merge_stores({options_.store}, options_.store);
     } catch (const std::exception&) {
-      lock.check();  // or it would be taken for what has failed
+      lock.check();  // without the file everything fails: that is the reason to give
       throw;
     }
     return counts_;
@@ -192,8 +192,8 @@ SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOpt
   return Sweep(points, evaluate, options).run(go_on);
 }
 
-// Opens as many as they would have, for a moment. What a worker itself opens (its stores with their journals,
-// the pipe of what simulates) comes on top of what it inherits: two ends of pipes for each worker.
+// Opens for a moment as many files as the last worker will have open. It inherits two ends of pipes for each
+// worker, and opens its stores with their journals and a pipe to the process that simulates.
 std::uint64_t workers_with_files(std::uint64_t workers) {
   constexpr std::uint64_t kOfAWorker = 16;
   std::vector<int> files;

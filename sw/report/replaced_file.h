@@ -8,7 +8,6 @@
 
 namespace stereotlm::report {
 
-<<<<<<< HEAD
 // The file that a path names, behind all symbolic links; it may be none yet. Throws std::system_error.
 std::filesystem::path linked_file(const std::filesystem::path& path);
 
@@ -19,11 +18,7 @@ void take_place(const std::filesystem::path& made, const std::filesystem::path& 
 
 // A file that is as it was until commit(), and there whole after it, with the mode and owner that it had. Behind
 // a symbolic link it is the file that is replaced, not the link. It is written aside, in the same folder, under
-// a name that nothing has there. All throw std::system_error, whose code is the cause.
-=======
-// A file that is as it was until commit(), and there whole after it. It is written aside, in the same folder,
-// under a name that begins with the file's own. All throw std::system_error, whose code is the cause.
->>>>>>> edges-a
+// a name that begins with the file's own. All throw std::system_error, whose code is the cause.
 class ReplacedFile {
  public:
   // What is there must be a regular file.
@@ -45,7 +40,8 @@ class ReplacedFile {
   int lock_ = -1;  // descriptor of the file aside: locked as long as this process writes it
 };
 
-// Removes what processes have written aside for the file `path` that were killed.
-void remove_left_aside(const std::filesystem::path& path) noexcept;
+// Removes what processes that were killed have written aside for the file `path`. Throws std::system_error if
+// its links go round in circles.
+void remove_left_aside(const std::filesystem::path& path);
 
 }  // namespace stereotlm::report

@@ -64,6 +64,16 @@ class Sweep(SweepTest):
             self.assertEqual((self.out / "config.yaml").read_text(), config)
         self.assertGreater(self.query("SELECT count(*) FROM blame")[0][0], 0)
 
+    def test_keeps_what_was_asked_for_where_it_is_impossible(self):
+        self.succeeds(self.sweep())
+        rows = self.query("SELECT config, reason, \"allocation.right_image\" FROM points WHERE status = 'impossible'")
+        self.assertEqual(len(rows), IMPOSSIBLE)
+        for config, reason, banks in rows:
+            board = self.file("board.yaml", config.encode())
+            self.assertIn(f"right_image: {banks}\n", config.replace("right_image: bank3", "right_image: [bank3]"))
+            process = run("run", board, "--source", "preloaded", "--timing-only")
+            self.assertEqual([line.split(": ", 1)[1] for line in self.refused(process)], [reason])
+
     def test_gives_the_same_bytes_for_jobs_and_shards(self):
         self.succeeds(self.sweep("--jobs", 1))
         expected = self.store.read_bytes()

@@ -43,6 +43,39 @@ TEST(YamlTree, WithBanksWithoutEndIsReadInTheTimeOfItsLength) {
   EXPECT_NE(findings[0].text.find("250000 banks; a map of 1..64 banks"), std::string::npos);
 }
 
+void expect_same(const YamlNode& a, const YamlNode& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.is_scalar() ? a.text : "", b.is_scalar() ? b.text : "");
+  ASSERT_EQ(a.items.size(), b.items.size());
+  ASSERT_EQ(a.entries.size(), b.entries.size());
+  for (std::size_t i = 0; i < a.items.size(); ++i) expect_same(a.items[i], b.items[i]);
+  for (std::size_t i = 0; i < a.entries.size(); ++i) {
+    expect_same(a.entries[i].key, b.entries[i].key);
+    expect_same(a.entries[i].value, b.entries[i].value);
+  }
+}
+
+TEST(YamlTree, IsReadBackFromItsText) {
+  const YamlNode tree = parse_yaml(R"(a: {b: {c: -5, d: [1, 'x, y', ""]}, e: []}
+plain: has [brackets], quotes " and # more
+block: |
+  one
+  two	tab \ backslash
+none: ~
+nothing:
+dash: "-"
+empty: {}
+rows:
+- [1.5, -2]
+- {z: no}
+"a b: c": größe
+)",
+                                   Place::kBoard);
+  const YamlNode again = parse_yaml(yaml_text(tree), Place::kBoard);
+  expect_same(tree, again);
+  EXPECT_FALSE(again.find("a")->value.find("b")->value.find("c")->value.quoted) << "a number";
+}
+
 struct PlacedText {
   std::string text;
   int column;  // of the first level that is too deep

@@ -105,6 +105,12 @@ TEST(Conditions, AreRefusedWithTheReason) {
     EXPECT_EQ(refusal(text), "") << text;
 }
 
+TEST(Conditions, AreRefusedInOneShortLine) {
+  const std::string reason = refusal("board.name = 'fpl\n2003" + std::string(100'000, 'x'));
+  EXPECT_THAT(reason, HasSubstr("unrecognized token: \"'fpl 2003xxx"));
+  EXPECT_LT(reason.size(), 100U);
+}
+
 TEST(Conditions, HaveNoParameters) {
   for (const std::string text : {"?", "?1 = 640", "image.width > ?7", ":x", "@x", "$x", "coalesce(:x, 1)"})
     EXPECT_EQ(refusal(text), "parameters such as ? and :x have no value") << text;

@@ -1,11 +1,13 @@
 #include "sw/explore/plan.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <variant>
 #include <vector>
@@ -32,17 +34,17 @@ Plan plan_of(const std::string& text) {
   return Plan::load(plan_path());
 }
 
-// What a plan is refused with, without the path of its file.
+// The lines that a plan is refused with, without the path of its file.
 std::vector<std::string> refusals(const std::string& text) {
   try {
     plan_of(text);
     return {};
   } catch (const platform::BoardError& error) {
     std::vector<std::string> lines;
-    for (const platform::Diagnostic& diagnostic : error.diagnostics()) {
-      std::string place = diagnostic.place;
-      if (place.find(plan_path()) == 0) place.erase(0, plan_path().size());
-      lines.push_back(place + ": " + diagnostic.text);
+    std::istringstream stream(error.what());
+    for (std::string line; std::getline(stream, line);) {
+      if (line.find(plan_path()) == 0) line.erase(0, plan_path().size());
+      lines.push_back(line);
     }
     return lines;
   }
@@ -202,6 +204,79 @@ TEST(Plan, SaysWhyACombinationIsImpossible) {
   EXPECT_EQ(plan.point(0).hash, plan.point(0).hash);
 }
 
+// Whether what is asked for in an impossible point is refused, as a file, for the same.
+void expect_same_refusal(const Point& point) {
+  ASSERT_FALSE(point.board);
+  const std::string board = test::write_file(folder().path() / "asked_for.yaml", point.yaml);
+  std::set<std::string> rules;
+  try {
+    platform::load_board(board);
+  } catch (const platform::BoardError& error) {
+    for (const auto& problem : error.diagnostics()) rules.insert(problem.text);
+  }
+  EXPECT_FALSE(rules.empty()) << point.yaml;
+  std::string text = point.reason;
+  for (const std::string& rule : rules) {
+    const std::size_t at = text.find(rule);
+    ASSERT_NE(at, std::string::npos) << rule << " is not in " << point.reason;
+    text.erase(at, rule.size());
+  }
+  EXPECT_EQ(text.find_first_not_of("; "), std::string::npos) << text << " is not said of\n" << point.yaml;
+}
+
+TEST(Plan, KeepsTheBoardThatAnImpossiblePointAsksFor) {
+  for (const std::string vary :
+       {"capture.fifo_words: [16]", "image: [{width: 2048, height: 2048}]",
+        "allocation.left_lut: [bank9, 'a, b: [']", "allocation.left_image: [bank0, [bank0, bank1, \"x y\"]]",
+        "ssram.banks: [{a: {}, b: {words: 4}}]", "ssram.default.kind: [sync_burst]",
+        "ssram.banks.bank3.kind: [sync_burst]", "ssram.default.turnaround_cycles: [3]",
+        "ssram.banks.bank3: [{words: 1}]",
+        "matcher: [{window: 5, disparities: 9, filter: none, fetch: column, lr_tolerance: off}], "
+        "image.width: [2048]",
+        "matcher.filter: [{kernel: [[-1, 0, 1], [0, 0, 0], [0, 0, 0]], shift: 2}], capture.fifo_words: "
+        "[1]"}) {
+    const Plan plan = plan_of(kBoard + "set: {name: 'yes: no'}\nvary: {" + vary + "}\n");
+    expect_same_refusal(plan.point(plan.size() - 1));
+  }
+  const Plan plan = plan_of(kBoard + "vary: {image.width: [640, 2048], ssram.banks.spare.words: [9]}\n");
+  const Point wide = plan.point(1);
+  expect_same_refusal(wide);
+  const auto value = [&wide](const std::string& path) {
+    const auto found = std::find_if(wide.values.begin(), wide.values.end(),
+                                    [&path](const platform::BoardValue& one) { return one.path == path; });
+    return found == wide.values.end() ? -1 : std::get<std::int64_t>(found->value);
+  };
+  EXPECT_EQ(value("image.width"), 2048);
+  EXPECT_EQ(value("ssram.banks.spare.words"), 9);
+  EXPECT_THAT(wide.yaml, HasSubstr("\n  width: 2048\n"));
+}
+
+TEST(Plan, WithTablesThatDoNotFitKeepsItsBoard) {
+  Plan plan = plan_of(kBoard + "zip: [{image.width: [640, 320], image.height: [480, 240]}]\n");
+  plan.use_calibration("5a", 640, 480);
+  EXPECT_EQ(plan.point(1).yaml,
+            to_yaml(platform::load_board("fpl2003", {"image.width=320", "image.height=240"})));
+}
+
+TEST(Plan, MayHaveRangesOfAMillionAndAListThatFillsItsFile) {
+  const std::string million = "{from: 1, to: 999.999, step: 0.001}";
+  const Plan ranges =
+      plan_of(fmt::format("{}vary: {{fpga.clock_mhz: {}, pci.clock_mhz: {}, bridge.local_clock_mhz: {}}}\n"
+                          "sample: {{points: 3, seed: 1}}\n",
+                          kBoard, million, million, million));
+  EXPECT_EQ(ranges.size(), 3U);
+  EXPECT_TRUE(ranges.point(2).board);
+  std::string list;
+  for (int i = 0; i < 250'000; ++i) list += "3,";
+  EXPECT_EQ(plan_of(kBoard + "vary: {matcher.window: [" + list + "3]}\n").size(), 250'001U);
+}
+
+TEST(Plan, MayNameManyBanks) {
+  std::string banks;
+  for (int i = 0; i < 70'000; ++i) banks += fmt::format("{{b{}: {{}}}},", i);
+  EXPECT_EQ(plan_of(kBoard + "vary: {ssram.banks: [" + banks + "]}\n").banks().size(), 70'008U);
+}
+
 TEST(Plan, SamplesItsPointsEachOnce) {
   const std::string text =
       kBoard + "vary: {matcher.disparities: {from: 1, to: 254, step: 1}}\nsample: {points: 50, seed: 3}\n";
@@ -281,6 +356,94 @@ TEST(PlanRefusals, AreForEachValueThatNoOtherKeyCanMakeRight) {
   EXPECT_THAT(
       refusals(kBoard + "vary: {ssram.banks: [{a: {}}, {b: {size: 3}}]}\n"),
       ElementsAre(HasSubstr("ssram.banks.b.size = 3: unknown key"), ": the plan would have 2 points"));
+}
+
+TEST(PlanRefusals, AreNotForAValueThatAnotherKeyMakesRight) {
+  const Plan kinds = plan_of(kBoard +
+                             "zip:\n  - ssram.default.kind: [sync_burst, zbt_pipelined]\n"
+                             "    ssram.banks.bank0.turnaround_cycles: [2, 1]\n"
+                             "vary: {ssram.default.turnaround_cycles: [1, 3]}\n");
+  ASSERT_EQ(kinds.size(), 4U);
+  EXPECT_EQ(kinds.point(0).board->banks[0].turnaround_cycles, 2);
+  EXPECT_EQ(kinds.point(2).board->banks[1].turnaround_cycles, 3);
+  EXPECT_THAT(kinds.point(1).reason, HasSubstr("only where the kind is sync_burst"));
+  const Plan load = plan_of(kBoard + "vary: {pci.load.burst_words: [1, 8], pci.load.interval_us: [10]}\n");
+  EXPECT_EQ(load.point(1).board->pci.load->burst_words, 8);
+  EXPECT_THAT(refusals(kBoard + "vary: {pci.load.burst_words: [1]}\n"),
+              ElementsAre(HasSubstr(":2:31: pci.load.interval_us: missing: ")));
+  EXPECT_THAT(
+      refusals(kBoard + "vary: {pci.load: [none, {burst_words: 8}, {burst_words: 1, interval_us: 1}]}\n"),
+      ElementsAre(HasSubstr("pci.load.interval_us: missing: "), ": the plan would have 3 points"));
+  EXPECT_THAT(refusals(kBoard + "vary: {capture: [{fifo_words: 16, fifo_trigger_words: 32}]}\n").back(),
+              HasSubstr("capture.fifo_trigger_words = 32: 1..fifo_words, which is 16"));
+  EXPECT_THAT(refusals(kBoard + "vary: {matcher.filter.shift: [1, 2]}\n").front(),
+              HasSubstr("matcher.filter is not a map here; set it as a whole"));
+}
+
+TEST(PlanRefusals, SayOnceHowManyValuesOfARangeAreRefused) {
+  struct Case {
+    std::string key;
+    std::string range;
+    std::string refusal;
+  };
+  const std::string window = "3..31, odd";
+  const std::vector<Case> cases = {
+      {"matcher.window", "{from: 1, to: 1000000, step: 1}",
+       "999985 of 1000000 values refused, the first: matcher.window = 1: " + window},
+      {"matcher.window", "{from: 3, to: 8, step: 1}",
+       "3 of 6 values refused, the first: matcher.window = 4: " + window},
+      {"matcher.window", "{from: 3, to: 5, step: 0.5}",
+       "5 of 5 values refused, the first: matcher.window = 3.0: not an integer"},
+      {"fpga.clock_mhz", "{from: 0.8, to: 1000.1, step: 0.1}",
+       "3 of 9994 values refused, the first: fpga.clock_mhz = 0.8: 1..1000"},
+      {"ssram.banks.bank0.words", "{from: 0, to: 999999, step: 1}",
+       "1 of 1000000 values refused, the first: ssram.banks.bank0.words = 0: 1.."},
+      {"matcher.lr_tolerance", "{from: -1, to: 253, step: 1}",
+       "1 of 255 values refused, the first: matcher.lr_tolerance = -1: 0..253 or off"},
+      {"run.frames", "{from: 0, to: 999999, step: 1}",
+       "1 of 1000000 values refused, the first: run.frames = 0: 1..1000000, the frames"},
+      {"matcher.fetch", "{from: 1, to: 3, step: 1}",
+       "3 of 3 values refused, the first: matcher.fetch = 1: column or line_buffer"},
+      {"matcher.filter.shift", "{from: 1, to: 3, step: 1}",
+       "3 of 3 values refused, the first: matcher.filter.shift = 1: matcher.filter is not a map"},
+      {"run.source", "{from: 1, to: 3, step: 1}",
+       "3 of 3 values refused, the first: run.source = 1: preloaded"},
+  };
+  for (const Case& one : cases) {
+    const auto lines = refusals(fmt::format("{}vary: {{{}: {}}}\n", kBoard, one.key, one.range));
+    ASSERT_EQ(lines.size(), 2U) << one.key;
+    EXPECT_THAT(lines[0], HasSubstr(fmt::format("vary: {} = {}: {}", one.key, one.range, one.refusal)));
+    EXPECT_THAT(lines[1], HasSubstr(": the plan would have "));
+  }
+  EXPECT_EQ(plan_of(kBoard + "vary: {matcher.window: {from: 3, to: 31, step: 2}}\n").size(), 15U);
+}
+
+TEST(PlanRefusals, AreTwentyLinesAndTheNumberOfTheOthers) {
+  std::string list = "1";
+  for (int i = 1; i < 100; ++i) list += ", 1";
+  const auto lines = refusals(kBoard + "vary: {matcher.window: [" + list + "]}\n");
+  ASSERT_EQ(lines.size(), 22U);
+  EXPECT_EQ(lines[19], ":2:82: matcher.window = 1: 3..31, odd");
+  EXPECT_EQ(lines[20], "and 80 errors more");
+  EXPECT_EQ(lines[21], ": the plan would have 100 points");
+}
+
+TEST(PlanRefusals, NameThePlaceOfAWrongBoard) {
+  const std::string presets =
+      ": not a preset, and not a path, which has a / or ends in .yaml; nearest: fpl2003; presets: ";
+  EXPECT_THAT(refusals("run: {frames: 2}\nboard: fpl2004\n"),
+              ElementsAre(HasSubstr(":2:8: board = fpl2004" + presets)));
+  EXPECT_THAT(refusals("board: none.yaml\n"),
+              ElementsAre(":1:8: board = none.yaml: cannot be read: No such file or directory"));
+  EXPECT_THAT(refusals("board: \"\"\n").front(),
+              HasSubstr(":1:8: board = \"\": a preset, or the path of a board file"));
+  const std::string board =
+      test::write_file(folder().path() / "board.yaml", "extends: fpl2003\nimage: {width: 5}\n");
+  EXPECT_THAT(refusals("board: " + board + "\n"),
+              ElementsAre(board + ":2:16: image.width = 5: 4..2048, a multiple of 4"));
+  std::ofstream(plan_path()) << kBoard;
+  EXPECT_THAT(test::message_of([] { Plan::load(plan_path(), "fpl2004"); }),
+              HasSubstr("--board: board = fpl2004" + presets));
 }
 
 TEST(PlanRefusals, AreForBanksWhoseNamesDifferOnlyInCase) {
