@@ -8,20 +8,22 @@
 
 namespace stereotlm::report {
 
-// The file that a path names, behind all symbolic links; it may be none yet. Throws std::system_error.
+// The path of the file that `path` leads to through symbolic links; the file need not exist. Throws
+// std::system_error.
 std::filesystem::path linked_file(const std::filesystem::path& path);
 
-// Gives a whole new file the name of another in its folder, and that one's mode and owner if it is there. Where
-// the system does not let a file be given away it keeps its own owner, and no group may do more than all may.
-// Throws std::system_error.
+// Renames `made`, a whole new file, to `file`, which is in the same folder. If `file` exists, `made` gets its
+// mode and owner first. Only root may give a file to another owner: otherwise `made` keeps its own owner, and
+// if the group cannot be kept either, the new group may do what everybody may. Throws std::system_error.
 void take_place(const std::filesystem::path& made, const std::filesystem::path& file);
 
-// A file that is as it was until commit(), and there whole after it, with the mode and owner that it had. Behind
-// a symbolic link it is the file that is replaced, not the link. It is written aside, in the same folder, under
-// a name that begins with the file's own. All throw std::system_error, whose code is the cause.
+// A file that is as it was until commit(), and there whole after it: see take_place(). Where the path is a
+// symbolic link, the file that it leads to is replaced, and the link stays. The new file is written aside, in
+// the same folder, under a name that begins with the file's own. All throw std::system_error, whose code is the
+// cause.
 class ReplacedFile {
  public:
-  // What is there must be a regular file.
+  // If the file exists, it must be a regular file.
   explicit ReplacedFile(const std::filesystem::path& path);
   // Without commit(): removes what was written aside.
   ~ReplacedFile();
