@@ -36,7 +36,7 @@ class RefusedCalibrations(CalibrateTest):
             (text.replace("disparity_offset: 0", "disparity_offset: 1"),
              "matrices and disparity_offset: must be those that its tables were made with"),
             (text.replace("image_height: 480", "image_height: tall"), "line 4: image_height: no integer"),
-            ("", "line 1: another beginning: must be %YAML:1.0"),
+            ("", "line 1: no OpenCV FileStorage: must begin with %YAML:1.0"),
             (text.replace("Q: !!opencv-matrix", "Q: [1, 2"),
              "line 81: end of sequence flow not found: must be OpenCV FileStorage YAML"),
             ("%YAML:1.0\n---\nM1:\n   a: 1\n   : : x\n", "image_width: missing"),

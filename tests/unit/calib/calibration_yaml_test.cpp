@@ -103,8 +103,8 @@ TEST(CalibrationYaml, ThatIsNoneIsRefused) {
   const std::string begin = "%YAML:1.0\n---\n";
   const std::string no_storage = ": must be OpenCV FileStorage YAML";
   for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
-           {"", "line 1: another beginning: must be %YAML:1.0"},
-           {"P5\n2 2\n255\n0000", "line 1: another beginning: must be %YAML:1.0"},
+           {"", "line 1: no OpenCV FileStorage: must begin with %YAML:1.0"},
+           {"P5\n2 2\n255\n0000", "line 1: no OpenCV FileStorage: must begin with %YAML:1.0"},
            {begin, "line 3: no map of keys and values" + no_storage},
            {begin + "- 1\n", "line 3: no map of keys and values" + no_storage},
            {begin + "other: 1\n", "image_width: missing: a calibration has this key"},
