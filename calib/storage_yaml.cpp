@@ -131,7 +131,8 @@ const StorageValue* StorageValue::find(const std::string& key) const {
 }
 
 StorageValue parse_storage(const std::string& text) {
-  if (text.rfind(kBegin, 0) != 0) refuse(1, "no OpenCV FileStorage", fmt::format("must begin with {}", kBegin));
+  if (text.rfind(kBegin, 0) != 0)
+    refuse(1, "no OpenCV FileStorage", fmt::format("must begin with {}", kBegin));
   if (text.size() > kMostStorageBytes) {
     throw std::runtime_error(fmt::format("{} bytes: must be {} at most", text.size(), kMostStorageBytes));
   }
