@@ -57,7 +57,7 @@ TEST(BoardSyntax, CountsWhatIsWrongBeyondTwentyLines) {
   EXPECT_EQ(last(refusal(20)), "board.yaml:21:1: x19 = 1: unknown key, and no known key is near");
   EXPECT_EQ(lines(refusal(21)), 21);
   EXPECT_EQ(last(refusal(21)), "and 1 error more");
-  EXPECT_EQ(last(refusal(100'000)), "and 99980 errors more");
+  EXPECT_EQ(last(refusal(1000)), "and 980 errors more");
 }
 
 TEST(BoardSyntax, CountsColumnsInCharacters) {
