@@ -5,27 +5,18 @@
 // The registers of the FPGA core, 32 bit each, at byte addresses on its `registers` socket (ours: the paper
 // does not print its map).
 //
-// | address | name             | access | meaning
-// |
-// |---------|------------------|--------|------------------------------------------------------------------------|
-// | 0x00    | kControl         | write  | bit 0: start strobe; bit 1: acknowledge, clears done and error
-// |
-// | 0x04    | kStatus          | read   | bit 0: busy; bit 1: done, the interrupt is raised; bit 2: error
-// |
-// | 0x08    | kFrameCyclesLow  | read   | frame_cycles of the last finished frame, bits 31..0
-// |
-// | 0x0c    | kFrameCyclesHigh | read   | bits 63..32
-// |
-// | 0x10    | kLeftImageBase   | both   | where the next frame's buffers lie: bits 31..26 bank, 25..0 first
-// word |
-// | 0x14    | kRightImageBase  | both   | as kLeftImageBase
-// |
-// | 0x18    | kDisparityBase   | both   | as kLeftImageBase
-// |
-// | 0x1c    | kLeftLutBase     | both   | as kLeftImageBase
-// |
-// | 0x20    | kRightLutBase    | both   | as kLeftImageBase
-// |
+// | address | name             | access | meaning                                                      |
+// |---------|------------------|--------|--------------------------------------------------------------|
+// | 0x00    | kControl         | write  | bit 0: start strobe; bit 1: acknowledge, clears done, error  |
+// | 0x04    | kStatus          | read   | bit 0: busy; bit 1: done, the interrupt; bit 2: error        |
+// | 0x08    | kFrameCyclesLow  | read   | frame_cycles of the last finished frame, bits 31..0          |
+// | 0x0c    | kFrameCyclesHigh | read   | bits 63..32                                                  |
+// | 0x10    | kLeftImageBase   | both   | where the next frame's buffers lie: bits 31..26 bank, 25..0  |
+// |         |                  |        | first word                                                   |
+// | 0x14    | kRightImageBase  | both   | as kLeftImageBase                                            |
+// | 0x18    | kDisparityBase   | both   | as kLeftImageBase                                            |
+// | 0x1c    | kLeftLutBase     | both   | as kLeftImageBase                                            |
+// | 0x20    | kRightLutBase    | both   | as kLeftImageBase                                            |
 //
 // The core takes the bases at the start strobe. A strobe while it is busy, or with a base in a bank that the
 // board does not have, is ignored and raises error, which stays until it is acknowledged; so does an access

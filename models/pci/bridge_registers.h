@@ -6,42 +6,33 @@
 //
 // Two windows on the PCI bus. The slave window leads to the local bus:
 //
-// | offset                       | leads to
-// |
-// |------------------------------|----------------------------------------------------------------------------|
-// | i * kApertureBytes, i = 0..3 | the banks, from the word on that page register i names
-// |
-// | kCoreRegisters               | the registers of the FPGA core (fpga/register_map.h)
-// |
+// | offset                       | leads to                                                         |
+// |------------------------------|------------------------------------------------------------------|
+// | i * kApertureBytes, i = 0..3 | the banks, from the word on that page register i names           |
+// | kCoreRegisters               | the registers of the FPGA core (fpga/register_map.h)             |
 //
-// The register window, 32 bit each:
+// The register window has registers of 32 bits; c is a channel:
 //
-// | offset          | name              | access | meaning
-// |
-// |-----------------|-------------------|--------|----------------------------------------------------------------------|
-// | 0x00 + 4 i      | kPage             | both   | first word of aperture i: bits 31..26 bank, 25..0 word
-// |
-// | 0x10            | kInterruptStatus  | both   | kDoorbell, kDmaDone << channel, kDmaError << channel,
-// kPostedError; writing a 1 clears |
-// | 0x14            | kInterruptEnable  | both   | the bits of kInterruptStatus that raise INTA#
-// |
-// | 0x20 + 16 c     | kDmaDescriptor    | both   | PCI address of the first descriptor of channel c's chain,
-// a multiple of 16 |
-// | 0x24 + 16 c     | kDmaControl       | write  | 1: start; a start while the channel is busy raises
-// kDmaError          |
-// | 0x28 + 16 c     | kDmaStatus        | read   | 1: busy
-// |
+// | offset      | name             | access | meaning                                                   |
+// |-------------|------------------|--------|-----------------------------------------------------------|
+// | 0x00 + 4 i  | kPage            | both   | first word of aperture i: bits 31..26 bank, 25..0 word    |
+// | 0x10        | kInterruptStatus | both   | kDoorbell, kDmaDone << c, kDmaError << c, kPostedError;   |
+// |             |                  |        | writing a 1 clears a bit                                  |
+// | 0x14        | kInterruptEnable | both   | the bits of kInterruptStatus that raise INTA#             |
+// | 0x20 + 16 c | kDmaDescriptor   | both   | PCI address of the first descriptor of the channel's      |
+// |             |                  |        | chain, a multiple of 16                                   |
+// | 0x24 + 16 c | kDmaControl      | write  | 1: start; a start while the channel is busy raises        |
+// |             |                  |        | kDmaError                                                 |
+// | 0x28 + 16 c | kDmaStatus       | read   | 1: busy                                                   |
 //
 // A descriptor is four words in host memory:
 //
-// | word | meaning                                                                                       |
-// |------|-----------------------------------------------------------------------------------------------|
-// | 0    | PCI address of the first byte, a multiple of 4                                                  |
-// | 1    | first word on the board: bits 31..26 bank, 25..0 word                                           |
-// | 2    | bit 31: from the board to PCI, else from PCI to the board; bits 30..0: words, at least 1
-// |
-// | 3    | PCI address of the next descriptor, a multiple of 16; 0: this is the last
-// |
+// | word | meaning                                                                                   |
+// |------|-------------------------------------------------------------------------------------------|
+// | 0    | PCI address of the first byte, a multiple of 4                                            |
+// | 1    | first word on the board: bits 31..26 bank, 25..0 word                                     |
+// | 2    | bit 31: from the board to PCI, else from PCI to the board; bits 30..0: words, at least 1  |
+// | 3    | PCI address of the next descriptor, a multiple of 16; 0: this is the last                 |
 //
 // A channel that meets an error stops there. Its last words may still be on their way when it has raised it.
 namespace stereotlm::pci::bridge {
