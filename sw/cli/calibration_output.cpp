@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "calib/calibration_reader.h"
 #include "calib/storage_yaml.h"
@@ -33,9 +34,11 @@ fs::path folder_of(const RigFiles& files) {
 }
 
 const RigFiles& in_a_folder(const RigFiles& files) {
-  if (!fs::is_directory(folder_of(files)))
-    throw std::runtime_error(fmt::format("'{}': no such folder", folder_of(files).string()));
-  return files;
+  std::error_code error;
+  const fs::file_status status = fs::status(folder_of(files), error);
+  if (fs::is_directory(status)) return files;
+  throw std::runtime_error(fmt::format("'{}': {}", folder_of(files).string(),
+                                       fs::status_known(status) ? "no such folder" : error.message()));
 }
 
 // What of a folder that is replaced whole is not ours.

@@ -105,11 +105,10 @@ class Pictures(ProgramTest):
 class Environment(ProgramTest):
     def test_sets_nothing_of_opencv(self):
         expected = self.succeeds(self.run_small())
-        for name in ("WIDTH", "HEIGHT", "PIXELS", "PARAMS"):
-            for value in ("many", "1", "-1", ""):
-                environment = {**os.environ, f"OPENCV_IO_MAX_IMAGE_{name}": value, "OPENCV_LOG_LEVEL": "VERBOSE"}
-                process = run(*self.run_arguments(), env=environment)
-                self.assertEqual((process.stdout, process.stderr), (expected, ""), (name, value))
+        for name, value in (("WIDTH", "1"), ("HEIGHT", "-1"), ("PIXELS", "many"), ("PARAMS", "")):
+            environment = {**os.environ, f"OPENCV_IO_MAX_IMAGE_{name}": value, "OPENCV_LOG_LEVEL": "VERBOSE"}
+            process = run(*self.run_arguments(), env=environment)
+            self.assertEqual((process.stdout, process.stderr), (expected, ""), (name, value))
 
 
 class Boards(ProgramTest):
@@ -132,6 +131,7 @@ class Boards(ProgramTest):
 
 
 class Paths(ProgramTest):
+    @program.slow
     def test_that_lead_nowhere_are_refused_with_their_option(self):
         self.succeeds(self.run_small("--out", self.out))
         plan = self.file("plan.yaml", b"board: fpl2003\nvary: {matcher.window: [5, 7]}\n")

@@ -266,6 +266,7 @@ class Meanwhile(ProgramTest):
         self.assertEqual((status, errors), (1, f"stereotlm: error: folder '{self.out}': holds 'banks.csv', which is no file\n"))
         self.assertEqual(self.result(), {"paper.md": b"old", "table1.csv": b"old"})
 
+    @program.slow
     def test_a_kill_is_cleaned_up_after(self):
         process = self.begin()
         process.kill()

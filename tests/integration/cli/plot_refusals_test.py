@@ -65,6 +65,7 @@ class Refusals(PlotTest):
             "--out: missing: the folder of the figures",
         ])
 
+    @program.slow
     def test_of_options_name_the_nearest(self):
         self.assertEqual(
             self.refused_at(self.store, "--out", self.out, "--only", "matcher.widow=3", "--only", "matcher.fetch=row",
@@ -87,6 +88,7 @@ class Refusals(PlotTest):
             (line,) = self.refused_at(self.store, "--out", self.out, "--pareto", wrong)
             self.assertIn(f"--pareto = {wrong}: must be two columns", line)
 
+    @program.slow
     def test_of_databases(self):
         for path, reason in ((self.folder / "none.db", "cannot be opened: No such file or directory"),
                              (self.folder, "cannot be opened: Is a directory"), (self.left, "not a database")):
@@ -110,6 +112,7 @@ class Refusals(PlotTest):
         make.close()
         self.assertEqual(self.refused_at(empty, "--out", self.out), [f"{empty}: no point to draw: 1 failed"])
 
+    @program.slow
     def test_of_folders_with_files_that_it_does_not_write(self):
         def file(path):
             path.write_text("mine")

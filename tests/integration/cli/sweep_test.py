@@ -323,6 +323,7 @@ class Interrupted(SweepTest):
         self.succeeds(self.sweep(plan=self.many, store=store))
         return store.read_bytes()
 
+    @program.slow
     def test_by_the_keyboard_it_says_how_to_go_on(self):
         process = self.start()
         self.wait_for_points(3)
