@@ -21,8 +21,8 @@ std::vector<std::string> words_of(const std::string& script, const std::vector<s
   if (!std::filesystem::is_regular_file(path)) {
     throw std::runtime_error(fmt::format("'{}': not found: it is installed with the program", path));
   }
-  // -E, -s: neither variables of the environment (PYTHON..) nor packages of the user have an effect. -B: writes
-  // nothing beside the script.
+  // -E, -s: neither variables of the environment (PYTHON..) nor packages of the user have an effect.
+  // -B: writes nothing beside the script.
   std::vector<std::string> words = {python, "-E", "-s", "-B", path};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;

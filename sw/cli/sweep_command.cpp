@@ -447,6 +447,8 @@ int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan
     try {
       return explore::SlurmSweep(sharded(options, plan, calibration), options.sweep.store,
                                  options.sbatch_options, say_note);
+    } catch (const explore::DatabaseError& error) {
+      refuse(fmt::format("--out {}", error.what()));
     } catch (const std::system_error& error) {
       refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
     }

@@ -20,7 +20,8 @@ class Option;
 
 namespace stereotlm::cli {
 
-// An option as it was typed. It stays where it is between add_to() and the end of parsing, which writes to it.
+// An option as it was typed. Between add_to() and the end of parsing, which writes to it, it stays where it
+// is.
 template <typename Text>
 struct TypedOption {
   Text text;

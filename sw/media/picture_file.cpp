@@ -12,6 +12,7 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "models/fpga/core_config.h"
@@ -32,7 +33,10 @@ constexpr std::uintmax_t kMostBytes = 16 * fpga::kWidthRule.max * fpga::kHeightR
 Bytes read_bytes(const std::string& path) {
   constexpr const char* kFileRule = "a picture must be a readable regular file";
   check_regular_file(path, kFileRule);
-  if (const std::uintmax_t size = std::filesystem::file_size(path); size > kMostBytes)
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) refuse(path, error.message(), kFileRule);
+  if (size > kMostBytes)
     refuse(path, fmt::format("{} bytes", size), fmt::format("a picture must have {} at most", kMostBytes));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) refuse(path, std::strerror(errno), kFileRule);

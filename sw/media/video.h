@@ -33,9 +33,9 @@ using VideoSizeCheck = std::function<void(int width, int height)>;
 
 // Decodes the whole file once, to count its frames. Calls `check` with the size that the file's header says,
 // before a frame is decoded, and with the size of the frames. Throws one std::runtime_error `'path': what was
-// found: rule` for a file that is missing, not regular, no video in a container that is known, whose frames are
-// larger than two images of a board, that FFmpeg complains about, or without a frame. Prints nothing: no other
-// thread may write to standard error meanwhile (picture and video files alike), nor during frame().
+// found: rule` for a file that is missing, not regular, no video in a container that is known, whose frames
+// are larger than two images of a board, that FFmpeg complains about, or without a frame. Prints nothing: no
+// other thread may write to standard error meanwhile (picture and video files alike), nor during frame().
 std::unique_ptr<Video> open_video(const std::string& path, const VideoSizeCheck& check);
 
 }  // namespace stereotlm::media

@@ -126,7 +126,7 @@ void OutputFolder::commit() {
       // Had it come to its end, it would be taken for done.
       if (!is_there(made() / content_.mark)) fs::rename(dir_ / content_.mark, made() / content_.mark);
       put_back();
-    } catch (const std::system_error& /*again*/) {
+    } catch (const std::exception& /*again*/) {
       owns_aside_ = false;  // the next run puts back what is left there
     }
     refuse("the new files cannot be moved into place: " + error.code().message());
@@ -152,7 +152,7 @@ void OutputFolder::move_into_place() const {
   std::string text;
   for (const fs::path& name : names) {
     if (is_folder(made() / name)) sync_folder(made() / name);
-    text += name.string() + '\n';
+    text += name.string() + '\0';
   }
   write_whole_file(aside() / kNames, text);
   fs::create_directory(earlier());
@@ -161,13 +161,13 @@ void OutputFolder::move_into_place() const {
   sync_folder(dir_);
 }
 
-// What a commit puts into place; it may have been that of another run. Nothing where that has been undone, and
+// What a commit puts into place; it may have been that of another run. Nothing where that has been undone and
 // was being cleaned away.
 std::vector<fs::path> OutputFolder::moved_names() const {
   std::vector<fs::path> names;
   if (!is_file(aside() / kNames)) return names;
   std::istringstream text(read_whole_file(aside() / kNames));
-  for (std::string name; std::getline(text, name);) {
+  for (std::string name; std::getline(text, name, '\0');) {
     if (fs::path(name).filename() == name && !content_.foreign(dir_ / name)) names.emplace_back(name);
   }
   return names;

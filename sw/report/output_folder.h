@@ -20,8 +20,8 @@ inline constexpr const char* kEarlierFolder = "earlier";
 struct OutputContent {
   std::string called;  // what DIR is in messages: "result folder"
   std::string mark;    // the file that is put into place last: with it the others are whole
-  // What of an entry is not the command's own, as seen from DIR ("thesis.tex", "frames/note"). `entry`: of DIR,
-  // or one that a run has written aside to be one of DIR.
+  // What of an entry is not the command's own, as seen from DIR ("thesis.tex", "frames/note"). `entry`: of
+  // DIR, or one that a run has written aside to be one of DIR.
   std::function<std::optional<std::string>(const std::filesystem::path& entry)> foreign;
   // Why DIR must not be written to. `was_left`: a run that was killed has left files there.
   std::function<std::optional<std::string>(const std::filesystem::path& dir, bool was_left)> problem;

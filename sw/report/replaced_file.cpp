@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <exception>
 #include <random>
 #include <string>
 #include <system_error>
@@ -54,10 +55,13 @@ void remove_if_left(const fs::path& aside) {
 fs::path linked_file(const fs::path& path) {
   constexpr int kMostLinks = 40;  // as the system
   fs::path file = path;
-  for (int links = 0; fs::is_symlink(fs::symlink_status(file)); ++links) {
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
     if (links == kMostLinks) fail(ELOOP, path);
     file = file.parent_path() / fs::read_symlink(file);
   }
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+    fail(error.value(), path);
   return file;
 }
 
@@ -111,7 +115,7 @@ void ReplacedFile::commit() {
   aside_.clear();
 }
 
-void remove_left_aside(const fs::path& path) {
+void remove_left_aside(const fs::path& path) noexcept try {
   const fs::path file = linked_file(path);
   const std::string begin = beginning(file);
   std::error_code ignored;
@@ -124,6 +128,8 @@ void remove_left_aside(const fs::path& path) {
     if (is_ours) left.push_back(entry->path());
   }
   for (const fs::path& aside : left) remove_if_left(aside);
+} catch (const std::exception& /*a path that cannot be followed*/) {
+  // Whoever writes the file reports it.
 }
 
 }  // namespace stereotlm::report

@@ -42,8 +42,7 @@ class ReplacedFile {
   int lock_ = -1;  // descriptor of the file aside: locked as long as this process writes it
 };
 
-// Removes what processes that were killed have written aside for the file `path`. Throws std::system_error if
-// its links go round in circles.
-void remove_left_aside(const std::filesystem::path& path);
+// Removes what processes that were killed have written aside for the file `path`.
+void remove_left_aside(const std::filesystem::path& path) noexcept;
 
 }  // namespace stereotlm::report

@@ -177,7 +177,7 @@ class Folders(SlurmCommands):
         loop.symlink_to(loop.name)
         self.refused_in_one_line(
             run("sweep", self.plan, "--out", loop, "--launcher", "slurm", env=self.environment),
-            f"--out {loop}: Too many levels of symbolic links")
+            f"--out {loop}: cannot be opened: Too many levels of symbolic links")
 
     def test_beside_what_is_no_database(self):
         self.store.write_bytes(b"x" * 5000)
