@@ -125,7 +125,7 @@ class Squares {
 
   // Whether there are more lines of corners than those found. On the edge of the outermost squares, where one
   // or two of the four squares around a point are missing, the contrast is half that of a corner.
-  bool go_on() const {
+  bool continue_outside() const {
     constexpr double kAtLeast = 0.72;
     const auto exceeds = [](double beyond, double within) {
       return beyond * within < 0 && std::abs(beyond) > kAtLeast * std::abs(within);
@@ -200,7 +200,7 @@ GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) 
 
 bool are_all_of_board(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {
   const Squares squares(picture, shape, corners);
-  return squares.alternate() && !squares.go_on();
+  return squares.alternate() && !squares.continue_outside();
 }
 
 Corners refined(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {

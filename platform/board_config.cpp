@@ -137,7 +137,7 @@ class FieldChecker {
   std::set<std::string> broken_;
 };
 
-void require_sound(const BoardConfig& board) {
+void require_valid(const BoardConfig& board) {
   const std::vector<std::string> found = problems(board);
   if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
 }
@@ -175,8 +175,8 @@ bool operator==(const BoardConfig& a, const BoardConfig& b) {
 std::vector<std::string> problems(const BoardConfig& board) {
   FieldChecker checker(board);
   checker.check();
-  const auto sound = [&checker](const std::string& path) { return !checker.broke(path); };
-  for (BrokenRule& rule : broken_rules(board, sound)) {
+  const auto is_valid = [&checker](const std::string& path) { return !checker.broke(path); };
+  for (BrokenRule& rule : broken_rules(board, is_valid)) {
     checker.found.emplace(FieldChecker::order_of(rule.involved.front()), std::move(rule.text));
   }
   std::vector<std::string> all;
@@ -185,7 +185,7 @@ std::vector<std::string> problems(const BoardConfig& board) {
 }
 
 BufferLayout layout_buffers(const BoardConfig& board) {
-  require_sound(board);
+  require_valid(board);
   std::vector<std::uint64_t> used(board.banks.size(), 0);
   BufferLayout layout;
   for (const Buffer& buffer : buffers(board.allocation)) {
@@ -209,7 +209,7 @@ memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig&
 }
 
 fpga::CoreConfig core_config(const BoardConfig& board) {
-  require_sound(board);
+  require_valid(board);
   fpga::CoreConfig core;
   core.width = board.image.width;
   core.height = board.image.height;

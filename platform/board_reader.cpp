@@ -315,7 +315,7 @@ class BoardReader {
     const std::size_t before = values_.finding_count();
     const auto entries = values_.read_entries(path, node, node.place, names, {});
     if (!entries) return;
-    const bool names_sound = values_.finding_count() == before;
+    const bool names_valid = values_.finding_count() == before;
     board_.banks.clear();
     bool default_lacks_turnaround = false;
     for (const YamlNode::Entry& entry : node.entries) {  // in the order of the file
@@ -323,7 +323,7 @@ class BoardReader {
       if (found == entries->end() || found->second != &entry) continue;
       read_bank(below(path, entry.key.text), entry, defaults, default_lacks_turnaround);
     }
-    if (names_sound) values_.accept(path, node.place);
+    if (names_valid) values_.accept(path, node.place);
     if (default_lacks_turnaround) {
       values_.report_missing_beside(latest(defaults.key, defaults.kind.place),
                                     "ssram.default.turnaround_cycles",
@@ -360,8 +360,8 @@ class BoardReader {
 
   // A rule between keys is reported at the value that was written last, of equals at the first involved.
   void check_rules() {
-    const auto sound = [this](const std::string& path) { return values_.find(path) != nullptr; };
-    for (const BrokenRule& rule : broken_rules(board_, sound)) {
+    const auto is_valid = [this](const std::string& path) { return values_.find(path) != nullptr; };
+    for (const BrokenRule& rule : broken_rules(board_, is_valid)) {
       Place place = *values_.find(rule.involved.front());
       for (const std::string& path : rule.involved) {
         if (const Place* other = values_.find(path)) place = latest(place, *other);

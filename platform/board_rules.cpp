@@ -12,8 +12,8 @@ namespace {
 
 class RuleChecker {
  public:
-  RuleChecker(const BoardConfig& board, const std::function<bool(const std::string&)>& sound)
-      : board_(board), sound_(sound) {}
+  RuleChecker(const BoardConfig& board, const std::function<bool(const std::string&)>& is_valid)
+      : board_(board), is_valid_(is_valid) {}
 
   std::vector<BrokenRule> check() {
     check_trigger();
@@ -24,24 +24,24 @@ class RuleChecker {
   }
 
  private:
-  bool all_sound(const std::vector<std::string>& paths) const {
-    return std::all_of(paths.begin(), paths.end(), sound_);
+  bool all_valid(const std::vector<std::string>& paths) const {
+    return std::all_of(paths.begin(), paths.end(), is_valid_);
   }
 
   void check_trigger() {
     const std::vector<std::string> involved = {"capture.fifo_trigger_words", "capture.fifo_words"};
     const CaptureConfig& capture = board_.capture;
-    if (!all_sound(involved) || capture.fifo_trigger_words <= capture.fifo_words) return;
+    if (!all_valid(involved) || capture.fifo_trigger_words <= capture.fifo_words) return;
     found_.push_back({fmt::format("capture.fifo_trigger_words = {}: 1..fifo_words, which is {}",
                                   capture.fifo_trigger_words, capture.fifo_words),
                       involved});
   }
 
   void check_bank_depths() {
-    if (!all_sound({"image.width", "image.height", "ssram.banks"})) return;
+    if (!all_valid({"image.width", "image.height", "ssram.banks"})) return;
     std::vector<Buffer> known = buffers(board_.allocation);
     known.erase(std::remove_if(known.begin(), known.end(),
-                               [this](const Buffer& buffer) { return !sound_(buffer.key); }),
+                               [this](const Buffer& buffer) { return !is_valid_(buffer.key); }),
                 known.end());
     for (const BankConfig& bank : board_.banks) {
       std::uint64_t needed = 0;
@@ -54,7 +54,7 @@ class RuleChecker {
 
   void report_depth(const BankConfig& bank, const std::vector<Buffer>& known, std::uint64_t needed) {
     std::vector<std::string> involved = {fmt::format("ssram.banks.{}.words", bank.name)};
-    if (!sound_(involved.front())) return;
+    if (!is_valid_(involved.front())) return;
     std::vector<std::string> held;
     for (const Buffer& buffer : known) {
       if (buffer.bank != bank.name) continue;
@@ -71,19 +71,20 @@ class RuleChecker {
   void check_list_lengths() {
     const std::vector<std::string> involved = {"allocation.right_image", "allocation.left_image"};
     const AllocationConfig& allocation = board_.allocation;
-    if (!all_sound(involved) || allocation.right_image.size() == allocation.left_image.size()) return;
+    if (!all_valid(involved) || allocation.right_image.size() == allocation.left_image.size()) return;
     found_.push_back({fmt::format("allocation.right_image = {}: must be as long as left_image, which is {}",
                                   list_text(allocation.right_image), list_text(allocation.left_image)),
                       involved});
   }
 
   void check_bank_names() {
-    if (!sound_("ssram.banks")) return;
+    if (!is_valid_("ssram.banks")) return;
     std::vector<std::string> names;
     names.reserve(board_.banks.size());
     for (const BankConfig& bank : board_.banks) names.push_back(bank.name);
     for (const Buffer& buffer : buffers(board_.allocation)) {
-      if (!sound_(buffer.key) || std::find(names.begin(), names.end(), buffer.bank) != names.end()) continue;
+      if (!is_valid_(buffer.key) || std::find(names.begin(), names.end(), buffer.bank) != names.end())
+        continue;
       found_.push_back({fmt::format("{} = {}: not a bank of this board{}", buffer.key, buffer.bank,
                                     nearest_text(buffer.bank, names)),
                         {buffer.path(), "ssram.banks"}});
@@ -91,15 +92,15 @@ class RuleChecker {
   }
 
   const BoardConfig& board_;
-  const std::function<bool(const std::string&)>& sound_;
+  const std::function<bool(const std::string&)>& is_valid_;
   std::vector<BrokenRule> found_;
 };
 
 }  // namespace
 
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
-                                     const std::function<bool(const std::string&)>& sound) {
-  return RuleChecker(board, sound).check();
+                                     const std::function<bool(const std::string&)>& is_valid) {
+  return RuleChecker(board, is_valid).check();
 }
 
 std::vector<Buffer> buffers(const AllocationConfig& allocation) {

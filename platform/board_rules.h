@@ -17,10 +17,10 @@ struct BrokenRule {
   std::vector<std::string> involved;
 };
 
-// Every broken rule between keys, in the order of the keys. `sound(path)` says whether the value of a key is
-// known to keep its own rule; a rule that involves another value is not checked.
+// Every broken rule between keys, in the order of the keys. `is_valid(path)` says whether the value of a key
+// is known to keep its own rule; a rule that involves another value is not checked.
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
-                                     const std::function<bool(const std::string&)>& sound);
+                                     const std::function<bool(const std::string&)>& is_valid);
 
 // One buffer of the allocation.
 struct Buffer {

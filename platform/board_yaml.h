@@ -48,7 +48,7 @@ struct BoardValue {
   std::variant<std::int64_t, double, std::string> value;
 };
 
-// Every value of a sound board by its path, in the order in which boards are written: numbers as numbers;
+// Every value of a valid board by its path, in the order in which boards are written: numbers as numbers;
 // lists, words and filters as to_yaml() writes them in one line. Each bank has all its values; without a load
 // on the PCI bus there are none of its values.
 std::vector<BoardValue> values_of(const BoardConfig& board);

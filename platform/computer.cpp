@@ -41,12 +41,12 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
   return config;
 }
 
-std::unique_ptr<pci::PciLoad> make_load(const std::optional<PciLoadConfig>& load) {
+std::unique_ptr<pci::TrafficGenerator> make_load(const std::optional<PciLoadConfig>& load) {
   if (!load) return nullptr;
   const auto ps = [](double us) { return static_cast<std::uint64_t>(std::llround(us * 1e6)); };
   const pci::PciLoadConfig config = {static_cast<std::uint32_t>(DeviceMap().load), load->burst_words,
                                      ps(load->first_us), ps(load->interval_us), ps(load->access_us)};
-  return std::make_unique<pci::PciLoad>("load", config);
+  return std::make_unique<pci::TrafficGenerator>("load", config);
 }
 
 pci::PciBridgeConfig bridge_config(const BoardConfig& board) {

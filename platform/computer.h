@@ -14,7 +14,7 @@
 #include "models/host/program.h"
 #include "models/pci/pci_bridge.h"
 #include "models/pci/pci_bus.h"
-#include "models/pci/pci_load.h"
+#include "models/pci/traffic_generator.h"
 #include "platform/board.h"
 #include "platform/board_config.h"
 #include "platform/device_map.h"
@@ -44,7 +44,8 @@ class Computer : public sc_core::sc_module {
   capture::Camera right_camera;
   capture::CaptureBoard left_capture;
   capture::CaptureBoard right_capture;
-  std::unique_ptr<pci::PciLoad> load;  // null on a board without one, which has no master kLoad either
+  std::unique_ptr<pci::TrafficGenerator>
+      load;  // null on a board without one, which has no master kLoad either
 
  private:
   void bind_pci(Binder& binder);

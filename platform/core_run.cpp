@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_timing.h"
 #include "models/fpga/frame_counts.h"
-#include "models/fpga/slot_pattern.h"
 #include "models/memory/arbitration.h"
 #include "platform/collect.h"
 
@@ -40,16 +40,16 @@ class CoreRun {
     counters_.banks.resize(banks_.size());
   }
 
-  void run_frame(std::uint64_t patience_cycles) {
+  void run_frame(std::uint64_t stall_timeout_cycles) {
     timing_.start_frame(route(frame_cycles_.size()), left_, right_);
     const std::uint64_t first = cycle_;
     arbitration_.begin_counting(first);
     std::uint64_t work = UINT64_MAX;
     while (!control().frame_done()) {
       const std::uint64_t now = control().left().consumed() + control().result().cycles().granted();
-      if (now == work) throw_stuck(patience_cycles);
+      if (now == work) throw_stuck(stall_timeout_cycles);
       work = now;
-      cycle_ = timing_.run_ahead(cycle_, cycle_ + patience_cycles);
+      cycle_ = timing_.run_ahead(cycle_, cycle_ + stall_timeout_cycles);
     }
     timing_.end_frame();
     arbitration_.end_counting(cycle_);
@@ -113,10 +113,10 @@ class CoreRun {
     counters_.packed_words += counts.packed.words;
   }
 
-  [[noreturn]] void throw_stuck(std::uint64_t patience_cycles) const {
+  [[noreturn]] void throw_stuck(std::uint64_t stall_timeout_cycles) const {
     throw std::runtime_error(
         fmt::format("frame {} of the core: no slot consumed and no result written for {} cycles",
-                    frame_cycles_.size(), patience_cycles));
+                    frame_cycles_.size(), stall_timeout_cycles));
   }
 
   fpga::CoreConfig config_;
@@ -124,8 +124,8 @@ class CoreRun {
   std::vector<memory::SsramBankConfig> banks_;
   memory::Arbitration arbitration_;
   fpga::CoreTiming timing_;
-  fpga::SlotPattern left_;
-  fpga::SlotPattern right_;
+  fpga::AccessPattern left_;
+  fpga::AccessPattern right_;
   std::uint64_t cycle_ = 0;
   std::vector<std::uint64_t> frame_cycles_;
   BoardCounters counters_;
@@ -134,11 +134,11 @@ class CoreRun {
 }  // namespace
 
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
-                    std::uint64_t patience_cycles) {
+                    std::uint64_t stall_timeout_cycles) {
   if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
   check_tables(board, tables);
   CoreRun run(board, tables);
-  for (std::uint64_t frame = 0; frame < frames; ++frame) run.run_frame(patience_cycles);
+  for (std::uint64_t frame = 0; frame < frames; ++frame) run.run_frame(stall_timeout_cycles);
   return collect_statistics(board, tables, "fast", run.frame_cycles(), run.counters());
 }
 

@@ -13,9 +13,9 @@ namespace stereotlm::platform {
 // Fidelity::kTiming, for a tenth of the time. A process may do this as often as it likes.
 //
 // Throws std::invalid_argument if the board has problems, the tables do not fit to it, or there are no
-// frames, and std::runtime_error if no slot of a frame is consumed and no result written for patience_cycles:
-// it would never end.
+// frames, and std::runtime_error if no slot of a frame is consumed and no result written for
+// stall_timeout_cycles: it would never end.
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
-                    std::uint64_t patience_cycles = std::uint64_t{1} << 26U);
+                    std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
 
 }  // namespace stereotlm::platform

@@ -106,7 +106,7 @@ struct Statistics {
   std::vector<BlameRow> blame;        // sorted by port, bank, by (turnaround last), without zero rows
   std::optional<ComputerStatistics> computer;
   area::Area area;                  // of the FPGA
-  std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a sound run
+  std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run
 };
 
 }  // namespace stereotlm::platform

@@ -41,24 +41,23 @@ class MatchControl {
   // is number columns_ - 1, so columns_ - result_delay_columns results have left.
   bool word_leaves() const { return columns_ > geometry_.result_delay_columns; }
 
-  // Between two columns: all that the next cycles depend on, beside lanes and result queue.
+  // Between two columns: the matcher's part of the state that determines the next cycles.
   std::uint64_t state() const {
     return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U;
   }
   std::uint64_t columns() const { return columns_; }
-  // Of results that have left in this frame.
+  // Words of results that have left in this frame.
   std::uint64_t words() const {
     return columns_ > geometry_.result_delay_columns ? (columns_ - geometry_.result_delay_columns) / 4 : 0;
   }
-  // Between two columns: so many more can be consumed, as far as this side knows, the last of which may
-  // change the state.
-  std::uint64_t columns_alike() const {
+  // Between two columns: the number of columns up to the next change of state(), the last of them included.
+  std::uint64_t uniform_columns() const {
     const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
     const std::uint64_t left = (draining() ? drain_left_ : slots_left_) / slots_per_column;
     if (columns_ >= geometry_.result_delay_columns) return left;
     return std::min(left, geometry_.result_delay_columns - columns_);
   }
-  // As if they had been consumed.
+  // Skips columns, at most uniform_columns().
   void skip_columns(std::uint64_t columns) {
     (draining() ? drain_left_ : slots_left_) -=
         columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
@@ -97,23 +96,23 @@ class ResultControl {
     written_ += std::uint64_t{granted};
     most_queued_ = std::max(most_queued_, queued_);
   }
-  // Cycles beside those committed.
+  // Adds cycles that were skipped.
   void count(const PortCycles& cycles, std::uint64_t times) { cycles_.count(cycles, times); }
 
   std::uint64_t state() const {
     return static_cast<std::uint64_t>(queued_) | std::uint64_t{written_ != 0} << 8U;
   }
-  // As if cycles had been committed in which so many words are written and that lead to this state.
+  // Skips cycles in which `words` words are written; they end in this state.
   void skip_to(std::uint64_t state, std::uint64_t words) {
     static_assert(kResultFifoRule.max <= 0xff);
     queued_ = static_cast<int>(state & 0xffU);
     written_ += words;
   }
 
-  // Of this frame.
+  // Words of this frame.
   std::uint64_t words_written() const { return written_; }
   std::uint64_t words_left() const { return words_per_frame_ - written_; }
-  // At one time, over all frames.
+  // The most words queued at one time, over all frames.
   int most_queued() const { return most_queued_; }
   const PortCycles& cycles() const { return cycles_; }
 
@@ -134,9 +133,9 @@ struct FrameLatencies {
   int right_image = 2;
 };
 
-// The timing of the whole core (contract section 2): what every port asks for in a cycle and what follows
-// from the grants. Plain C++, no data, no SystemC: stepped by the core's process, and by whatever else needs
-// the same cycles.
+// The timing of the whole core (contract section 2): what every port requests in a cycle, and what follows
+// from the grants. Plain C++ without data and without SystemC, so that the core's process and run_core() step
+// the same object.
 //
 // A cycle is decide(), then the arbitration of the ports that request, then commit().
 class CoreControl {
@@ -168,29 +167,30 @@ class CoreControl {
 
   void start_frame(const FrameLatencies& latencies);
   Decision decide() const;
-  // `*_entry_valid`: of the table entry that the side's LUT port has read in this cycle. True if the matcher
-  // has completed four columns with it, counted from result_delay_columns % 4 on.
+  // `*_entry_valid`: whether the table entry is valid that the side's LUT port has read in this cycle.
+  // Returns true if the matcher has completed a group of four columns, counted from result_delay_columns % 4
+  // on.
   bool commit(const Decision& decision, memory::PortMask granted, bool left_entry_valid,
               bool right_entry_valid);
-  // The host port is not the core's own: what it did in this cycle is counted here beside the others.
+  // Counts the cycle of the host port, which is not the core's own.
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
     host_cycles_.count(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
   }
-  // In some cycles that were counted as ones without request, or will be, the host had one for a bank of its
-  // own.
+  // Corrects cycles that are counted as idle, before or later: the host requested an uncontended bank in
+  // them.
   void host_was_busy(bool granted, std::uint64_t cycles) {
     host_cycles_.count(Intent::kIdle, false, ~cycles + 1);  // may become negative until they are counted
     count_host(true, granted, cycles);
   }
-  // Over all frames, of the core's own ports.
+  // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;
   Counts counts() const;
   static Counts difference(const Counts& after, const Counts& before);
-  // Cycles beside those committed.
+  // Adds cycles that were skipped.
   void count(const Counts& counts, std::uint64_t times);
 
-  // After four columns: all that the next cycles depend on, but for the arbiters, and the slots not yet
-  // taken.
+  // After a group of four columns: the state that determines the next cycles, together with the arbiters'
+  // state and the slots not yet taken.
   struct State {
     LaneControl::State left;
     LaneControl::State right;
@@ -201,8 +201,8 @@ class CoreControl {
     }
   };
   State state() const { return {left_.state(), right_.state(), match_.state() | result_.state() << 8U}; }
-  // As if cycles had been committed in which the matcher consumes so many columns, at most columns_alike(),
-  // and so many words of results are written, and that lead to this state of lanes and result queue.
+  // Skips cycles in which the matcher consumes `columns` columns, at most uniform_columns(), and `words`
+  // words of results are written; lanes and result queue end in this state.
   void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   const MatchControl& match() const { return match_; }
   const ResultControl& result() const { return result_; }
@@ -210,7 +210,7 @@ class CoreControl {
   bool frame_done() const { return result_.frame_done(); }
 
   const FrameGeometry& geometry() const { return geometry_; }
-  // Over all frames, for the cycles from the start of each to its last write.
+  // Counts over all frames, of the cycles from the start of each frame to its last write.
   const PortCycles& port_cycles(memory::Port port) const;
   LaneControl& left() { return left_; }
   LaneControl& right() { return right_; }

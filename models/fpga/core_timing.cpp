@@ -22,8 +22,8 @@ void CoreTiming::start_frame(const FrameLatencies& latencies) {
   forget();
 }
 
-void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern& left,
-                             const SlotPattern& right) {
+void CoreTiming::start_frame(const FrameLatencies& latencies, const AccessPattern& left,
+                             const AccessPattern& right) {
   start_frame(latencies);
   left_ = {&left, !arbitration_.is_alone(memory::Port::kLeftPixel)};
   right_ = {&right, !arbitration_.is_alone(memory::Port::kRightPixel)};
@@ -31,39 +31,40 @@ void CoreTiming::start_frame(const FrameLatencies& latencies, const SlotPattern&
 
 void CoreTiming::host_route_changes() {
   stepped_.reset();
-  look_at_entries();
+  resolve_validity();
 }
 
 void CoreTiming::forget() {
   stepped_.reset();
   known_.clear();
-  left_alike_to_ = 0;
-  right_alike_to_ = 0;
+  left_uniform_to_ = 0;
+  right_uniform_to_ = 0;
 }
 
-void CoreTiming::look_at_entries() {
-  look_at_entries(left_, memory::Port::kLeftPixel, control_.left());
-  look_at_entries(right_, memory::Port::kRightPixel, control_.right());
+void CoreTiming::resolve_validity() {
+  resolve_validity(left_, memory::Port::kLeftPixel, control_.left());
+  resolve_validity(right_, memory::Port::kRightPixel, control_.right());
 }
 
-// From now on; and what has happened until now is put right.
-void CoreTiming::look_at_entries(Side& side, memory::Port port, LaneControl& lane) {
-  if (side.looks) return;
-  side.looks = true;
+// From now on the validity of entries is tracked. The grants that were counted provisionally are corrected.
+void CoreTiming::resolve_validity(Side& side, memory::Port port, LaneControl& lane) {
+  if (side.tracks_validity) return;
+  side.tracks_validity = true;
   forget();
   const std::uint64_t passed = side.pattern->invalid_before(lane.handled());
   std::uint64_t marks = 0;
   for (std::uint64_t slot = lane.handled(); slot < lane.taken(); ++slot)
     marks |= std::uint64_t{side.pattern->needs_pixel(slot)} << (slot - lane.handled());
   lane.correct_passes(passed, marks);
-  arbitration_.take_back(port, passed);
+  arbitration_.retract_grants(port, passed);
 }
 
 memory::PortMask CoreTiming::step(std::uint64_t cycle, bool host_requests) {
   return step(cycle, host_requests, [this](const CoreControl::Decision&, memory::PortMask granted) {
     const auto valid = [granted](memory::Port lut, const LaneControl& lane, const Side& side) {
       const SlotCursor& slot = lane.next_slot();
-      return has(granted, lut) && (!side.looks || side.pattern->entry_valid(slot.column(), slot.row()));
+      return has(granted, lut) &&
+             (!side.tracks_validity || side.pattern->entry_valid(slot.column(), slot.row()));
     };
     return EntriesRead{valid(memory::Port::kLeftLut, control_.left(), left_),
                        valid(memory::Port::kRightLut, control_.right(), right_)};
@@ -79,16 +80,16 @@ std::uint64_t CoreTiming::run_ahead(std::uint64_t cycle, std::uint64_t end) {
   return cycle;
 }
 
-// After four columns.
+// Skips groups whose transitions are recorded. Called after a group of four columns.
 std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
-  // The route of the host may make another bank a shared one.
+  // The host may contend for a bank that is uncontended without it.
   if (arbitration_.is_routed(memory::Port::kHost)) return cycle;
   if (known_.is_full()) forget();
   if (stepped_) end_group(cycle);
-  if (!look_at_slots()) return cycle;
+  if (!has_uniform_slots()) return cycle;
   Progress left = room(cycle, end);
   if (!holds_group(left)) return cycle;
-  KnownGroups::Group* group = &known_.at(state(cycle));
+  TransitionCache::Group* group = &known_.at(state(cycle));
   if (group->next != nullptr) {
     Progress skipped;
     group = &known_.walk(*group, left, skipped, control_, arbitration_);
@@ -103,60 +104,59 @@ std::uint64_t CoreTiming::skip_known(std::uint64_t cycle, std::uint64_t end) {
   return cycle;
 }
 
-// Whether the slots next to be taken are known to make the same accesses for a while. Where another stretch
-// of them begins, no group is known any more.
-bool CoreTiming::look_at_slots() {
+// Whether the slots to be taken next lie in a run of uniform columns. At the beginning of another run the
+// cache is cleared.
+bool CoreTiming::has_uniform_slots() {
   if (control_.match().draining()) return true;
-  const auto is_behind = [](const LaneControl& lane, std::uint64_t alike_to) {
-    return lane.taken() >= alike_to;
+  const auto is_behind = [](const LaneControl& lane, std::uint64_t uniform_to) {
+    return lane.taken() >= uniform_to;
   };
   const LaneControl& left = control_.left();
   const LaneControl& right = control_.right();
   if (left.next_slot().done() || right.next_slot().done()) return false;
-  if (is_behind(left, left_alike_to_) || is_behind(right, right_alike_to_)) {
+  if (is_behind(left, left_uniform_to_) || is_behind(right, right_uniform_to_)) {
     forget();
-    left_alike_to_ = alike_to(left, left_);
-    right_alike_to_ = alike_to(right, right_);
+    left_uniform_to_ = uniform_to(left, left_);
+    right_uniform_to_ = uniform_to(right, right_);
   }
   return true;
 }
 
-std::uint64_t CoreTiming::alike_to(const LaneControl& lane, const Side& side) const {
-  const SlotPattern& pattern = side.looks ? *side.pattern : all_valid_;
-  return pattern.alike_until(lane.next_slot().frame_column()) *
+std::uint64_t CoreTiming::uniform_to(const LaneControl& lane, const Side& side) const {
+  const AccessPattern& pattern = side.tracks_validity ? *side.pattern : all_valid_;
+  return pattern.uniform_until(lane.next_slot().frame_column()) *
          static_cast<std::uint64_t>(control_.geometry().slots_per_column);
 }
 
-// How far the core can come before something is different, or a row of results is whole.
+// How far the core can run before a run of uniform columns ends, or a row of results is complete.
 Progress CoreTiming::room(std::uint64_t cycle, std::uint64_t end) const {
   const bool drains = control_.match().draining();
-  // The slot behind the last one taken counts too: a port decides by it.
-  const auto slots = [drains](const LaneControl& lane, std::uint64_t alike_to) {
-    return drains ? 0 : alike_to - 1 - lane.taken();
+  // A port decides by the slot behind the last one taken: that slot must be in the run too.
+  const auto slots = [drains](const LaneControl& lane, std::uint64_t uniform_to) {
+    return drains ? 0 : uniform_to - 1 - lane.taken();
   };
-  return {end - cycle, control_.match().columns_alike(), slots(control_.left(), left_alike_to_),
-          slots(control_.right(), right_alike_to_),
+  return {end - cycle, control_.match().uniform_columns(), slots(control_.left(), left_uniform_to_),
+          slots(control_.right(), right_uniform_to_),
           rows_.next_words() - control_.result().words_written() - 1};
 }
 
-// Whether four columns may be alike. (Behind the last column alike a walk has ended at the group of a state
-// that is not the core's: nothing may be noted there.)
+// Whether a whole group fits. (A walk that ends with the last uniform column ends at a group whose state is
+// not the core's: nothing may be recorded there.)
 bool CoreTiming::holds_group(const Progress& room) const {
   const std::uint64_t slots =
       control_.match().draining() ? 0 : 4 * static_cast<std::uint64_t>(control_.geometry().slots_per_column);
   return room.columns >= 4 && room.left_slots >= slots && room.right_slots >= slots;
 }
 
-void CoreTiming::begin_group(KnownGroups::Group& group, std::uint64_t cycle) {
+void CoreTiming::begin_group(TransitionCache::Group& group, std::uint64_t cycle) {
   stepped_ = {&group, progress(cycle), control_.counts()};
   arbitration_.begin_recording();
 }
 
-// It is known now. Something may have become different on the way: of other slots look_at_slots() forgets it
-// at once; behind the last slot, and behind another state of the matcher, its own state does not come again
-// in this frame.
+// Records the transition. It may have crossed the end of its run of slots: then has_uniform_slots() clears
+// the cache at once. If the slots or the matcher's phase have ended, its state does not recur in this frame.
 void CoreTiming::end_group(std::uint64_t cycle) {
-  KnownGroups::Group& group = *stepped_->group;
+  TransitionCache::Group& group = *stepped_->group;
   group.progress = progress(cycle);
   group.progress.subtract(stepped_->begin);
   group.counts = CoreControl::difference(control_.counts(), stepped_->counts);

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <optional>
 
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
-#include "models/fpga/known_groups.h"
 #include "models/fpga/row_recorder.h"
-#include "models/fpga/slot_pattern.h"
+#include "models/fpga/transition_cache.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {
@@ -21,28 +21,28 @@ struct EntriesRead {
 
 // The cycles of the core: control and arbitration, stepped together. Plain C++, no SystemC.
 //
-// A frame can be stepped cycle by cycle, while whoever steps it moves the data; or it runs ahead by itself.
-// Then what has come before is not stepped again: what four columns of the matcher do depends on the state
-// before them, as long as the slots to come make the same accesses (KnownGroups). Of a pixel port that is
-// alone on its bank it does not matter which entries are valid: a slot that needs an access takes the cycle
-// of one that passes. Running ahead, all are taken for valid then, and the counts are put right in the end.
+// A frame can be stepped cycle by cycle, and the caller moves the data of each cycle. Or the frame runs ahead
+// without data, in two faster ways:
+// - TransitionCache: transitions that are recorded are skipped.
+// - An uncontended pixel port needs the same cycles for a valid entry as for an invalid one. Until the frame
+//   ends, a pass on such a port counts as a grant; resolve_validity() then corrects the counts.
 //
-// While rows are recorded the cycles around the end of each are stepped.
+// While rows are recorded, the cycles around the end of each row are stepped.
 class CoreTiming {
  public:
-  // `arbitration` outlives it; `most_groups`: that it keeps in mind. Throws std::invalid_argument if the
-  // configuration has problems.
+  // `arbitration` outlives this object. `most_groups`: cap of the transition cache. Throws
+  // std::invalid_argument if the configuration has problems.
   CoreTiming(const CoreConfig& config, memory::Arbitration& arbitration,
-             std::size_t most_groups = KnownGroups::kMost);
+             std::size_t most_groups = TransitionCache::kMost);
 
-  // Ports are routed. A frame whose data is moved as it is stepped ..
+  // Starts a frame whose data the caller moves as it is stepped. The ports are routed before.
   void start_frame(const FrameLatencies& latencies);
-  // .. or one that runs ahead, on these accesses, which outlive it.
-  void start_frame(const FrameLatencies& latencies, const SlotPattern& left, const SlotPattern& right);
-  // The route of the host is about to change within a frame. The core's own stay as long as it runs.
+  // Starts a frame that runs ahead with these accesses. The patterns outlive the frame.
+  void start_frame(const FrameLatencies& latencies, const AccessPattern& left, const AccessPattern& right);
+  // To be called before the route of the host changes within a frame. The core's own routes stay.
   void host_route_changes();
-  // All cycles of the frame have been run: puts the counts right.
-  void end_frame() { look_at_entries(); }
+  // To be called after the last cycle of a frame: corrects the provisional counts.
+  void end_frame() { resolve_validity(); }
 
   // To be turned on between two frames.
   RowRecorder& rows() { return rows_; }
@@ -62,59 +62,60 @@ class CoreTiming {
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     return granted;
   }
-  // The same, with the entries that the patterns foretell.
+  // The same for a frame that runs ahead: the patterns say which entries are valid.
   memory::PortMask step(std::uint64_t cycle, bool host_requests);
 
-  // From cycle `cycle` to before cycle `end`, or until the frame is done. Returns the cycle that comes next.
+  // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
+  // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
-  // With `cycle` the next to run: the last write of the frame is not granted before the cycle returned.
+  // A lower bound of the cycle in which the last write of the frame is granted. `cycle` is the next to run.
   std::uint64_t earliest_last_write(std::uint64_t cycle) const;
 
   CoreControl& control() { return control_; }
   const CoreControl& control() const { return control_; }
 
  private:
-  // A group that is being stepped, to be known from then on.
+  // The group that is being stepped, and recorded at its end.
   struct Stepped {
-    KnownGroups::Group* group;
+    TransitionCache::Group* group;
     Progress begin;
     CoreControl::Counts counts;
   };
 
   // The table of one side, and its pixel port.
   struct Side {
-    const SlotPattern* pattern = nullptr;
-    bool looks = true;  // else all entries are taken for valid
+    const AccessPattern* pattern = nullptr;
+    bool tracks_validity = true;  // false: all entries count as valid for now
   };
 
-  void look_at_entries();
-  void look_at_entries(Side& side, memory::Port port, LaneControl& lane);
+  void resolve_validity();
+  void resolve_validity(Side& side, memory::Port port, LaneControl& lane);
   void forget();
   std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
-  bool look_at_slots();
-  std::uint64_t alike_to(const LaneControl& lane, const Side& side) const;
+  bool has_uniform_slots();
+  std::uint64_t uniform_to(const LaneControl& lane, const Side& side) const;
   Progress room(std::uint64_t cycle, std::uint64_t end) const;
   bool holds_group(const Progress& room) const;
-  void begin_group(KnownGroups::Group& group, std::uint64_t cycle);
+  void begin_group(TransitionCache::Group& group, std::uint64_t cycle);
   void end_group(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
-  KnownGroups::State state(std::uint64_t cycle) const {
+  TransitionCache::State state(std::uint64_t cycle) const {
     return {control_.state(), arbitration_.state(cycle)};
   }
 
   CoreControl control_;
   RowRecorder rows_;
   memory::Arbitration& arbitration_;
-  SlotPattern all_valid_;
+  AccessPattern all_valid_;
   Side left_;
   Side right_;
   bool four_columns_ = false;  // the last cycle completed them
 
-  KnownGroups known_;
+  TransitionCache known_;
   std::optional<Stepped> stepped_;
-  // Slots of the frame that make the accesses of those for which the groups are known; 0: none are.
-  std::uint64_t left_alike_to_ = 0;
-  std::uint64_t right_alike_to_ = 0;
+  // Slots of the frame before which the cached transitions hold; 0: the cache is empty.
+  std::uint64_t left_uniform_to_ = 0;
+  std::uint64_t right_uniform_to_ = 0;
 };
 
 }  // namespace stereotlm::fpga

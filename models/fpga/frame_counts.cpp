@@ -7,7 +7,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const SlotPattern& pattern, bool has_table,
+FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const AccessPattern& pattern, bool has_table,
                               const LaneControl& control) {
   FrameCounts::Lane lane;
   lane.slots = {control.taken(), pattern.empty_slots()};
@@ -24,8 +24,8 @@ FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const SlotPattern& 
 
 }  // namespace
 
-FrameCounts::FrameCounts(const CoreConfig& config, const SlotPattern& left_pattern,
-                         const SlotPattern& right_pattern, const CoreControl& control,
+FrameCounts::FrameCounts(const CoreConfig& config, const AccessPattern& left_pattern,
+                         const AccessPattern& right_pattern, const CoreControl& control,
                          std::uint64_t answered) {
   const FrameGeometry geometry(config);
   left = lane_counts(geometry, left_pattern, config.left_table, control.left());

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/frame_geometry.h"
@@ -15,7 +16,6 @@
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
 #include "models/fpga/sequencer.h"
-#include "models/fpga/slot_pattern.h"
 
 namespace stereotlm::fpga {
 
@@ -25,7 +25,7 @@ namespace stereotlm::fpga {
 // geometry, the pattern of the slots, and the answers.
 struct FrameCounts {
   // Of a frame that `control` has run, in which `answered` pixels have a disparity.
-  FrameCounts(const CoreConfig& config, const SlotPattern& left, const SlotPattern& right,
+  FrameCounts(const CoreConfig& config, const AccessPattern& left, const AccessPattern& right,
               const CoreControl& control, std::uint64_t answered);
 
   struct Lane {

@@ -123,7 +123,7 @@ void LocalBus::access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::u
     ++(burst_->is_write() ? stats_.words_written : stats_.words_read);
     if (burst_->is_write()) words_granted_.add(address, 1);
   }
-  go_on(1, grant_ps, usable_ps);
+  advance(1, grant_ps, usable_ps);
 }
 
 void LocalBus::move_words(unsigned char* words) {
@@ -136,11 +136,11 @@ void LocalBus::count_granted(std::size_t words, std::uint64_t grant_ps, std::uin
   (burst_->is_write() ? stats_.words_written : stats_.words_read) += words;
   if (burst_->is_write()) words_granted_.add(burst_->get_address() + next_word_ * 4, words);
   next_word_ += words;
-  go_on(words, grant_ps, usable_ps);
+  advance(words, grant_ps, usable_ps);
 }
 
 // The next word, or the end of the burst.
-void LocalBus::go_on(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
+void LocalBus::advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
   words_left_ -= words;
   if (words_left_ != 0) {
     request_ps_ = clock_.edge_ps(clock_.edge_at_or_after(grant_ps) + 1);

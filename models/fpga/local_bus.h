@@ -110,7 +110,7 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   void run_registers();
   void access_register();
   bool transfer(memory::WordAccess& through, std::uint64_t address, sc_core::sc_time& delay);
-  void go_on(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
+  void advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   void end(std::uint64_t last_clock_end_ps);
 
   Clock clock_;

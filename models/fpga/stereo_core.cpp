@@ -11,7 +11,7 @@ namespace {
 using memory::Port;
 using memory::PortMask;
 
-// Cycles that the process runs at most before it lets the kernel look around.
+// Cycles between two returns to the kernel.
 constexpr std::uint64_t kQuantumCycles = 8192;
 
 std::string text_of(Intent intent) {
@@ -165,8 +165,8 @@ void StereoCore::start_frame(const FrameStart& start) {
   buffers_ = buffers_of(start);
   failed_ = false;
   writes_before_ = control().result().cycles().granted();
-  whole_ = config_.fidelity != Fidelity::kCycle && read_frame();
-  if (whole_) {
+  direct_frame_ = config_.fidelity != Fidelity::kCycle && read_frame();
+  if (direct_frame_) {
     timing_.start_frame(latencies, left_pattern_, right_pattern_);
   } else {
     timing_.start_frame(latencies);
@@ -177,26 +177,26 @@ void StereoCore::start_frame(const FrameStart& start) {
   state_ = State::kRunning;
   cycle_ = std::max(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay)));
   first_cycle_ = cycle_;
-  look_ps_ = 0;
+  next_check_ps_ = 0;
   work_cycle_ = cycle_;
   crossbar_.begin_counting(first_cycle_);
-  if (!is_lazy()) join_host();
+  if (!fast_forwards()) join_host();
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void StereoCore::run() {
   for (;;) {
     if (state_ == State::kRunning) check_progress();
-    if (is_lazy()) {
-      run_lazily();
+    if (fast_forwards()) {
+      fast_forward();
     } else {
       run_ahead();
     }
   }
 }
 
-bool StereoCore::is_lazy() const {
-  return config_.fidelity != Fidelity::kCycle && (state_ != State::kRunning || whole_);
+bool StereoCore::fast_forwards() const {
+  return config_.fidelity != Fidelity::kCycle && (state_ != State::kRunning || direct_frame_);
 }
 
 void StereoCore::check_progress() {
@@ -204,7 +204,7 @@ void StereoCore::check_progress() {
   if (work != work_) {
     work_ = work;
     work_cycle_ = cycle_;
-  } else if (cycle_ - work_cycle_ >= config_.patience_cycles) {
+  } else if (cycle_ - work_cycle_ >= config_.stall_timeout_cycles) {
     const std::string text = std::string(name()) + ": no slot consumed and no result written for " +
                              std::to_string(cycle_ - work_cycle_) + " cycles; " + waits();
     work_cycle_ = cycle_;
@@ -239,9 +239,8 @@ std::string StereoCore::waits() const {
   return text;
 }
 
-// Runs the cycles that nothing from outside can come between, then waits for the next thing to do. What
-// happens at the time of an edge belongs to the cycle that begins there: while anything is pending at that
-// time, the cycle waits until just after it.
+// Runs the cycles before the next pending event, then waits for it. An event at the time of an edge belongs
+// to the cycle that begins there: while one is pending at that time, the cycle waits until 1 ps later.
 void StereoCore::run_ahead() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   const auto horizon_after = [now] { return now + Clock::to_ps(sc_core::sc_time_to_pending_activity()); };
@@ -251,7 +250,7 @@ void StereoCore::run_ahead() {
   for (const std::uint64_t last = cycle_ + kQuantumCycles;; ++cycle_) {
     std::uint64_t next = cycle_;
     if (state_ != State::kRunning) {
-      // There is nothing to step before the next request. (A frame may yet begin before it.)
+      // No cycle matters before the next request. (A frame may begin before it.)
       const bool pending = local_bus_.word_waits();
       if (pending) next = std::max(next, clock_.edge_at_or_after(local_bus_.request_ps()));
       if (state_ == State::kFinishing && (!pending || next >= done_cycle_)) {
@@ -272,11 +271,11 @@ void StereoCore::run_ahead() {
     const std::uint64_t offset = edge > now ? edge - now : 0;
     at = offset == offset_before + period_ps_ ? at + period_ : Clock::to_time(offset);
     offset_before = offset;
-    if (step(edge, at)) horizon = horizon_after();  // an answer may have set others going
+    if (step(edge, at)) horizon = horizon_after();  // the answer may have made other events pending
   }
 }
 
-// Waits for the end of the frame, or for a request before it, and ends the frame at exactly its time.
+// Waits for the end of the frame, or for a request before it. The frame ends at exactly its time.
 void StereoCore::finish_frame(std::uint64_t now_ps) {
   const std::uint64_t end = clock_.edge_ps(done_cycle_);
   if (end > now_ps) {
@@ -299,16 +298,15 @@ void StereoCore::route_host(const HostRoute& route) {
   host_read_latency_ =
       static_cast<std::uint64_t>(memory::read_latency_cycles(config_.memory.banks[*route.bank].kind));
   crossbar_.aim(Port::kHost, *route.bank, route.write);
-  if (is_lazy()) {
+  if (fast_forwards()) {
     if (state_ == State::kRunning) check_burst(route);
-    if (nobody_else_starts() && !serves_host_beside_frame())
-      serve_alone(Clock::to_ps(sc_core::sc_time_stamp()));
+    if (nobody_else_starts() && !host_contends()) serve_uncontended(Clock::to_ps(sc_core::sc_time_stamp()));
   } else {
     join_host();
   }
 }
 
-// From here on the host takes part in the arbitration of the bank that its burst goes to.
+// The host takes part in the arbitration of its burst's bank from now on.
 void StereoCore::join_host() {
   if (!host_route_.bank || host_is_routed_) return;
   host_is_routed_ = true;
@@ -361,7 +359,7 @@ void StereoCore::finish_cycles(std::uint64_t end_cycle) {
   timing_.end_frame();
   crossbar_.end_counting(end_cycle);
   count_served(UINT64_MAX, false);
-  if (whole_) write_frame();
+  if (direct_frame_) write_frame();
 }
 
 // The host's word is granted. True if its burst is answered with it.

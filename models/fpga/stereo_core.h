@@ -12,6 +12,7 @@
 
 #include "models/binder.h"
 #include "models/clock.h"
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_timing.h"
@@ -30,7 +31,6 @@
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
 #include "models/fpga/sequencer.h"
-#include "models/fpga/slot_pattern.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
@@ -43,30 +43,32 @@ struct StereoCoreConfig {
   memory::CrossbarConfig memory;
   LocalBusConfig local_bus;
   Fidelity fidelity = Fidelity::kCycle;
-  std::uint64_t patience_cycles = std::uint64_t{1} << 26U;  // with a frame that does not go on
+  std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U;  // of a frame that makes no progress
 };
 
 // The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the register
 // file, and the one clocked process that steps them. Stages exchange data through streams, reach memory
 // through the crossbar's sockets, and move when CoreControl says so.
 //
-// At Fidelity::kCycle the process runs ahead of the kernel up to the next event that is pending, so that
-// nothing which it could have seen is missed, and by at most 8192 cycles, also past the end of an sc_start();
-// every access carries its own time. It sleeps while no frame runs and no word waits at the local bus.
+// At Fidelity::kCycle the process runs ahead of the kernel, up to the next pending event and by at most 8192
+// cycles (also past the end of an sc_start()); every access carries its own time. The process sleeps while no
+// frame runs and no word waits at the local bus.
 //
-// At the other fidelities it catches up with a frame only when it has to: when a word waits at the local bus
-// for a bank that the frame uses, and when the frame may have ended. Pictures and tables are those in memory
-// at the start strobe, and the disparities appear with the last write, or before: as far ahead of it as
-// nothing is pending that could notice; a burst of the local bus that would notice (it writes what the frame
-// reads, or touches its disparities) is reported with SC_REPORT_ERROR (type /stereotlm/core). A frame whose
-// memory cannot be had directly, whose buffers overlap, whose tables point outside the image, or that begins
-// within such a burst is done cycle by cycle. Where errors are not thrown a frame that met one ends with the
-// error flag of register_map.h. The words of a burst are all in place with its first one, where nothing but
-// the local bus can start a frame.
+// At the other fidelities the process fast-forwards. It advances a frame only when a word at the local bus
+// contends for a bank of the frame, and when the frame may have ended. The frame works directly on memory:
+// - It reads pictures and tables at the start strobe.
+// - It writes the disparities with the last write, or early, but never before a pending event that could
+//   observe them.
+// - A burst of the local bus that would observe the difference is a hazard: it writes what the frame reads,
+//   or touches the disparities. It is reported with SC_REPORT_ERROR (type /stereotlm/core). Where errors are
+//   not thrown, the frame ends with the error flag of register_map.h.
+// - A frame is stepped cycle by cycle if memory grants no direct access, if its buffers overlap, if its
+//   tables point outside the image, or if it begins within a burst that is a hazard. If only the local bus
+//   can start a frame, all words of a burst are in place with the first one.
 //
-// A frame of which no slot is consumed and no result written for patience_cycles (8192 more at most at
-// Fidelity::kCycle, else 2^22) would run for ever: a port that the arbiters always pass over. That is
-// reported with SC_REPORT_ERROR (type /stereotlm/core).
+// A frame stalls if no slot is consumed and no result is written for stall_timeout_cycles: the arbiters never
+// grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core), at most 8192
+// cycles late at Fidelity::kCycle, at most 2^22 at the others.
 class StereoCore : public sc_core::sc_module {
  public:
   // register_map.h, without the local bus and its time; may stay unbound.
@@ -85,22 +87,21 @@ class StereoCore : public sc_core::sc_module {
   const memory::Crossbar& crossbar() const { return crossbar_; }
   // frame_cycles of every finished frame.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
-  // Cycle 0 of the frame that was started last, of the clock's.
+  // Cycle 0 of the frame that was started last, in cycles of the clock from time 0.
   std::uint64_t first_cycle() const { return first_cycle_; }
-  // From the next frame on: when its rows of results were whole. Those of the frames finished since the last
-  // call, which only the caller keeps from growing with the frames.
+  // From the next frame on, records when each row of results is complete. take_rows() returns the frames
+  // finished since its last call; the caller takes them regularly, or they fill memory.
   void record_rows() { timing_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
-  // Frames that were started and are done cycle by cycle, at whatever fidelity.
+  // Frames that were stepped cycle by cycle, at any fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
-  // What each port does: who asks for which bank, and to whom it lost it most often so far.
+  // Which bank each port requests, and to which port it has lost that bank most often.
   std::string waits() const;
-  // Brings control() up to the present, for whoever watches a frame. What the lanes have taken and consumed,
-  // the results written, and the cycles of LUT and result ports are then those of the present, as are the
-  // sums of all ports' states. But where a pixel port is alone on its bank, its cycles granted and passed are
-  // told apart only when a burst comes for a bank of the frame, and at its end: until then all of them count
-  // as granted, also in the arbiters' reads, and waits() takes a slot that it passes for one that asks. So do
-  // words of a burst for a bank of its own count as idle cycles of the host port.
+  // Brings control() up to the present, for observers of a running frame. Provisional until a burst contends
+  // for a bank of the frame, or the frame ends:
+  // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and waits() shows it
+  //   as a request.
+  // - Words of a burst for an uncontended bank count as idle cycles of the host port.
   void catch_up();
 
   // The stages, for their statistics. A LUT reader or row buffer that the configuration does not need is
@@ -133,27 +134,29 @@ class StereoCore : public sc_core::sc_module {
   bool has_bank(std::uint32_t base) const;
   int latency_of(std::uint32_t base) const;
 
-  using Buffers = std::array<AddressRange, memory::kPortCount>;  // [port that works on it]; of others empty
+  using Buffers =
+      std::array<AddressRange, memory::kPortCount>;  // [port that uses it]; empty if there is none
   Buffers buffers_of(const FrameStart& start) const;
   const AddressRange& buffer_of(memory::Port port) const { return buffers_[memory::index_of(port)]; }
   bool read_frame();
-  const std::uint32_t* read_table(LutReader& reader, memory::Port port, SlotPattern& pattern, bool& is_sound);
+  const std::uint32_t* read_table(LutReader& reader, memory::Port port, AccessPattern& pattern,
+                                  bool& is_valid);
   bool buffers_are_apart() const;
   void write_frame();
   void count_frame(std::uint64_t answered);
-  std::optional<memory::Port> noticed_by(const HostRoute& route) const;
+  std::optional<memory::Port> hazard_with(const HostRoute& route) const;
   void check_burst(const HostRoute& route);
   void fail(const std::string& text);
 
   void run();
-  bool is_lazy() const;
+  bool fast_forwards() const;
   void check_progress();
   void run_ahead();
-  void run_lazily();
+  void fast_forward();
   bool nobody_else_starts() const { return registers.size() == 0; }
-  bool serves_host_beside_frame() const;
-  void serve_beside_frame();
-  void serve_alone(std::uint64_t now_ps);
+  bool host_contends() const;
+  void serve_contended();
+  void serve_uncontended(std::uint64_t now_ps);
   void move_burst();
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps);
   void serve_in_step(std::uint64_t first_cycle);
@@ -201,28 +204,28 @@ class StereoCore : public sc_core::sc_module {
   std::uint64_t work_cycle_ = 0;   // of the check that found some
   std::uint64_t errors_before_ = 0;
   HostRoute host_route_;                 // of the burst on the local bus
-  bool host_is_routed_ = false;          // takes part in the arbitration
-  std::uint64_t host_read_latency_ = 2;  // cycles, of its bank
+  bool host_is_routed_ = false;          // the host port takes part in the arbitration
+  std::uint64_t host_read_latency_ = 2;  // cycles, of the host's bank
 
   // The other fidelities.
-  bool whole_ = false;   // the frame's data is worked on at once
-  bool failed_ = false;  // it is not what it would be cycle by cycle
+  bool direct_frame_ = false;  // the running frame works directly on memory
+  bool failed_ = false;        // its result may differ from that at Fidelity::kCycle
   std::uint64_t stepped_frames_ = 0;
-  std::uint64_t writes_before_ = 0;  // granted to the result port before it
-  std::uint64_t look_ps_ = 0;        // not before then has the frame that runs been done
-  SlotPattern left_pattern_{FrameGeometry(config_.core)};
-  SlotPattern right_pattern_{FrameGeometry(config_.core)};
-  bool left_table_is_sound_ = true;
-  bool right_table_is_sound_ = true;
-  Buffers buffers_;  // of the frame that runs
+  std::uint64_t writes_before_ = 0;  // writes granted to the result port before the running frame
+  std::uint64_t next_check_ps_ = 0;  // the running frame cannot have ended before
+  AccessPattern left_pattern_{FrameGeometry(config_.core)};
+  AccessPattern right_pattern_{FrameGeometry(config_.core)};
+  bool left_table_is_valid_ = true;
+  bool right_table_is_valid_ = true;
+  Buffers buffers_;  // of the running frame
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
-  std::vector<std::uint8_t> disparities_;  // of the frame that runs
-  bool burst_is_moved_ = false;  // of the local bus: its data is where it belongs, its words are only counted
-  // Words of the local bus in a bank that the running frame does not use, until it is known which of them
-  // count.
+  std::vector<std::uint8_t> disparities_;  // of the running frame
+  bool burst_is_moved_ = false;  // the data of the burst is in place; its words are still to be counted
+  // Words of the local bus that were served in an uncontended bank, until it is known in which cycles the
+  // running frame ends.
   struct Served {
     std::uint64_t cycle;
-    std::uint64_t cycles;  // from it on
+    std::uint64_t cycles;  // number of cycles, from `cycle` on
     memory::BankArbiter::Outcome outcome;
   };
   std::vector<Served> served_;

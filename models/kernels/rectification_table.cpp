@@ -50,7 +50,7 @@ bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int w
 namespace {
 
 // Row by row: what has been read once is still in the cache when it is read again.
-bool is_sound(const RectificationTable& table) {
+bool is_valid(const RectificationTable& table) {
   const auto width = static_cast<std::size_t>(table.width);
   std::uint32_t bits = 0;
   bool inside = true;
@@ -73,7 +73,7 @@ std::vector<std::string> problems(const RectificationTable& table) {
     return {"table entries = " + std::to_string(table.entries.size()) +
             ": must be width * height = " + std::to_string(pixel_count(table.width, table.height))};
   }
-  if (is_sound(table)) return {};
+  if (is_valid(table)) return {};
   std::vector<std::string> found;
   for (std::size_t index = 0; index < table.entries.size() && found.size() < kMostProblems; ++index) {
     const std::uint32_t entry = table.entries[index];

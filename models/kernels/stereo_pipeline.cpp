@@ -11,7 +11,7 @@
 namespace stereotlm::kernels {
 namespace {
 
-const StereoConfig& sound(const StereoConfig& config) {
+const StereoConfig& checked(const StereoConfig& config) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
   return config;
 }
@@ -21,7 +21,7 @@ const StereoConfig& sound(const StereoConfig& config) {
 StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config, const ImageLoops& loops)
     : width_(width),
       height_(height),
-      radius_((sound(config).window - 1) / 2),
+      radius_((checked(config).window - 1) / 2),
       tolerance_(config.lr_tolerance),
       loops_(loops),
       matcher_(width, height, config.window, config.disparities, config.lr_tolerance.has_value(), loops) {

@@ -80,11 +80,11 @@ void Arbitration::count_alone() const {
     alone_before_recording_[ports] -= alone_cycles_[ports];
   alone_cycles_ = {};
   for (std::size_t port = 0; port < kPortCount; ++port) {
-    const std::uint64_t grants = cycles[port] - taken_back_[port];
+    const std::uint64_t grants = cycles[port] - retracted_grants_[port];
     arbiters_[routes_[port].bank].count_alone(mask_of(static_cast<Port>(port)), routes_[port].write, grants);
     alone_grants_[port] += grants;
   }
-  taken_back_ = {};
+  retracted_grants_ = {};
 }
 
 // The same, and all that has been granted without them is known: nothing will be taken back any more.

@@ -18,7 +18,7 @@ class Arbitration {
   // Requests of this port go to this bank, in this direction, from the next arbitrate() on. The bank must
   // exist.
   void route(Port port, std::size_t bank, bool write);
-  // The port has nothing to request any more.
+  // The port requests nothing from now on.
   void unroute(Port port);
   std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
   bool is_routed(Port port) const { return is_routed(index_of(port)); }
@@ -33,14 +33,15 @@ class Arbitration {
     return static_cast<PortMask>(granted |
                                  arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
   }
-  // Whether whatever this port requests is granted at once, as long as no route changes.
+  // Whether the port is uncontended: its requests are granted at once as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
-  // So many of the cycles granted to a port that is alone held no request, as it turns out. To be told before
-  // a route changes or counting ends: then what is left of them moves the bank's place in the round robin.
-  void take_back(Port port, std::uint64_t grants) { taken_back_[index_of(port)] += grants; }
+  // Retracts grants of an uncontended port that were counted provisionally: those cycles held no request. To
+  // be called before a route changes or counting ends, because the remaining grants then move the bank's
+  // round-robin place.
+  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[index_of(port)] += grants; }
 
-  // One request of a port for a bank of which no routed port asks anything, in the given direction, and what
-  // comes of it; it is counted later, by count_unrouted().
+  // Decides one request of a port for a bank that no routed port requests, in the given direction. The
+  // outcome is counted later, by count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
   void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
                       std::uint64_t cycles) {
@@ -51,14 +52,14 @@ class Arbitration {
     return arbiters_[bank].granted_in(outcome) != 0;
   }
 
-  // All that arbitration from `cycle` on depends on as long as no route changes, one word a shared bank; the
-  // others are 0.
+  // The state that determines all arbitration from `cycle` on as long as no route changes. One word for each
+  // shared bank; the other words are 0.
   using State = std::array<std::uint32_t, kPortCount>;
   State state(std::uint64_t cycle) const;
-  // What was decided in some cycles: of use as long as the same ports have the same routes.
+  // The decisions of some cycles. Valid as long as no route changes.
   struct Decided {
     struct Shared {
-      std::size_t bank;  // of the shared ones
+      std::size_t bank;  // index of the shared bank
       BankArbiter::Outcome outcome;
       std::uint64_t cycles;
     };
@@ -69,17 +70,16 @@ class Arbitration {
     std::vector<Shared> shared;
     std::vector<Alone> alone;
   };
-  // From here on decisions are recorded, until take_recorded() or a change of routes, which drops them.
+  // Records decisions until take_recorded(). A change of routes drops the record.
   void begin_recording();
   Decided take_recorded();
-  // As if so many cycles had been arbitrated that lead to this state from `cycle` on: their decisions are
-  // told by count_skipped().
+  // Skips `cycles` cycles: the state from `cycle` on is `state`. count_skipped() adds their decisions.
   void skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles);
   void count_skipped(const Decided& decided, std::uint64_t times);
 
-  // Only cycles first_cycle .. end_cycle - 1 are counted in the arbiters' statistics, which are complete when
-  // counting has ended; their uncounted_accesses() always. Until then the grants of a port that is alone may
-  // be taken back. Asking for the arbiters changes nothing.
+  // The arbiters' statistics count cycles first_cycle .. end_cycle - 1 only, and are complete after
+  // end_counting(). Until then grants of an uncontended port may be retracted. uncounted_accesses() of the
+  // arbiters is always complete. A query of the arbiters changes nothing.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const std::vector<BankArbiter>& arbiters() const {
@@ -92,7 +92,7 @@ class Arbitration {
     std::size_t bank = 0;
     bool write = false;
   };
-  // A bank whose ports meet, or which needs turnaround.
+  // A bank with several ports, or with turnaround.
   struct SharedBank {
     BankArbiter* arbiter = nullptr;
     PortMask ports = 0;
@@ -109,14 +109,14 @@ class Arbitration {
   std::array<Route, kPortCount> routes_{};
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes
-  // Ports alone on a bank without turnaround need no arbitration: the arbiter hears of their grants later, at
-  // the latest when somebody asks it.
+  // Uncontended ports: each is alone on a bank without turnaround. They need no arbitration; their grants are
+  // added to the arbiter's counts later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
   using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
   mutable AloneCycles alone_cycles_{};
-  mutable AloneCycles alone_before_recording_{};                // only the difference to alone_cycles_ counts
-  mutable std::array<std::uint64_t, kPortCount> taken_back_{};  // of the alone_cycles_
-  mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those taken back
+  mutable AloneCycles alone_before_recording_{};  // only the difference to alone_cycles_ counts
+  mutable std::array<std::uint64_t, kPortCount> retracted_grants_{};  // of the alone_cycles_
+  mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those retracted
   std::array<SharedBank, kPortCount> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;

@@ -220,7 +220,7 @@ void PciBridge::end_burst(const BurstResult& result) {
     transfer.under_way = false;
   }
   if (!pci_queue_.empty()) pci->request(*this);
-  if (ended) go_on(*transfer.channel);
+  if (ended) advance(*transfer.channel);
 }
 
 // The local bus. Its burst ends lazily: when somebody asks, or work() comes.
@@ -334,7 +334,7 @@ void PciBridge::settle() {
   if (transfer == &read_) {
     read_ended_.notify(sc_core::SC_ZERO_TIME);
   } else if (transfer != nullptr) {
-    go_on(*transfer->channel);
+    advance(*transfer->channel);
   }
 }
 
@@ -373,7 +373,7 @@ void PciBridge::fetch(Channel& channel, std::uint32_t descriptor) {
 
 // What follows when a transfer has ended. A burst is read on one bus while the one before it is written on
 // the other, and both have ended before the next.
-void PciBridge::go_on(Channel& channel) {
+void PciBridge::advance(Channel& channel) {
   settle();
   if (!channel.busy || channel.pci.under_way) return;
   if (channel.local.under_way) {

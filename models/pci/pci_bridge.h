@@ -143,7 +143,7 @@ class PciBridge : public sc_core::sc_module, private PciMasterIf, private PciSto
   // The channels.
   void start(Channel& channel);
   void finish(Channel& channel, std::uint32_t bits);
-  void go_on(Channel& channel);
+  void advance(Channel& channel);
   void fetch(Channel& channel, std::uint32_t descriptor);
   bool take_descriptor(Channel& channel);
   void read_burst(Channel& channel);

@@ -33,8 +33,9 @@ struct PciBusConfig {
 
 // A third party on the bus, which reads the same words again and again. The k-th transfer (from 0) asks for
 // the bus at first_request_ps + k * interval_ps, or when the one before it has ended, if that is later:
-// interval_ps = 0 is a hog. access_ps is the time that its own device (PciLoad::device) makes the bus wait
-// for the first word: what keeps every other master off the bus, as the latency timer cuts no wait clocks.
+// interval_ps = 0 is a hog. access_ps is the time that its own device (TrafficGenerator::device) makes the
+// bus wait for the first word: what keeps every other master off the bus, as the latency timer cuts no wait
+// clocks.
 struct PciLoadConfig {
   std::uint32_t address = 0;           // of the first word, kAddressRule
   int burst_words = 32;                // of one transfer, kLoadBurstRule

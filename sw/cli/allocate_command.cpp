@@ -316,11 +316,11 @@ int allocate(const AllocateOptions& options) {
                      [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
   };
   ProgressLine progress;
-  const auto go_on = [&progress](std::uint64_t done, std::uint64_t left) {
+  const auto keep_going = [&progress](std::uint64_t done, std::uint64_t left) {
     progress.show([&](double) { return fmt::format("{} boards simulated, {} left at most", done, left); });
     return !interrupted();
   };
-  const bool is_whole = explore::simulate(search, evaluate, sweep, go_on);
+  const bool is_whole = explore::simulate(search, evaluate, sweep, keep_going);
   progress.erase();
   if (!is_whole) {
     say("note", kGoesOn);

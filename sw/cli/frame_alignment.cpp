@@ -39,7 +39,7 @@ bool FrameAlignment::run() {
     const bool takes_b = b_.ahead && (!a_.ahead || b_.ahead->number <= a_.ahead->number);
     if (takes_a && takes_b && limits_.pixels.empty())
       pixels_.add(a_.ahead->number, a_.ahead->disparity, b_.ahead->disparity);
-    goes_on = (!takes_a || go_on(a_, b_)) && (!takes_b || go_on(b_, a_));
+    goes_on = (!takes_a || advance(a_, b_)) && (!takes_b || advance(b_, a_));
     compare_rows();
   }
   progress_.erase();
@@ -56,7 +56,7 @@ bool FrameAlignment::read(Side& side) {
   return true;
 }
 
-bool FrameAlignment::go_on(Side& side, const Side& other) {
+bool FrameAlignment::advance(Side& side, const Side& other) {
   const bool has_partner = other.ahead || !other.rows.empty();
   if (limits_.rows.empty() && has_partner) side.rows.push_back(std::move(side.ahead->rows));
   return read(side);

@@ -47,7 +47,7 @@ class FrameAlignment {
   };
 
   bool read(Side& side);
-  bool go_on(Side& side, const Side& other);
+  bool advance(Side& side, const Side& other);
   void compare_rows();
 
   const DiffLimits& limits_;

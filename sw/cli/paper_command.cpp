@@ -64,7 +64,7 @@ std::optional<paper::Findings> study() {
   };
   means.version = kVersion;
   means.jobs = std::max(1U, std::thread::hardware_concurrency());
-  means.go_on = [&progress](std::uint64_t done, std::uint64_t most_left) {
+  means.keep_going = [&progress](std::uint64_t done, std::uint64_t most_left) {
     progress.show(
         [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });
     return !interrupted();

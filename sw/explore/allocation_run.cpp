@@ -52,13 +52,13 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
 }  // namespace
 
 bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOptions& sweep,
-              const std::function<bool(std::uint64_t done, std::uint64_t most_left)>& go_on) {
+              const std::function<bool(std::uint64_t done, std::uint64_t most_left)>& keep_going) {
   std::uint64_t before = 0;
   for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
     const std::uint64_t left = search.most_left();
     const auto counts = explore::sweep(
         AllocationPoints(search, numbers), evaluate, sweep,
-        [&](const SweepCounts& done) { return go_on(before + done.done(), left - done.done()); });
+        [&](const SweepCounts& done) { return keep_going(before + done.done(), left - done.done()); });
     if (counts.done() < counts.total) return false;
     record_outcomes(numbers, sweep.store, search);
     before += numbers.size();

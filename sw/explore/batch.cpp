@@ -7,13 +7,13 @@
 namespace stereotlm::explore {
 
 bool Batch::run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
-                const std::function<bool(const SweepCounts& counts)>& go_on) {
+                const std::function<bool(const SweepCounts& counts)>& keep_going) {
   SweepOptions options;
   options.store = path_;
   options.version = version;
   options.jobs = jobs;
   row_.reset();
-  const SweepCounts counts = sweep(points, evaluate, options, go_on);
+  const SweepCounts counts = sweep(points, evaluate, options, keep_going);
   return counts.done() == counts.total;
 }
 

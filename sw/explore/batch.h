@@ -25,9 +25,9 @@ class Batch {
   // Throws std::runtime_error if there can be no folder.
   Batch() : path_((folder_.path() / "points.db").string()) {}
 
-  // As sweep(). False if `go_on` has ended it.
+  // As sweep(). False if `keep_going` has ended it.
   bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
-           const std::function<bool(const SweepCounts& counts)>& go_on);
+           const std::function<bool(const SweepCounts& counts)>& keep_going);
 
   // The database, after run().
   const std::string& path() const { return path_; }

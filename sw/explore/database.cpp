@@ -61,7 +61,8 @@ std::string absolute(const std::string& path) {
 
 }  // namespace
 
-Database::Database(const std::string& path, Access access, std::chrono::milliseconds patience) : path_(path) {
+Database::Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout)
+    : path_(path) {
   // Of one thread each.
   const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
   const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
@@ -72,7 +73,7 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
     throw DatabaseError(text);
   }
   sqlite3_extended_result_codes(handle_, 1);
-  sqlite3_busy_timeout(handle_, static_cast<int>(patience.count()));
+  sqlite3_busy_timeout(handle_, static_cast<int>(busy_timeout.count()));
   // A word in double quotes is a name or an error, never a text.
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);

@@ -25,11 +25,11 @@ class Database {
   enum class Access { kRead, kWrite, kCreate, kMemory };
 
   // For how long it waits for a process that keeps the file locked.
-  static constexpr std::chrono::milliseconds kPatience = std::chrono::minutes(1);
+  static constexpr std::chrono::milliseconds kBusyTimeout = std::chrono::minutes(1);
 
   // kMemory opens a new database in memory, for which `path` is the name in messages. Otherwise `path` is
   // that of a file, also if it is ":memory:" or begins with "file:".
-  Database(const std::string& path, Access access, std::chrono::milliseconds patience = kPatience);
+  Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout = kBusyTimeout);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;

@@ -18,8 +18,8 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr int kMostLosses = 3;
-constexpr int kMostFailures = 10;  // of Slurm's commands, one after another
-constexpr auto kPatience = 60s;    // with jobs that are cancelled
+constexpr int kMostFailures = 10;   // of Slurm's commands, one after another
+constexpr auto kBusyTimeout = 60s;  // with jobs that are cancelled
 constexpr auto kLook = 100ms;
 constexpr const char* kJobsGoOn = "the jobs go on, and the same command waits for them";
 
@@ -88,13 +88,13 @@ void SlurmSweep::begin() {
   }
 }
 
-SweepCounts SlurmSweep::wait(const std::function<bool(const SlurmProgress&)>& go_on) {
+SweepCounts SlurmSweep::wait(const std::function<bool(const SlurmProgress&)>& keep_going) {
   const auto start = Clock::now();
   int failures = 0;
   for (;;) {
     const auto next_look = Clock::now() + interval(Clock::now() - start);
     while (Clock::now() < next_look) {
-      if (!go_on(progress_)) {
+      if (!keep_going(progress_)) {
         cancel();
         return progress_.counts;
       }
@@ -163,7 +163,7 @@ void SlurmSweep::submit_missing() {
     Work& work = shards_[shard];
     if (work.is_live || work.is_given_up) continue;
     if (!work.job.empty()) lost.push_back(shard);
-    if (may_go_on(work, done_[shard])) missing.push_back(shard);
+    if (may_continue(work, done_[shard])) missing.push_back(shard);
   }
   if (!lost.empty()) {
     const std::string& end = shards_[lost.front()].end;
@@ -177,7 +177,7 @@ void SlurmSweep::submit_missing() {
     submit_shards(missing);
     submit_merge();
   } else if (is_whole && !folder_.is_merged() && !merge_.is_live && !merge_.is_given_up &&
-             may_go_on(merge_, 0)) {
+             may_continue(merge_, 0)) {
     submit_merge();
   }
 }
@@ -224,7 +224,7 @@ std::string SlurmSweep::submit(const std::string& script, const std::string& log
 }
 
 // False, and given up, if it is lost for the last time.
-bool SlurmSweep::may_go_on(Work& work, std::uint64_t done) const {
+bool SlurmSweep::may_continue(Work& work, std::uint64_t done) const {
   if (work.job.empty()) return true;  // not lost: not submitted yet
   work.losses = done > work.most_done ? 1 : work.losses + 1;
   work.most_done = std::max(work.most_done, done);
@@ -235,7 +235,7 @@ bool SlurmSweep::may_go_on(Work& work, std::uint64_t done) const {
 void SlurmSweep::cancel() {
   try {
     if (!live_jobs_.empty()) cancel_in_slurm({live_jobs_.begin(), live_jobs_.end()});
-    for (const auto end = Clock::now() + kPatience; !live_jobs_.empty(); look()) {
+    for (const auto end = Clock::now() + kBusyTimeout; !live_jobs_.empty(); look()) {
       if (Clock::now() > end) {
         say_(fmt::format("the jobs take long to end; what they have done is in {}", folder_.path()));
         return;

@@ -35,11 +35,11 @@ class SlurmSweep {
   // been submitted, and nothing is left behind.
   void begin();
 
-  // Waits until all points are in the store; the folder of the shards is gone then. `go_on` is called several
-  // times a second; once it returns false the jobs are cancelled, and what they have done is put into the
-  // store. Throws SlurmError, DatabaseError, std::runtime_error, among others if a shard is lost again and
-  // again; what is done is kept in the folder.
-  SweepCounts wait(const std::function<bool(const SlurmProgress&)>& go_on);
+  // Waits until all points are in the store; the folder of the shards is gone then. `keep_going` is called
+  // several times a second; once it returns false the jobs are cancelled, and what they have done is put into
+  // the store. Throws SlurmError, DatabaseError, std::runtime_error, among others if a shard is lost again
+  // and again; what is done is kept in the folder.
+  SweepCounts wait(const std::function<bool(const SlurmProgress&)>& keep_going);
 
  private:
   // A shard's task, or the merge.
@@ -59,7 +59,7 @@ class SlurmSweep {
   void submit_merge();
   std::string submit(const std::string& script, const std::string& log,
                      const std::vector<std::string>& options);
-  bool may_go_on(Work& work, std::uint64_t done) const;
+  bool may_continue(Work& work, std::uint64_t done) const;
   void cancel();
   [[noreturn]] void give_up() const;
 

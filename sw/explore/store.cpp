@@ -48,8 +48,8 @@ std::vector<const platform::BoardValue*> further_values(const StoredPoint& point
 
 }  // namespace
 
-Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds patience)
-    : database_(path, Database::Access::kCreate, patience), version_(version) {
+Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds busy_timeout)
+    : database_(path, Database::Access::kCreate, busy_timeout), version_(version) {
   create();
   check_version(database_, version);
   read_columns();

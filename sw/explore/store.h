@@ -40,7 +40,7 @@ class Store {
  public:
   // Opens the file, or makes it. All its points are of one version of the program.
   Store(const std::string& path, const std::string& version,
-        std::chrono::milliseconds patience = Database::kPatience);
+        std::chrono::milliseconds busy_timeout = Database::kBusyTimeout);
 
   // Throws if it has columns of a bank whose name differs from one of these only in case.
   void check_banks(const std::vector<std::string>& banks) const;

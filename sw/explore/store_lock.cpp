@@ -58,9 +58,9 @@ std::string behind_links(const std::string& store) {
   }
 }
 
-StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds patience)
+StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout)
     : store_(store), path_(behind_links(store)) {
-  const auto end = std::chrono::steady_clock::now() + patience;
+  const auto end = std::chrono::steady_clock::now() + busy_timeout;
   for (;;) {
     open_store();
     const Outcome outcome = try_lock(file_, path_);

@@ -23,11 +23,11 @@ class StoreGone : public DatabaseError {
 class StoreLock {
  public:
   // For how long it waits: processes of a sweep that was killed take a moment to end.
-  static constexpr std::chrono::milliseconds kPatience{3000};
+  static constexpr std::chrono::milliseconds kBusyTimeout{3000};
 
   // The file is made, empty, if it is not there; it goes with the lock if nothing has come of it. Throws
   // DatabaseError.
-  explicit StoreLock(const std::string& store, std::chrono::milliseconds patience = kPatience);
+  explicit StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout = kBusyTimeout);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;
   StoreLock& operator=(const StoreLock&) = delete;

@@ -48,7 +48,7 @@ class Sweep {
     counts_.total = size > options.shard ? (size - options.shard - 1) / options.shards + 1 : 0;
   }
 
-  SweepCounts run(const std::function<bool(const SweepCounts&)>& go_on) {
+  SweepCounts run(const std::function<bool(const SweepCounts&)>& keep_going) {
     const std::uint64_t workers = std::min<std::uint64_t>(options_.jobs, counts_.total);
     if (const std::uint64_t most = workers_with_files(workers); most < workers) {
       throw std::runtime_error(fmt::format(
@@ -57,10 +57,10 @@ class Sweep {
     workers_.resize(workers);
     const StoreLock lock(options_.store);
     {  // What is wrong with the file is said once.
-      const Store made(options_.store, options_.version, options_.patience);
+      const Store made(options_.store, options_.version, options_.busy_timeout);
     }
     try {
-      run_points(lock, go_on);
+      run_points(lock, keep_going);
       merge_stores({options_.store}, options_.store);
     } catch (const std::exception&) {
       lock.check();  // without the file everything fails: that is the reason to give
@@ -70,15 +70,15 @@ class Sweep {
   }
 
  private:
-  void run_points(const StoreLock& lock, const std::function<bool(const SweepCounts&)>& go_on) {
+  void run_points(const StoreLock& lock, const std::function<bool(const SweepCounts&)>& keep_going) {
     for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
     while (is_busy()) {
-      if (!go_on(counts_)) shared_.stop() = true;
+      if (!keep_going(counts_)) shared_.stop() = true;
       wait();
       lock.check();
     }
     workers_.clear();
-    go_on(counts_);
+    keep_going(counts_);
     lock.check();
   }
 
@@ -144,7 +144,7 @@ class Sweep {
 
   // A point whose worker could not say so itself.
   void fail(std::uint64_t number, const std::string& reason) {
-    Store store(options_.store, options_.version, options_.patience);
+    Store store(options_.store, options_.version, options_.busy_timeout);
     count(store.add(failed_point(points_.point(number), reason)) ? PointEnd::kFailed : PointEnd::kKnown);
   }
 
@@ -188,8 +188,8 @@ class Sweep {
 }  // namespace
 
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-                  const std::function<bool(const SweepCounts& counts)>& go_on) {
-  return Sweep(points, evaluate, options).run(go_on);
+                  const std::function<bool(const SweepCounts& counts)>& keep_going) {
+  return Sweep(points, evaluate, options).run(keep_going);
 }
 
 // Opens for a moment as many files as the last worker will have open. It inherits two ends of pipes for each

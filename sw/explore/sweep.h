@@ -27,20 +27,20 @@ struct SweepOptions {
   unsigned jobs = 1;        // worker processes
   std::uint64_t shard = 0;  // does the points whose number modulo `shards` is this
   std::uint64_t shards = 1;
-  std::chrono::milliseconds patience = Database::kPatience;  // with who keeps the store locked
+  std::chrono::milliseconds busy_timeout = Database::kBusyTimeout;  // with who keeps the store locked
 };
 
-// All points that the stores do not have. `go_on` is called several times a second with what is done of this
-// shard; once it returns false no further point is begun. At the end the store is put into its final form,
-// whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun again,
-// and is one that has failed when it has died kMostDeaths times, with a reason that says how to try again.
-// Throws DatabaseError, also if another sweep is at work on the store, and std::runtime_error; all points
-// that were finished are kept. Throws StoreGone (store_lock.h) once the file of the store has gone,
-// ConditionError (conditions.h) if a condition cannot be computed for a point.
-// Throws also if the limit on open files is too low for the workers, see workers_with_files().
+// All points that the stores do not have. `keep_going` is called several times a second with what is done of
+// this shard; once it returns false no further point is begun. At the end the store is put into its final
+// form, whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun
+// again, and is one that has failed when it has died kMostDeaths times, with a reason that says how to try
+// again. Throws DatabaseError, also if another sweep is at work on the store, and std::runtime_error; all
+// points that were finished are kept. Throws StoreGone (store_lock.h) once the file of the store has gone,
+// ConditionError (conditions.h) if a condition cannot be computed for a point. Throws also if the limit on
+// open files is too low for the workers, see workers_with_files().
 inline constexpr int kMostDeaths = 3;
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-                  const std::function<bool(const SweepCounts& counts)>& go_on);
+                  const std::function<bool(const SweepCounts& counts)>& keep_going);
 
 // How many workers the limit on open files leaves room for; `workers` at most.
 std::uint64_t workers_with_files(std::uint64_t workers);

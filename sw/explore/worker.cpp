@@ -64,7 +64,7 @@ class PointRunner {
         evaluate_(evaluate),
         shared_(shared),
         conditions_(points.conditions()),
-        store_(options.store, options.version, options.patience) {
+        store_(options.store, options.version, options.busy_timeout) {
     if (!options.known.empty()) known_.emplace(options.known, options.version);
   }
 

@@ -97,8 +97,8 @@ class Count {
   // most: boards of the part that begins, as they were counted.
   void begin_part(std::uint64_t most) { after_ -= most; }
   // Of the part that goes on.
-  bool go_on(std::uint64_t done, std::uint64_t most_left) const {
-    return means_.go_on(before_ + done, most_left + after_);
+  bool keep_going(std::uint64_t done, std::uint64_t most_left) const {
+    return means_.keep_going(before_ + done, most_left + after_);
   }
   void end_part(std::uint64_t done) { before_ += done; }
 
@@ -135,7 +135,7 @@ class BankSearch {
     const bool is_whole =
         explore::simulate(search_, means_.evaluate, sweep, [&](std::uint64_t done, std::uint64_t most_left) {
           simulated = done;
-          return count.go_on(done, most_left);
+          return count.keep_going(done, most_left);
         });
     count.end_part(simulated);
     return is_whole;
@@ -276,10 +276,11 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
   explore::Batch batches[2];
   for (const int i : {0, 1}) {
     count.begin_part(runs_of[i].size());
-    const bool is_whole = batches[i].run(runs_of[i].points(), means.evaluate, means.version, means.jobs,
-                                         [&](const explore::SweepCounts& counts) {
-                                           return count.go_on(counts.done(), counts.total - counts.done());
-                                         });
+    const bool is_whole =
+        batches[i].run(runs_of[i].points(), means.evaluate, means.version, means.jobs,
+                       [&](const explore::SweepCounts& counts) {
+                         return count.keep_going(counts.done(), counts.total - counts.done());
+                       });
     if (!is_whole) return std::nullopt;
     count.end_part(runs_of[i].size());
   }

@@ -64,11 +64,11 @@ struct Means {
   unsigned jobs = 1;
   // Several times a second: of the boards of all searches and runs, those that are done and those that are
   // left at most.
-  std::function<bool(std::uint64_t done, std::uint64_t most_left)> go_on;
+  std::function<bool(std::uint64_t done, std::uint64_t most_left)> keep_going;
 };
 
-// Simulates what the claims are about. Nothing if `go_on` has ended it. Throws std::runtime_error if a board
-// cannot be simulated.
+// Simulates what the claims are about. Nothing if `keep_going` has ended it. Throws std::runtime_error if a
+// board cannot be simulated.
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means);
 
 // The command that gives the number of a run, as typed into a shell: "stereotlm run fpl2003 --timing-only

@@ -17,7 +17,7 @@ std::vector<std::uint32_t> entries_of(const std::optional<kernels::Rectification
 
 // Longer than anything waits that will come: for the next frame of the cameras while another one ends, and
 // for the bus behind a third party.
-double patience_seconds(const platform::BoardConfig& board) {
+double stall_timeout_seconds(const platform::BoardConfig& board) {
   constexpr double kRest = 0.1;  // clocks of 1 MHz included
   constexpr double kTurns = 4;
   double turn = 1 / board.cameras.frame_rate_hz;
@@ -36,7 +36,7 @@ CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const pla
       driver_(driver::driver_config(board, frames), entries_of(tables.left), entries_of(tables.right), *this),
       computer_("computer", board, driver::host_memory_bytes(driver::driver_config(board, frames)), driver_,
                 left_, right_, binder, fidelity),
-      patience_seconds_(patience_seconds(board)) {}
+      stall_timeout_seconds_(stall_timeout_seconds(board)) {}
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
   return simulation_.captured_pair(number, begin_ps).*side_;
@@ -94,7 +94,7 @@ void CameraSimulation::check_progress() {
     return;
   }
   const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
-  if (idle < patience_seconds_) return;
+  if (idle < stall_timeout_seconds_) return;
   throw std::runtime_error(fmt::format(
       "nothing has gone on for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
       "for: {}; {}",

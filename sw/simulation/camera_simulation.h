@@ -57,7 +57,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   std::map<std::uint64_t, std::uint64_t> begins_ps_;  // of captured camera frames, until they are delivered
   std::vector<platform::Delivery> deliveries_;
   platform::ComputerCounters counters_;  // at the last delivery that left nothing to the core
-  double patience_seconds_;
+  double stall_timeout_seconds_;
   std::uint64_t last_work_ = 0;
   sc_core::sc_time last_work_at_;
 };

@@ -38,7 +38,7 @@ std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::
 
 class PlainBoard {
  public:
-  // `input` is sound and outlives the board. `frame_ends` is called at the end of each frame.
+  // `input` is valid and outlives the board. `frame_ends` is called at the end of each frame.
   PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::function<void()> frame_ends);
 
   // A word of a bank asks for it from the first cycle that begins at or after `from_ps`. `granted(begin,

@@ -416,7 +416,7 @@ class Computer {
 }  // namespace
 
 PlainComputerResult run_plain_computer(const PlainComputerInput& input) {
-  require_sound(input.board.core);
+  require_valid(input.board.core);
   return Computer(input).run();
 }
 

@@ -14,8 +14,8 @@
 #include "tests/support/plain_pci_bus.h"
 #include "tests/support/random_board.h"
 
-// The whole computer of contract section 3 as a plain loop over events, one pixel, one word and one cycle at a
-// time, with the program of the driver's guide (sw/driver/README.md). It shares no code with the models and
+// The whole computer of contract section 3 as a plain loop over events, one pixel, one word and one cycle at
+// a time, with the program of the driver's guide (sw/driver/README.md). It shares no code with the models and
 // exists to be compared with them.
 namespace stereotlm::test {
 
@@ -64,7 +64,7 @@ struct PlainComputerResult {
 };
 
 // From time 0 to the delivery of `frames` frames. Throws std::invalid_argument if the core's input is not
-// sound, std::runtime_error if the frames never come.
+// valid, std::runtime_error if the frames never come.
 PlainComputerResult run_plain_computer(const PlainComputerInput& input);
 
 }  // namespace stereotlm::test

@@ -449,7 +449,7 @@ bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& ho
 PlainCycleResult PlainCore::result() const { return cycles_->result(); }
 
 std::size_t plain_slot_count(const PlainCycleInput& input) {
-  require_sound(input);
+  require_valid(input);
   return slots_of_a_frame(input).size();
 }
 

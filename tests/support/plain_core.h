@@ -77,7 +77,7 @@ struct PlainHostRequest {
 
 class PlainCore {
  public:
-  // `input` is sound (require_sound) and outlives the core.
+  // `input` is valid (require_valid) and outlives the core.
   explicit PlainCore(const PlainCycleInput& input);
   ~PlainCore();
 

@@ -56,7 +56,7 @@ const char* name_of(PlainArbitration arbitration) {
   return arbitration == PlainArbitration::kFixedPriority ? "fixed_priority" : "round_robin";
 }
 
-void require_sound(const PlainCycleInput& input) {
+void require_valid(const PlainCycleInput& input) {
   require(input.width >= 4 && input.width <= 2048 && input.width % 4 == 0, "width", input.width,
           "4..2048, a multiple of 4");
   require(input.height >= 1 && input.height <= 2048, "height", input.height, "1..2048");

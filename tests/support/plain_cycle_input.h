@@ -59,6 +59,6 @@ struct PlainCycleInput {
 // bank does not exist, the priority list does not name each port once, a table has the wrong length or no
 // bank, or a number is out of its range in contract section 4; the message names the field, the value and the
 // rule.
-void require_sound(const PlainCycleInput& input);
+void require_valid(const PlainCycleInput& input);
 
 }  // namespace stereotlm::test

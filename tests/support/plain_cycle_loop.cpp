@@ -9,7 +9,7 @@ namespace stereotlm::test {
 
 PlainCycleResult run_plain_cycle_loop(const PlainCycleInput& input, int frames,
                                       std::uint64_t max_frame_cycles) {
-  require_sound(input);
+  require_valid(input);
   if (frames < 1) {
     throw std::invalid_argument("plain cycle loop: frames = " + std::to_string(frames) + ": at least 1");
   }

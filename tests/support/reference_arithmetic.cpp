@@ -45,7 +45,7 @@ void require_table(int width, int height, const std::vector<std::uint32_t>& tabl
   }
 }
 
-void require_sound(const ReferenceInput& input) {
+void require_valid(const ReferenceInput& input) {
   require(input.width >= 4 && input.width <= 2048 && input.width % 4 == 0, "width", input.width,
           "4..2048, a multiple of 4");
   require(input.height >= 1 && input.height <= 2048, "height", input.height, "1..2048");
@@ -218,7 +218,7 @@ std::vector<std::uint32_t> reference_words(const std::vector<std::uint8_t>& pixe
 }
 
 ReferenceResult compute_reference(const ReferenceInput& input) {
-  require_sound(input);
+  require_valid(input);
   const int width = input.width;
   const int height = input.height;
 

@@ -1,4 +1,4 @@
-// Identities of the computer that do not hold: a sound run, of which one counter is changed.
+// Identities of the computer that do not hold: a valid run, of which one counter is changed.
 #include "platform/collect_computer.h"
 
 #include <fmt/format.h>
@@ -78,21 +78,21 @@ TEST_F(CollectComputer, TakesTheNearestRankOfAHundred) {
   EXPECT_EQ(latency.max, 100);
 }
 
-// Each identity is broken alone, by one counter of a sound run.
+// Each identity is broken alone, by one counter of a valid run.
 TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
-  const ComputerCounters sound = counters;
+  const ComputerCounters valid = counters;
   const auto expect_failed = [&](const std::string& left, std::uint64_t is, const std::string& right,
                                  std::uint64_t but, const auto& change) {
-    counters = sound;
+    counters = valid;
     change(counters);
     EXPECT_THAT(statistics().failed, ElementsAre(fmt::format("{} = {}, but {} = {}", left, is, right, but)));
   };
   std::vector<std::string> names;
   for (const platform::Buffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.path());
   names.emplace_back("no buffer");
-  ASSERT_EQ(sound.words.into_bridge.size(), names.size());
+  ASSERT_EQ(valid.words.into_bridge.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::uint64_t bytes = 4 * sound.words.into_bridge[i];
+    const std::uint64_t bytes = 4 * valid.words.into_bridge[i];
     const std::string left = "bytes written into the bridge for " + names[i];
     const std::string right = "granted on the host port and still in the bridge";
     expect_failed(left, bytes + 4, right, bytes, [i](auto& found) { ++found.words.into_bridge[i]; });
@@ -101,14 +101,14 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
       expect_failed(left, bytes, right, bytes + 4, [i, part](auto& found) { ++(found.words.*part)[i]; });
     }
   }
-  const std::uint64_t words = sound.local_bus.words_read + sound.local_bus.words_written;
+  const std::uint64_t words = valid.local_bus.words_read + valid.local_bus.words_written;
   for (const auto part : {&fpga::LocalBus::Stats::words_read, &fpga::LocalBus::Stats::words_written}) {
     expect_failed("port host: grants in and between frames", words, "words of the local bus", words + 1,
                   [part](auto& found) { ++(found.local_bus.*part); });
   }
   for (const std::size_t side : {0U, 1U}) {
     const std::string camera = side == 0 ? "camera left: " : "camera right: ";
-    const std::uint64_t frames = sound.cameras[side].frames;
+    const std::uint64_t frames = valid.cameras[side].frames;
     expect_failed(camera + "frames", frames + 1, "captured and dropped", frames,
                   [side](auto& found) { ++found.cameras[side].frames; });
     for (const auto part :
@@ -117,7 +117,7 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
       expect_failed(camera + "frames", frames, "captured and dropped", frames + 1,
                     [side, part](auto& found) { ++(found.cameras[side].capture.*part); });
     }
-    const std::uint64_t written = sound.cameras[side].capture.words;
+    const std::uint64_t written = valid.cameras[side].capture.words;
     EXPECT_GT(written, 0U);
     expect_failed(camera + "words written", written + 1, "words of its PCI master", written,
                   [side](auto& found) { ++found.cameras[side].capture.words; });

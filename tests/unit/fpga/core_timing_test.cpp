@@ -39,7 +39,7 @@ struct Setting {
   std::vector<std::uint32_t> left_entries;
   std::vector<std::uint32_t> right_entries;
   int frames = 1;
-  std::size_t most_groups = KnownGroups::kMost;
+  std::size_t most_groups = TransitionCache::kMost;
 };
 
 Setting random_setting(test::SplitMix64& random) {
@@ -110,7 +110,7 @@ class Timing {
         way_ == Way::kAhead
             ? timing_.step(cycle_, host_requests)
             : timing_.step(cycle_, host_requests, [this](const auto&, memory::PortMask grants) {
-                const auto valid = [grants](Port lut, const LaneControl& lane, const SlotPattern& pattern) {
+                const auto valid = [grants](Port lut, const LaneControl& lane, const AccessPattern& pattern) {
                   const SlotCursor& slot = lane.next_slot();
                   return (grants & memory::mask_of(lut)) != 0 &&
                          pattern.entry_valid(slot.column(), slot.row());
@@ -177,8 +177,8 @@ class Timing {
   Way way_;
   memory::Arbitration arbitration_;
   CoreTiming timing_;
-  SlotPattern left_;
-  SlotPattern right_;
+  AccessPattern left_;
+  AccessPattern right_;
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;
 };

@@ -40,7 +40,7 @@ class FrameCountsTest : public testing::Test {
   memory::Arbitration arbitration_{memory::ArbiterConfig{},
                                    std::vector<memory::SsramBankConfig>(memory::kPortCount)};
   CoreTiming timing_{config_, arbitration_};
-  SlotPattern pattern_{timing_.control().geometry()};
+  AccessPattern pattern_{timing_.control().geometry()};
   std::uint64_t cycle_ = 0;
 };
 

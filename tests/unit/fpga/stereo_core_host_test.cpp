@@ -226,7 +226,7 @@ class StereoCoreStarved : public StereoCoreHost {
   void write_for(std::uint64_t cycles, std::uint64_t patience = kPatience) {
     StereoCoreConfig board = small_board();
     board.memory.banks.assign(kBankCount, {65'536});
-    board.patience_cycles = patience;
+    board.stall_timeout_cycles = patience;
     build(board);
     start();
     at(edge(1), [this, cycles] {
@@ -243,7 +243,7 @@ TEST_P(StereoCoreStarved, GoesOnAfterShorterThanItsPatience) {
 
 TEST_P(StereoCoreStarved, IsNotReportedOfAFrameThatBeginsLate) {
   StereoCoreConfig board = small_board();
-  board.patience_cycles = kPatience;
+  board.stall_timeout_cycles = kPatience;
   build(board);
   for (const std::uint64_t cycle : {2 * kPatience, 5 * kPatience}) at(edge(cycle), [this] { start(); });
   run_until(edge(6 * kPatience));

@@ -281,7 +281,7 @@ PortMask granted_after_being_alone(std::uint64_t grants, std::uint64_t taken_bac
   arbitration.route(Port::kLeftPixel, 0, false);
   for (std::uint64_t cycle = 0; cycle < grants; ++cycle) arbitration.arbitrate(cycle, kLeft);
   EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants);
-  arbitration.take_back(Port::kLeftPixel, taken_back);
+  arbitration.retract_grants(Port::kLeftPixel, taken_back);
   EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants - taken_back);
   arbitration.route(Port::kRightPixel, 0, false);
   return arbitration.arbitrate(grants, both(kLeft, kRight));

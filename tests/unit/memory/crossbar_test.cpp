@@ -246,16 +246,16 @@ TEST(Crossbar, MayLeaveAPortUnbound) {
 }
 
 TEST(Crossbar, RefusesAConfigurationWithProblems) {
-  const ArbiterConfig sound;
+  const ArbiterConfig valid;
   ArbiterConfig twice;
   twice.priority[0] = Port::kResult;
-  EXPECT_THROW(Crossbar("a", CrossbarConfig{sound, {}}), std::invalid_argument);
+  EXPECT_THROW(Crossbar("a", CrossbarConfig{valid, {}}), std::invalid_argument);
   EXPECT_THROW(Crossbar("b", CrossbarConfig{twice, {{16}}}), std::invalid_argument);
-  EXPECT_THROW(Crossbar("c", CrossbarConfig{sound, {{0}}}), std::invalid_argument);
-  EXPECT_THROW(Crossbar("d", CrossbarConfig{sound, std::vector<SsramBankConfig>(65)}), std::invalid_argument);
-  EXPECT_THROW(Crossbar("f", CrossbarConfig{sound, {{16}, {16, BankKind::kZbtPipelined, 0, 50}}}),
+  EXPECT_THROW(Crossbar("c", CrossbarConfig{valid, {{0}}}), std::invalid_argument);
+  EXPECT_THROW(Crossbar("d", CrossbarConfig{valid, std::vector<SsramBankConfig>(65)}), std::invalid_argument);
+  EXPECT_THROW(Crossbar("f", CrossbarConfig{valid, {{16}, {16, BankKind::kZbtPipelined, 0, 50}}}),
                std::invalid_argument);
-  EXPECT_NO_THROW(Crossbar("e", CrossbarConfig{sound, std::vector<SsramBankConfig>(64)}));
+  EXPECT_NO_THROW(Crossbar("e", CrossbarConfig{valid, std::vector<SsramBankConfig>(64)}));
 }
 
 }  // namespace

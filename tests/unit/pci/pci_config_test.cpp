@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "models/pci/pci_bus.h"
-#include "models/pci/pci_load.h"
+#include "models/pci/traffic_generator.h"
 
 namespace stereotlm::pci {
 namespace {
@@ -106,10 +106,10 @@ TEST(PciLoadConfig, RefusesATransferThatLeavesTheAddresses) {
             Problems{"burst_words = 3: must be at most 2 from its address on"});
 }
 
-TEST(PciLoad, RefusesAConfigurationWithProblems) {
+TEST(TrafficGenerator, RefusesAConfigurationWithProblems) {
   PciLoadConfig config;
   config.burst_words = 0;
-  EXPECT_THROW(PciLoad("load", config), std::invalid_argument);
+  EXPECT_THROW(TrafficGenerator("load", config), std::invalid_argument);
 }
 
 }  // namespace

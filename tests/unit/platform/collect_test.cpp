@@ -169,13 +169,13 @@ TEST(CollectStatistics, TellsWhatDoesNotHoldInTheMiddleOfAFrame) {
   EXPECT_THAT(run.finish().failed, IsEmpty());
 }
 
-// Each identity is broken alone, by one counter of a sound run.
+// Each identity is broken alone, by one counter of a valid run.
 TEST(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
   const BoardConfig board = small_board();
   PreloadedRun run(board, identity_tables(board), 1);
-  const Statistics sound = run.finish();
-  EXPECT_THAT(sound.failed, IsEmpty());
-  const uint64_t cycles = sound.cycles;
+  const Statistics valid = run.finish();
+  EXPECT_THAT(valid.failed, IsEmpty());
+  const uint64_t cycles = valid.cycles;
   const auto expect_failed = [&](const std::string& line, const auto& change) {
     BoardCounters counters = counters_of(run.system.board);
     change(counters);
@@ -183,7 +183,7 @@ TEST(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
   };
   for (std::size_t port = 0; port < memory::kPortCount; ++port) {
     const std::string name = fmt::format("port {}: ", memory::kPortNames[port]);
-    const uint64_t grants = sound.ports[port].grants;
+    const uint64_t grants = valid.ports[port].grants;
     expect_failed(
         fmt::format("{}sum of its states = {}, but cycles = {}", name, cycles + 1, cycles),
         [port](BoardCounters& counters) { counters.ports[port].count(fpga::Intent::kStarved, false); });
@@ -196,7 +196,7 @@ TEST(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
   }
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
     const std::string name = fmt::format("bank {}: ", board.banks[bank].name);
-    const uint64_t accesses = sound.banks[bank].busy_cycles;
+    const uint64_t accesses = valid.banks[bank].busy_cycles;
     const std::string states = name + "busy + turnaround + idle cycles = {}, but cycles = {}";
     expect_failed(fmt::format(states, cycles + 1, cycles),
                   [bank](BoardCounters& counters) { ++counters.banks[bank].arbiter.idle_cycles; });

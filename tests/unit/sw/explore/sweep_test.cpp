@@ -346,7 +346,7 @@ TEST_F(SweepTest, EndsAtAConditionThatCannotBeComputedForAPoint) {
 
 TEST_F(SweepTest, SaysThatItsStoreIsLocked) {
   SweepOptions impatient = options("a.db");
-  impatient.patience = std::chrono::milliseconds(50);
+  impatient.busy_timeout = std::chrono::milliseconds(50);
   sweep(plan(), evaluate, impatient, [](const SweepCounts& counts) { return counts.done() < 20; });
   const auto before = points_in(file("a.db"));
   EXPECT_GE(before, 5);
@@ -363,7 +363,7 @@ TEST_F(SweepTest, SaysThatItsStoreIsLocked) {
 
 TEST_F(SweepTest, EndsIfItsStoreIsLockedMeanwhile) {
   SweepOptions impatient = options("a.db", 2);
-  impatient.patience = std::chrono::milliseconds(50);
+  impatient.busy_timeout = std::chrono::milliseconds(50);
   std::unique_ptr<Database> other;
   const auto lock = [&](const SweepCounts& counts) {
     if (counts.done() >= 20 && !other) {

@@ -47,7 +47,7 @@ Means means() {
   Means means;
   means.evaluate = made_up;
   means.version = "0";
-  means.go_on = [](std::uint64_t, std::uint64_t) { return true; };
+  means.keep_going = [](std::uint64_t, std::uint64_t) { return true; };
   return means;
 }
 
@@ -151,7 +151,7 @@ TEST(Study, ProvesHowFewBanksReachTheBestRate) {
 TEST(Study, SimulatesWhatIsAskedForTwiceOnce) {
   Means counting = means();
   std::uint64_t total = 0;
-  counting.go_on = [&total](std::uint64_t done, std::uint64_t most_left) {
+  counting.keep_going = [&total](std::uint64_t done, std::uint64_t most_left) {
     total = done + most_left;
     return true;
   };
@@ -177,7 +177,7 @@ TEST(Study, CountsTheBoardsOfAllSearchesAndRuns) {
     std::uint64_t done, most_left;
   };
   std::vector<Progress> all;
-  counting.go_on = [&all](std::uint64_t done, std::uint64_t most_left) {
+  counting.keep_going = [&all](std::uint64_t done, std::uint64_t most_left) {
     all.push_back({done, most_left});
     return true;
   };
@@ -196,7 +196,7 @@ TEST(Study, CountsTheBoardsOfAllSearchesAndRuns) {
 
 TEST(Study, EndsWithoutFindingsIfItIsToldTo) {
   Means ending = means();
-  ending.go_on = [](std::uint64_t, std::uint64_t) { return false; };
+  ending.keep_going = [](std::uint64_t, std::uint64_t) { return false; };
   EXPECT_FALSE(study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=5")})}, ending).has_value());
 }
 

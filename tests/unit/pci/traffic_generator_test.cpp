@@ -1,4 +1,4 @@
-#include "models/pci/pci_load.h"
+#include "models/pci/traffic_generator.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ constexpr std::uint32_t kDevice = 0x4000'0000;
 constexpr std::uint32_t kDeviceBytes = 0x1000;
 
 // A load with its device in a window without wait clocks, a scripted master m0 and its target.
-class PciLoadTest : public testing::Test {
+class TrafficGeneratorTest : public testing::Test {
  protected:
   void build(const PciLoadConfig& config, int latency_timer_clocks = 64) {
     PciBusConfig bus_config;
@@ -21,7 +21,7 @@ class PciLoadTest : public testing::Test {
     bus_config.masters = {"load", "m0"};
     bus_config.windows = {{kDevice, kDeviceBytes, 0}, {PciBusBench::kBase, PciBusBench::kBytes, 0}};
     bus = std::make_unique<PciBus>("bus", bus_config);
-    load = std::make_unique<PciLoad>("load", config);
+    load = std::make_unique<TrafficGenerator>("load", config);
     load->pci.bind(bus->slots[0]);
     binder.bind(bus->targets[0], load->device, "bus_to_device");
     master.pci.bind(bus->slots[1]);
@@ -36,12 +36,12 @@ class PciLoadTest : public testing::Test {
 
   test::MonitoringBinder binder;
   std::unique_ptr<PciBus> bus;
-  std::unique_ptr<PciLoad> load;
+  std::unique_ptr<TrafficGenerator> load;
   TestMaster master{"m0"};
   TestTarget target{"target"};
 };
 
-TEST_F(PciLoadTest, HogsTheBusWithoutInterval) {
+TEST_F(TrafficGeneratorTest, HogsTheBusWithoutInterval) {
   build(reads(32, 0));
   simulate_to_edge(1000 * 34);
   EXPECT_EQ(load->transfers(), 1000U);
@@ -49,7 +49,7 @@ TEST_F(PciLoadTest, HogsTheBusWithoutInterval) {
   EXPECT_EQ(bus->stats().masters[0].wait_clocks, 999U);  // the idle clocks
 }
 
-TEST_F(PciLoadTest, AsksOnceAnInterval) {
+TEST_F(TrafficGeneratorTest, AsksOnceAnInterval) {
   const std::uint64_t interval_ps = 1'000'000;
   build(reads(8, interval_ps));
   sc_core::sc_start(Clock::to_time(100 * interval_ps));
@@ -57,7 +57,7 @@ TEST_F(PciLoadTest, AsksOnceAnInterval) {
   EXPECT_EQ(load_words(), 800U);
 }
 
-TEST_F(PciLoadTest, BeginsWithItsFirstRequest) {
+TEST_F(TrafficGeneratorTest, BeginsWithItsFirstRequest) {
   PciLoadConfig config = reads(8, 0);
   config.first_request_ps = 10'000'000;
   build(config);
@@ -69,7 +69,7 @@ TEST_F(PciLoadTest, BeginsWithItsFirstRequest) {
 }
 
 // The second transfer comes due while another master has the bus, and still ends before the third does.
-TEST_F(PciLoadTest, KeepsItsTimesAfterATransferThatHadToWait) {
+TEST_F(TrafficGeneratorTest, KeepsItsTimesAfterATransferThatHadToWait) {
   const std::uint64_t interval_ps = 3'000'000;  // 100 clocks
   build(reads(4, interval_ps), 255);
   target.read_delays = Clock::to_time(edge(1 + 120) - edge(1));
@@ -84,7 +84,7 @@ TEST_F(PciLoadTest, KeepsItsTimesAfterATransferThatHadToWait) {
   EXPECT_EQ(transfers, (std::vector<std::uint64_t>{1, 1, 2, 2, 3}));
 }
 
-TEST_F(PciLoadTest, SharesTheBusWithAMasterThatIsAsBusy) {
+TEST_F(TrafficGeneratorTest, SharesTheBusWithAMasterThatIsAsBusy) {
   build(reads(32, 0));
   master.bursts.assign(100, write_of(32));
   sc_core::sc_spawn([this] { master.request(); });
@@ -93,7 +93,7 @@ TEST_F(PciLoadTest, SharesTheBusWithAMasterThatIsAsBusy) {
   EXPECT_EQ(load_words(), 3200U);
 }
 
-TEST_F(PciLoadTest, GoesOnWithTheRestOfATransferThatWasCut) {
+TEST_F(TrafficGeneratorTest, GoesOnWithTheRestOfATransferThatWasCut) {
   build(reads(100, 1'000'000'000), 20);
   master.bursts = {write_of(1)};
   sc_core::sc_spawn([this] { master.request(); });
@@ -104,7 +104,7 @@ TEST_F(PciLoadTest, GoesOnWithTheRestOfATransferThatWasCut) {
 }
 
 // The wait for the first word keeps the others off the bus, whatever the latency timer says.
-TEST_F(PciLoadTest, HoldsTheBusForTheAccessTimeOfItsDevice) {
+TEST_F(TrafficGeneratorTest, HoldsTheBusForTheAccessTimeOfItsDevice) {
   PciLoadConfig config = reads(1, 0);
   config.access_ps = 50'000'000;
   build(config);
@@ -119,7 +119,7 @@ TEST_F(PciLoadTest, HoldsTheBusForTheAccessTimeOfItsDevice) {
   EXPECT_EQ(master.ended[0].address_ps, edge(first + 2));
 }
 
-TEST_F(PciLoadTest, ReadsAnotherTarget) {
+TEST_F(TrafficGeneratorTest, ReadsAnotherTarget) {
   build({PciBusBench::kBase + 0x40, 4, 0, 1'000'000'000, 0});
   sc_core::sc_start(sc_core::sc_time(1, sc_core::SC_US));
   ASSERT_EQ(target.accesses.size(), 1U);
@@ -128,17 +128,17 @@ TEST_F(PciLoadTest, ReadsAnotherTarget) {
   EXPECT_EQ(target.accesses[0].words.size(), 4U);
 }
 
-TEST_F(PciLoadTest, ReportsAnAddressWithoutTarget) {
+TEST_F(TrafficGeneratorTest, ReportsAnAddressWithoutTarget) {
   build({0x10, 4, 0, 0, 0});
-  test::ExpectedReport report("/stereotlm/pci_load");
+  test::ExpectedReport report("/stereotlm/traffic_generator");
   EXPECT_THROW(sc_core::sc_start(sc_core::sc_time(1, sc_core::SC_US)), sc_core::sc_report);
   EXPECT_EQ(report.text(), "load: address = 16: no target answers");
 }
 
-TEST_F(PciLoadTest, ReportsATargetThatAnswersWithAnError) {
+TEST_F(TrafficGeneratorTest, ReportsATargetThatAnswersWithAnError) {
   build({PciBusBench::kBase, 4, 0, 0, 0});
   target.response = tlm::TLM_GENERIC_ERROR_RESPONSE;
-  test::ExpectedReport report("/stereotlm/pci_load");
+  test::ExpectedReport report("/stereotlm/traffic_generator");
   EXPECT_THROW(sc_core::sc_start(sc_core::sc_time(1, sc_core::SC_US)), sc_core::sc_report);
   EXPECT_EQ(report.text(), "load: address = 65536: the target answers with an error");
 }
@@ -157,7 +157,7 @@ class PciLoadDevice : public testing::Test {
     PciBusConfig config;
     config.masters = {"load"};
     bus = std::make_unique<PciBus>("bus", config);
-    load = std::make_unique<PciLoad>("load", PciLoadConfig{0, 1, 1'000'000, 0, 5'000});
+    load = std::make_unique<TrafficGenerator>("load", PciLoadConfig{0, 1, 1'000'000, 0, 5'000});
     load->pci.bind(bus->slots[0]);
     binder = std::make_unique<test::MonitoringBinder>(options);
     binder->bind(host.socket, load->device, "host_to_device");
@@ -172,7 +172,7 @@ class PciLoadDevice : public testing::Test {
 
   std::unique_ptr<test::MonitoringBinder> binder;
   std::unique_ptr<PciBus> bus;
-  std::unique_ptr<PciLoad> load;
+  std::unique_ptr<TrafficGenerator> load;
   test::TestHost host{"host"};
   tlm::tlm_generic_payload payload;
   std::array<std::uint32_t, 2> words{7, 7};

@@ -7,13 +7,13 @@
 
 namespace stereotlm::fpga {
 
-// Which slots of one side make which accesses, known before they are made: where the sequence lies outside
-// the image, and which table entries are valid. What the columns of slots have in common is found when the
-// entries are set, so that asking is cheap.
-class SlotPattern {
+// The accesses that each slot of one side makes, known before the frame: whether the slot lies outside the
+// image, and whether its table entry is valid. Runs of uniform columns are found when the entries are set, so
+// that queries are cheap.
+class AccessPattern {
  public:
-  // Every entry is valid, or there is no table.
-  explicit SlotPattern(const FrameGeometry& geometry);
+  // At first every entry is valid, as on a side without table.
+  explicit AccessPattern(const FrameGeometry& geometry);
 
   // `entries`: width * height, row-major.
   void set_entries(const std::uint32_t* entries);
@@ -22,18 +22,19 @@ class SlotPattern {
     const auto place = static_cast<std::size_t>(column);
     return (valid_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
-  // Columns of slots are counted over the whole frame, strip after strip. The first one behind `frame_column`
-  // whose slots do not make the same accesses, one by one; the number of columns if there is none.
-  std::uint64_t alike_until(std::uint64_t frame_column) const;
+  // The end of the run of uniform columns that begins with `frame_column`: the first column behind it whose
+  // slots do not make the same accesses one by one, or the number of columns. Columns are counted over the
+  // whole frame, strip after strip.
+  std::uint64_t uniform_until(std::uint64_t frame_column) const;
 
-  // Of the first `slots` slots of a frame those whose entries are read and not valid.
+  // The number of slots with an invalid entry among the first `slots` slots of a frame.
   std::uint64_t invalid_before(std::uint64_t slots) const;
   // Whether this slot makes an access for its pixel.
   bool needs_pixel(std::uint64_t slot) const;
 
-  // Slots of a frame.
+  // Numbers of slots of a frame.
   std::uint64_t empty_slots() const { return empty_slots_; }
-  std::uint64_t pixel_accesses() const { return pixel_accesses_; }  // slots that make one
+  std::uint64_t pixel_accesses() const { return pixel_accesses_; }
 
  private:
   const std::uint64_t* valid_row(int row) const {

@@ -1,4 +1,4 @@
-#include "models/fpga/slot_pattern.h"
+#include "models/fpga/access_pattern.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace stereotlm::fpga {
 
-SlotPattern::SlotPattern(const FrameGeometry& geometry)
+AccessPattern::AccessPattern(const FrameGeometry& geometry)
     : geometry_(geometry),
       words_((static_cast<std::size_t>(geometry.width) + 63) / 64),
       valid_(words_ * static_cast<std::size_t>(geometry.height)),
@@ -20,12 +20,12 @@ SlotPattern::SlotPattern(const FrameGeometry& geometry)
   all_valid_ = true;
 }
 
-void SlotPattern::set_all(std::uint64_t* row_bits) const {
+void AccessPattern::set_all(std::uint64_t* row_bits) const {
   std::fill_n(row_bits, words_, ~std::uint64_t{0});
   if (geometry_.width % 64 != 0) row_bits[words_ - 1] = (std::uint64_t{1} << geometry_.width % 64) - 1;
 }
 
-void SlotPattern::set_entries(const std::uint32_t* entries) {
+void AccessPattern::set_entries(const std::uint32_t* entries) {
   const bool were_all_valid = all_valid_;
   all_valid_ = true;
   for (int row = 0; row < geometry_.height; ++row) {
@@ -49,7 +49,7 @@ void SlotPattern::set_entries(const std::uint32_t* entries) {
   if (!(all_valid_ && were_all_valid)) find_changes();
 }
 
-void SlotPattern::find_changes() {
+void AccessPattern::find_changes() {
   empty_slots_ = 0;
   pixel_accesses_ = 0;
   const std::vector<std::uint64_t> valid = valid_in_rows();
@@ -57,7 +57,7 @@ void SlotPattern::find_changes() {
   find_strips_with_changes();
 }
 
-std::vector<std::uint64_t> SlotPattern::valid_in_rows() const {
+std::vector<std::uint64_t> AccessPattern::valid_in_rows() const {
   std::vector<std::uint64_t> valid(static_cast<std::size_t>(geometry_.height));
   for (int row = 0; row < geometry_.height; ++row) {
     for (std::size_t word = 0; word < words_; ++word)
@@ -68,7 +68,7 @@ std::vector<std::uint64_t> SlotPattern::valid_in_rows() const {
 }
 
 // Those before it have been counted.
-void SlotPattern::find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows) {
+void AccessPattern::find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows) {
   std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
   std::fill_n(changes, words_, std::uint64_t{0});
   const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
@@ -92,7 +92,7 @@ void SlotPattern::find_changes_of_strip(int strip, const std::vector<std::uint64
   if (strip > 0 && !strip_begins_alike(strip)) changes[0] |= 1U;
 }
 
-void SlotPattern::find_strips_with_changes() {
+void AccessPattern::find_strips_with_changes() {
   auto next = static_cast<std::uint32_t>(geometry_.strips);
   for (int strip = geometry_.strips - 1; strip >= 0; --strip) {
     const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(words_) * strip;
@@ -104,7 +104,7 @@ void SlotPattern::find_strips_with_changes() {
 }
 
 // Whether the first column of a strip is like the last one of the strip before.
-bool SlotPattern::strip_begins_alike(int strip) const {
+bool AccessPattern::strip_begins_alike(int strip) const {
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row + strip + k;
     if (inside(row) != inside(row - 1)) return false;
@@ -113,7 +113,7 @@ bool SlotPattern::strip_begins_alike(int strip) const {
   return true;
 }
 
-std::uint64_t SlotPattern::invalid_before(std::uint64_t slots) const {
+std::uint64_t AccessPattern::invalid_before(std::uint64_t slots) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   const std::uint64_t slots_per_strip = geometry_.columns_per_strip() * slots_per_column;
   const std::uint64_t strip = slots / slots_per_strip;
@@ -127,12 +127,12 @@ std::uint64_t SlotPattern::invalid_before(std::uint64_t slots) const {
   return invalid;
 }
 
-bool SlotPattern::needs_pixel(std::uint64_t slot) const {
+bool AccessPattern::needs_pixel(std::uint64_t slot) const {
   const Place place = place_of(slot);
   return inside(place.row) && entry_valid(place.column, place.row);
 }
 
-SlotPattern::Place SlotPattern::place_of(std::uint64_t slot) const {
+AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   const std::uint64_t column = slot / slots_per_column;
   const std::uint64_t strip = column / geometry_.columns_per_strip();
@@ -140,7 +140,7 @@ SlotPattern::Place SlotPattern::place_of(std::uint64_t slot) const {
           geometry_.first_row + static_cast<int>(strip) + static_cast<int>(slot % slots_per_column)};
 }
 
-std::uint64_t SlotPattern::alike_until(std::uint64_t frame_column) const {
+std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {
   const std::uint64_t width = geometry_.columns_per_strip();
   const auto strips = static_cast<std::size_t>(geometry_.strips);
   const std::uint64_t next = frame_column + 1;

@@ -1,4 +1,4 @@
-#include "models/fpga/known_groups.h"
+#include "models/fpga/transition_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -35,15 +35,15 @@ class KnownGroupsTest : public testing::Test {
  protected:
   static constexpr std::uint64_t kMuch = UINT64_MAX / 2;
 
-  KnownGroups::Group& group(std::size_t number) {
-    KnownGroups::State state;
+  TransitionCache::Group& group(std::size_t number) {
+    TransitionCache::State state;
     state.control.rest = number;
     return groups_.at(state);
   }
   // Of so many groups, the last of which goes on with group number `back_to`.
   void make_ring(std::size_t groups, std::size_t back_to) {
     for (std::size_t i = 0; i < groups; ++i) {
-      KnownGroups::Group& one = group(i);
+      TransitionCache::Group& one = group(i);
       one.progress = {10 + i, 4, 8, 8, 1};
       one.counts[memory::index_of(Port::kResult)].count(Intent::kRequest, true, i + 1);
       one.next = &group(i + 1 < groups ? i + 1 : back_to);
@@ -56,7 +56,7 @@ class KnownGroupsTest : public testing::Test {
   }
   std::uint64_t granted() const { return control_.port_cycles(Port::kResult).granted(); }
 
-  KnownGroups groups_;
+  TransitionCache groups_;
   Progress progress_;
   CoreControl control_{CoreConfig{}};
   memory::Arbitration arbitration_{memory::ArbiterConfig{}, std::vector<memory::SsramBankConfig>(6)};

@@ -10,7 +10,7 @@
 
 namespace stereotlm::fpga {
 
-// How far the core comes in some cycles, or may come.
+// A distance in a frame: what the core does in some cycles, or how much it may still do.
 struct Progress {
   std::uint64_t cycles = 0;
   std::uint64_t columns = 0;      // of the matcher
@@ -22,18 +22,19 @@ struct Progress {
     return cycles <= room.cycles && columns <= room.columns && left_slots <= room.left_slots &&
            right_slots <= room.right_slots && words <= room.words;
   }
-  // How often; `cycles` is not 0.
+  // How many times this distance fits into `room`; `cycles` is not 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other, std::uint64_t times = 1);
   void subtract(const Progress& other, std::uint64_t times = 1) { add(other, ~times + 1); }
 };
 
-// What the core does from one group of four columns of the matcher to the next, by the state that it begins
-// in: noted when it is stepped, and from then on skipped. The state says it all as long as the slots to come
-// make the same accesses; the groups of another stretch of slots, or of other routes, are others.
-class KnownGroups {
+// Memo of state transitions, one per group of four columns of the matcher. The state of the control objects
+// and the arbiters before a group determines the group's cycles, counts and next state, as long as the slots
+// to come make the same accesses. A transition is recorded when its group is stepped; after that it is
+// skipped. The caller clears the memo where the accesses of the slots or the routes of the ports change.
+class TransitionCache {
  public:
-  // Of what never comes again as much would be noted as the frame is long.
+  // Cap: a frame that never repeats would otherwise fill memory.
   static constexpr std::size_t kMost = 4096;
 
   struct State {
@@ -46,25 +47,25 @@ class KnownGroups {
   };
   struct Group {
     const State* begin = nullptr;
-    Group* next = nullptr;  // none while it is not known what the group does
+    Group* next = nullptr;  // null until the transition is recorded
     Progress progress;
     CoreControl::Counts counts{};
     memory::Arbitration::Decided decided;
-    std::uint64_t times = 0;  // that it has come in walk() and is not counted yet
+    std::uint64_t times = 0;  // passes in walk() that are not counted yet
   };
 
-  explicit KnownGroups(std::size_t most = kMost) : most_(most) {}
-  KnownGroups(const KnownGroups&) = delete;  // groups point to each other
-  KnownGroups& operator=(const KnownGroups&) = delete;
+  explicit TransitionCache(std::size_t most = kMost) : most_(most) {}
+  TransitionCache(const TransitionCache&) = delete;  // groups point to each other
+  TransitionCache& operator=(const TransitionCache&) = delete;
 
-  // The group that begins in a state. Groups stay until clear().
+  // The group that begins in a state, new if there is none. References stay valid until clear().
   Group& at(const State& state);
   void clear() { groups_.clear(); }
   bool is_full() const { return groups_.size() >= most_; }
 
-  // Follows what is known from a group on, as far as there is room, and around rings at once. Adds what has
-  // come to `progress`, and to the counts of control and arbitration, whose states the caller brings to that
-  // of the group returned, which comes next.
+  // Follows the recorded transitions from a group as far as there is room; a cycle of transitions is repeated
+  // in one step. Adds the distance to `progress`, and the counts to `control` and `arbitration`. Returns the
+  // group that comes next: the caller sets control and arbitration to its state.
   Group& walk(Group& first, Progress room, Progress& progress, CoreControl& control,
               memory::Arbitration& arbitration);
 
@@ -73,11 +74,11 @@ class KnownGroups {
     std::size_t operator()(const State& state) const;
   };
 
-  void note(Group& group, std::uint64_t times);
+  void pass(Group& group, std::uint64_t times);
 
   std::size_t most_;
   std::unordered_map<State, Group, Hash> groups_;
-  std::vector<Group*> walked_;  // not counted yet
+  std::vector<Group*> walked_;  // groups with passes that are not counted yet
 };
 
 }  // namespace stereotlm::fpga

@@ -1,4 +1,4 @@
-// StereoCore at the fidelities that do not go cycle by cycle.
+// StereoCore at the fidelities fast and timing-only: direct frames, and fast-forward.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -13,10 +13,10 @@ namespace {
 using memory::Port;
 using memory::PortMask;
 
-// Cycles that it runs at most before it looks whether the frame goes on at all.
+// Cycles between two checks of the stall timeout.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 22U;
-constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // stepped for a burst, likewise
-// [port that works on it]
+constexpr std::uint64_t kHostCycles = std::uint64_t{1} << 13U;  // the same while a burst is stepped
+// [port that uses the buffer]
 constexpr std::array<const char*, memory::kPortCount> kBufferNames = {
     "left_lut", "right_lut", "left_image", "right_image", "disparity", ""};
 constexpr PortMask kHostPort = memory::mask_of(Port::kHost);
@@ -41,17 +41,17 @@ StereoCore::Buffers StereoCore::buffers_of(const FrameStart& start) const {
   return buffers;
 }
 
-// Reads all that the frame works on, and works on it. False if that is not possible at once.
+// Reads pictures and tables, and computes the disparities. False if the frame must be stepped cycle by cycle.
 bool StereoCore::read_frame() {
-  if (!buffers_are_apart() || (host_route_.bank && noticed_by(host_route_))) return false;
+  if (!buffers_are_apart() || (host_route_.bank && hazard_with(host_route_))) return false;
   const std::uint32_t* left_table = nullptr;
   const std::uint32_t* right_table = nullptr;
   if (left_lut_) {
-    left_table = read_table(*left_lut_, Port::kLeftLut, left_pattern_, left_table_is_sound_);
+    left_table = read_table(*left_lut_, Port::kLeftLut, left_pattern_, left_table_is_valid_);
     if (left_table == nullptr) return false;
   }
   if (right_lut_) {
-    right_table = read_table(*right_lut_, Port::kRightLut, right_pattern_, right_table_is_sound_);
+    right_table = read_table(*right_lut_, Port::kRightLut, right_pattern_, right_table_is_valid_);
     if (right_table == nullptr) return false;
   }
   const std::uint8_t* const left = left_pixel_.image(config_.core.height);
@@ -65,21 +65,21 @@ bool StereoCore::read_frame() {
   return true;
 }
 
-// Null if it cannot be read directly, or points outside the image.
-const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, SlotPattern& pattern,
-                                            bool& is_sound) {
+// Null if memory grants no direct access to the table, or if an entry points outside the image.
+const std::uint32_t* StereoCore::read_table(LutReader& reader, Port port, AccessPattern& pattern,
+                                            bool& is_valid) {
   const std::uint32_t* const entries = reader.table(config_.core.height);
   if (entries == nullptr) return nullptr;
   const AddressRange& table = buffer_of(port);
   if (crossbar_.may_have_changed(port, table.first, table.end)) {
-    is_sound = kernels::entries_point_inside(entries, (table.end - table.first) / 4, config_.core.width,
+    is_valid = kernels::entries_point_inside(entries, (table.end - table.first) / 4, config_.core.width,
                                              config_.core.height);
-    if (is_sound) pattern.set_entries(entries);
+    if (is_valid) pattern.set_entries(entries);
   }
-  return is_sound ? entries : nullptr;
+  return is_valid ? entries : nullptr;
 }
 
-// Whether the disparities go where nothing is read from.
+// Whether the buffer of the disparities overlaps no other buffer.
 bool StereoCore::buffers_are_apart() const {
   const AddressRange& disparity = buffer_of(Port::kResult);
   return std::count_if(buffers_.begin(), buffers_.end(), [&disparity](const AddressRange& buffer) {
@@ -87,7 +87,7 @@ bool StereoCore::buffers_are_apart() const {
          }) == 1;  // itself
 }
 
-// With the last write. No table is told of a change: buffers_are_apart().
+// Called with the last write of the frame. The disparities cannot change a table: buffers_are_apart().
 void StereoCore::write_frame() {
   const std::uint64_t words = control().geometry().result_words;
   std::uint64_t answered = 0;
@@ -131,10 +131,9 @@ void StereoCore::count_frame(std::uint64_t answered) {
   crossbar_.count_direct(Port::kResult, control().geometry().result_words);
 }
 
-// What a burst touches of the frame, where it would notice that the data is not moved word by word: the port
-// that works on that buffer.
-std::optional<Port> StereoCore::noticed_by(const HostRoute& route) const {
-  // The words that it has already moved are in place.
+// The port whose buffer makes the burst a hazard; none if there is no hazard.
+std::optional<Port> StereoCore::hazard_with(const HostRoute& route) const {
+  // Words that were moved before are no hazard.
   const AddressRange words{route.end - 4 * local_bus_.words_left(), route.end};
   for (std::size_t port = 0; port < buffers_.size(); ++port) {
     const bool is_exclusive = route.write || port == memory::index_of(Port::kResult);
@@ -144,7 +143,7 @@ std::optional<Port> StereoCore::noticed_by(const HostRoute& route) const {
 }
 
 void StereoCore::check_burst(const HostRoute& route) {
-  const std::optional<Port> noticed = noticed_by(route);
+  const std::optional<Port> noticed = hazard_with(route);
   if (!noticed) return;
   const auto word = [](std::uint64_t address) {
     return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
@@ -155,7 +154,7 @@ void StereoCore::check_burst(const HostRoute& route) {
        ": needs fidelity cycle");
 }
 
-// The frame that runs is not what it would be cycle by cycle. Where reports are not thrown it ends with the
+// The running frame may differ from that at Fidelity::kCycle. Where reports are not thrown, it ends with the
 // error flag.
 void StereoCore::fail(const std::string& text) {
   failed_ = true;
@@ -165,19 +164,19 @@ void StereoCore::fail(const std::string& text) {
 // The time.
 
 void StereoCore::catch_up() {
-  if (state_ != State::kRunning || !whole_) return;
+  if (state_ != State::kRunning || !direct_frame_) return;
   cycle_ = timing_.run_ahead(cycle_, clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp())));
 }
 
-// Does what is due now, and waits for what comes next. What happens at the time of an edge belongs to the
-// cycle that begins there.
-void StereoCore::run_lazily() {
+// Does what is due now, then waits for the next event. An event at the time of an edge belongs to the cycle
+// that begins there.
+void StereoCore::fast_forward() {
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   if (local_bus_.word_waits()) {
-    if (serves_host_beside_frame()) {
-      serve_beside_frame();
+    if (host_contends()) {
+      serve_contended();
     } else {
-      serve_alone(now);
+      serve_uncontended(now);
     }
     return;
   }
@@ -189,11 +188,11 @@ void StereoCore::run_lazily() {
     wait(start_event_ | local_bus_.request_event());
     return;
   }
-  if (now < look_ps_) {
-    wait(Clock::to_time(look_ps_ - now), local_bus_.request_event());
+  if (now < next_check_ps_) {
+    wait(Clock::to_time(next_check_ps_ - now), local_bus_.request_event());
     return;
   }
-  // Cycles before the next thing that is pending, or the present, hold no surprise.
+  // No event can occur in cycles before the next pending one.
   const std::uint64_t horizon = now + Clock::to_ps(sc_core::sc_time_to_pending_activity());
   const std::uint64_t most = clock_.edge_ps(cycle_ + kMostCycles);
   cycle_ = timing_.run_ahead(cycle_, clock_.edge_at_or_after(std::min(horizon, most)));
@@ -201,21 +200,21 @@ void StereoCore::run_lazily() {
     finish_cycles(cycle_);
     return;
   }
-  look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
+  next_check_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
 }
 
-// A burst for a bank that the frame uses, or beside somebody who may start the next frame as soon as this one
-// ends.
-bool StereoCore::serves_host_beside_frame() const {
+// Whether the burst goes to a bank of the running frame, or another master of the registers may start the
+// next frame as soon as this one ends.
+bool StereoCore::host_contends() const {
   return state_ == State::kRunning &&
          (!nobody_else_starts() || crossbar_.arbitration().is_used_beside(Port::kHost, *host_route_.bank));
 }
 
-// Its words, cycle by cycle.
-void StereoCore::serve_beside_frame() {
+// Serves the words of a contended burst, cycle by cycle.
+void StereoCore::serve_contended() {
   const std::uint64_t first = clock_.edge_at_or_after(local_bus_.request_ps());
   move_burst();
-  cycle_ = timing_.run_ahead(cycle_, first);  // without the host, whose route would keep it from skipping
+  cycle_ = timing_.run_ahead(cycle_, first);  // before the host is routed: its route prevents skipping
   join_host();
   const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
   for (const std::uint64_t last = cycle_ + kHostCycles; cycle_ < last && !control().frame_done(); ++cycle_) {
@@ -230,18 +229,18 @@ void StereoCore::serve_beside_frame() {
   if (control().frame_done()) {
     finish_cycles(cycle_);
   } else {
-    look_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
+    next_check_ps_ = clock_.edge_ps(timing_.earliest_last_write(cycle_)) + 1;
   }
 }
 
-// Words for a bank that nobody else uses. They may be served before their time, unless somebody at the
-// registers can start a frame that uses the bank, at any time that something is pending for.
-void StereoCore::serve_alone(std::uint64_t now_ps) {
+// Serves the words of an uncontended burst. They may be served before their time, unless another master of
+// the registers could start a frame that uses the bank at a pending event.
+void StereoCore::serve_uncontended(std::uint64_t now_ps) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::size_t bank = *host_route_.bank;
-  count_served(UINT64_MAX, true);  // of the burst before, which has ended
+  count_served(UINT64_MAX, true);  // words of the previous burst, which has ended
   served_bank_ = bank;
-  // The first cycle that is not decided yet: a word that the frame has refused to its end asks on from there.
+  // The first undecided cycle: a word that was refused until the frame ended requests from here on.
   std::uint64_t cycle = state_ == State::kRunning ? 0 : cycle_;
   move_burst();
   if (burst_is_moved_ && !arbitration.needs_turnaround(bank) && local_bus_.is_in_step_with(clock_)) {
@@ -250,8 +249,8 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   while (local_bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(local_bus_.request_ps()));
     const std::uint64_t edge = clock_.edge_ps(cycle);
-    // Somebody at the registers may start a frame that uses the bank: at its predecessor's end, and at any
-    // time that something is pending for.
+    // Another master of the registers may start a frame that uses the bank: when the previous frame ends, and
+    // at any pending event.
     if (!nobody_else_starts() && state_ == State::kFinishing && cycle >= done_cycle_) {
       count_served(UINT64_MAX, false);
       finish_frame(now_ps);
@@ -271,8 +270,8 @@ void StereoCore::serve_alone(std::uint64_t now_ps) {
   if (state_ != State::kRunning) count_served(UINT64_MAX, false);
 }
 
-// The data of a burst that has just begun, if nobody can start a frame before its end and its bank grants
-// direct access.
+// Moves the data of a burst that has just begun at once, if no frame can start before its end and its bank
+// grants direct access.
 void StereoCore::move_burst() {
   const std::uint64_t bytes = host_route_.end - host_route_.first;
   if (burst_is_moved_ || !nobody_else_starts() || local_bus_.words_left() * 4 != bytes) return;
@@ -284,7 +283,7 @@ void StereoCore::move_burst() {
   burst_is_moved_ = true;
 }
 
-// The next word of the burst, granted in a cycle.
+// The next word of the burst is granted in `cycle`.
 void StereoCore::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps) {
   if (burst_is_moved_) {
     local_bus_.count_granted(1, edge_ps, clock_.edge_ps(cycle + host_read_latency_));
@@ -294,7 +293,7 @@ void StereoCore::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uin
   }
 }
 
-// A word in each cycle, until the end of the burst, from this one on.
+// Serves one word a cycle from `first_cycle` on, to the end of the burst.
 void StereoCore::serve_in_step(std::uint64_t first_cycle) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::size_t bank = *host_route_.bank;
@@ -304,13 +303,13 @@ void StereoCore::serve_in_step(std::uint64_t first_cycle) {
     return arbitration.decide_unrouted(bank, cycle, Port::kHost, host_route_.write);
   };
   served_.push_back({first, 1, decide(first)});
-  // After its own grant it asks in the same place again and again.
+  // After its own grant each further request has the same outcome.
   if (words > 1) served_.push_back({first + 1, words - 1, decide(first + 1)});
   const std::uint64_t last = first + words - 1;
   local_bus_.count_granted(words, clock_.edge_ps(last), clock_.edge_ps(last + host_read_latency_));
 }
 
-// Counts what was served before a cycle; `in_frame`: in the counted cycles of a frame.
+// Counts the words served before `end_cycle`. `in_frame`: they were served in counted cycles of a frame.
 void StereoCore::count_served(std::uint64_t end_cycle, bool in_frame) {
   memory::Arbitration& arbitration = crossbar_.arbitration();
   auto next = served_.begin();

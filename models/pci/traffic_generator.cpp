@@ -1,4 +1,4 @@
-#include "models/pci/pci_load.h"
+#include "models/pci/traffic_generator.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,23 +9,23 @@
 
 namespace stereotlm::pci {
 
-PciLoad::PciLoad(const sc_core::sc_module_name& name, const PciLoadConfig& config)
+TrafficGenerator::TrafficGenerator(const sc_core::sc_module_name& name, const PciLoadConfig& config)
     : sc_module(name), config_(config) {
   if (const auto found = problems(config); !found.empty()) {
     throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
   }
-  device.register_b_transport(this, &PciLoad::answer);
+  device.register_b_transport(this, &TrafficGenerator::answer);
 }
 
-PciBurst PciLoad::begin_burst(std::uint64_t /*address_clock_ps*/) {
+PciBurst TrafficGenerator::begin_burst(std::uint64_t /*address_clock_ps*/) {
   words_.resize(static_cast<std::size_t>(config_.burst_words) - words_done_);
   return {false, config_.address + 4 * words_done_, &words_};
 }
 
-void PciLoad::end_burst(const BurstResult& result) {
+void TrafficGenerator::end_burst(const BurstResult& result) {
   if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) {
     SC_REPORT_ERROR(
-        "/stereotlm/pci_load",
+        "/stereotlm/traffic_generator",
         (std::string(name()) + ": address = " + std::to_string(config_.address) + ": " +
          (result.end == BurstEnd::kMasterAbort ? "no target answers" : "the target answers with an error"))
             .c_str());
@@ -42,7 +42,7 @@ void PciLoad::end_burst(const BurstResult& result) {
   pci->request(*this, std::max(due_ps, Clock::to_ps(sc_core::sc_time_stamp())));
 }
 
-void PciLoad::answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+void TrafficGenerator::answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   if (!access.is_read()) {
     access.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
   } else if (access.get_data_length() % 4 != 0 || access.get_streaming_width() < access.get_data_length()) {

@@ -1,4 +1,4 @@
-#include "models/fpga/known_groups.h"
+#include "models/fpga/transition_cache.h"
 
 #include <algorithm>
 
@@ -21,7 +21,7 @@ void Progress::add(const Progress& other, std::uint64_t times) {
   words += other.words * times;
 }
 
-std::size_t KnownGroups::Hash::operator()(const State& state) const {
+std::size_t TransitionCache::Hash::operator()(const State& state) const {
   std::uint64_t hash = 0;
   const auto mix = [&hash](std::uint64_t word) {
     hash = (hash ^ word) * 0x9e3779b97f4a7c15U;
@@ -36,28 +36,28 @@ std::size_t KnownGroups::Hash::operator()(const State& state) const {
   return hash;
 }
 
-KnownGroups::Group& KnownGroups::at(const State& state) {
+TransitionCache::Group& TransitionCache::at(const State& state) {
   const auto [entry, is_new] = groups_.try_emplace(state);
   if (is_new) entry->second.begin = &entry->first;
   return entry->second;
 }
 
-void KnownGroups::note(Group& group, std::uint64_t times) {
+void TransitionCache::pass(Group& group, std::uint64_t times) {
   if (group.times == 0) walked_.push_back(&group);
   group.times += times;
 }
 
-// Where the walk comes back to a group that it has passed, it goes round as often as there is room. The group
-// to come back to moves on after 1, 2, 4, .. steps (Brent, 1980), so that a ring of any length is found.
-KnownGroups::Group& KnownGroups::walk(Group& first, Progress room, Progress& progress, CoreControl& control,
-                                      memory::Arbitration& arbitration) {
+// Cycle detection after Brent (1980): the marked group moves forward after 1, 2, 4, .. steps, so that a cycle
+// of any length is found. When the walk returns to the mark, it repeats the cycle as often as there is room.
+TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progress& progress,
+                                              CoreControl& control, memory::Arbitration& arbitration) {
   Group* group = &first;
   const Group* mark = group;
   Progress since_mark;
   std::uint64_t steps = 0;
-  std::uint64_t patience = 1;
+  std::uint64_t mark_after = 1;
   while (group->next != nullptr && group->progress.fits(room)) {
-    note(*group, 1);
+    pass(*group, 1);
     room.subtract(group->progress);
     progress.add(group->progress);
     since_mark.add(group->progress);
@@ -66,14 +66,14 @@ KnownGroups::Group& KnownGroups::walk(Group& first, Progress room, Progress& pro
     if (group == mark) {
       const std::uint64_t times = since_mark.times_in(room);
       if (times == 0) continue;
-      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) note(*group, times);
+      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) pass(*group, times);
       room.subtract(since_mark, times);
       progress.add(since_mark, times);
-    } else if (steps == patience) {
+    } else if (steps == mark_after) {
       mark = group;
       since_mark = {};
       steps = 0;
-      patience *= 2;
+      mark_after *= 2;
     }
   }
   for (Group* const walked : walked_) {

@@ -1,4 +1,4 @@
-#include "models/fpga/slot_pattern.h"
+#include "models/fpga/access_pattern.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ void for_random_patterns(const Look& look) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const CoreConfig config = random_core(random, 140);
-    SlotPattern pattern{FrameGeometry(config)};
+    AccessPattern pattern{FrameGeometry(config)};
     std::vector<std::uint32_t> entries;
     // What a table before this one has left does not matter.
     for (int table = random.between(1, 2); table > 0; --table) {
@@ -59,19 +59,19 @@ void for_random_patterns(const Look& look) {
   }
 }
 
-TEST(SlotPattern, FindsTheNextColumnThatDiffers) {
-  for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
+TEST(AccessPattern, FindsTheNextColumnThatDiffers) {
+  for_random_patterns([](const CoreConfig& config, const AccessPattern& pattern, const auto& entries) {
     const auto columns = columns_of(config, entries);
     std::size_t next = columns.size();
     for (std::size_t column = columns.size(); column-- > 0;) {
       if (column + 1 < columns.size() && columns[column + 1] != columns[column]) next = column + 1;
-      ASSERT_EQ(pattern.alike_until(column), next) << column;
+      ASSERT_EQ(pattern.uniform_until(column), next) << column;
     }
   });
 }
 
-TEST(SlotPattern, KnowsEveryEntry) {
-  for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
+TEST(AccessPattern, KnowsEveryEntry) {
+  for_random_patterns([](const CoreConfig& config, const AccessPattern& pattern, const auto& entries) {
     for (int row = 0; row < config.height; ++row) {
       for (int column = 0; column < config.width; ++column) {
         ASSERT_EQ(pattern.entry_valid(column, row),
@@ -81,39 +81,39 @@ TEST(SlotPattern, KnowsEveryEntry) {
   });
 }
 
-TEST(SlotPattern, CountsTheSlotsOfAFrame) {
-  for_random_patterns([](const CoreConfig& config, const SlotPattern& pattern, const auto& entries) {
+TEST(AccessPattern, CountsTheSlotsOfAFrame) {
+  for_random_patterns([](const CoreConfig& config, const AccessPattern& pattern, const auto& entries) {
     const auto columns = columns_of(config, entries);
     ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
     ASSERT_EQ(pattern.pixel_accesses(), count(columns, Access::kTableAndImage));
   });
 }
 
-TEST(SlotPattern, BeginsWithEveryEntryValid) {
+TEST(AccessPattern, BeginsWithEveryEntryValid) {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     test::SplitMix64 random(seed);
     const CoreConfig config = random_core(random, 140);
-    const SlotPattern fresh{FrameGeometry(config)};
-    SlotPattern all_valid{FrameGeometry(config)};
+    const AccessPattern fresh{FrameGeometry(config)};
+    AccessPattern all_valid{FrameGeometry(config)};
     all_valid.set_entries(kernels::identity_table(config.width, config.height).entries.data());
     ASSERT_EQ(fresh.pixel_accesses(), all_valid.pixel_accesses());
     ASSERT_EQ(fresh.empty_slots(), all_valid.empty_slots());
-    ASSERT_EQ(fresh.alike_until(0), all_valid.alike_until(0));
+    ASSERT_EQ(fresh.uniform_until(0), all_valid.uniform_until(0));
     ASSERT_TRUE(fresh.entry_valid(config.width - 1, config.height - 1));
   }
 }
 
-TEST(SlotPattern, HasColumnsAlikeOverTheEndOfAStrip) {
+TEST(AccessPattern, HasColumnsAlikeOverTheEndOfAStrip) {
   CoreConfig config;
   config.width = 8;
   config.height = 9;
   config.window = 3;
   config.filter.reset();
-  const SlotPattern pattern{FrameGeometry(config)};
+  const AccessPattern pattern{FrameGeometry(config)};
   // The first and the last strip have rows outside the image.
-  EXPECT_EQ(pattern.alike_until(0), 8U);
-  EXPECT_EQ(pattern.alike_until(8), 64U);
-  EXPECT_EQ(pattern.alike_until(64), 72U);
+  EXPECT_EQ(pattern.uniform_until(0), 8U);
+  EXPECT_EQ(pattern.uniform_until(8), 64U);
+  EXPECT_EQ(pattern.uniform_until(64), 72U);
 }
 
 }  // namespace
