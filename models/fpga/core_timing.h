@@ -85,7 +85,7 @@ class CoreTiming {
   // The table of one side, and its pixel port.
   struct Side {
     const AccessPattern* pattern = nullptr;
-    bool tracks_validity = true;  // false: all entries count as valid for now
+    bool tracks_validity = true;  // false: all entries count as valid provisionally
   };
 
   void resolve_validity();
