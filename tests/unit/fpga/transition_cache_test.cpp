@@ -31,7 +31,7 @@ TEST(Progress, ComesAsOftenAsTheScarcestOfItsRoomAllows) {
 
 // Groups of 10, 11, 12, .. cycles with a word each, one behind the other; in each of them the result port is
 // granted once more than in the one before.
-class KnownGroupsTest : public testing::Test {
+class TransitionCacheTest : public testing::Test {
  protected:
   static constexpr std::uint64_t kMuch = UINT64_MAX / 2;
 
@@ -62,14 +62,14 @@ class KnownGroupsTest : public testing::Test {
   memory::Arbitration arbitration_{memory::ArbiterConfig{}, std::vector<memory::SsramBankConfig>(6)};
 };
 
-TEST_F(KnownGroupsTest, AreTheSameForTheSameState) {
+TEST_F(TransitionCacheTest, AreTheSameForTheSameState) {
   EXPECT_EQ(&group(1), &group(1));
   EXPECT_NE(&group(1), &group(2));
   EXPECT_EQ(group(1).begin->control.rest, 1U);
   EXPECT_EQ(group(1).next, nullptr);
 }
 
-TEST_F(KnownGroupsTest, EndTheWalkWhereNothingIsKnown) {
+TEST_F(TransitionCacheTest, EndTheWalkWhereNothingIsKnown) {
   group(0).progress = {10, 4, 8, 8, 1};
   group(0).next = &group(1);
   EXPECT_EQ(walk(0, {kMuch, kMuch, kMuch, kMuch, kMuch}), 1U);
@@ -78,7 +78,7 @@ TEST_F(KnownGroupsTest, EndTheWalkWhereNothingIsKnown) {
   EXPECT_EQ(progress_.cycles, 0U);
 }
 
-TEST_F(KnownGroupsTest, EndTheWalkWhereThereIsNoRoom) {
+TEST_F(TransitionCacheTest, EndTheWalkWhereThereIsNoRoom) {
   make_ring(1, 0);
   walk(0, {9, kMuch, kMuch, kMuch, kMuch});
   EXPECT_EQ(progress_.cycles, 0U);
@@ -86,7 +86,7 @@ TEST_F(KnownGroupsTest, EndTheWalkWhereThereIsNoRoom) {
 }
 
 // Whatever the ring, and wherever the walk enters it: as if the groups were taken one by one.
-TEST_F(KnownGroupsTest, AreWalkedAroundTheirRing) {
+TEST_F(TransitionCacheTest, AreWalkedAroundTheirRing) {
   for (std::size_t length = 1; length <= 12; ++length) {
     for (std::size_t back_to = 0; back_to < length; ++back_to) {
       groups_.clear();
@@ -110,13 +110,13 @@ TEST_F(KnownGroupsTest, AreWalkedAroundTheirRing) {
   }
 }
 
-TEST_F(KnownGroupsTest, AreNotKnownOnceCleared) {
+TEST_F(TransitionCacheTest, AreNotKnownOnceCleared) {
   make_ring(3, 0);
   groups_.clear();
   EXPECT_EQ(group(0).next, nullptr);
 }
 
-TEST_F(KnownGroupsTest, AreFullBeforeTheyGrowWithTheFrame) {
+TEST_F(TransitionCacheTest, AreFullBeforeTheyGrowWithTheFrame) {
   std::size_t number = 0;
   while (!groups_.is_full()) {
     group(number++);
