@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "models/memory/memory_config.h"
-#include "platform/area.h"
+#include "platform/config/board_area.h"
 #include "platform/audit.h"
 #include "platform/bounds.h"
 

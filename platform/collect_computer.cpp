@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "platform/audit.h"
-#include "platform/board_rules.h"
+#include "platform/config/board_rules.h"
 #include "platform/bounds.h"
 
 namespace stereotlm::platform {

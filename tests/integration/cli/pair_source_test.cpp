@@ -1,4 +1,4 @@
-#include "sw/cli/pair_source.h"
+#include "sw/runs/pair_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "platform/board_yaml.h"
-#include "sw/cli/open_source.h"
+#include "platform/config/board_yaml.h"
+#include "sw/runs/open_source.h"
 #include "sw/media/encode.h"
 #include "sw/media/synthetic_scene.h"
 #include "tests/support/scratch_folder.h"
@@ -20,9 +20,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // Pair i is of grey level i. Counts what is loaded.
-class Levels : public PairSource {
+class Levels : public runs::PairSource {
  public:
-  explicit Levels(std::uint64_t length) : PairSource("--levels", length) {}
+  explicit Levels(std::uint64_t length) : runs::PairSource("--levels", length) {}
   std::vector<std::uint64_t> loaded;
   bool is_broken = false;
 
@@ -35,16 +35,16 @@ class Levels : public PairSource {
   }
 };
 
-int level(PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
+int level(runs::PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
 
-TEST(PairSource, BeginsAgainBehindTheLastPair) {
+TEST(runs::PairSource, BeginsAgainBehindTheLastPair) {
   Levels pairs(7);
   for (std::uint64_t frame = 0; frame < 30; ++frame)
     EXPECT_EQ(level(pairs, frame), static_cast<int>(frame % 7));
-  EXPECT_EQ(level(pairs, PairSource::kEndless), static_cast<int>(PairSource::kEndless % 7));
+  EXPECT_EQ(level(pairs, runs::PairSource::kEndless), static_cast<int>(runs::PairSource::kEndless % 7));
 }
 
-TEST(PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
+TEST(runs::PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
   Levels few(4);
   for (std::uint64_t frame = 0; frame < 100; ++frame) few.pair(frame);
   EXPECT_THAT(few.loaded, ElementsAre(0, 1, 2, 3));
@@ -53,7 +53,7 @@ TEST(PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
   EXPECT_THAT(many.loaded, ElementsAre(0, 1, 2, 3, 4, 0, 1, 2, 3, 4));
 }
 
-TEST(PairSource, HoldsWhatWasAskedForLast) {
+TEST(runs::PairSource, HoldsWhatWasAskedForLast) {
   Levels pairs(10);
   for (const std::uint64_t frame : {0U, 1U, 2U, 3U, 0U, 4U, 5U, 6U}) pairs.pair(frame);
   const host::StereoPair& kept = pairs.pair(0);
@@ -63,7 +63,7 @@ TEST(PairSource, HoldsWhatWasAskedForLast) {
   EXPECT_THAT(pairs.loaded, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
+TEST(runs::PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
   Levels pairs(10);
   pairs.pair(0);
   pairs.is_broken = true;
@@ -75,9 +75,9 @@ TEST(PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
 
 class OpenSourceTest : public ::testing::Test {
  protected:
-  OpenedSource opened(const PictureOptions& options) {
-    Problems problems;
-    OpenedSource source = open_source(options, &board_, described_, problems);
+  runs::OpenedSource opened(const PictureSource& options) {
+    process::Problems problems;
+    runs::OpenedSource source = runs::open_source(options, &board_, described_, problems);
     problems.check();
     return source;
   }
@@ -89,13 +89,13 @@ class OpenSourceTest : public ::testing::Test {
   const platform::BoardConfig board_ =
       platform::load_board("fpl2003", {"image.width=32", "image.height=24", "matcher.disparities=8"});
   test::ScratchFolder folder_;
-  report::RunOptions described_;
+  runs::RunOptions described_;
 };
 
 TEST_F(OpenSourceTest, OnePairNeedsItsFilesNoMore) {
-  PictureOptions options;
+  PictureSource options;
   options.pair = {picture("l.png", 1), picture("r.png", 2)};
-  const OpenedSource source = opened(options);
+  const runs::OpenedSource source = opened(options);
   std::filesystem::remove(options.pair->left);
   EXPECT_EQ(source.pairs->length(), 1U);
   for (const std::uint64_t frame : {0U, 1U, 100U}) {
@@ -109,9 +109,9 @@ TEST_F(OpenSourceTest, ASequenceFollowsItsNames) {
     picture("left_" + std::to_string(number) + ".png", number);
     picture("right_" + std::to_string(number) + ".png", 100 + number);
   }
-  PictureOptions options;
+  PictureSource options;
   options.sequence = folder_.path().string();
-  const OpenedSource source = opened(options);
+  const runs::OpenedSource source = opened(options);
   EXPECT_EQ(source.pairs->length(), 6U);
   EXPECT_EQ(source.files.size(), 12U);
   EXPECT_EQ(described_.sequence->files.at(3).path, "right_1.png");
@@ -127,9 +127,9 @@ TEST_F(OpenSourceTest, ASequenceRefusesAPictureThatHasChanged) {
     picture("left_" + std::to_string(number) + ".png", number);
     picture("right_" + std::to_string(number) + ".png", number);
   }
-  PictureOptions options;
+  PictureSource options;
   options.sequence = folder_.path().string();
-  const OpenedSource source = opened(options);
+  const runs::OpenedSource source = opened(options);
   const std::string changed = picture("right_1.png", 99);
   EXPECT_NO_THROW(source.pairs->pair(0));
   EXPECT_EQ(test::message_of([&] { source.pairs->pair(1); }),
@@ -140,10 +140,10 @@ TEST_F(OpenSourceTest, ASequenceRefusesAPictureThatHasChanged) {
 }
 
 TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
-  PictureOptions options;
+  PictureSource options;
   options.synthetic = 7;
-  const OpenedSource source = opened(options);
-  EXPECT_EQ(source.pairs->length(), PairSource::kEndless);
+  const runs::OpenedSource source = opened(options);
+  EXPECT_EQ(source.pairs->length(), runs::PairSource::kEndless);
   EXPECT_EQ(described_.synthetic, 7U);
   const media::SyntheticScene scene(7, 32, 24, 8);
   for (const std::uint64_t frame : {0U, 1U, 1'000'000U}) {
@@ -154,12 +154,12 @@ TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
 }
 
 TEST_F(OpenSourceTest, WithoutABoardSizesAreNotChecked) {
-  PictureOptions options;
+  PictureSource options;
   options.pair = {picture("l.png", 1, 16), picture("r.png", 2)};
-  Problems problems;
-  open_source(options, nullptr, described_, problems);
+  process::Problems problems;
+  runs::open_source(options, nullptr, described_, problems);
   EXPECT_TRUE(problems.empty());
-  open_source(options, &board_, described_, problems);
+  runs::open_source(options, &board_, described_, problems);
   EXPECT_FALSE(problems.empty());
 }
 

@@ -1,4 +1,4 @@
-#include "sw/cli/python_script.h"
+#include "sw/process/python_script.h"
 
 #include <gmock/gmock.h>
 
@@ -24,27 +24,27 @@ class PythonScript : public testing::Test {
 
 TEST_F(PythonScript, SaysThatPythonIsMissing) {
   const std::string python = path("python3");
-  EXPECT_THAT([&] { become_script("plot_all.py", {}, python); },
+  EXPECT_THAT([&] { process::become_script("plot_all.py", {}, python); },
               ThrowsMessage<std::runtime_error>(
                   HasSubstr("'" + python + "', which draws the figures: cannot be started: No such file")));
 }
 
 TEST_F(PythonScript, SaysThatTheScriptIsMissing) {
-  EXPECT_THAT([] { become_script("plot_nothing.py", {}); },
+  EXPECT_THAT([] { process::become_script("plot_nothing.py", {}); },
               ThrowsMessage<std::runtime_error>(HasSubstr("/plots/plot_nothing.py': not found")));
 }
 
 TEST_F(PythonScript, SaysSoToWhoeverWaitsForItsEndToo) {
   const std::string python = path("python3");
-  EXPECT_THAT([&] { run_script("plot_paper.py", {}, python); },
+  EXPECT_THAT([&] { process::run_script("plot_paper.py", {}, python); },
               ThrowsMessage<std::runtime_error>(
                   HasSubstr("'" + python + "', which draws the figures: cannot be started: No such file")));
-  EXPECT_THAT([] { run_script("plot_nothing.py", {}); },
+  EXPECT_THAT([] { process::run_script("plot_nothing.py", {}); },
               ThrowsMessage<std::runtime_error>(HasSubstr("/plots/plot_nothing.py': not found")));
 }
 
 TEST_F(PythonScript, TellsHowAScriptHasEnded) {
-  const auto end = run_script("plot_paper.py", {"--out=" + path("out"), "--", path("in")});
+  const auto end = process::run_script("plot_paper.py", {"--out=" + path("out"), "--", path("in")});
   EXPECT_EQ(end.status, 1);
   EXPECT_THAT(end.errors, HasSubstr(path("in/table1.csv")));
 }

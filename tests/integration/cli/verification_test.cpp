@@ -1,14 +1,14 @@
 // What `--verify` says of a run that is not the same: here one that never was.
-#include "sw/cli/verification.h"
+#include "sw/runs/verification.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "platform/area.h"
-#include "platform/board_yaml.h"
-#include "platform/tables.h"
+#include "platform/config/board_area.h"
+#include "platform/config/board_yaml.h"
+#include "platform/config/tables.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::cli {
@@ -30,18 +30,18 @@ class VerificationTest : public testing::Test {
     options.timing_only = true;
   }
   // What fails of this run, which did not take place: one line each.
-  std::string failed_of(const std::vector<simulation::Result>& results,
+  std::string failed_of(const std::vector<runs::Result>& results,
                         const platform::Statistics& statistics) {
-    Verification verification(input, options);
-    for (const simulation::Result& result : results) verification.add(result);
-    const Verification::Outcome outcome = verification.compare(statistics);
+    runs::Verification verification(input, options);
+    for (const runs::Result& result : results) verification.add(result);
+    const runs::Verification::Outcome outcome = verification.compare(statistics);
     EXPECT_FALSE(outcome.interrupted);
     std::string text;
     for (const std::string& line : outcome.failed) text += line + '\n';
     return text;
   }
 
-  RunInput input;
+  runs::RunInput input;
   RunOptions options;
 };
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "models/kernels/stereo.h"
-#include "platform/board_yaml.h"
-#include "sw/simulation/camera_simulation.h"
+#include "platform/config/board_yaml.h"
+#include "sw/runs/camera_simulation.h"
 #include "tests/support/noise_picture.h"
 
 namespace stereotlm::simulation {
@@ -49,11 +49,11 @@ TEST_P(CameraRates, AreThoseOfTheSlowestPartOverSixtyFrames) {
   Noise pairs(board);
   Noise same_pairs(board);  // to look at while a capture goes on
   Binder binder;
-  CameraSimulation simulation(board, tables, pairs, 61, binder);
+  runs::CameraSimulation simulation(board, tables, pairs, 61, binder);
   const kernels::StereoConfig config{board.matcher.window, board.matcher.disparities, board.matcher.filter,
                                      board.matcher.lr_tolerance};
   while (!simulation.finished()) {
-    for (const Result& result : simulation.advance()) {
+    for (const runs::Result& result : simulation.advance()) {
       const host::StereoPair& pair = same_pairs.pair(result.number);
       EXPECT_EQ(result.disparity, kernels::disparity_image(pair.left, pair.right, nullptr, nullptr, config))
           << result.number;

@@ -1,4 +1,4 @@
-#include "sw/simulation/camera_simulation.h"
+#include "sw/runs/camera_simulation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/kernels/stereo.h"
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/noise_picture.h"
@@ -57,10 +57,10 @@ class CameraSimulationTest : public testing::Test {
     tables = platform::identity_tables(board);
     simulation.emplace(board, tables, pairs, frames, binder);
   }
-  std::vector<Result> run() {
-    std::vector<Result> results;
+  std::vector<runs::Result> run() {
+    std::vector<runs::Result> results;
     while (!simulation->finished()) {
-      for (Result& result : simulation->advance()) results.push_back(std::move(result));
+      for (runs::Result& result : simulation->advance()) results.push_back(std::move(result));
     }
     return results;
   }
@@ -77,12 +77,12 @@ class CameraSimulationTest : public testing::Test {
   platform::BoardConfig board;
   platform::Tables tables;
   Noise pairs;
-  std::optional<CameraSimulation> simulation;
+  std::optional<runs::CameraSimulation> simulation;
 };
 
 TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
   build(8);
-  const std::vector<Result> results = run();
+  const std::vector<runs::Result> results = run();
   ASSERT_EQ(results.size(), 8U);
   for (std::size_t frame = 0; frame < results.size(); ++frame) {
     EXPECT_EQ(results[frame].disparity, disparity_of(pairs.pair(results[frame].number), board)) << frame;
@@ -95,7 +95,7 @@ TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
 
 TEST_F(CameraSimulationTest, AccountsForTheComputer) {
   build(8);
-  const std::vector<Result> results = run();
+  const std::vector<runs::Result> results = run();
   const platform::Statistics statistics = simulation->statistics();
   EXPECT_THAT(statistics.failed, IsEmpty());
   EXPECT_EQ(statistics.frames, 8U);
@@ -168,7 +168,7 @@ TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
       "fpl2003", {"image.height=24", "matcher.disparities=16", "cameras.frame_rate_hz=599.4"});
   config.pci.load = platform::PciLoadConfig{1, 1e6, line_ps / 1e6, 50};
   build(6, config);
-  const std::vector<Result> results = run();
+  const std::vector<runs::Result> results = run();
   std::vector<host::StereoPair> buffers(2, Noise(640, 24).pair_);
   std::uint64_t hit = 0;
   for (std::size_t frame = 0; frame < results.size(); ++frame) {
@@ -216,7 +216,7 @@ TEST_F(CameraSimulationTest, CannotBeBuiltOfAWrongBoard) {
   platform::BoardConfig wrong = small_board();
   tables = platform::identity_tables(wrong);
   wrong.matcher.window = 4;
-  EXPECT_THROW(CameraSimulation(wrong, tables, pairs, 1, binder), std::invalid_argument);
+  EXPECT_THROW(runs::CameraSimulation(wrong, tables, pairs, 1, binder), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_rules.h"
-#include "platform/board_yaml.h"
-#include "sw/simulation/camera_simulation.h"
+#include "platform/config/board_rules.h"
+#include "platform/config/board_yaml.h"
+#include "sw/runs/camera_simulation.h"
 #include "tests/support/monitoring_binder.h"
 
 namespace stereotlm::simulation {
@@ -47,7 +47,7 @@ class CollectComputer : public testing::Test {
   platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   test::MonitoringBinder binder;
-  CameraSimulation simulation{board, tables, pairs, 3, binder};
+  runs::CameraSimulation simulation{board, tables, pairs, 3, binder};
   ComputerCounters counters;
   std::vector<Delivery> deliveries = {
       {1'000'000'000, 3'000'000'000}, {2'000'000'000, 5'000'000'000}, {4'000'000'000, 9'000'000'000}};

@@ -1,4 +1,4 @@
-#include "sw/simulation/preloaded_simulation.h"
+#include "sw/runs/preloaded_simulation.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/kernels/stereo.h"
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "tests/support/expected_report.h"
 
 namespace stereotlm::simulation {
@@ -47,7 +47,7 @@ class Noise : public host::FrameSource {
   host::StereoPair pair_ = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
 };
 
-std::string message_of_advancing(Simulation& simulation) {
+std::string message_of_advancing(runs::Simulation& simulation) {
   try {
     simulation.advance();
   } catch (const std::runtime_error& error) {
@@ -56,12 +56,12 @@ std::string message_of_advancing(Simulation& simulation) {
   return "";
 }
 
-TEST(PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
+TEST(runs::PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   Binder binder;
-  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
+  runs::PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   EXPECT_FALSE(simulation.finished());
   EXPECT_EQ(simulation.frames_done(), 0U);
   EXPECT_EQ(simulation.statistics().frames, 0U);
@@ -87,15 +87,15 @@ TEST(PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
   EXPECT_EQ(simulation.last().number, 9U);
 }
 
-TEST(PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
+TEST(runs::PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
   Binder binder;
-  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
-  std::vector<Result> ended = simulation.advance();
+  runs::PreloadedSimulation simulation(board, tables, pairs, 10, binder);
+  std::vector<runs::Result> ended = simulation.advance();
   EXPECT_EQ(ended.size(), 6U);
-  for (Result& result : simulation.advance()) ended.push_back(std::move(result));
+  for (runs::Result& result : simulation.advance()) ended.push_back(std::move(result));
   ASSERT_EQ(ended.size(), 10U);
   for (std::uint64_t frame = 0; frame < 10; ++frame) {
     EXPECT_EQ(ended[frame].number, frame);
@@ -104,12 +104,12 @@ TEST(PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
   EXPECT_EQ(simulation.last().disparity, ended.back().disparity);
 }
 
-TEST(PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
+TEST(runs::PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   Binder binder;
-  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
+  runs::PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   simulation.advance();
   simulation.end_early();
   EXPECT_TRUE(simulation.finished());
@@ -117,35 +117,35 @@ TEST(PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
   EXPECT_EQ(simulation.statistics().frames, 6U);
 }
 
-TEST(PreloadedSimulation, PassesOnWhatTheSourceThrows) {
+TEST(runs::PreloadedSimulation, PassesOnWhatTheSourceThrows) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
   pairs.failing_frame = 3;
   Binder binder;
-  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
+  runs::PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
   EXPECT_EQ(message_of_advancing(simulation), "the disk is gone");
   EXPECT_EQ(simulation.frames_done(), 3U);
 }
 
-TEST(PreloadedSimulation, PassesOnWhatAModelReports) {
+TEST(runs::PreloadedSimulation, PassesOnWhatAModelReports) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   pairs.pair_.right = kernels::GrayImage(28, 24);
   Binder binder;
-  PreloadedSimulation simulation(board, tables, pairs, 1, binder);
+  runs::PreloadedSimulation simulation(board, tables, pairs, 1, binder);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
   EXPECT_THROW(simulation.advance(), sc_core::sc_report);
 }
 
-TEST(PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
+TEST(runs::PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   Binder binder;
-  PreloadedSimulation simulation(board, tables, pairs, 10, binder);
+  runs::PreloadedSimulation simulation(board, tables, pairs, 10, binder);
   simulation.advance();
   ASSERT_EQ(simulation.frames_done(), 6U);
   // An error that is not thrown: the host does no more.
@@ -156,13 +156,13 @@ TEST(PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
             "the simulation has ended after 7 frames: nothing is left that could finish the next");
 }
 
-TEST(PreloadedSimulation, CannotBeBuiltOfAWrongBoard) {
+TEST(runs::PreloadedSimulation, CannotBeBuiltOfAWrongBoard) {
   platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
   board.matcher.window = 4;
   Binder binder;
-  EXPECT_THROW(PreloadedSimulation(board, tables, pairs, 1, binder), std::invalid_argument);
+  EXPECT_THROW(runs::PreloadedSimulation(board, tables, pairs, 1, binder), std::invalid_argument);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "platform/board_yaml.h"
-#include "sw/simulation/camera_simulation.h"
+#include "platform/config/board_yaml.h"
+#include "sw/runs/camera_simulation.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
@@ -41,7 +41,7 @@ class Pictures : public host::FrameSource {
 };
 
 struct Outcome {
-  std::vector<Result> results;
+  std::vector<runs::Result> results;
   std::vector<fpga::RowProfile> rows;
   platform::Statistics statistics;
 };
@@ -49,11 +49,11 @@ struct Outcome {
 Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
                  std::uint64_t frames, Fidelity fidelity) {
   test::MonitoringBinder binder;
-  CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
+  runs::CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
   simulation.record_rows();
   Outcome outcome;
   while (!simulation.finished()) {
-    for (Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
+    for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
   }
   outcome.rows = simulation.take_rows();
   outcome.statistics = simulation.statistics();
@@ -84,7 +84,7 @@ std::string figures_of(const Outcome& outcome, bool with_pixels) {
   const platform::Statistics& statistics = outcome.statistics;
   const platform::ComputerStatistics& computer = *statistics.computer;
   Figures figures;
-  for (const Result& result : outcome.results) {
+  for (const runs::Result& result : outcome.results) {
     figures.line("delivered", result.number, result.time_ps);
     if (with_pixels) figures.pixels(result.number, result.disparity.pixels);
   }

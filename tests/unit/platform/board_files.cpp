@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::platform::testing {

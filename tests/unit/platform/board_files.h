@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
 
 namespace stereotlm::platform::testing {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "tests/unit/platform/board_files.h"
 
 namespace stereotlm::platform::testing {

@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-#include "platform/area.h"
+#include "platform/config/board_area.h"
 #include "platform/bounds.h"
 #include "tests/unit/platform/preloaded_run.h"
 

@@ -1,7 +1,7 @@
 // A whole board of stereotlm in somebody else's program.
 #include <cstdio>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "platform/collect.h"
 #include "platform/preloaded_system.h"
 
