@@ -1,4 +1,4 @@
-#include "sw/runs/pair_source.h"
+#include "sw/runs/sources/pair_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/runs/open_source.h"
 #include "sw/media/encode.h"
 #include "sw/media/synthetic_scene.h"
+#include "sw/runs/sources/open_source.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::cli {
@@ -37,14 +37,14 @@ class Levels : public runs::PairSource {
 
 int level(runs::PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
 
-TEST(runs::PairSource, BeginsAgainBehindTheLastPair) {
+TEST(PairSource, BeginsAgainBehindTheLastPair) {
   Levels pairs(7);
   for (std::uint64_t frame = 0; frame < 30; ++frame)
     EXPECT_EQ(level(pairs, frame), static_cast<int>(frame % 7));
   EXPECT_EQ(level(pairs, runs::PairSource::kEndless), static_cast<int>(runs::PairSource::kEndless % 7));
 }
 
-TEST(runs::PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
+TEST(PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
   Levels few(4);
   for (std::uint64_t frame = 0; frame < 100; ++frame) few.pair(frame);
   EXPECT_THAT(few.loaded, ElementsAre(0, 1, 2, 3));
@@ -53,7 +53,7 @@ TEST(runs::PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
   EXPECT_THAT(many.loaded, ElementsAre(0, 1, 2, 3, 4, 0, 1, 2, 3, 4));
 }
 
-TEST(runs::PairSource, HoldsWhatWasAskedForLast) {
+TEST(PairSource, HoldsWhatWasAskedForLast) {
   Levels pairs(10);
   for (const std::uint64_t frame : {0U, 1U, 2U, 3U, 0U, 4U, 5U, 6U}) pairs.pair(frame);
   const host::StereoPair& kept = pairs.pair(0);
@@ -63,7 +63,7 @@ TEST(runs::PairSource, HoldsWhatWasAskedForLast) {
   EXPECT_THAT(pairs.loaded, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(runs::PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
+TEST(PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
   Levels pairs(10);
   pairs.pair(0);
   pairs.is_broken = true;

@@ -13,7 +13,8 @@ TEST(ProgressText, CountsAFrameInProgressByItsCycles) {
 
 TEST(ProgressText, TakesTheBoundForTheFirstFrame) {
   const runs::RunState state{2, 0, 0, 250'000, 1'000'000};
-  EXPECT_EQ(runs::progress_text(state, 1), "0.25/2 frames   12.5 %   0.25 M cycles/s   0.25 frames/s   0:07 left");
+  EXPECT_EQ(runs::progress_text(state, 1),
+            "0.25/2 frames   12.5 %   0.25 M cycles/s   0.25 frames/s   0:07 left");
 }
 
 TEST(ProgressText, NeverSaysThatALongFrameIsFinished) {
@@ -23,7 +24,8 @@ TEST(ProgressText, NeverSaysThatALongFrameIsFinished) {
 
 TEST(ProgressText, EndsAtTheLastFrame) {
   const runs::RunState state{2, 2, 2'000'000, 2'000'016, 1'000'000};
-  EXPECT_EQ(runs::progress_text(state, 1), "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
+  EXPECT_EQ(runs::progress_text(state, 1),
+            "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
 }
 
 TEST(VerificationText, CountsTheFramesCompared) {

@@ -30,8 +30,7 @@ class VerificationTest : public testing::Test {
     options.timing_only = true;
   }
   // What fails of this run, which did not take place: one line each.
-  std::string failed_of(const std::vector<runs::Result>& results,
-                        const platform::Statistics& statistics) {
+  std::string failed_of(const std::vector<runs::Result>& results, const platform::Statistics& statistics) {
     runs::Verification verification(input, options);
     for (const runs::Result& result : results) verification.add(result);
     const runs::Verification::Outcome outcome = verification.compare(statistics);

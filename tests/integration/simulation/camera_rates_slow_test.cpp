@@ -11,7 +11,7 @@
 
 #include "models/kernels/stereo.h"
 #include "platform/config/board_yaml.h"
-#include "sw/runs/camera_simulation.h"
+#include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/noise_picture.h"
 
 namespace stereotlm::simulation {

@@ -1,4 +1,4 @@
-#include "sw/runs/camera_simulation.h"
+#include "sw/runs/simulation/camera_simulation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 
 #include "platform/config/board_rules.h"
 #include "platform/config/board_yaml.h"
-#include "sw/runs/camera_simulation.h"
+#include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/monitoring_binder.h"
 
 namespace stereotlm::simulation {

@@ -1,4 +1,4 @@
-#include "sw/runs/preloaded_simulation.h"
+#include "sw/runs/simulation/preloaded_simulation.h"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ std::string message_of_advancing(runs::Simulation& simulation) {
   return "";
 }
 
-TEST(runs::PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
+TEST(PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
@@ -87,7 +87,7 @@ TEST(runs::PreloadedSimulation, AdvancesInSlicesUntilTheLastFrame) {
   EXPECT_EQ(simulation.last().number, 9U);
 }
 
-TEST(runs::PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
+TEST(PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
@@ -104,7 +104,7 @@ TEST(runs::PreloadedSimulation, ReturnsTheDisparitiesOfEachFrameOnceInOrder) {
   EXPECT_EQ(simulation.last().disparity, ended.back().disparity);
 }
 
-TEST(runs::PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
+TEST(PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
@@ -117,7 +117,7 @@ TEST(runs::PreloadedSimulation, GivesUpTheFrameUnderWayToEndEarly) {
   EXPECT_EQ(simulation.statistics().frames, 6U);
 }
 
-TEST(runs::PreloadedSimulation, PassesOnWhatTheSourceThrows) {
+TEST(PreloadedSimulation, PassesOnWhatTheSourceThrows) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   Noise pairs;
@@ -129,7 +129,7 @@ TEST(runs::PreloadedSimulation, PassesOnWhatTheSourceThrows) {
   EXPECT_EQ(simulation.frames_done(), 3U);
 }
 
-TEST(runs::PreloadedSimulation, PassesOnWhatAModelReports) {
+TEST(PreloadedSimulation, PassesOnWhatAModelReports) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
@@ -140,7 +140,7 @@ TEST(runs::PreloadedSimulation, PassesOnWhatAModelReports) {
   EXPECT_THROW(simulation.advance(), sc_core::sc_report);
 }
 
-TEST(runs::PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
+TEST(PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
   const platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;
@@ -156,7 +156,7 @@ TEST(runs::PreloadedSimulation, SaysThatItHasEndedBeforeTheLastFrame) {
             "the simulation has ended after 7 frames: nothing is left that could finish the next");
 }
 
-TEST(runs::PreloadedSimulation, CannotBeBuiltOfAWrongBoard) {
+TEST(PreloadedSimulation, CannotBeBuiltOfAWrongBoard) {
   platform::BoardConfig board = small_board();
   const platform::Tables tables = platform::identity_tables(board);
   OnePair pairs;

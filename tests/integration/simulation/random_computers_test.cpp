@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/runs/camera_simulation.h"
+#include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
