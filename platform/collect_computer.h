@@ -24,7 +24,7 @@ struct Delivery {
 
 // What the parts of a computer have counted so far. To be taken while the core runs no frame.
 struct ComputerCounters {
-  // Words written to the buffers of the board; [buffer] in the order of buffers() in board_rules.h, then
+  // Words written to the buffers of the board; [buffer] in the order of buffers() in buffer_layout.h, then
   // those outside of all.
   struct Words {
     std::vector<std::uint64_t> into_bridge;

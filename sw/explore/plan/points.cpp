@@ -13,7 +13,7 @@ std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board)
 
 namespace {
 
-// What is the same for each.
+// The members that possible and impossible points have in common.
 Point point_of(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& board,
                const PointRun& run) {
   Point point;
@@ -46,6 +46,11 @@ Point impossible_point(std::uint64_t number, const std::string& yaml, const plat
   Point point = point_of(number, yaml, asked_for, run);
   point.reason = reason;
   return point;
+}
+
+const std::vector<Condition>& Points::conditions() const {
+  static const std::vector<Condition> kNone;
+  return kNone;
 }
 
 }  // namespace stereotlm::explore

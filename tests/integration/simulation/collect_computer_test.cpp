@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/board_yaml.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/monitoring_binder.h"
@@ -88,7 +88,7 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
     EXPECT_THAT(statistics().failed, ElementsAre(fmt::format("{} = {}, but {} = {}", left, is, right, but)));
   };
   std::vector<std::string> names;
-  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.path());
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.path());
   names.emplace_back("no buffer");
   ASSERT_EQ(valid.words.into_bridge.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {

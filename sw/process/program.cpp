@@ -1,4 +1,4 @@
-#include "sw/process/installed_path.h"
+#include "sw/process/program.h"
 
 namespace stereotlm::process {
 

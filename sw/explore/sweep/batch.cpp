@@ -1,4 +1,4 @@
-#include "sw/explore/slurm/batch.h"
+#include "sw/explore/sweep/batch.h"
 
 #include <fmt/format.h>
 
