@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "platform/config/tables.h"
-#include "sw/explore/plan/run_keys.h"
 #include "sw/explore/plan/shuffled_numbers.h"
 
 namespace stereotlm::explore {

@@ -16,7 +16,6 @@
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/plan/plan_findings.h"
-#include "sw/explore/plan/run_keys.h"
 #include "sw/explore/store/bank_names.h"
 
 namespace stereotlm::explore {

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
+#include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
+#include "platform/config/yaml_tree.h"
 
 namespace stereotlm::explore {
 
@@ -28,6 +30,16 @@ struct PointRun {
 // between the first and the last delivery.
 inline constexpr std::uint64_t kCameraFrames = 13;
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
+
+// Whether points of one plan may have different values of this key of a run.
+bool may_vary(const std::string& run_key);
+
+// The rule that a value of this key of a run breaks; empty if the value is valid.
+std::string run_key_problem(const std::string& run_key, const platform::YamlNode& value);
+inline constexpr platform::IntegerRule kFramesRule = {1, 1'000'000};
+
+// Gives the run a valid value of kSourcePath or kFramesPath.
+void apply_run_key(const std::string& run_key, const platform::YamlNode& value, PointRun& run);
 
 // One point: a board and its run; or the reason for which there is no such board.
 struct Point {

@@ -165,7 +165,7 @@ class Allocate(ProgramTest):
     def test_what_loses_pixels_does_not_count(self):
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=2))
         self.assertRegex(said, r" 1 +\d+ +\d+ +all lose pixels\n")
-        self.assertIn("and needs 2 banks, the fewest of which an allocation counts.", said)
+        self.assertIn("and needs 2 banks, the fewest with an allocation that counts.", said)
         self.assertRegex(said, r"\d+ of those simulated to the end lose pixels, and do not count\.")
         self.assertIn("The disparities of these 1 allocations are the same", said)
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=1))

@@ -89,9 +89,9 @@ class Commands(SlurmCommands):
 
     def test_that_say_something_else(self):
         self.write("sbatch", "#!/bin/sh\necho usage\n")
-        self.refused_in_one_line(self.launch(), "sbatch: has not said the number of a job: usage")
+        self.refused_in_one_line(self.launch(), "sbatch: no job number in its output: usage")
         self.write("squeue", "#!/bin/sh\necho JOBID PARTITION\n")
-        self.refused_in_one_line(self.launch(), "squeue: not what it was asked for: JOBID PARTITION")
+        self.refused_in_one_line(self.launch(), "squeue: unexpected output: JOBID PARTITION")
         self.write("squeue", "#!/bin/sh\nexit 3\n")
         self.refused_in_one_line(self.launch(), "squeue: has ended with status 3")
         self.assertEqual(list(self.folder.glob("points.db*")), [])
@@ -111,7 +111,7 @@ class Commands(SlurmCommands):
     def test_that_keep_failing_end_the_waiting(self):
         self.write("squeue", SQUEUE + '[ ! -e "$FAKE/queue" ] || { echo "squeue: error: no answer" >&2; exit 1; }\n')
         notes = self.failed(self.launch(END="RUNNING"),
-                            "error: squeue: no answer; the jobs go on, and the same command waits for them")
+                            "error: squeue: no answer; the jobs continue; run the same command to wait for them")
         self.assertEqual(notes[2:], ["squeue: no answer: asking again"])
         self.assertTrue(self.shards.exists())
 
@@ -125,7 +125,7 @@ class Commands(SlurmCommands):
             self.assertIn("note: job ", process.stderr.readline())
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=60)
-        self.assertEqual(errors, "stereotlm: error: scancel: no answer; the jobs go on, and the same command waits for them\n")
+        self.assertEqual(errors, "stereotlm: error: scancel: no answer; the jobs continue; run the same command to wait for them\n")
         self.assertEqual(process.returncode, 1)
         self.assertTrue(self.shards.exists())
 
@@ -134,8 +134,8 @@ class LostWork(SlurmCommands):
     def test_is_submitted_three_times(self):
         notes = self.failed(self.launch(TASK='echo no such thing >>"$FOLDER/shard_0.log"', END="OUT_OF_MEMORY"),
                             "error: shard 0 has been lost 3 times without a further point (OUT_OF_MEMORY); its log "
-                            f"{self.shards}/shard_0.log ends with: no such thing; what is done is kept in {self.shards}: "
-                            "the same command goes on with it")
+                            f"{self.shards}/shard_0.log ends with: no such thing; finished points are kept in {self.shards}: "
+                            "run the same command to resume")
         self.assertEqual([re.sub(r"into .*", "", note) for note in notes], [
             "job 1: shard 0 of 1", "job 2: the merge ", "lost: shard 0 (OUT_OF_MEMORY); submitting again",
             "job 3: shard 0 of 1", "job 4: the merge ", "lost: shard 0 (OUT_OF_MEMORY); submitting again",
@@ -166,7 +166,7 @@ class Folders(SlurmCommands):
     def test_that_are_not_of_a_sweep_are_left_alone(self):
         self.shards.mkdir()
         (self.shards / "mine").touch()
-        self.refused_in_one_line(self.launch(), f"{self.shards}: is there, and not as a folder of shards")
+        self.refused_in_one_line(self.launch(), f"{self.shards}: exists, and is not a folder of shards")
         self.assertEqual([path.name for path in self.shards.iterdir()], ["mine"])
 
     def test_that_cannot_be_made(self):

@@ -245,7 +245,7 @@ class Interrupted(SlurmTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"20 points: [1-9]\d* ok, 0 impossible, 0 failed, \d+ not begun\n")
-        self.assertTrue(errors.endswith("note: interrupted: the same command goes on where this one has ended\n"), errors)
+        self.assertTrue(errors.endswith("note: interrupted: run the same command to resume\n"), errors)
         self.assertEqual(cluster.jobs(), [])
         self.assertFalse(self.shards.exists())
         kept = self.query("SELECT count(*) FROM points")[0][0]

@@ -102,7 +102,7 @@ class FullDisk(RobustnessTest):
             if process.returncode == 2:
                 full_at_begin += 1
             else:
-                self.fails(process, "; what is done is kept: the same command goes on with it")
+                self.fails(process, "; finished points are kept: run the same command to resume")
                 full_later += 1
             kept = self.points()
             said = self.finished(expected)
@@ -131,7 +131,7 @@ class FullDisk(RobustnessTest):
         room = len(expected) * 9 // 5
         process = self.on_disk_of(room, "sweep", more, "--out", self.store)
         self.fails(process)
-        self.assertRegex(process.stderr, rf"points\.db{MERGING}: the disk is full; what is done is kept")
+        self.assertRegex(process.stderr, rf"points\.db{MERGING}: the disk is full; finished points are kept")
         self.assertEqual(self.points(), POINTS + 1)
         self.finished(self.expected(more), more)
 
@@ -147,7 +147,7 @@ class FullDisk(RobustnessTest):
 
         expected = self.expected()
         process = run("sweep", self.plan, "--out", self.store, preexec_fn=limit, restore_signals=False)
-        self.fails(process, "points.db: disk I/O error; what is done is kept")
+        self.fails(process, "points.db: disk I/O error; finished points are kept")
         self.finished(expected)
 
 
@@ -190,8 +190,8 @@ class UnfinishedChange(RobustnessTest):
                   "os._exit(0)\n")
         subprocess.run([sys.executable, "-c", change, str(self.store)], check=True)
         self.assertTrue((self.disk / "points.db-journal").exists())
-        rule = (f"{self.store}: {self.store}-journal is there, of a change that was not finished, and this command only "
-                f"reads: `stereotlm merge {self.store} {self.store}` takes the change back")
+        rule = (f"{self.store}: {self.store}-journal was left by an unfinished change, and this command only "
+                f"reads: `stereotlm merge {self.store} {self.store}` rolls the change back")
         more = self.folder / "more.db"
         self.refused_in_one_line(self.sweep("--known", self.store, store=more), f"--known {rule}")
         self.refused_in_one_line(run("merge", more, self.store), rule)

@@ -222,8 +222,8 @@ class Refusals(SweepTest):
         plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
         process = self.sweep(plan=plan)
         self.assertEqual(process.returncode, 1, process.stderr)
-        self.assertEqual(process.stderr, f"stereotlm: error: {plan}:10:5: where = {condition}: malformed JSON; what is done "
-                                         "is kept: correct the plan\n")
+        self.assertEqual(process.stderr, f"stereotlm: error: {plan}:10:5: where = {condition}: malformed JSON; finished "
+                                         "points are kept: correct the plan\n")
 
     def test_of_options(self):
         self.refused_in_one_line(self.sweep("--jobs", 0), "--jobs = 0: must be 1..1024")
@@ -282,7 +282,7 @@ class Refusals(SweepTest):
         notes = self.file("notes", b"ok 3\nand more\n")
         for path in (notes, self.left, self.store, self.folder, "/dev/null"):
             self.refused_in_one_line(self.sweep("--progress", path, store=more),
-                                     f"--progress = {path}: is there, and not as a file of --progress: ")
+                                     f"--progress = {path}: exists, and was not written by --progress: ")
         self.assertFalse(more.exists())
         self.assertEqual(notes.read_bytes(), b"ok 3\nand more\n")
         self.assertEqual(self.plan.read_text(), PLAN)
@@ -331,7 +331,7 @@ class Interrupted(SweepTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"1016 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
-        self.assertEqual(errors, "stereotlm: note: interrupted: the same command goes on where this one has ended\n")
+        self.assertEqual(errors, "stereotlm: note: interrupted: run the same command to resume\n")
         self.succeeds(self.sweep(plan=self.many))
         self.assertEqual(self.store.read_bytes(), self.expected())
 
@@ -344,8 +344,8 @@ class Interrupted(SweepTest):
                 self.store.write_bytes(another)
             out, errors = process.communicate(timeout=60)
             self.assertEqual((process.returncode, out), (1, ""), errors)
-            self.assertEqual(errors, f"stereotlm: error: {self.store}: has been removed or replaced meanwhile: what was "
-                                     "done is gone with it\n")
+            self.assertEqual(errors, f"stereotlm: error: {self.store}: was removed or replaced while in use: its "
+                                     "points are lost\n")
             for left in self.folder.glob("points.db*"):
                 left.unlink()
 
@@ -358,7 +358,7 @@ class Interrupted(SweepTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (1, ""), errors)
         self.assertIn("points.db", errors)
-        self.assertNotIn("is kept", errors)
+        self.assertNotIn("kept", errors)
 
     def test_when_killed_it_keeps_what_was_done(self):
         process = self.start("--jobs", "2")
