@@ -41,7 +41,7 @@ bool is_counts_file(const std::string& path) {
   }
 }
 
-// Refuses options that the launcher itself gives sbatch.
+// Checks one option of --sbatch. The options that the launcher itself gives sbatch are refused.
 void check_sbatch(const std::string& option, process::Problems& problems) {
   const std::vector<std::string> own = {"array", "dependency", "error", "job-name", "output", "wait", "wrap"};
   const std::string name = option.substr(0, option.find('='));

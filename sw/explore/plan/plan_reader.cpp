@@ -137,8 +137,8 @@ class PlanReader {
     }
   }
 
-  // Records that a section gives a path. Returns false, and reports it, unless the path may stand there and
-  // the plan has not given it before. Also reports a path above or below one that was given.
+  // Records a path that a section gives. Reports a path that may not stand in the section, or that the plan
+  // has given before, and returns false then. Also reports an overlap with a path above or below it.
   bool take_path(const std::string& section, const YamlNode& key) {
     const std::string& path = key.text;
     const bool is_run = section != "set" && may_vary(path);
@@ -226,8 +226,9 @@ class PlanReader {
     }
   }
 
-  // Reads the values that a key varies over. Checks each by itself; a value that is only wrong beside values
-  // of other keys makes points impossible. Returns nothing, and reports it, if there are no values.
+  // Reads the values of a key that varies, and reports those that are wrong by themselves. (A value that is
+  // wrong only beside a value of another key makes points impossible.) Reports and returns nothing if there
+  // are no values.
   std::optional<PlanValues> values_of(const std::string& section, const YamlNode::Entry& entry) {
     const std::string& path = entry.key.text;
     const YamlNode& node = entry.value;
@@ -249,7 +250,7 @@ class PlanReader {
     return values;
   }
 
-  // Checks the values of a range, and reports all that are refused in one line.
+  // Reports all refused values of a range in one line.
   void check_range(const std::string& name, const std::string& path, const YamlNode& node,
                    const DecimalRange& range, const PlanValues& values) {
     RefusedNumbers refused = refused_by_rule(path, range);

@@ -156,7 +156,7 @@ class Sweep {
     start_worker(place);
   }
 
-  // Stores a point as failed whose worker has died.
+  // Stores a point whose worker has died as a point that has failed.
   void fail(std::uint64_t number, const std::string& reason) {
     Store store(options_.store, options_.version, options_.busy_timeout);
     count(store.add(failed_point(points_.point(number), reason)) ? PointEnd::kFailed : PointEnd::kKnown);

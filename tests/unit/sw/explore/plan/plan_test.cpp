@@ -290,8 +290,8 @@ Lines refusal(const std::string& text) {
   return lines;
 }
 
-// [plan of the board fpl2003, from its second line]: the texts that its lines contain. A line that only counts the
-// points need not be named.
+// [plan of the board fpl2003, from its second line]: the texts that its lines contain. A line that only
+// counts the points need not be named.
 using Refusals = std::vector<std::pair<std::string, Lines>>;
 
 void expect_refusals(const Refusals& refusals) {
@@ -374,7 +374,7 @@ TEST(PlanRefusals, AreForValuesThatNoOtherKeyMakesValid) {
          "matcher.filter is not a map here; set it as a whole"}}});
 }
 
-TEST(PlanRefusals, AreForRangesThatDoNotEndOrWithRefusedValuesWhichTheyCount) {
+TEST(PlanRefusals, CountTheRefusedValuesOfARangeAndNameOneThatDoesNotEnd) {
   struct Case {
     std::string key;
     std::string range;

@@ -212,8 +212,8 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
   EXPECT_THAT(names(), Not(Contains(HasSubstr("c.db"))));
 }
 
-// A process has added a point and ended at once, so that only the journal has the point. The journal may be gone after
-// the merge, whatever ends it.
+// A process has added a point and ended at once, so that only the journal has the point. The journal may be
+// gone after the merge, whatever ends it.
 TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
   add("a.db", {point("h1")});
   const pid_t child = fork();
