@@ -12,7 +12,7 @@
 #include "sw/runs/sources/open_source.h"
 #include "tests/support/scratch_folder.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::runs {
 namespace {
 
 using kernels::GrayImage;
@@ -20,9 +20,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // Pair i is of grey level i. Counts what is loaded.
-class Levels : public runs::PairSource {
+class Levels : public PairSource {
  public:
-  explicit Levels(std::uint64_t length) : runs::PairSource("--levels", length) {}
+  explicit Levels(std::uint64_t length) : PairSource("--levels", length) {}
   std::vector<std::uint64_t> loaded;
   bool is_broken = false;
 
@@ -35,13 +35,13 @@ class Levels : public runs::PairSource {
   }
 };
 
-int level(runs::PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
+int level(PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
 
 TEST(PairSource, BeginsAgainBehindTheLastPair) {
   Levels pairs(7);
   for (std::uint64_t frame = 0; frame < 30; ++frame)
     EXPECT_EQ(level(pairs, frame), static_cast<int>(frame % 7));
-  EXPECT_EQ(level(pairs, runs::PairSource::kEndless), static_cast<int>(runs::PairSource::kEndless % 7));
+  EXPECT_EQ(level(pairs, PairSource::kEndless), static_cast<int>(PairSource::kEndless % 7));
 }
 
 TEST(PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
@@ -75,9 +75,9 @@ TEST(PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
 
 class OpenSourceTest : public ::testing::Test {
  protected:
-  runs::OpenedSource opened(const PictureSource& options) {
+  OpenedSource opened(const PictureSource& options) {
     process::Problems problems;
-    runs::OpenedSource source = runs::open_source(options, &board_, described_, problems);
+    OpenedSource source = open_source(options, &board_, described_, problems);
     problems.check();
     return source;
   }
@@ -89,13 +89,13 @@ class OpenSourceTest : public ::testing::Test {
   const platform::BoardConfig board_ =
       platform::load_board("fpl2003", {"image.width=32", "image.height=24", "matcher.disparities=8"});
   test::ScratchFolder folder_;
-  runs::RunOptions described_;
+  RecordedOptions described_;
 };
 
 TEST_F(OpenSourceTest, OnePairNeedsItsFilesNoMore) {
   PictureSource options;
   options.pair = {picture("l.png", 1), picture("r.png", 2)};
-  const runs::OpenedSource source = opened(options);
+  const OpenedSource source = opened(options);
   std::filesystem::remove(options.pair->left);
   EXPECT_EQ(source.pairs->length(), 1U);
   for (const std::uint64_t frame : {0U, 1U, 100U}) {
@@ -111,7 +111,7 @@ TEST_F(OpenSourceTest, ASequenceFollowsItsNames) {
   }
   PictureSource options;
   options.sequence = folder_.path().string();
-  const runs::OpenedSource source = opened(options);
+  const OpenedSource source = opened(options);
   EXPECT_EQ(source.pairs->length(), 6U);
   EXPECT_EQ(source.files.size(), 12U);
   EXPECT_EQ(described_.sequence->files.at(3).path, "right_1.png");
@@ -129,7 +129,7 @@ TEST_F(OpenSourceTest, ASequenceRefusesAPictureThatHasChanged) {
   }
   PictureSource options;
   options.sequence = folder_.path().string();
-  const runs::OpenedSource source = opened(options);
+  const OpenedSource source = opened(options);
   const std::string changed = picture("right_1.png", 99);
   EXPECT_NO_THROW(source.pairs->pair(0));
   EXPECT_EQ(test::message_of([&] { source.pairs->pair(1); }),
@@ -142,8 +142,8 @@ TEST_F(OpenSourceTest, ASequenceRefusesAPictureThatHasChanged) {
 TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
   PictureSource options;
   options.synthetic = 7;
-  const runs::OpenedSource source = opened(options);
-  EXPECT_EQ(source.pairs->length(), runs::PairSource::kEndless);
+  const OpenedSource source = opened(options);
+  EXPECT_EQ(source.pairs->length(), PairSource::kEndless);
   EXPECT_EQ(described_.synthetic, 7U);
   const media::SyntheticScene scene(7, 32, 24, 8);
   for (const std::uint64_t frame : {0U, 1U, 1'000'000U}) {
@@ -157,11 +157,11 @@ TEST_F(OpenSourceTest, WithoutABoardSizesAreNotChecked) {
   PictureSource options;
   options.pair = {picture("l.png", 1, 16), picture("r.png", 2)};
   process::Problems problems;
-  runs::open_source(options, nullptr, described_, problems);
+  open_source(options, nullptr, described_, problems);
   EXPECT_TRUE(problems.empty());
-  runs::open_source(options, &board_, described_, problems);
+  open_source(options, &board_, described_, problems);
   EXPECT_FALSE(problems.empty());
 }
 
 }  // namespace
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::runs

@@ -8,7 +8,7 @@
 
 #include "platform/config/board_yaml.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::runs {
 namespace {
 
 using ::testing::HasSubstr;
@@ -22,7 +22,7 @@ struct Delivery {
 
 Delivery delivery_of(const std::vector<std::string>& failed,
                      const std::vector<std::string>& differences = {}) {
-  runs::RunInput input;
+  RunInput input;
   input.board = platform::load_board("fpl2003");
   platform::Statistics statistics;
   statistics.frames = 1;
@@ -30,7 +30,7 @@ Delivery delivery_of(const std::vector<std::string>& failed,
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Delivery delivery;
-  delivery.all_hold = runs::deliver(input, statistics, {0, kernels::GrayImage(4, 1)}, differences);
+  delivery.all_hold = deliver(input, statistics, {0, kernels::GrayImage(4, 1)}, differences);
   delivery.out = ::testing::internal::GetCapturedStdout();
   delivery.err = ::testing::internal::GetCapturedStderr();
   return delivery;
@@ -61,9 +61,9 @@ TEST(Deliver, SaysEachDifferenceOfTheFidelities) {
   EXPECT_FALSE(delivery_of({}, {"the fidelities differ: frame 0"}).all_hold);
 }
 
-class EmptyPairs : public runs::PairSource {
+class EmptyPairs : public PairSource {
  public:
-  explicit EmptyPairs(std::uint64_t length) : runs::PairSource("--empty", length) {}
+  explicit EmptyPairs(std::uint64_t length) : PairSource("--empty", length) {}
 
  private:
   host::StereoPair load(std::uint64_t /*index*/) override { return {}; }
@@ -71,13 +71,13 @@ class EmptyPairs : public runs::PairSource {
 
 // Whether the truth of a run of this many frames is left after it ended early, with what is said.
 std::pair<bool, std::string> truth_after(std::uint64_t done, std::uint64_t frames, std::uint64_t pairs) {
-  runs::RunInput input;
+  RunInput input;
   input.frames = frames;
   input.pairs = std::make_unique<EmptyPairs>(pairs);
   input.truth = media::Truth{};
-  input.described.truth = runs::InputFile{"/t.png", "aa"};
+  input.described.truth = InputFile{"/t.png", "aa"};
   ::testing::internal::CaptureStderr();
-  runs::leave_out_truth_of_another_pair(input, done);
+  leave_out_truth_of_another_pair(input, done);
   EXPECT_EQ(input.truth.has_value(), input.described.truth.has_value());
   return {input.truth.has_value(), ::testing::internal::GetCapturedStderr()};
 }
@@ -97,4 +97,4 @@ TEST(TruthOfAnInterruptedRun, IsLeftOutWhereItIsOfAnotherPair) {
 }
 
 }  // namespace
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::runs

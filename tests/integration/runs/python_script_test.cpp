@@ -7,7 +7,7 @@
 
 #include "tests/support/scratch_folder.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::runs {
 namespace {
 
 using testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST_F(PythonScript, TellsHowAScriptHasEnded) {
 }
 
 }  // namespace
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::runs

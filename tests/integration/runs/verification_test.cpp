@@ -11,7 +11,7 @@
 #include "platform/config/tables.h"
 #include "tests/support/scratch_folder.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::runs {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -27,21 +27,20 @@ class VerificationTest : public testing::Test {
     input.camera = false;
     input.timing_only = true;
     input.frames = 2;
-    options.timing_only = true;
   }
   // What fails of this run, which did not take place: one line each.
-  std::string failed_of(const std::vector<runs::Result>& results, const platform::Statistics& statistics) {
-    runs::Verification verification(input, options);
-    for (const runs::Result& result : results) verification.add(result);
-    const runs::Verification::Outcome outcome = verification.compare(statistics);
+  std::string failed_of(const std::vector<Result>& results, const platform::Statistics& statistics) {
+    Verification verification(input, pictures);
+    for (const Result& result : results) verification.add(result);
+    const Verification::Outcome outcome = verification.compare(statistics);
     EXPECT_FALSE(outcome.interrupted);
     std::string text;
     for (const std::string& line : outcome.failed) text += line + '\n';
     return text;
   }
 
-  runs::RunInput input;
-  RunOptions options;
+  RunInput input;
+  PictureSource pictures;
 };
 
 TEST_F(VerificationTest, NamesTheFramesAndFiguresThatDiffer) {
@@ -64,7 +63,7 @@ TEST_F(VerificationTest, NamesThePicturesThatCannotBeReadAnyMoreAndWhy) {
   const test::ScratchFolder empty;
   const std::string left = empty.path() / "left.png";
   const std::string right = empty.path() / "right.png";
-  options.pictures.pair = {left, right};
+  pictures.pair = {left, right};
   const std::string rule = "a picture must be a readable regular file";
   EXPECT_EQ(failed_of({{0, {}, 123}}, {}),
             "--verify: the run at fidelity cycle: the pictures cannot be read any more: --left '" + left +
@@ -72,4 +71,4 @@ TEST_F(VerificationTest, NamesThePicturesThatCannotBeReadAnyMoreAndWhy) {
 }
 
 }  // namespace
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::runs
