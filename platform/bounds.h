@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
 #include "platform/config/tables.h"
+#include "platform/statistics.h"
 
 namespace stereotlm::platform {
 

@@ -10,8 +10,8 @@
 #include "models/memory/memory_config.h"
 #include "platform/board.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
 #include "platform/config/tables.h"
+#include "platform/statistics.h"
 
 namespace stereotlm::platform {
 

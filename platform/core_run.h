@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
 #include "platform/config/tables.h"
+#include "platform/statistics.h"
 
 namespace stereotlm::platform {
 

@@ -4,9 +4,9 @@
 
 #include <utility>
 
+#include "platform/boards/presets.h"
 #include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
-#include "platform/boards/presets.h"
 
 namespace stereotlm::platform {
 namespace {

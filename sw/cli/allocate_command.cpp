@@ -8,17 +8,13 @@
 #include <thread>
 #include <vector>
 
-#include "platform/config/board_rules.h"
 #include "platform/bounds.h"
+#include "platform/config/board_rules.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/interrupt.h"
-#include "sw/runs/progress.h"
-#include "sw/process/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/process/version.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/explore/store/bank_names.h"
@@ -26,7 +22,11 @@
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/runs/simulate_point.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -253,8 +253,9 @@ AllocationSearch search_of(const BoardConfig& board, int banks, const explore::P
   try {
     return AllocationSearch(board, banks, run, bound);
   } catch (const std::length_error& error) {
-    process::refuse(fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike",
-                       banks, error.what()));
+    process::refuse(
+        fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike", banks,
+                    error.what()));
   }
 }
 
@@ -296,8 +297,9 @@ int allocate(const AllocateOptions& options) {
   };
   AllocationSearch search = search_of(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {
-    process::refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", *options.banks,
-                       search.placements(), fewest_text(*board, *options.banks, run)));
+    process::refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}",
+                                *options.banks, search.placements(),
+                                fewest_text(*board, *options.banks, run)));
   }
   std::vector<std::string> names;
   for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
@@ -308,8 +310,7 @@ int allocate(const AllocateOptions& options) {
     process::refuse(fmt::format("--out {}", error.what()));
   }
   process::catch_interrupts();
-  runs::PointSimulator simulator =
-      calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
+  runs::PointSimulator simulator = calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);
     return simulator(point,
@@ -333,8 +334,8 @@ int allocate(const AllocateOptions& options) {
     process::say("note", kGoesOn);
     return kInterrupted;
   }
-  process::print(space_text(context, *options.banks) + table(context, all) + certificate(all, options.keep_percent) +
-        out_text(context, all, sweep.store) + pixels);
+  process::print(space_text(context, *options.banks) + table(context, all) +
+                 certificate(all, options.keep_percent) + out_text(context, all, sweep.store) + pixels);
   return kDone;
 }
 

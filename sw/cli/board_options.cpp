@@ -38,7 +38,7 @@ std::optional<platform::BoardConfig> BoardOptions::load(process::Problems& probl
 }
 
 std::optional<runs::CalibrationInput> BoardOptions::load_calibration(const platform::BoardConfig* board,
-                                                               process::Problems& problems) const {
+                                                                     process::Problems& problems) const {
   if (!calibration_) return std::nullopt;
   return runs::load_calibration(*calibration_, board, problems);
 }

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/runs/calibration_input.h"
-#include "sw/process/problems.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/runs/sources/calibration_input.h"
 
 namespace CLI {
 class App;
@@ -33,8 +33,8 @@ class BoardOptions {
 
   // The calibration that was given, if any, as checked, for that board; nothing if it is wrong too, with
   // every reason reported. `board`: null if it is wrong.
-  std::optional<runs::CalibrationInput> runs::load_calibration(const platform::BoardConfig* board,
-                                                   process::Problems& problems) const;
+  std::optional<runs::CalibrationInput> load_calibration(const platform::BoardConfig* board,
+                                                         process::Problems& problems) const;
 
  private:
   Typed board_;

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_rules.h"
-#include "platform/bounds.h"
 #include "platform/config/tables.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"

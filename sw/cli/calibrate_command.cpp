@@ -16,18 +16,18 @@
 #include "calib/synthetic_rig.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/calibrate_options.h"
-#include "sw/runs/calibration_library.h"
 #include "sw/cli/calibration_output.h"
 #include "sw/cli/calibration_summary.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/grid_pictures.h"
-#include "sw/process/interrupt.h"
-#include "sw/runs/media_library.h"
-#include "sw/process/streams.h"
 #include "sw/files/replaced_file.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/runs/sources/calibration_library.h"
+#include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -62,9 +62,9 @@ int print_grid(const CalibrateOptions& options) {
   } catch (const std::exception& error) {
     refuse_step("--out", error);
   }
-  process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n", options.out,
-                    options.grid.columns + 1, options.grid.rows + 1, options.grid.square_mm,
-                    options.grid.columns, options.grid.rows));
+  process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n",
+                             options.out, options.grid.columns + 1, options.grid.rows + 1,
+                             options.grid.square_mm, options.grid.columns, options.grid.rows));
   return kDone;
 }
 
@@ -102,7 +102,8 @@ class Calibrator {
     if (process::interrupted()) return leave();
     problems.check();
     calibrate();
-    for (const std::string& picture : result_.skipped) process::say("note", picture + ": the pair is skipped");
+    for (const std::string& picture : result_.skipped)
+      process::say("note", picture + ": the pair is skipped");
     try {
       write();
       if (process::interrupted()) return leave();
@@ -123,7 +124,8 @@ class Calibrator {
   // On a thread of its own: OpenCV cannot be asked to stop. An interrupt ends the process.
   void calibrate() {
     constexpr std::chrono::milliseconds kBetweenLooks{50};
-    auto result = std::async(std::launch::async, runs::calibration_functions().calibrate, std::cref(request_));
+    auto result =
+        std::async(std::launch::async, runs::calibration_functions().calibrate, std::cref(request_));
     while (result.wait_for(kBetweenLooks) != std::future_status::ready) {
       if (!process::interrupted()) continue;
       output_.reset();

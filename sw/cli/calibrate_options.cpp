@@ -6,8 +6,8 @@
 
 #include "models/kernels/limits.h"
 #include "sw/cli/add_command.h"
-#include "sw/runs/rig_files.h"
 #include "sw/cli/text.h"
+#include "sw/runs/sources/rig_files.h"
 
 namespace stereotlm::cli {
 namespace {

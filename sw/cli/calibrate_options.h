@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calib/grid_shape.h"
-#include "sw/process/problems.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
 
 namespace CLI {
 class App;

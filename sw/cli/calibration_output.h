@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sw/runs/rig_files.h"
 #include "sw/files/output_folder.h"
+#include "sw/runs/sources/rig_files.h"
 
 namespace stereotlm::cli {
 

@@ -10,10 +10,10 @@
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/problems.h"
-#include "sw/process/streams.h"
 #include "sw/cli/text.h"
 #include "sw/cli/unbuilt.h"
+#include "sw/process/problems.h"
+#include "sw/process/streams.h"
 #include "sw/process/version.h"
 
 namespace stereotlm::cli {
@@ -51,8 +51,8 @@ void check_first_argument(const CLI::App& program, int argc, const char* const* 
   if (is_known) return;
   if (first.empty()) process::refuse("a command is missing: one of " + all);
   if (first[0] == '-') process::refuse(fmt::format("'{}': a command comes first: one of {}", first, all));
-  process::refuse(fmt::format("'{}': unknown command{}; commands: {}", first, platform::nearest_text(first, commands),
-                     all));
+  process::refuse(fmt::format("'{}': unknown command{}; commands: {}", first,
+                              platform::nearest_text(first, commands), all));
 }
 
 std::string help_of(const CLI::App& program) {

@@ -11,12 +11,12 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/diff_text.h"
 #include "sw/cli/exit_status.h"
-#include "sw/runs/frame_alignment.h"
-#include "sw/process/interrupt.h"
-#include "sw/runs/recorded_run.h"
-#include "sw/process/streams.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/report/rows_csv.h"
+#include "sw/runs/frame_alignment.h"
+#include "sw/runs/recorded_run.h"
 
 namespace stereotlm::cli {
 namespace {

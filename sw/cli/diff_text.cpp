@@ -107,8 +107,8 @@ std::string computer_text(const RunFigures& a, const RunFigures& b) {
 
 }  // namespace
 
-std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const runs::FrameAlignment& aligned,
-                      const runs::DiffLimits& limits) {
+std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
+                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
   const RunFigures a(run_a);
   const RunFigures b(run_b);
   const std::string settings = in_sections(

@@ -8,7 +8,7 @@
 namespace stereotlm::cli {
 
 // What `diff` prints of two runs, once they are aligned.
-std::string diff_text(const runs::RecordedRun& a, const runs::RecordedRun& b, const runs::FrameAlignment& aligned,
-                      const runs::DiffLimits& limits);
+std::string diff_text(const runs::RecordedRun& a, const runs::RecordedRun& b,
+                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 
 }  // namespace stereotlm::cli

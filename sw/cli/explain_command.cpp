@@ -12,23 +12,23 @@
 #include <utility>
 #include <vector>
 
-#include "platform/config/board_rules.h"
 #include "platform/bounds.h"
+#include "platform/config/board_rules.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/interrupt.h"
-#include "sw/runs/progress.h"
-#include "sw/process/streams.h"
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
-#include "sw/process/version.h"
-#include "sw/explore/store/bank_names.h"
-#include "sw/explore/slurm/batch.h"
 #include "sw/explore/plan/knobs.h"
-#include "sw/runs/simulate_point.h"
+#include "sw/explore/slurm/batch.h"
+#include "sw/explore/store/bank_names.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -298,8 +298,7 @@ int explain(const ExplainOptions& options) {
   const platform::Tables tables = runs::tables_of(*board, calibration);
   process::catch_interrupts();
   Explanation explanation(*board, tables, options.camera);
-  if (!explanation.simulate(calibration ? runs::PointSimulator(tables)
-                                        : runs::PointSimulator())) {
+  if (!explanation.simulate(calibration ? runs::PointSimulator(tables) : runs::PointSimulator())) {
     return kInterrupted;
   }
   process::print(explanation.text());

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "models/fpga/core_config.h"
-#include "sw/process/interrupt.h"
-#include "sw/runs/media_library.h"
-#include "sw/process/streams.h"
 #include "sw/files/sha256.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -45,7 +45,7 @@ Names files_of(const std::string& option, const Names& patterns, process::Proble
   return files;
 }
 
-std::string runs::name_of(const std::string& path) { return std::filesystem::path(path).stem(); }
+std::string name_of(const std::string& path) { return std::filesystem::path(path).stem(); }
 
 // How many characters at their beginning all names share.
 std::size_t common_beginning(const Names& names) {
@@ -61,7 +61,7 @@ std::size_t common_beginning(const Names& names) {
 // What is left of the names without what all of them have in common.
 Names own_parts(const Names& files) {
   Names names;
-  for (const std::string& file : files) names.push_back(runs::name_of(file));
+  for (const std::string& file : files) names.push_back(name_of(file));
   const std::size_t beginning = common_beginning(names);
   for (std::string& name : names) name = name.substr(beginning);
   Names reversed;
@@ -78,7 +78,8 @@ void compare_names(const Names& left, const Names& right) {
   const auto differ = std::mismatch(left_parts.begin(), left_parts.end(), right_parts.begin());
   if (differ.first == left_parts.end()) return;
   const auto at = static_cast<std::size_t>(differ.first - left_parts.begin());
-  process::say("note",
+  process::say(
+      "note",
       fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they belong together?",
                   left[at], right[at]));
 }

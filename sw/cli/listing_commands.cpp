@@ -9,10 +9,10 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/problems.h"
-#include "sw/process/streams.h"
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -37,8 +37,8 @@ int list_boards() {
 int show_board(const std::string& name) {
   const auto names = platform::preset_names();
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    process::refuse(fmt::format("--show = {}: not a preset{}; presets: {}", name, platform::nearest_text(name, names),
-                       platform::listed(names)));
+    process::refuse(fmt::format("--show = {}: not a preset{}; presets: {}", name,
+                                platform::nearest_text(name, names), platform::listed(names)));
   }
   process::print(platform::preset_text(name));
   return kDone;

@@ -11,15 +11,15 @@
 
 #include "calib/calibration.h"
 #include "platform/config/board_yaml.h"
-#include "sw/runs/calibration_library.h"
+#include "sw/files/sha256.h"
 #include "sw/process/interrupt.h"
-#include "sw/runs/media_library.h"
-#include "sw/runs/open_source.h"
-#include "sw/runs/picture_size.h"
 #include "sw/process/streams.h"
 #include "sw/process/version.h"
 #include "sw/runs/run_json.h"
-#include "sw/files/sha256.h"
+#include "sw/runs/sources/calibration_library.h"
+#include "sw/runs/sources/media_library.h"
+#include "sw/runs/sources/open_source.h"
+#include "sw/runs/sources/picture_size.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -50,7 +50,7 @@ class InputLoader {
     check_truth();
     process::catch_interrupts();
     if (options_.out && pictures_survive()) {
-      attempt("", [&] { input_.folder = std::make_unique<ResultFolder>(*options_.out); });
+      attempt("", [&] { input_.folder = std::make_unique<runs::ResultFolder>(*options_.out); });
     }
     problems_.check();
     input_.board = *board;
@@ -139,21 +139,22 @@ class InputLoader {
     if (rows.error.corners < kFew) {
       const bool is_doubtful = rows.points >= kMany;
       process::say(is_doubtful ? "warning" : "note",
-          what + (is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
-                              : ": too few to see whether it is of this rig"));
+                   what + (is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
+                                       : ": too few to see whether it is of this rig"));
       return;
     }
     const bool is_doubtful = rows.error.mean_px > kDoubtful;
     process::say(is_doubtful ? "warning" : "note",
-        fmt::format("{}; their rows differ by {:.2f} pixels on average{}", what, rows.error.mean_px,
-                    is_doubtful ? ": is it of this rig?" : ""));
+                 fmt::format("{}; their rows differ by {:.2f} pixels on average{}", what, rows.error.mean_px,
+                             is_doubtful ? ": is it of this rig?" : ""));
   }
 
   void say_what_is_not_seen() const {
     const int made_for = input_.calibration->disparities;
     const int has = input_.board.matcher.disparities;
     if (has >= made_for) return;
-    process::say("note",
+    process::say(
+        "note",
         fmt::format(
             "--calibration: was made for {} disparities: of this board's {} the nearest things need more",
             made_for, has));

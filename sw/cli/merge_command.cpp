@@ -7,11 +7,11 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/streams.h"
 #include "sw/cli/typed_option.h"
 #include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -38,7 +38,7 @@ int merge(const MergeOptions& options) {
   explore::Database merged(options.out.text, explore::Database::Access::kRead);
   const std::size_t inputs = options.inputs.text.size();
   process::print(fmt::format("{}: {} points of {} database{}\n", options.out.text,
-                    merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
+                             merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
   return kDone;
 }
 

@@ -11,22 +11,22 @@
 
 #include "platform/bounds.h"
 #include "sw/cli/add_command.h"
-#include "sw/runs/calibration_input.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/problems.h"
-#include "sw/runs/progress.h"
-#include "sw/process/python_script.h"
-#include "sw/process/streams.h"
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/typed_option.h"
-#include "sw/process/version.h"
-#include "sw/paper/document.h"
-#include "sw/paper/study.h"
 #include "sw/files/document_folder.h"
 #include "sw/files/whole_file.h"
-#include "sw/runs/simulate_point.h"
+#include "sw/paper/document.h"
+#include "sw/paper/study.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/problems.h"
+#include "sw/process/python_script.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
+#include "sw/runs/sources/calibration_input.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -95,8 +95,7 @@ int compare_with_paper(const PaperOptions& options) {
   const auto drawings = temporary_folder(problems);
   std::unique_ptr<files::DocumentFolder> folder;
   try {
-    folder =
-        std::make_unique<files::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
+    folder = std::make_unique<files::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
   } catch (const std::runtime_error& error) {
     problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
   }

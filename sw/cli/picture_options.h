@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sw/process/problems.h"
-#include "sw/runs/picture_source.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/runs/sources/picture_source.h"
 
 namespace CLI {
 class App;

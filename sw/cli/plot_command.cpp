@@ -5,9 +5,9 @@
 
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
+#include "sw/cli/typed_option.h"
 #include "sw/process/problems.h"
 #include "sw/process/python_script.h"
-#include "sw/cli/typed_option.h"
 
 namespace stereotlm::cli {
 namespace {

@@ -8,14 +8,14 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/load_run_input.h"
+#include "sw/cli/run_options.h"
 #include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/run_mode.h"
-#include "sw/cli/load_run_input.h"
-#include "sw/cli/run_options.h"
 #include "sw/runs/run_results.h"
-#include "sw/process/streams.h"
 #include "sw/runs/verification.h"
 
 namespace stereotlm::cli {
@@ -52,8 +52,8 @@ void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verific
       progress.erase();
       if (!simulation.finished()) {
         process::say("note",
-            "interrupted: what the core has begun is finished first; another Ctrl-C ends at once, "
-            "without results");
+                     "interrupted: what the core has begun is finished first; another Ctrl-C ends at once, "
+                     "without results");
       }
       continue;
     }
@@ -68,8 +68,8 @@ void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verific
 
 void say_verified(const runs::RunInput& input) {
   process::say("note", fmt::format("verified: fast and cycle agree in every {} of {} frame{}",
-                          input.timing_only ? "figure and time" : "figure, time and pixel", input.frames,
-                          input.frames == 1 ? "" : "s"));
+                                   input.timing_only ? "figure and time" : "figure, time and pixel",
+                                   input.frames, input.frames == 1 ? "" : "s"));
 }
 
 int run(const RunOptions& options) {
@@ -84,7 +84,7 @@ int run(const RunOptions& options) {
   const std::uint64_t done = simulation->frames_done();
   if (done < input.frames) {
     process::say("note", fmt::format("interrupted after {} of {} frames{}", done, input.frames,
-                            done == 0 ? ": there is no result" : ""));
+                                     done == 0 ? ": there is no result" : ""));
     if (verification) runs::leave_out_verify(input);
     if (done == 0) return kInterrupted;
     runs::leave_out_truth_of_another_pair(input, done);

@@ -102,7 +102,7 @@ void RunOptions::check_numbers(process::Problems& problems) {
 
 void RunOptions::check_combinations(process::Problems& problems) const {
   if (truth_scale_.is_given() && !truth_.is_given()) problems.add("--truth-scale: goes with --truth F");
-  if (truth_.is_given() && pictures.synthetic) {
+  if (truth_.is_given() && pictures.source.synthetic) {
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
   }
   for (const auto& [name, given] :

@@ -15,14 +15,9 @@
 #include "calib/calibration.h"
 #include "platform/config/board_draft.h"
 #include "sw/cli/add_command.h"
-#include "sw/runs/calibration_input.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/process/interrupt.h"
-#include "sw/runs/progress.h"
-#include "sw/process/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/process/version.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/slurm/shard_folder.h"
@@ -32,7 +27,12 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/replaced_file.h"
 #include "sw/files/whole_file.h"
-#include "sw/runs/simulate_point.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
+#include "sw/runs/sources/calibration_input.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -238,7 +238,7 @@ struct SweepCommandOptions {
 };
 
 // `before`: points that were done when the seconds began.
-std::string runs::progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
+std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
   const auto done = static_cast<double>(counts.done());
   const double rate = (done - static_cast<double>(before)) / seconds;
   return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
@@ -259,7 +259,8 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
 
 // The calibration of all points, if they have one; the plan is given its tables. Refused if no point can have
 // them.
-std::optional<runs::CalibrationInput> runs::load_calibration(const SweepCommandOptions& options, explore::Plan& plan) {
+std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& options,
+                                                     explore::Plan& plan) {
   const bool is_option = !options.calibration.text.empty();
   const std::string path = is_option ? options.calibration.text : plan.calibration();
   if (path.empty()) return std::nullopt;
@@ -353,7 +354,8 @@ void check_open_files(std::uint64_t jobs, std::uint64_t points) {
   if (most == workers) return;
   const std::string rule =
       fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): ", jobs);
-  process::refuse(rule + (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+  process::refuse(rule +
+                  (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
 }
 
 int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
@@ -389,7 +391,7 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
     counts = explore::sweep(
         plan, [&simulator](const explore::Point& point) { return simulator(point); }, options.sweep,
         [&progress, &file](const explore::SweepCounts& done) {
-          progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
+          progress.show([&done](double seconds) { return progress_text(done, 0, seconds); });
           file.show(done);
           return !process::interrupted();
         });
@@ -417,8 +419,7 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
   if (platform::is_board_file(plan.board())) sweep.board = files::read_whole_file(plan.board());
   if (calibration) {
     const runs::InputCalibration& files = calibration->described;
-    sweep.calibration = {files::read_whole_file(files.file.path),
-                         files::read_whole_file(files.left_lut.path),
+    sweep.calibration = {files::read_whole_file(files.file.path), files::read_whole_file(files.left_lut.path),
                          files::read_whole_file(files.right_lut.path)};
   }
   sweep.banks = plan.banks();
@@ -428,8 +429,8 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
   return sweep;
 }
 
-std::string runs::progress_text(const explore::SlurmProgress& progress, std::uint64_t before, double seconds) {
-  std::string text = runs::progress_text(progress.counts, before, seconds);
+std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t before, double seconds) {
+  std::string text = progress_text(progress.counts, before, seconds);
   text += fmt::format("   {} running", progress.running);
   if (progress.waiting > 0) text += fmt::format(", {} waiting", progress.waiting);
   if (!progress.reason.empty()) text += fmt::format(" ({})", progress.reason);
@@ -465,7 +466,7 @@ int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan
   std::optional<std::uint64_t> before;
   const auto counts = sweep.wait([&](const explore::SlurmProgress& now) {
     if (!before) before = now.counts.done();
-    progress.show([&](double seconds) { return runs::progress_text(now, *before, seconds); });
+    progress.show([&](double seconds) { return progress_text(now, *before, seconds); });
     return !process::interrupted();
   });
   progress.erase();
@@ -474,7 +475,7 @@ int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan
 
 int sweep(const SweepCommandOptions& options) {
   explore::Plan plan = load_plan(options);
-  const auto calibration = runs::load_calibration(options, plan);
+  const auto calibration = calibration_of(options, plan);
   return options.is_slurm ? sweep_on_slurm(options, plan, calibration)
                           : sweep_here(options, plan, calibration);
 }

@@ -3,8 +3,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "sw/process/problems.h"
 #include "sw/files/temporary_folder.h"
+#include "sw/process/problems.h"
 
 namespace stereotlm::cli {
 

@@ -18,10 +18,10 @@
 #include "calib/lut_file.h"
 #include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
+#include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
 #include "sw/media/panels.h"
-#include "sw/files/whole_file.h"
 
 namespace stereotlm::demo {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "platform/config/board_rules.h"
 #include "platform/config/board_yaml.h"
+#include "sw/explore/plan/knobs.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
-#include "sw/explore/plan/knobs.h"
 #include "sw/files/temporary_folder.h"
 
 namespace stereotlm::paper {

@@ -27,8 +27,7 @@ struct Header {
 
 void send(int to, Kind kind, const std::string& text) {
   const Header header = {kind, text.size()};
-  const bool is_heard =
-      write_all(to, &header, sizeof header) && write_all(to, text.data(), text.size());
+  const bool is_heard = write_all(to, &header, sizeof header) && write_all(to, text.data(), text.size());
   if (!is_heard) _exit(1);
 }
 
@@ -84,8 +83,8 @@ void Child::throw_end() {
   const int status = process_.wait();
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    throw EndedBySignal(
-        fmt::format("the process was ended by signal {} ({})", signal, strsignal(signal)), signal);
+    throw EndedBySignal(fmt::format("the process was ended by signal {} ({})", signal, strsignal(signal)),
+                        signal);
   }
   throw std::runtime_error(
       fmt::format("the process ended with status {} before its work was done", WEXITSTATUS(status)));

@@ -47,7 +47,7 @@ void become_script(const std::string& script, const std::vector<std::string>& ar
 }
 
 CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
-                               const std::string& python) {
+                      const std::string& python) {
   const std::vector<std::string> words = words_of(script, arguments, python);
   try {
     return run_command(words);

@@ -17,6 +17,6 @@ inline constexpr const char* kPython = "/usr/bin/python3";
 // Runs one of them and waits for its end; what it says is not shown, and Ctrl-C does not reach it. Throws as
 // become_script() does.
 CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
-                               const std::string& python = kPython);
+                      const std::string& python = kPython);
 
 }  // namespace stereotlm::process

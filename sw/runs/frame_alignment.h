@@ -6,12 +6,12 @@
 #include <string>
 
 #include "models/fpga/row_profile.h"
-#include "sw/runs/progress.h"
-#include "sw/runs/recorded_run.h"
-#include "sw/runs/rerun.h"
 #include "sw/report/pixel_comparison.h"
 #include "sw/report/row_comparison.h"
 #include "sw/report/rows_csv.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/recorded_run.h"
+#include "sw/runs/rerun.h"
 
 namespace stereotlm::runs {
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/runs/calibration_input.h"
-#include "sw/runs/media_library.h"
-#include "sw/runs/open_source.h"
-#include "sw/runs/picture_size.h"
-#include "sw/runs/run_json_reader.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
+#include "sw/runs/run_json_reader.h"
+#include "sw/runs/sources/calibration_input.h"
+#include "sw/runs/sources/media_library.h"
+#include "sw/runs/sources/open_source.h"
+#include "sw/runs/sources/picture_size.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -29,9 +29,7 @@ struct RecordedFile {
 
 std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
   std::vector<RecordedFile> files;
-  const auto add = [&files](const char* option, const InputFile& file) {
-    files.push_back({option, file});
-  };
+  const auto add = [&files](const char* option, const InputFile& file) { files.push_back({option, file}); };
   if (options.left) add("--left", *options.left);
   if (options.right) add("--right", *options.right);
   if (options.sequence) {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "models/binder.h"
-#include "sw/runs/run_mode.h"
 #include "sw/process/version.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
+#include "sw/runs/run_mode.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -52,8 +52,7 @@ Rerun::Frame frame_of(const std::string& message, const RecordedRun& run) {
   return frame;
 }
 
-std::string figures_of(platform::Statistics statistics, const Result& last,
-                       const RunInput& input) {
+std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input) {
   statistics.fidelity = input.described.fidelity;
   std::optional<report::Accuracy> accuracy;
   if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
@@ -68,8 +67,7 @@ void run_again(const RecordedRun& run, const process::Child::Tell& tell) {
   BlankPairs blank(input.board);
   host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
   Binder binder;
-  const auto simulation =
-      make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
+  const auto simulation = make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
   simulation->record_rows();
   std::deque<fpga::RowProfile> rows;  // of frames whose results are under way
   while (!simulation->finished()) {

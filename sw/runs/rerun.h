@@ -8,8 +8,8 @@
 
 #include "models/fpga/row_profile.h"
 #include "models/kernels/gray_image.h"
-#include "sw/runs/recorded_run.h"
 #include "sw/process/child.h"
+#include "sw/runs/recorded_run.h"
 
 namespace stereotlm::runs {
 

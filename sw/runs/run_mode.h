@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sw/runs/run_input.h"
-#include "sw/runs/make_simulation.h"
+#include "sw/runs/simulation/make_simulation.h"
 
 namespace stereotlm::runs {
 

@@ -4,11 +4,11 @@
 
 #include "calib/calibration.h"
 #include "calib/depth.h"
-#include "sw/runs/media_library.h"
 #include "sw/process/streams.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/console_table.h"
 #include "sw/report/stats_json.h"
+#include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -57,8 +57,7 @@ std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Re
 
 void save_frame(const RunInput& input, const Result& result) {
   if (!input.described.save_frames) return;
-  input.folder->add(frame_file_name(result.number),
-                    media_functions().encode_png_gray(result.disparity));
+  input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
@@ -66,7 +65,7 @@ void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done)
   const std::uint64_t length = input.pairs->length();
   if ((frames_done - 1) % length == (input.frames - 1) % length) return;
   process::say("note", fmt::format("--truth is of the pair of frame {}, which was not reached: no accuracy",
-                          input.frames - 1));
+                                   input.frames - 1));
   input.truth.reset();
   input.described.truth.reset();
 }
@@ -81,11 +80,12 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   std::optional<report::Accuracy> accuracy;
   if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
   if (input.folder) write_files(input, statistics, last, accuracy, differences);
-  for (const std::string& identity : statistics.failed) process::say("error", "identity does not hold: " + identity);
+  for (const std::string& identity : statistics.failed)
+    process::say("error", "identity does not hold: " + identity);
   const platform::BoardConfig& board = input.board;
-  process::print(report::console_table(statistics,
-                              {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
-                              accuracy_to_show(input, last, accuracy)));
+  process::print(report::console_table(
+      statistics, {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
+      accuracy_to_show(input, last, accuracy)));
   for (const std::string& difference : differences) process::say("error", difference);
   return statistics.failed.empty() && differences.empty();
 }

@@ -6,7 +6,7 @@
 
 #include "platform/statistics.h"
 #include "sw/runs/run_input.h"
-#include "sw/runs/simulation.h"
+#include "sw/runs/simulation/simulation.h"
 
 namespace stereotlm::runs {
 

@@ -9,10 +9,10 @@
 
 #include "models/binder.h"
 #include "sw/process/interrupt.h"
-#include "sw/runs/open_source.h"
-#include "sw/runs/run_mode.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
+#include "sw/runs/run_mode.h"
+#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -72,9 +72,7 @@ Verification::Verification(const RunInput& input, const PictureSource& pictures)
       other_(std::make_unique<process::Child>(
           [&input, &pictures](const process::Child::Tell& tell) { run_other(input, pictures, tell); })) {}
 
-void Verification::add(const Result& result) {
-  results_.push_back(line_of(result, !input_.timing_only));
-}
+void Verification::add(const Result& result) { results_.push_back(line_of(result, !input_.timing_only)); }
 
 // While it waits it looks for interrupts.
 std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {

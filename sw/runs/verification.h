@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "platform/statistics.h"
+#include "sw/process/child.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
-#include "sw/process/child.h"
-#include "sw/runs/simulation.h"
+#include "sw/runs/simulation/simulation.h"
+#include "sw/runs/sources/picture_source.h"
 
 namespace stereotlm::runs {
 
@@ -25,7 +26,7 @@ class Verification {
   void add(const Result& result);
 
   struct Outcome {
-    bool process::interrupted = false;  // nothing is compared
+    bool interrupted = false;  // nothing is compared
     std::vector<std::string>
         failed;  // what is not the same, or became of the other run; empty: all is the same
   };

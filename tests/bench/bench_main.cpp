@@ -21,9 +21,9 @@
 #include "models/kernels/stereo.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "platform/config/board_yaml.h"
-#include "sw/report/stats_json.h"
 #include "sw/process/child.h"
-#include "sw/runs/make_simulation.h"
+#include "sw/report/stats_json.h"
+#include "sw/runs/simulation/make_simulation.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
 
@@ -149,8 +149,7 @@ void run_point(benchmark::State& state, const std::vector<std::string>& sets, bo
       const platform::Tables tables = platform::identity_tables(board);
       runs::BlankPairs pairs(board);
       Binder binder;
-      const auto run =
-          runs::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
+      const auto run = runs::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
       while (!run->finished()) run->advance();
       tell(report::stats_json(run->statistics(), std::nullopt));
     });

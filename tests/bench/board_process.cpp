@@ -16,7 +16,7 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
-#include "sw/runs/make_simulation.h"
+#include "sw/runs/simulation/make_simulation.h"
 
 namespace stereotlm::bench {
 namespace {

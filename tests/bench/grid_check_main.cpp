@@ -10,9 +10,9 @@
 #include "calib/calibration_reader.h"
 #include "calib/grid.h"
 #include "calib/grid_assessment.h"
+#include "sw/files/whole_file.h"
 #include "sw/media/load.h"
 #include "sw/runs/result_folder.h"
-#include "sw/files/whole_file.h"
 
 namespace stereotlm::bench {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/explore/store/database.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/store/database.h"
 
 namespace stereotlm::explore {
 

@@ -15,9 +15,9 @@
 #include "platform/config/value_reader.h"
 #include "platform/config/yaml_tree.h"
 #include "platform/config/yaml_values.h"
-#include "sw/explore/store/bank_names.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
+#include "sw/explore/store/bank_names.h"
 
 namespace stereotlm::explore {
 

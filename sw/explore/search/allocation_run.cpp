@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "platform/config/board_rules.h"
-#include "sw/explore/store/database.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/store/database.h"
 
 namespace stereotlm::explore {
 namespace {

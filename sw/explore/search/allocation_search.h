@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/explore/search/allocations.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/search/allocations.h"
 
 namespace stereotlm::explore {
 

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "sw/explore/store/merge_stores.h"
-#include "sw/process/shared_state.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/worker.h"
+#include "sw/process/shared_state.h"
 
 namespace stereotlm::explore {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "sw/explore/store/database.h"
 #include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/store/database.h"
 #include "sw/explore/sweep/sweep_counts.h"
 
 namespace stereotlm::explore {

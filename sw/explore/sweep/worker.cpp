@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "sw/explore/plan/conditions.h"
-#include "sw/process/ended_by_signal.h"
 #include "sw/explore/plan/figures.h"
+#include "sw/process/ended_by_signal.h"
 
 namespace stereotlm::explore {
 namespace {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "sw/process/child_process.h"
 #include "sw/explore/plan/points.h"
-#include "sw/process/shared_state.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/sweep/sweep.h"
+#include "sw/process/child_process.h"
+#include "sw/process/shared_state.h"
 
 namespace stereotlm::explore {
 

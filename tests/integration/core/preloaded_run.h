@@ -8,8 +8,8 @@
 #include "models/fpga/stereo_core.h"
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
 #include "platform/config/tables.h"
+#include "platform/statistics.h"
 #include "tests/support/plain_cycle_loop.h"
 
 namespace stereotlm::test {

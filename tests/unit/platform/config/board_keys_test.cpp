@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "tests/unit/platform/board_files.h"
+#include "tests/unit/platform/config/board_files.h"
 
 namespace stereotlm::platform::testing {
 namespace {

@@ -31,10 +31,10 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
   EXPECT_FALSE(std::filesystem::exists(path));
   csv.commit();
   EXPECT_EQ(files::read_whole_file(path), std::string(kHead) +
-                                       "0,0,10,11,1,2,3,4,5,0,0,0,0,0\n"
-                                       "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
-                                       "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
-                                       "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
+                                              "0,0,10,11,1,2,3,4,5,0,0,0,0,0\n"
+                                              "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
+                                              "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
+                                              "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
   EXPECT_EQ(files_in(folder), 1);
 }
 

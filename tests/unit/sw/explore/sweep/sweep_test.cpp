@@ -20,11 +20,11 @@
 #include <vector>
 
 #include "sw/explore/plan/conditions.h"
-#include "sw/process/ended_by_signal.h"
-#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/plan/plan.h"
+#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
+#include "sw/process/ended_by_signal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::explore {
