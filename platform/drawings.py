@@ -12,10 +12,14 @@ WIDTH = 960
 FONT = "system-ui, -apple-system, 'Segoe UI', Helvetica, Arial, sans-serif"
 
 PALETTES = {
-    "light": {"text": "#1f2328", "faint": "#59636e", "line": "#59636e", "frame": "#afb8c1", "logic": "#ddf4ff",
-              "memory": "#fff1d6", "bus": "#e6eaef", "host": "#dafbe1", "mark": "#ffd8b5", "page": "#ffffff"},
-    "dark": {"text": "#e6edf3", "faint": "#9aa4af", "line": "#9aa4af", "frame": "#4a535e", "logic": "#12324f",
-             "memory": "#45341a", "bus": "#2b323b", "host": "#173d24", "mark": "#6b3d16", "page": "#0d1117"},
+    "light": {
+        "text": "#1f2328", "faint": "#59636e", "line": "#59636e", "frame": "#afb8c1", "page": "#ffffff",
+        "logic": "#ddf4ff", "memory": "#fff1d6", "bus": "#e6eaef", "host": "#dafbe1", "mark": "#ffd8b5",
+    },
+    "dark": {
+        "text": "#e6edf3", "faint": "#9aa4af", "line": "#9aa4af", "frame": "#4a535e", "page": "#0d1117",
+        "logic": "#12324f", "memory": "#45341a", "bus": "#2b323b", "host": "#173d24", "mark": "#6b3d16",
+    },
 }
 
 
@@ -33,9 +37,20 @@ class Drawing:
         self.add("text", text, x=x, y=y, font_size=size, fill=self.colors[color], text_anchor=anchor,
                  font_weight=weight)
 
+    def title(self, x, y, text):
+        self.text(x, y, text, 14, anchor="start", weight="bold")
+
+    def note(self, x, y, text, anchor="start", color="faint"):
+        self.text(x, y, text, 12, color, anchor)
+
     def rect(self, x, y, width, height, fill, line="line", dashes="none", radius=4):
         self.add("rect", x=x, y=y, width=width, height=height, rx=radius, stroke=self.colors[line],
                  fill="none" if fill is None else self.colors[fill], stroke_dasharray=dashes)
+
+    def cell(self, x, y, width, height, fill, text="", size=12):
+        self.rect(x, y, width, height, fill, "frame", radius=0)
+        if text:
+            self.text(x + width / 2, y + height / 2 + 4, text, size)
 
     def frame(self, x, y, width, height, title):
         self.rect(x, y, width, height, None, "frame", radius=8)
@@ -45,23 +60,26 @@ class Drawing:
         """A box with a name, and further lines below it. Two cards: one of each side."""
         for card in reversed(range(cards)):
             self.rect(x + 5 * card, y - 5 * card, width, height, fill, dashes=dashes)
+        center = x + width / 2
         top = y + height / 2 - 8 * (len(lines) - 1) + 4.5
-        for number, line in enumerate(lines):
-            self.text(x + width / 2, top + 16 * number, line, 12 if number else 13, "faint" if number else "text")
+        self.text(center, top, lines[0])
+        for number, line in enumerate(lines[1:], 1):
+            self.note(center, top + 16 * number, line, "middle")
 
-    def arrow(self, *points, both=False, ends=True):
-        path = "M" + " L".join(f"{x} {y}" for x, y in points)
-        attributes = {"marker_end": "url(#tip)"} if ends else {}
+    def arrow(self, *points, both=False):
+        tips = {"marker_end": "url(#tip)"}
         if both:
-            attributes["marker_start"] = "url(#tip)"
-        self.add("path", d=path, fill="none", stroke=self.colors["line"], stroke_width=1.5, **attributes)
+            tips["marker_start"] = "url(#tip)"
+        self.add("path", d="M" + " L".join(f"{x} {y}" for x, y in points), fill="none",
+                 stroke=self.colors["line"], stroke_width=1.5, **tips)
 
     def save(self, path):
-        tip = (f'<marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="6" markerHeight="6" '
-               f'orient="auto-start-reverse"><path d="M0 0 L8 4 L0 8 z" fill="{self.colors["line"]}"/></marker>')
-        lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {self.height}" width="{WIDTH}" '
-                 f'height="{self.height}" font-family="{FONT}">', f"<defs>{tip}</defs>", *self.items, "</svg>"]
-        path.write_text("\n".join(lines) + "\n")
+        path.write_text("\n".join([
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {self.height}"',
+            f' width="{WIDTH}" height="{self.height}" font-family="{FONT}">',
+            '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="6" markerHeight="6"',
+            f' orient="auto-start-reverse"><path d="M0 0 L8 4 L0 8 z" fill="{self.colors["line"]}"/>',
+            "</marker></defs>", *self.items, "</svg>"]) + "\n")
 
 
 def draw_machine(palette):
@@ -88,19 +106,19 @@ def draw_machine(palette):
     d.arrow((165, 192), (165, 242), both=True)
     d.box(40, 242, 250, 54, ["PCI bridge (PLX 9656 class)", "64 posted words, 2 DMA channels"])
     d.arrow((116, 296), (116, 440), both=True)
-    d.text(128, 318, "local bus: 32 bit, 40 MHz, 160 MB/s", 12, "faint", "start")
+    d.note(128, 318, "local bus: 32 bit, 40 MHz, 160 MB/s")
 
     d.frame(40, 330, 880, 276, "XC2V6000 FPGA: 40 MHz")
     d.box(56, 440, 124, 62, ["local bus port,", "registers,", "start and done"])
-    d.box(196, 372, 94, 34, ["sequencer"])
     d.arrow((180, 456), (200, 456), (200, 406))
+    d.box(196, 372, 94, 34, ["sequencer"])
     d.arrow((256, 406), (256, 433))
     stages = [(210, ["LUT reader", "1 entry/cycle"]), (330, ["pixel reader", "1 pixel/cycle"]),
               (450, ["LoG filter", "7x7 kernel"]), (570, ["row buffer", "if line_buffer"])]
     for x, lines in stages:
         d.box(x, 438, 94, 50, lines, cards=2, dashes="4 3" if x == 570 else "none")
         d.arrow((x + 99, 460), (x + 119, 460))
-    d.text(510, 420, "left and right: two of each", 12, "faint")
+    d.note(510, 420, "left and right: two of each", "middle")
     d.box(690, 420, 94, 80, ["SAD array", "80 window", "modules"])
     d.arrow((784, 436), (800, 436), (800, 398), (812, 398))
     d.arrow((784, 460), (812, 460))
@@ -109,121 +127,115 @@ def draw_machine(palette):
     d.arrow((908, 396), (914, 396), (914, 522), (908, 522))
     d.arrow((860, 482), (860, 506))
     d.box(812, 506, 96, 32, ["L-R check"])
-    d.arrow((812, 522), (784, 522))
-    d.box(690, 506, 94, 32, ["result packer"])
-    d.arrow((690, 522), (664, 522))
-    d.box(570, 506, 94, 32, ["result writer"])
+    d.arrow((812, 522), (788, 522))
+    d.box(686, 506, 102, 32, ["result packer"])
+    d.arrow((686, 522), (668, 522))
+    d.box(566, 506, 102, 32, ["result writer"])
 
     d.rect(56, 560, 848, 36, "bus")
     d.text(66, 582, "crossbar", anchor="start")
-    for x, port, both in ((116, "host", True), (256, "left_lut, right_lut", False),
-                          (376, "left_pixel, right_pixel", False), (617, "result", None)):
-        bottom = (x, 558)
-        if both is None:
-            d.arrow((x, 538), bottom)
-        elif both:
-            d.arrow((x, 502), bottom, both=True)
-        else:
-            d.arrow(bottom, (x, 488))
-        d.text(x + 8, 552, port, 12, "faint", "start")
-    contents = ["left picture", "left picture", "right picture", "right picture", "disparities", "disparities",
-                "left table", "right table"]
+    d.arrow((116, 502), (116, 558), both=True)
+    d.note(124, 552, "host")
+    d.arrow((256, 558), (256, 488))
+    d.note(264, 552, "left_lut, right_lut")
+    d.arrow((376, 558), (376, 488))
+    d.note(384, 552, "left_pixel, right_pixel")
+    d.arrow((617, 538), (617, 558))
+    d.note(625, 552, "result")
+    contents = [*["left picture"] * 2, *["right picture"] * 2, *["disparities"] * 2, "left table",
+                "right table"]
     for bank, content in enumerate(contents):
         x = 130 + 97 * bank
         d.box(x, 566, 86, 24, ["arbiter"])
         d.arrow((x + 43, 596), (x + 43, 630), both=True)
         d.box(x, 630, 86, 52, [f"bank{bank}", "512K x 32"], "memory")
-        d.text(x + 43, 700, content, 12, "faint")
-    d.text(76, 652, "ZBT SSRAM,", 12, "faint")
-    d.text(76, 668, "40 MHz", 12, "faint")
-    d.text(480, 730, "Each bank serves one word a cycle: 160 MB/s. Of two ports that request it, one stalls.", 13)
+        d.note(x + 43, 700, content, "middle")
+    d.note(76, 652, "ZBT SSRAM,", "middle")
+    d.note(76, 668, "40 MHz", "middle")
+    d.text(480, 730, "Each bank serves one word a cycle: 160 MB/s. Of two ports that request it, one stalls.")
     return d
 
 
-def draw_slots(palette):
-    d = Drawing(palette, 640)
-    cell = 22
-
-    # The image.
-    d.text(20, 28, "1. A strip, its columns and slots (here n = 3)", 14, anchor="start", weight="bold")
-    left, top, columns, rows = 96, 48, 14, 7
-    strip = range(2, 5)
-    order = {(column, row): 3 * column + row - 1 for column in range(4) for row in strip}
+def draw_strip(d):
+    d.title(20, 28, "1. A strip, its columns and slots (here n = 3)")
+    left, top, side, columns, rows, strip = 96, 48, 22, 14, 7, range(2, 5)
     for row in range(rows):
         for column in range(columns):
-            marked = column == 4 and row in strip
-            fill = "mark" if marked else "logic" if row in strip else "page"
-            d.rect(left + cell * column, top + cell * row, cell, cell, fill, "frame", radius=0)
-            if (column, row) in order:
-                d.text(left + cell * (column + 0.5), top + cell * row + 15, str(order[column, row]), 11)
-    middle = top + cell * 3.5
-    d.text(left - 8, middle - 6, "strip:", 12, anchor="end")
-    d.text(left - 8, middle + 10, "n rows", 12, anchor="end")
-    d.text(left + cell * 4.5, top + cell * rows + 18, "column: n slots, in the order 1, 2, 3, ..", 12, anchor="start")
-    d.arrow((left + cell * 4.5, top + cell * rows + 8), (left + cell * 4.5, top + cell * 5 + 2))
-    d.text(left, top + cell * rows + 38, "The next strip begins one row further down.", 12, "faint", "start")
+            fill = "page" if row not in strip else "mark" if column == 4 else "logic"
+            slot = str(3 * column + row - 1) if row in strip and column < 4 else ""
+            d.cell(left + side * column, top + side * row, side, side, fill, slot, 11)
+    d.note(left - 8, top + side * 3.5 - 6, "strip:", "end", "text")
+    d.note(left - 8, top + side * 3.5 + 10, "n rows", "end", "text")
+    marked = left + side * 4.5
+    d.arrow((marked, top + side * rows + 8), (marked, top + side * 5 + 2))
+    d.note(marked, top + side * rows + 18, "column: n slots, in the order 1, 2, 3, ..", color="text")
+    d.note(left, top + side * rows + 38, "The next strip begins one row further down.")
 
-    # The lane.
-    d.text(500, 28, "2. A lane (left, right)", 14, anchor="start", weight="bold")
+
+def draw_lane(d):
+    d.title(500, 28, "2. A lane (left, right)")
     d.box(500, 66, 88, 40, ["LUT port", "takes"])
     d.box(664, 66, 88, 40, ["pixel port", "handles"])
     d.box(830, 66, 100, 40, ["matcher", "consumes"])
-    d.text(880, 126, "one slot of both", 12, "faint")
-    d.text(880, 142, "lanes in a cycle", 12, "faint")
-    d.arrow((544, 142), (544, 108))
-    d.arrow((708, 142), (708, 108))
-    d.box(500, 142, 88, 34, ["table bank"], "memory")
-    d.box(664, 142, 88, 34, ["picture bank"], "memory")
-    for x, numbers in ((592, (12, 11, 10)), (756, (9, 8, 7))):
-        for place, number in enumerate(numbers):
-            d.rect(x + cell * place, 75, cell, cell, "mark", "frame", radius=0)
-            d.text(x + cell * (place + 0.5), 90, str(number), 11)
+    d.note(880, 126, "one slot of both", "middle")
+    d.note(880, 142, "lanes in a cycle", "middle")
+    for x, bank in ((500, "table bank"), (664, "picture bank")):
+        d.box(x, 142, 88, 34, [bank], "memory")
+        d.arrow((x + 44, 142), (x + 44, 108))
+    for x, slots in ((592, (12, 11, 10)), (756, (9, 8, 7))):
+        for place, slot in enumerate(slots):
+            d.cell(x + 22 * place, 75, 22, 22, "mark", str(slot), 11)
     d.arrow((500, 200), (824, 200), both=True)
-    d.text(662, 218, "slots in the lane: at most lane_fifo_slots (16)", 12)
-    d.text(500, 244, "A word read is usable read_latency cycles after its grant.", 12, "faint", "start")
+    d.note(662, 218, "slots in the lane: at most lane_fifo_slots (16)", "middle", "text")
+    d.note(500, 244, "A word read is usable read_latency cycles after its grant.")
 
-    # The frame.
-    d.text(20, 292, "3. The matcher consumes the columns of all strips, then the drain", 14, anchor="start", weight="bold")
-    parts = [(20, 110, "if h > r", "bus"), (130, 220, "strip of row 0", "logic"), (350, 220, "strip of row 1", "logic"),
-             (570, 60, "..", "logic"), (630, 180, "strip of row H-1", "logic"), (810, 120, "drain", "mark")]
-    for x, width, name, fill in parts:
-        d.rect(x, 308, width, 30, fill, "frame", radius=0)
-        d.text(x + width / 2, 328, name, 12)
-    d.text(20, 356, "lead strips, before the first row of results", 12, "faint", "start")
-    d.text(930, 356, "C_d = D - 1 + r + h columns, without slots", 12, "faint", "end")
-    results = [(250, 220, "results of row 0"), (470, 220, "results of row 1"), (690, 60, ".."), (750, 180, "results of row H-1")]
-    for x, width, name in results:
-        d.rect(x, 380, width, 30, "memory", "frame", radius=0)
-        d.text(x + width / 2, 400, name, 12)
+
+def draw_frame(d):
+    d.title(20, 292, "3. The matcher consumes the columns of all strips, then the drain")
+    for x, width, name, fill in (
+            (20, 110, "if h > r", "bus"), (130, 220, "strip of row 0", "logic"),
+            (350, 220, "strip of row 1", "logic"), (570, 60, "..", "logic"),
+            (630, 180, "strip of row H-1", "logic"), (810, 120, "drain", "mark")):
+        d.cell(x, 308, width, 30, fill, name)
+    d.note(20, 356, "lead strips, before the first row of results")
+    d.note(930, 356, "C_d = D - 1 + r + h columns, without slots", "end")
+    for x, width, name in ((250, 220, "results of row 0"), (470, 220, "results of row 1"), (690, 60, ".."),
+                           (750, 180, "results of row H-1")):
+        d.cell(x, 380, width, 30, "memory", name)
     d.arrow((130, 395), (250, 395), both=True)
-    d.text(124, 399, "C_d columns", 12, anchor="end")
-    d.text(20, 434, "The result of column u of a strip leaves C_d columns after column u of that strip.", 12, "faint", "start")
+    d.note(124, 399, "C_d columns", "end", "text")
+    d.note(20, 434, "The result of column u of a strip leaves C_d columns after column u of that strip.")
 
-    # The group.
-    d.text(20, 480, "4. Four columns are a group; they give one result word", 14, anchor="start", weight="bold")
+
+def draw_group(d):
+    d.title(20, 480, "4. Four columns are a group; they give one result word")
     for column in range(8):
-        fill = "mark" if 2 <= column < 6 else "logic"
         for k in range(3):
-            d.rect(40 + cell * column, 498 + cell * k, cell, cell, fill, "frame", radius=0)
-    d.text(40 + cell * 4, 584, "group", 12)
+            d.cell(40 + 22 * column, 498 + 22 * k, 22, 22, "mark" if 2 <= column < 6 else "logic")
+    d.note(128, 584, "group", "middle", "text")
     d.arrow((222, 531), (270, 531))
-    d.box(270, 505, 120, 52, ["SAD, select-min,", "L-R check"])
+    d.box(270, 505, 120, 52, ["matching", "SAD .. L-R check"])
     d.arrow((390, 531), (430, 531))
     for place in range(4):
-        d.rect(430 + 40 * place, 516, 40, 30, "memory", radius=0)
-        d.text(450 + 40 * place, 536, f"d{3 - place}", 13)
-    d.text(510, 566, "result word, 32 bit:", 12)
-    d.text(510, 582, "lowest column in the lowest byte", 12)
+        d.cell(430 + 40 * place, 516, 40, 30, "memory", f"d{3 - place}", 13)
+    d.note(510, 566, "result word, 32 bit:", "middle", "text")
+    d.note(510, 582, "lowest column in the lowest byte", "middle", "text")
     d.arrow((590, 531), (630, 531))
     for place in range(4):
-        d.rect(630 + 24 * place, 516, 24, 30, "memory" if place > 1 else "page", radius=0)
-    d.text(678, 566, "result queue:", 12)
-    d.text(678, 582, "result_fifo_words (8)", 12)
+        d.cell(630 + 24 * place, 516, 24, 30, "memory" if place > 1 else "page")
+    d.note(678, 566, "result queue:", "middle", "text")
+    d.note(678, 582, "result_fifo_words (8)", "middle", "text")
     d.arrow((726, 531), (760, 531))
     d.box(760, 512, 80, 38, ["result port"])
     d.arrow((840, 531), (866, 531))
     d.box(866, 512, 74, 38, ["bank"], "memory")
-    d.text(20, 620, "If the queue is full, the matcher waits; then the lanes fill up, and the LUT ports are blocked.", 12, "faint", "start")
+    d.note(20, 620, "If the queue is full, the matcher waits; the lanes fill, and the LUT ports are blocked.")
+
+
+def draw_slots(palette):
+    d = Drawing(palette, 640)
+    for draw in (draw_strip, draw_lane, draw_frame, draw_group):
+        draw(d)
     return d
 
 
