@@ -416,7 +416,6 @@ class Computer {
 }  // namespace
 
 PlainComputerResult run_plain_computer(const PlainComputerInput& input) {
-  require_valid(input.board.core);
   return Computer(input).run();
 }
 

@@ -63,8 +63,7 @@ struct PlainComputerResult {
   std::array<Camera, 2> cameras;  // left, right
 };
 
-// From time 0 to the delivery of `frames` frames. Throws std::invalid_argument if the core's input is not
-// valid, std::runtime_error if the frames never come.
+// From time 0 to the delivery of `frames` frames. Throws std::runtime_error if the frames never come.
 PlainComputerResult run_plain_computer(const PlainComputerInput& input);
 
 }  // namespace stereotlm::test

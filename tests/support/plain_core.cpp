@@ -448,9 +448,10 @@ bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& ho
 }
 PlainCycleResult PlainCore::result() const { return cycles_->result(); }
 
-std::size_t plain_slot_count(const PlainCycleInput& input) {
-  require_valid(input);
-  return slots_of_a_frame(input).size();
+const char* name_of(PlainPort port) {
+  static constexpr std::array<const char*, kPlainPortCount> kNames = {
+      "left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"};
+  return kNames[index_of(port)];
 }
 
 int plain_read_latency(PlainBankKind kind) { return read_latency(kind); }

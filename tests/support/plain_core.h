@@ -77,7 +77,7 @@ struct PlainHostRequest {
 
 class PlainCore {
  public:
-  // `input` is valid (require_valid) and outlives the core.
+  // `input` outlives the core.
   explicit PlainCore(const PlainCycleInput& input);
   ~PlainCore();
 
@@ -98,8 +98,5 @@ class PlainCore {
 
 // From the cycle of the grant to the first in which the word can be used.
 int plain_read_latency(PlainBankKind kind);
-
-// The number of slots of one frame, empty ones included.
-std::size_t plain_slot_count(const PlainCycleInput& input);
 
 }  // namespace stereotlm::test

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <map>
-#include <optional>
-#include <tuple>
-#include <vector>
 
 #include "tests/support/plain_core.h"
 #include "tests/support/plain_cycle_input.h"
@@ -17,7 +11,7 @@ namespace stereotlm::test {
 inline constexpr std::uint64_t kPlainMaxFrameCycles = 50'000'000;
 
 // Runs `frames` frames, at least one, one after the other. A frame whose last write is not granted within its
-// first max_frame_cycles cycles is a hang. Throws std::invalid_argument if the input is not valid.
+// first max_frame_cycles cycles is a hang.
 PlainCycleResult run_plain_cycle_loop(const PlainCycleInput& input, int frames,
                                       std::uint64_t max_frame_cycles = kPlainMaxFrameCycles);
 
