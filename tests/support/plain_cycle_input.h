@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-// The part of a board on which contract section 2 depends, in types that share nothing with the models. Nothing
-// checks it: a board must keep the rules of contract section 4.
+// The part of a board on which contract section 2 depends, in types that share nothing with the models.
+// Nothing checks it: a board must keep the rules of contract section 4.
 namespace stereotlm::test {
 
 // In the order of "Ports" in the contract.
@@ -18,6 +18,7 @@ const char* name_of(PlainPort port);  // as in the contract: "left_lut"
 enum class PlainBankKind { kZbtPipelined, kZbtFlowThrough, kSyncBurst };
 enum class PlainFetch { kColumn, kLineBuffer };
 enum class PlainArbitration { kFixedPriority, kRoundRobin };
+const char* name_of(PlainArbitration arbitration);
 
 struct PlainBank {
   PlainBankKind kind = PlainBankKind::kZbtPipelined;

@@ -297,26 +297,8 @@ RandomBoard make_random_board(std::uint64_t seed) {
 }
 
 PlainCycleInput cycle_input(const RandomBoard& board) {
-  PlainCycleInput input;
-  input.width = board.width;
-  input.height = board.height;
-  input.window = board.window;
-  input.disparities = board.disparities;
+  PlainCycleInput input = board;
   input.filter_half = board.filter ? (board.filter->size - 1) / 2 : 0;
-  input.fetch = board.fetch;
-  input.arbitration = board.arbitration;
-  input.priority = board.priority;
-  input.lane_fifo_slots = board.lane_fifo_slots;
-  input.result_fifo_words = board.result_fifo_words;
-  input.pipeline_latency_cycles = board.pipeline_latency_cycles;
-  input.banks = board.banks;
-  input.left_image = board.left_image;
-  input.right_image = board.right_image;
-  input.disparity = board.disparity;
-  input.left_lut = board.left_lut;
-  input.right_lut = board.right_lut;
-  input.left_table = board.left_table;
-  input.right_table = board.right_table;
   return input;
 }
 

@@ -36,11 +36,21 @@ class Matching {
 
   // argmin over d of SAD(x, y, d).
   int right_based(int x, int y) const {
+    return argmin(y, [x](int) { return x; });
+  }
+  // argmin over d of SAD(x - d, y, d).
+  int left_based(int x, int y) const {
+    return argmin(y, [x](int d) { return x - d; });
+  }
+
+ private:
+  template <typename RightPixel>
+  int argmin(int y, RightPixel right_pixel) const {
     int best = kInvalid;
     std::int64_t best_sad = 0;
     for (int d = 0; d < disparities_; ++d) {
-      if (!is_candidate(x, y, d)) continue;
-      const std::int64_t candidate_sad = sad(x, y, d);
+      if (!is_candidate(right_pixel(d), y, d)) continue;
+      const std::int64_t candidate_sad = sad(right_pixel(d), y, d);
       if (best == kInvalid || candidate_sad < best_sad) {  // strictly less: the smallest d wins a tie
         best = d;
         best_sad = candidate_sad;
@@ -49,22 +59,6 @@ class Matching {
     return best;
   }
 
-  // argmin over d of SAD(x - d, y, d).
-  int left_based(int x, int y) const {
-    int best = kInvalid;
-    std::int64_t best_sad = 0;
-    for (int d = 0; d < disparities_; ++d) {
-      if (!is_candidate(x - d, y, d)) continue;
-      const std::int64_t candidate_sad = sad(x - d, y, d);
-      if (best == kInvalid || candidate_sad < best_sad) {
-        best = d;
-        best_sad = candidate_sad;
-      }
-    }
-    return best;
-  }
-
- private:
   bool window_inside(int x, int y) const {
     return x - radius_ >= 0 && x + radius_ <= width_ - 1 && y - radius_ >= 0 && y + radius_ <= height_ - 1;
   }

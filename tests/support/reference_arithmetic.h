@@ -5,8 +5,8 @@
 #include <vector>
 
 // The arithmetic of contract section 1 as literal nested loops, written from that page alone. It shares no
-// code with the models and exists to be compared with them: each function below is one sentence or formula of
-// the page, and nothing is done for speed. Nothing is checked: inputs must keep the rules of the page.
+// code with the models, which tests compare with it. Each function is one sentence or formula of the page,
+// without regard to speed. Nothing checks the input, which must keep the rules of the page.
 namespace stereotlm::test {
 
 // K of contract 1.2.
@@ -44,7 +44,7 @@ struct ReferenceResult {
 
 ReferenceResult compute_reference(const ReferenceInput& input);
 
-// The stages alone, for tests that look at one of them. `width` and `height` as in ReferenceInput.
+// Single stages. `width` and `height` as in ReferenceInput.
 
 // Contract 1.1. `table` nullopt: P = source.
 std::vector<std::uint8_t> reference_rectify(int width, int height, const std::vector<std::uint8_t>& source,

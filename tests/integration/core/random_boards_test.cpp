@@ -127,7 +127,9 @@ void expect_boards_equal_references(Fidelity fidelity, std::uint64_t boards,
       ++hangs;
     } else if (!results[job].ok()) {
       const RandomBoard board = make_random_board(first + job);
-      ADD_FAILURE() << results[job].text << "\n" << describe(board) << "\n" << platform::to_yaml(board_config(board));
+      ADD_FAILURE() << results[job].text << "\n"
+                    << describe(board) << "\n"
+                    << platform::to_yaml(board_config(board));
     }
   }
   testing::Test::RecordProperty("hangs", std::to_string(hangs));

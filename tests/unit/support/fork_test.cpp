@@ -46,22 +46,21 @@ const std::string kMoreThanAPipeHolds(1'000'000, 'x');
 
 INSTANTIATE_TEST_SUITE_P(
     Of, RunInChildEnding,
-    testing::Values(
-        Ending{"Success", succeed, 0, ""},
-        Ending{"Text", [] { return std::string("two lines\nof text"); }, 1, "two lines\nof text"},
-        Ending{"LongText", [] { return kMoreThanAPipeHolds; }, 1, kMoreThanAPipeHolds},
-        Ending{"Exception", []() -> std::string { throw std::runtime_error("no such bank"); }, 2,
-               "exception: no such bank"},
-        Ending{"Signal",
-               [] {
-                 std::raise(SIGKILL);
-                 return std::string();
-               },
-               128 + SIGKILL, "killed by signal 9 (Killed)"},
-        Ending{"EarlyExitWithZero", []() -> std::string { _exit(0); }, 1,
-               "exited with status 0 before its work returned"},
-        Ending{"EarlyExit", []() -> std::string { _exit(77); }, 77,
-               "exited with status 77 before its work returned"}),
+    testing::Values(Ending{"Success", succeed, 0, ""},
+                    Ending{"Text", [] { return std::string("two lines\nof text"); }, 1, "two lines\nof text"},
+                    Ending{"LongText", [] { return kMoreThanAPipeHolds; }, 1, kMoreThanAPipeHolds},
+                    Ending{"Exception", []() -> std::string { throw std::runtime_error("no such bank"); }, 2,
+                           "exception: no such bank"},
+                    Ending{"Signal",
+                           [] {
+                             std::raise(SIGKILL);
+                             return std::string();
+                           },
+                           128 + SIGKILL, "killed by signal 9 (Killed)"},
+                    Ending{"EarlyExitWithZero", []() -> std::string { _exit(0); }, 1,
+                           "exited with status 0 before its work returned"},
+                    Ending{"EarlyExit", []() -> std::string { _exit(77); }, 77,
+                           "exited with status 77 before its work returned"}),
     [](const auto& ending) { return ending.param.name; });
 
 TEST(RunInChild, RunsInAnotherProcess) {

@@ -121,12 +121,15 @@ INSTANTIATE_TEST_SUITE_P(
               {14}},
         Trace{"TurnaroundThatHasPassed", [](auto& input) { with_turnaround(input, 6); }, {18}},
         Trace{"Turnaround", [](auto& input) { with_turnaround(input, 7); }, {19}},
-        Trace{"TurnaroundThatHasPassedByTheNextFrame", [](auto& input) { with_turnaround(input, 1); }, {18, 18}},
+        Trace{"TurnaroundThatHasPassedByTheNextFrame",
+              [](auto& input) { with_turnaround(input, 1); },
+              {18, 18}},
         Trace{"TurnaroundOverTheNextFrame", [](auto& input) { with_turnaround(input, 2); }, {18, 19}},
         Trace{"TurnaroundThatHasPassedInThePipelineLatency",
               [](auto& input) { with_turnaround(input, 2, 1); },
               {19, 19}},
-        Trace{"TurnaroundOverThePipelineLatency", [](auto& input) { with_turnaround(input, 3, 1); }, {19, 20}}),
+        Trace{
+            "TurnaroundOverThePipelineLatency", [](auto& input) { with_turnaround(input, 3, 1); }, {19, 20}}),
     [](const auto& trace) { return trace.param.name; });
 
 TEST(PlainCycleLoop, CountsThePortStatesTracedByHand) {

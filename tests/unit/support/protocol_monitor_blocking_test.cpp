@@ -12,74 +12,65 @@ using Payload = tlm::tlm_generic_payload;
 constexpr auto kUnknownCommand = static_cast<tlm::tlm_command>(3);
 
 unsigned char elsewhere[8];
+unsigned char half_enabled[4] = {0, 0x0f, 0, 0};
 
 // An initiator that spoils a correct request.
-Exchange request(const char* name, const std::function<void(ScriptedLink&)>& spoil, const char* violation) {
-  return {name,
-          [spoil](ScriptedLink& link) {
-            spoil(link);
+Exchange request(const char* name, const char* violation, const std::function<void(Payload&)>& spoil) {
+  return {name, violation, [spoil](ScriptedLink& link) {
+            spoil(link.payload);
             link.transport();
-          },
-          violation};
+          }};
 }
 
 // A target that spoils a write with byte enables and a delay of 10 ns.
-Exchange answer(const char* name, const std::function<void(Payload&, sc_time&)>& spoil,
-                const char* violation) {
-  return {name,
-          [spoil](ScriptedLink& link) {
+Exchange answer(const char* name, const char* violation,
+                const std::function<void(Payload&, sc_time&)>& spoil) {
+  return {name, violation, [spoil](ScriptedLink& link) {
             link.payload.set_write();
             link.payload.set_byte_enable_ptr(link.enables.data());
             link.payload.set_byte_enable_length(4);
             link.delay = sc_time(10, SC_NS);
             link.target_acts(spoil);
             link.transport();
-          },
-          violation};
+          }};
+}
+Exchange answer(const char* name, const char* violation, const std::function<void(Payload&)>& spoil) {
+  return answer(name, violation, [spoil](Payload& payload, sc_time&) { spoil(payload); });
+}
+Exchange status(const char* name, const char* violation, int value) {
+  return answer(name, violation, [value](Payload& payload) {
+    payload.set_response_status(static_cast<tlm::tlm_response_status>(value));
+  });
 }
 
 class ProtocolMonitorRequest : public ExchangeTest {};
-TEST_P(ProtocolMonitorRequest, IsRefusedOnce) { expect_its_violation(); }
+TEST_P(ProtocolMonitorRequest, IsReportedOnce) { expect_its_violation(); }
 
 INSTANTIATE_TEST_SUITE_P(
     With, ProtocolMonitorRequest,
     testing::Values(
-        request("UnknownCommand", [](auto& link) { link.payload.set_command(kUnknownCommand); },
-                "command = 3"),
-        request("NullDataPointer", [](auto& link) { link.payload.set_data_ptr(nullptr); },
-                "data pointer = null"),
-        request("NoDataLength", [](auto& link) { link.payload.set_data_length(0); }, "data length = 0"),
-        request("PartOfAWord", [](auto& link) { link.payload.set_data_length(6); },
-                "data length = 6: must be a multiple"),
-        request("UnalignedAddress", [](auto& link) { link.payload.set_address(0x42); }, "address = 0x42"),
-        request("NoStreamingWidth", [](auto& link) { link.payload.set_streaming_width(0); },
-                "streaming width = 0"),
-        request("UnmeantStreamingBurst", [](auto& link) { link.payload.set_streaming_width(4); },
-                "streaming width = 4: must be at least the data length, 8"),
-        request("OddStreamingWidth", [](auto& link) { link.payload.set_streaming_width(9); },
-                "streaming width = 9: must be a multiple"),
-        request("ByteEnablesWithoutLength",
-                [](auto& link) { link.payload.set_byte_enable_ptr(link.enables.data()); },
-                "byte enable length = 0"),
-        request("HalfAByteEnable",
-                [](auto& link) {
-                  link.enables[1] = 0x0f;
-                  link.payload.set_byte_enable_ptr(link.enables.data());
-                  link.payload.set_byte_enable_length(4);
-                },
-                "byte enable[1] = 0xf"),
-        request("FinalStatus", [](auto& link) { link.payload.set_response_status(tlm::TLM_OK_RESPONSE); },
-                "must be TLM_INCOMPLETE_RESPONSE"),
-        request("DmiHint", [](auto& link) { link.payload.set_dmi_allowed(true); }, "dmi_allowed = true"),
-        request("FullPayloadOption", [](auto& link) { link.payload.set_gp_option(tlm::TLM_FULL_PAYLOAD); },
-                "gp_option = 1"),
-        Exchange{"NoReference",
-                 [](auto& link) {
-                   link.payload.set_mm(&link.manager);
-                   link.transport();
-                   EXPECT_EQ(link.manager.frees, 0);
-                 },
-                 "reference count = 0"}),
+        request("UnknownCommand", "command = 3", [](auto& p) { p.set_command(kUnknownCommand); }),
+        request("NullDataPointer", "data pointer = null", [](auto& p) { p.set_data_ptr(nullptr); }),
+        request("NoDataLength", "data length = 0", [](auto& p) { p.set_data_length(0); }),
+        request("PartOfAWord", "data length = 6: must be a multiple", [](auto& p) { p.set_data_length(6); }),
+        request("UnalignedAddress", "address = 0x42", [](auto& p) { p.set_address(0x42); }),
+        request("NoStreamingWidth", "streaming width = 0", [](auto& p) { p.set_streaming_width(0); }),
+        request("StreamingBurst", "streaming width = 4: must be at least the data length, 8",
+                [](auto& p) { p.set_streaming_width(4); }),
+        request("OddStreamingWidth", "streaming width = 9: must be a multiple",
+                [](auto& p) { p.set_streaming_width(9); }),
+        request("ByteEnablesWithoutLength", "byte enable length = 0",
+                [](auto& p) { p.set_byte_enable_ptr(half_enabled); }),
+        request("HalfAByteEnable", "byte enable[1] = 0xf",
+                [](auto& p) {
+                  p.set_byte_enable_ptr(half_enabled);
+                  p.set_byte_enable_length(4);
+                }),
+        request("FinalStatus", "must be TLM_INCOMPLETE_RESPONSE",
+                [](auto& p) { p.set_response_status(tlm::TLM_OK_RESPONSE); }),
+        request("DmiHint", "dmi_allowed = true", [](auto& p) { p.set_dmi_allowed(true); }),
+        request("FullPayloadOption", "gp_option = 1",
+                [](auto& p) { p.set_gp_option(tlm::TLM_FULL_PAYLOAD); })),
     ExchangeTest::name);
 
 class ProtocolMonitorTarget : public ExchangeTest {};
@@ -88,35 +79,27 @@ TEST_P(ProtocolMonitorTarget, IsReportedOnce) { expect_its_violation(); }
 INSTANTIATE_TEST_SUITE_P(
     That, ProtocolMonitorTarget,
     testing::Values(
-        answer("LeavesTheStatusIncomplete",
-               [](auto& p, auto&) { p.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE); },
-               "response status = 0"),
-        answer("InventsAStatus",
-               [](auto& p, auto&) { p.set_response_status(static_cast<tlm::tlm_response_status>(2)); },
-               "response status = 2"),
-        answer("InventsAnError",
-               [](auto& p, auto&) { p.set_response_status(static_cast<tlm::tlm_response_status>(-6)); },
-               "response status = -6"),
-        answer("ChangesTheCommand", [](auto& p, auto&) { p.set_read(); }, "command changed"),
-        answer("ChangesTheAddress", [](auto& p, auto&) { p.set_address(0); },
-               "address changed from 0x40 to 0x0"),
-        answer("ChangesTheDataPointer", [](auto& p, auto&) { p.set_data_ptr(elsewhere); },
-               "data pointer changed"),
-        answer("ChangesTheDataLength", [](auto& p, auto&) { p.set_data_length(4); }, "data length changed"),
-        answer("ChangesTheStreamingWidth", [](auto& p, auto&) { p.set_streaming_width(12); },
-               "streaming width changed"),
-        answer("ChangesTheByteEnablePointer", [](auto& p, auto&) { p.set_byte_enable_ptr(elsewhere); },
-               "byte enable pointer changed"),
-        answer("ChangesTheByteEnableLength", [](auto& p, auto&) { p.set_byte_enable_length(8); },
-               "byte enable length changed"),
-        answer("ChangesTheWrittenData", [](auto& p, auto&) { p.get_data_ptr()[7] = 1; },
-               "data array of a write changed"),
-        answer("ChangesTheByteEnables", [](auto& p, auto&) { p.get_byte_enable_ptr()[3] = 0xff; },
-               "byte enable array changed"),
-        answer("ChangesTheOption", [](auto& p, auto&) { p.set_gp_option(tlm::TLM_FULL_PAYLOAD_ACCEPTED); },
-               "gp_option changed"),
-        answer("TakesBackTime", [](auto&, auto& annotated) { annotated = sc_time(9, SC_NS); },
-               "time fell from 10 ns to 9 ns")),
+        status("LeavesTheStatusIncomplete", "response status = 0", tlm::TLM_INCOMPLETE_RESPONSE),
+        status("InventsAStatus", "response status = 2", 2),
+        status("InventsAnError", "response status = -6", -6),
+        answer("ChangesTheCommand", "command changed", [](auto& p) { p.set_read(); }),
+        answer("ChangesTheAddress", "address changed from 0x40 to 0x0", [](auto& p) { p.set_address(0); }),
+        answer("ChangesTheDataPointer", "data pointer changed", [](auto& p) { p.set_data_ptr(elsewhere); }),
+        answer("ChangesTheDataLength", "data length changed", [](auto& p) { p.set_data_length(4); }),
+        answer("ChangesTheStreamingWidth", "streaming width changed",
+               [](auto& p) { p.set_streaming_width(12); }),
+        answer("ChangesTheByteEnablePointer", "byte enable pointer changed",
+               [](auto& p) { p.set_byte_enable_ptr(elsewhere); }),
+        answer("ChangesTheByteEnableLength", "byte enable length changed",
+               [](auto& p) { p.set_byte_enable_length(8); }),
+        answer("ChangesTheWrittenData", "data array of a write changed",
+               [](auto& p) { p.get_data_ptr()[7] = 1; }),
+        answer("ChangesTheByteEnables", "byte enable array changed",
+               [](auto& p) { p.get_byte_enable_ptr()[3] = 0xff; }),
+        answer("ChangesTheOption", "gp_option changed",
+               [](auto& p) { p.set_gp_option(tlm::TLM_FULL_PAYLOAD_ACCEPTED); }),
+        answer("TakesBackTime", "time fell from 10 ns to 9 ns",
+               [](auto&, auto& annotated) { annotated = sc_time(9, SC_NS); })),
     ExchangeTest::name);
 
 using ProtocolMonitorBlocking = ScriptedLink;
@@ -227,6 +210,14 @@ TEST_F(ProtocolMonitorBlocking, ForgetsATransactionWhoseTargetThrew) {
   EXPECT_THROW(transport(), std::runtime_error);
   target.on_blocking = correct;
   transport();
+}
+
+TEST_F(ProtocolMonitorBlocking, CatchesAManagedTransactionThatNobodyAcquired) {
+  elaborate();
+  payload.set_mm(&manager);
+  transport();
+  expect_only("reference count = 0");
+  EXPECT_EQ(manager.frees, 0);
 }
 
 TEST_F(ProtocolMonitorBlocking, LeavesTheReferenceCountAsItWas) {

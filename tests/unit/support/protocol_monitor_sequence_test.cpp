@@ -16,7 +16,7 @@ using tlm::tlm_phase;
 using tlm::UNINITIALIZED_PHASE;
 using Payload = tlm::tlm_generic_payload;
 
-constexpr auto kNoSuchStatus = static_cast<tlm::tlm_sync_enum>(3);
+constexpr auto kUnknownStatus = static_cast<tlm::tlm_sync_enum>(3);
 
 // One call of nb_transport, and how the other end answers it.
 struct Step {
@@ -28,23 +28,19 @@ struct Step {
   tlm::tlm_phase_enum returned = UNINITIALIZED_PHASE;  // left as it is
   sc_time added = sc_core::SC_ZERO_TIME;
 
-  Step after(int ns) const {
-    Step step = *this;
-    step.delay = sc_time(ns, SC_NS);
-    return step;
+  Step after(int ns) {
+    delay = sc_time(ns, SC_NS);
+    return *this;
   }
-  Step other() const {
-    Step step = *this;
-    step.of_other = true;
-    return step;
+  Step other() {
+    of_other = true;
+    return *this;
   }
-  Step returns(tlm::tlm_sync_enum answer, tlm::tlm_phase_enum with = UNINITIALIZED_PHASE,
-               int added_ns = 0) const {
-    Step step = *this;
-    step.status = answer;
-    step.returned = with;
-    step.added = sc_time(added_ns, SC_NS);
-    return step;
+  Step returns(tlm::tlm_sync_enum answer, tlm::tlm_phase_enum with = UNINITIALIZED_PHASE, int added_ns = 0) {
+    status = answer;
+    returned = with;
+    added = sc_time(added_ns, SC_NS);
+    return *this;
   }
 };
 
@@ -70,14 +66,12 @@ void take(const Step& step, ScriptedLink& link) {
 }
 
 // The steps on two transactions that have been acquired once each.
-Exchange steps(const char* name, const std::vector<Step>& all, const char* violation = nullptr) {
-  return {name,
-          [all](ScriptedLink& link) {
+Exchange steps(const char* name, const char* violation, const std::vector<Step>& all) {
+  return {name, violation, [all](ScriptedLink& link) {
             link.manage();
             for (const Step& step : all) take(step, link);
             EXPECT_EQ(link.payload.get_ref_count(), 1);
-          },
-          violation};
+          }};
 }
 
 class ProtocolMonitorSequence : public ExchangeTest {};
@@ -85,93 +79,77 @@ TEST_P(ProtocolMonitorSequence, GivesItsViolationAndNoOther) { expect_its_violat
 
 INSTANTIATE_TEST_SUITE_P(
     Correct, ProtocolMonitorSequence,
-    testing::Values(
-        steps("FourPhases", {forward(BEGIN_REQ), backward(END_REQ), backward(BEGIN_RESP),
-                             forward(END_RESP).returns(tlm::TLM_COMPLETED)}),
-        steps("ResponseWithoutEndReq", {forward(BEGIN_REQ), backward(BEGIN_RESP), forward(END_RESP)}),
-        steps("PhasesOnTheReturnPath",
-              {forward(BEGIN_REQ).returns(tlm::TLM_UPDATED, END_REQ, 2),
-               backward(BEGIN_RESP).after(2).returns(tlm::TLM_UPDATED, END_RESP)}),
-        steps("ResponseOnTheReturnPath",
-              {forward(BEGIN_REQ).returns(tlm::TLM_UPDATED, BEGIN_RESP), forward(END_RESP)}),
-        steps("CompletionAtOnce", {forward(BEGIN_REQ).returns(tlm::TLM_COMPLETED)}),
-        steps("CompletionOfTheResponse",
-              {forward(BEGIN_REQ), backward(BEGIN_RESP).returns(tlm::TLM_COMPLETED)}),
-        steps("ResponseAtTheTimeOfItsRequest",
-              {forward(BEGIN_REQ).after(10), backward(BEGIN_RESP).after(10)}),
-        steps("PipelinedTransactions",
-              {forward(BEGIN_REQ), backward(END_REQ), forward(BEGIN_REQ).other(), backward(BEGIN_RESP),
-               backward(END_REQ).other(), forward(END_RESP), backward(BEGIN_RESP).other(),
-               forward(END_RESP).other()})),
+    testing::Values(steps("FourPhases", nullptr,
+                          {forward(BEGIN_REQ), backward(END_REQ), backward(BEGIN_RESP),
+                           forward(END_RESP).returns(tlm::TLM_COMPLETED)}),
+                    steps("ResponseWithoutEndReq", nullptr,
+                          {forward(BEGIN_REQ), backward(BEGIN_RESP), forward(END_RESP)}),
+                    steps("PhasesOnTheReturnPath", nullptr,
+                          {forward(BEGIN_REQ).returns(tlm::TLM_UPDATED, END_REQ, 2),
+                           backward(BEGIN_RESP).after(2).returns(tlm::TLM_UPDATED, END_RESP)}),
+                    steps("ResponseOnTheReturnPath", nullptr,
+                          {forward(BEGIN_REQ).returns(tlm::TLM_UPDATED, BEGIN_RESP), forward(END_RESP)}),
+                    steps("CompletionAtOnce", nullptr, {forward(BEGIN_REQ).returns(tlm::TLM_COMPLETED)}),
+                    steps("CompletionOfTheResponse", nullptr,
+                          {forward(BEGIN_REQ), backward(BEGIN_RESP).returns(tlm::TLM_COMPLETED)}),
+                    steps("ResponseAtTheTimeOfItsRequest", nullptr,
+                          {forward(BEGIN_REQ).after(10), backward(BEGIN_RESP).after(10)}),
+                    steps("PipelinedTransactions", nullptr,
+                          {forward(BEGIN_REQ), backward(END_REQ), forward(BEGIN_REQ).other(),
+                           backward(BEGIN_RESP), backward(END_REQ).other(), forward(END_RESP),
+                           backward(BEGIN_RESP).other(), forward(END_RESP).other()})),
     ExchangeTest::name);
 
 INSTANTIATE_TEST_SUITE_P(
-    Phase, ProtocolMonitorSequence,
+    Wrong, ProtocolMonitorSequence,
     testing::Values(
-        steps("EndReqOnTheForwardPath", {forward(BEGIN_REQ), forward(END_REQ)},
-              "phase END_REQ on the forward path"),
-        steps("BeginReqOnTheBackwardPath", {forward(BEGIN_REQ), backward(BEGIN_REQ)},
-              "phase BEGIN_REQ from the target"),
-        steps("Uninitialized", {forward(UNINITIALIZED_PHASE)},
-              "phase UNINITIALIZED_PHASE on the forward path"),
-        steps("SecondEndReq", {forward(BEGIN_REQ), backward(END_REQ), backward(END_REQ)},
-              "END_REQ after the request has ended"),
-        steps("EndReqAfterBeginResp", {forward(BEGIN_REQ), backward(BEGIN_RESP), backward(END_REQ)},
-              "END_REQ after the request has ended"),
-        steps("SecondBeginResp", {forward(BEGIN_REQ), backward(BEGIN_RESP), backward(BEGIN_RESP)},
-              "a second BEGIN_RESP"),
-        steps("EndRespBeforeBeginResp", {forward(BEGIN_REQ), forward(END_RESP)},
-              "END_RESP without BEGIN_RESP"),
-        steps("SecondEndResp",
-              {forward(BEGIN_REQ), backward(BEGIN_RESP), forward(END_RESP), forward(END_RESP)},
-              "END_RESP without BEGIN_RESP"),
-        steps("AfterCompletion",
-              {forward(BEGIN_REQ).returns(tlm::TLM_COMPLETED), backward(BEGIN_RESP)},
-              "phase BEGIN_RESP for a transaction that is not in progress"),
-        steps("WithoutRequest", {backward(END_REQ)},
-              "phase END_REQ for a transaction that is not in progress"),
-        steps("SecondBeginReq", {forward(BEGIN_REQ), backward(END_REQ), forward(BEGIN_REQ)},
-              "BEGIN_REQ for a transaction that is already in progress"),
-        steps("ResponseEarlierThanItsRequest", {forward(BEGIN_REQ).after(10), backward(BEGIN_RESP).after(9)},
-              "time 9 ns after 10 ns")),
-    ExchangeTest::name);
-
-INSTANTIATE_TEST_SUITE_P(
-    Exclusion, ProtocolMonitorSequence,
-    testing::Values(
-        steps("SecondRequest", {forward(BEGIN_REQ), forward(BEGIN_REQ).other()}, "one request at a time"),
-        steps("SecondResponse",
+        steps("EndReqOnTheForwardPath", "phase END_REQ on the forward path",
+              {forward(BEGIN_REQ), forward(END_REQ)}),
+        steps("BeginReqOnTheBackwardPath", "phase BEGIN_REQ from the target",
+              {forward(BEGIN_REQ), backward(BEGIN_REQ)}),
+        steps("UninitializedPhase", "phase UNINITIALIZED_PHASE on the forward path",
+              {forward(UNINITIALIZED_PHASE)}),
+        steps("SecondEndReq", "END_REQ after the request has ended",
+              {forward(BEGIN_REQ), backward(END_REQ), backward(END_REQ)}),
+        steps("EndReqAfterBeginResp", "END_REQ after the request has ended",
+              {forward(BEGIN_REQ), backward(BEGIN_RESP), backward(END_REQ)}),
+        steps("SecondBeginResp", "a second BEGIN_RESP",
+              {forward(BEGIN_REQ), backward(BEGIN_RESP), backward(BEGIN_RESP)}),
+        steps("EndRespBeforeBeginResp", "END_RESP without BEGIN_RESP",
+              {forward(BEGIN_REQ), forward(END_RESP)}),
+        steps("SecondEndResp", "END_RESP without BEGIN_RESP",
+              {forward(BEGIN_REQ), backward(BEGIN_RESP), forward(END_RESP), forward(END_RESP)}),
+        steps("PhaseAfterCompletion", "phase BEGIN_RESP for a transaction that is not in progress",
+              {forward(BEGIN_REQ).returns(tlm::TLM_COMPLETED), backward(BEGIN_RESP)}),
+        steps("PhaseWithoutRequest", "phase END_REQ for a transaction that is not in progress",
+              {backward(END_REQ)}),
+        steps("SecondBeginReq", "BEGIN_REQ for a transaction that is already in progress",
+              {forward(BEGIN_REQ), backward(END_REQ), forward(BEGIN_REQ)}),
+        steps("ResponseEarlierThanItsRequest", "time 9 ns after 10 ns",
+              {forward(BEGIN_REQ).after(10), backward(BEGIN_RESP).after(9)}),
+        steps("SecondRequest", "one request at a time", {forward(BEGIN_REQ), forward(BEGIN_REQ).other()}),
+        steps("SecondResponse", "one response at a time",
               {forward(BEGIN_REQ), backward(END_REQ), forward(BEGIN_REQ).other(), backward(BEGIN_RESP),
-               backward(BEGIN_RESP).other()},
-              "one response at a time"),
-        steps("SecondResponseReturned",
+               backward(BEGIN_RESP).other()}),
+        steps("SecondResponseReturned", "one response at a time",
               {forward(BEGIN_REQ), backward(BEGIN_RESP),
-               forward(BEGIN_REQ).other().returns(tlm::TLM_UPDATED, BEGIN_RESP)},
-              "one response at a time")),
-    ExchangeTest::name);
-
-INSTANTIATE_TEST_SUITE_P(
-    Return, ProtocolMonitorSequence,
-    testing::Values(
-        steps("AcceptedWithAnotherPhase", {forward(BEGIN_REQ).returns(tlm::TLM_ACCEPTED, END_REQ)},
-              "TLM_ACCEPTED with phase END_REQ"),
-        steps("AcceptedWithAnotherDelay",
-              {forward(BEGIN_REQ).returns(tlm::TLM_ACCEPTED, UNINITIALIZED_PHASE, 1)},
-              "TLM_ACCEPTED with another delay"),
-        steps("UpdatedWithoutNewPhase", {forward(BEGIN_REQ).returns(tlm::TLM_UPDATED)},
-              "phase BEGIN_REQ from the target"),
-        steps("UpdatedAfterTheLastPhase",
-              {forward(BEGIN_REQ), backward(BEGIN_RESP), forward(END_RESP).returns(tlm::TLM_UPDATED)},
-              "TLM_UPDATED for END_RESP"),
-        steps("AnswerToEndReq", {forward(BEGIN_REQ), backward(END_REQ).returns(tlm::TLM_COMPLETED)},
-              "END_REQ: only TLM_ACCEPTED may be returned"),
-        steps("AnswerToBeginRespWithAnotherPhase",
-              {forward(BEGIN_REQ), backward(BEGIN_RESP).returns(tlm::TLM_UPDATED, END_REQ)},
-              "TLM_UPDATED with phase END_REQ for BEGIN_RESP"),
-        steps("UnknownToTheInitiator", {forward(BEGIN_REQ).returns(kNoSuchStatus)},
-              "nb_transport_fw returned 3"),
-        steps("UnknownToTheTarget", {forward(BEGIN_REQ), backward(END_REQ).returns(kNoSuchStatus)},
-              "nb_transport_bw returned 3")),
+               forward(BEGIN_REQ).other().returns(tlm::TLM_UPDATED, BEGIN_RESP)}),
+        steps("AcceptedWithAnotherPhase", "TLM_ACCEPTED with phase END_REQ",
+              {forward(BEGIN_REQ).returns(tlm::TLM_ACCEPTED, END_REQ)}),
+        steps("AcceptedWithAnotherDelay", "TLM_ACCEPTED with another delay",
+              {forward(BEGIN_REQ).returns(tlm::TLM_ACCEPTED, UNINITIALIZED_PHASE, 1)}),
+        steps("UpdatedWithoutNewPhase", "phase BEGIN_REQ from the target",
+              {forward(BEGIN_REQ).returns(tlm::TLM_UPDATED)}),
+        steps("UpdatedAfterTheLastPhase", "TLM_UPDATED for END_RESP",
+              {forward(BEGIN_REQ), backward(BEGIN_RESP), forward(END_RESP).returns(tlm::TLM_UPDATED)}),
+        steps("AnswerToEndReq", "END_REQ: only TLM_ACCEPTED may be returned",
+              {forward(BEGIN_REQ), backward(END_REQ).returns(tlm::TLM_COMPLETED)}),
+        steps("AnswerToBeginRespWithAnotherPhase", "TLM_UPDATED with phase END_REQ for BEGIN_RESP",
+              {forward(BEGIN_REQ), backward(BEGIN_RESP).returns(tlm::TLM_UPDATED, END_REQ)}),
+        steps("UnknownStatusOfTheTarget", "nb_transport_fw returned 3",
+              {forward(BEGIN_REQ).returns(kUnknownStatus)}),
+        steps("UnknownStatusOfTheInitiator", "nb_transport_bw returned 3",
+              {forward(BEGIN_REQ), backward(END_REQ).returns(kUnknownStatus)})),
     ExchangeTest::name);
 
 class ProtocolMonitorHandshake : public ScriptedLink {
@@ -258,95 +236,85 @@ auto wait_a_delta = [](auto&, auto&, auto&) {
 
 INSTANTIATE_TEST_SUITE_P(
     Handshake, ProtocolMonitorMistake,
-    testing::Values(
-        Exchange{"WrongRequest",
-                 [](auto& link) {
-                   link.payload.set_streaming_width(0);
-                   link.forward(link.payload, BEGIN_REQ);
-                 },
-                 "nb_transport_fw: streaming width = 0"},
-        Exchange{"ResponseWithoutStatus",
-                 [](auto& link) {
-                   tlm_phase phase = BEGIN_RESP;
-                   link.forward(link.payload, BEGIN_REQ);
-                   link.target.socket->nb_transport_bw(link.payload, phase, link.delay);
-                 },
-                 "nb_transport_bw: response status = 0"},
-        Exchange{"CompletionWithoutStatus",
-                 [](auto& link) {
-                   link.target.on_forward = [](auto&, auto&, auto&) { return tlm::TLM_COMPLETED; };
-                   link.forward(link.payload, BEGIN_REQ);
-                 },
-                 "nb_transport_fw: response status = 0"},
-        Exchange{"TargetThatChangesTheAddressBeforeItReturns",
-                 [](auto& link) {
-                   link.target.on_forward = [](Payload& received, auto& phase, auto& annotated) {
-                     received.set_address(0);
-                     return complete(received, phase, annotated);
-                   };
-                   link.forward(link.payload, BEGIN_REQ);
-                 },
-                 "nb_transport_fw: address changed"},
-        Exchange{"ReturnThatTakesBackTime",
-                 [](auto& link) {
-                   link.target.on_forward = [](auto&, tlm_phase& phase, sc_time& annotated) {
-                     phase = END_REQ;
-                     annotated = sc_core::SC_ZERO_TIME;
-                     return tlm::TLM_UPDATED;
-                   };
-                   link.forward(link.payload, BEGIN_REQ, sc_time(1, SC_NS));
-                 },
-                 "a transaction's time must not run backwards"},
-        Exchange{"InitiatorThatChangesWrittenDataBeforeTheResponse",
-                 [](auto& link) {
-                   link.payload.set_write();
-                   link.forward(link.payload, BEGIN_REQ);
-                   link.data[3] = 1;
-                   link.backward(link.payload, END_REQ);
-                 },
-                 "nb_transport_bw: data array of a write changed"},
-        Exchange{"NoMemoryManager",
-                 [](auto& link) {
-                   link.payload.set_mm(nullptr);
-                   link.target.on_forward = complete;
-                   link.forward(link.payload, BEGIN_REQ);
-                 },
-                 "no memory manager"},
-        Exchange{"NoReference",
-                 [](auto& link) {
-                   link.payload.release();
-                   link.target.on_forward = complete;
-                   link.forward(link.payload, BEGIN_REQ);
-                 },
-                 "reference count = 0"},
-        Exchange{"TargetThatWaits",
-                 [](auto& link) {
-                   link.target.on_forward = wait_a_delta;
-                   link.simulate([&link] { link.forward(link.payload, BEGIN_REQ); });
-                 },
-                 "nb_transport_fw: time passed"},
-        Exchange{"InitiatorThatWaits",
-                 [](auto& link) {
-                   link.initiator.on_backward = wait_a_delta;
-                   link.forward(link.payload, BEGIN_REQ);
-                   link.simulate([&link] { link.backward(link.payload, END_REQ); });
-                 },
-                 "nb_transport_bw: time passed"},
-        Exchange{"BlockingCallMeanwhile",
-                 [](auto& link) {
-                   link.forward(link.payload, BEGIN_REQ);
-                   link.transport();
-                 },
-                 "b_transport: the transaction is already in progress"},
-        Exchange{"DuringABlockingCall",
-                 [](auto& link) {
-                   link.target.on_forward = complete;
-                   link.target.on_blocking = [&link](Payload& received, auto&) {
-                     link.forward(received, BEGIN_REQ);
-                   };
-                   link.transport();
-                 },
-                 "nb_transport_fw: the transaction is already in progress"}),
+    testing::Values(Exchange{"WrongRequest", "nb_transport_fw: streaming width = 0",
+                             [](auto& link) {
+                               link.payload.set_streaming_width(0);
+                               link.forward(link.payload, BEGIN_REQ);
+                             }},
+                    Exchange{"ResponseWithoutStatus", "nb_transport_bw: response status = 0",
+                             [](auto& link) {
+                               tlm_phase phase = BEGIN_RESP;
+                               link.forward(link.payload, BEGIN_REQ);
+                               link.target.socket->nb_transport_bw(link.payload, phase, link.delay);
+                             }},
+                    Exchange{"CompletionWithoutStatus", "nb_transport_fw: response status = 0",
+                             [](auto& link) {
+                               link.target.on_forward = [](auto&, auto&, auto&) {
+                                 return tlm::TLM_COMPLETED;
+                               };
+                               link.forward(link.payload, BEGIN_REQ);
+                             }},
+                    Exchange{"TargetThatChangesTheAddressBeforeItReturns", "nb_transport_fw: address changed",
+                             [](auto& link) {
+                               link.target.on_forward = [](Payload& received, auto& phase, auto& annotated) {
+                                 received.set_address(0);
+                                 return complete(received, phase, annotated);
+                               };
+                               link.forward(link.payload, BEGIN_REQ);
+                             }},
+                    Exchange{"ReturnThatTakesBackTime", "a transaction's time must not run backwards",
+                             [](auto& link) {
+                               link.target.on_forward = [](auto&, tlm_phase& phase, sc_time& annotated) {
+                                 phase = END_REQ;
+                                 annotated = sc_core::SC_ZERO_TIME;
+                                 return tlm::TLM_UPDATED;
+                               };
+                               link.forward(link.payload, BEGIN_REQ, sc_time(1, SC_NS));
+                             }},
+                    Exchange{"InitiatorThatChangesWrittenData",
+                             "nb_transport_bw: data array of a write changed",
+                             [](auto& link) {
+                               link.payload.set_write();
+                               link.forward(link.payload, BEGIN_REQ);
+                               link.data[3] = 1;
+                               link.backward(link.payload, END_REQ);
+                             }},
+                    Exchange{"NoMemoryManager", "no memory manager",
+                             [](auto& link) {
+                               link.payload.set_mm(nullptr);
+                               link.target.on_forward = complete;
+                               link.forward(link.payload, BEGIN_REQ);
+                             }},
+                    Exchange{"NoReference", "reference count = 0",
+                             [](auto& link) {
+                               link.payload.release();
+                               link.target.on_forward = complete;
+                               link.forward(link.payload, BEGIN_REQ);
+                             }},
+                    Exchange{"TargetThatWaits", "nb_transport_fw: time passed",
+                             [](auto& link) {
+                               link.target.on_forward = wait_a_delta;
+                               link.simulate([&link] { link.forward(link.payload, BEGIN_REQ); });
+                             }},
+                    Exchange{"InitiatorThatWaits", "nb_transport_bw: time passed",
+                             [](auto& link) {
+                               link.initiator.on_backward = wait_a_delta;
+                               link.forward(link.payload, BEGIN_REQ);
+                               link.simulate([&link] { link.backward(link.payload, END_REQ); });
+                             }},
+                    Exchange{"BlockingCallMeanwhile", "b_transport: the transaction is already in progress",
+                             [](auto& link) {
+                               link.forward(link.payload, BEGIN_REQ);
+                               link.transport();
+                             }},
+                    Exchange{"DuringABlockingCall", "nb_transport_fw: the transaction is already in progress",
+                             [](auto& link) {
+                               link.target.on_forward = complete;
+                               link.target.on_blocking = [&link](Payload& received, auto&) {
+                                 link.forward(received, BEGIN_REQ);
+                               };
+                               link.transport();
+                             }}),
     ExchangeTest::name);
 
 }  // namespace

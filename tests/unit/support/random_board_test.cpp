@@ -75,7 +75,7 @@ TEST(RandomBoard, CoversEveryKindOfBoard) {
     const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
     const int radius = (board.window - 1) / 2;
     seen["fetch " + number_of(board.fetch)]++;
-    seen["arbitration " + number_of(board.arbitration)]++;
+    seen[name_of(board.arbitration)]++;
     std::set<PlainBankKind> kinds;
     for (const PlainBank& bank : board.banks) kinds.insert(bank.kind);
     for (const PlainBankKind kind : kinds) seen["bank kind " + number_of(kind)]++;

@@ -152,12 +152,12 @@ class ScriptedLink : public testing::Test {
   sc_core::sc_time delay;
 };
 
-// What the two ends of a link do, and the only violation that the monitor reports of it. Without a text it must
-// report none: one that is left fails the test as the monitor is destroyed.
+// What the two ends of a link do, and the only violation that the monitor reports of it. Without a text it
+// must report none: one that is left fails the test as the monitor is destroyed.
 struct Exchange {
   const char* name;
+  const char* violation;  // null: none
   std::function<void(ScriptedLink&)> happen;
-  const char* violation = nullptr;
   friend void PrintTo(const Exchange& exchange, std::ostream* out) { *out << exchange.name; }
 };
 
