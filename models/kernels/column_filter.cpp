@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/kernels/vector_loops.h"
-
 namespace stereotlm::kernels {
 namespace {
 
@@ -22,8 +20,12 @@ void copy_blocks(const float* from, int count, float* to) {
 }  // namespace
 
 ColumnFilter::ColumnFilter(int width, int height, int rows_per_column,
-                           const std::optional<FilterKernel>& kernel)
-    : width_(width), height_(height), rows_per_column_(rows_per_column), kernel_(kernel) {
+                           const std::optional<FilterKernel>& kernel, const Simd& simd)
+    : simd_(simd.column),
+      width_(width),
+      height_(height),
+      rows_per_column_(rows_per_column),
+      kernel_(kernel) {
   if (width < 1 || height < 1) {
     throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
                                 ": must have pixels");
@@ -123,8 +125,8 @@ void ColumnFilter::leave() {
   if (wide_) {
     filter_wide(columns);
   } else {
-    filter_column(columns, static_cast<std::ptrdiff_t>(stride_), weights_.data(), kernel_->size,
-                  rows_per_column_, kernel_->shift, output_.values.data());
+    simd_.filter_column(columns, static_cast<std::ptrdiff_t>(stride_), weights_.data(), kernel_->size,
+                        rows_per_column_, kernel_->shift, output_.values.data());
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/kernels/filter_kernel.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 
@@ -34,7 +35,8 @@ class ColumnFilter {
  public:
   // Throws std::invalid_argument if the kernel has problems, the image has no pixels, or `rows_per_column` is
   // outside 1..kMostRows.
-  ColumnFilter(int width, int height, int rows_per_column, const std::optional<FilterKernel>& kernel);
+  ColumnFilter(int width, int height, int rows_per_column, const std::optional<FilterKernel>& kernel,
+               const Simd& simd = best_simd());
 
   // Next comes the first row of column 0 of a strip whose first new row is `first_row` (may be negative).
   void start_frame(int first_row);
@@ -64,6 +66,7 @@ class ColumnFilter {
   void filter_wide(const float* columns);
   float* column_at(std::size_t position) { return columns_.data() + position * stride_; }
 
+  const ColumnSimd& simd_;
   int width_;
   int height_;
   int rows_per_column_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/kernels/filter_kernel.h"
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/vector_array.h"
 
 namespace stereotlm::kernels {
@@ -15,11 +15,11 @@ namespace stereotlm::kernels {
 class ImageFilter {
  public:
   // Bytes behind the last pixel that run() may write.
-  static constexpr std::size_t kPadding = kMostImageVectorBytes;
+  static constexpr std::size_t kPadding = kMostFrameVectorBytes;
 
   // Throws std::invalid_argument if the kernel has problems or the image has no pixels.
   ImageFilter(int width, int height, const FilterKernel& kernel,
-              const ImageLoops& loops = *image_loops().front());
+              const Simd& simd = best_simd());
   ImageFilter(const ImageFilter&) = delete;
   ImageFilter& operator=(const ImageFilter&) = delete;
 
@@ -40,7 +40,7 @@ class ImageFilter {
   int width_;
   int height_;
   int half_;
-  const ImageLoops& loops_;
+  const FrameSimd& simd_;
   std::vector<EqualRows> equal_rows_;
   std::vector<const std::int16_t*> sums_;
   std::vector<std::int32_t> pair_weights_;

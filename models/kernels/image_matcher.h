@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/vector_array.h"
 
 namespace stereotlm::kernels {
@@ -14,7 +14,7 @@ class ImageMatcher {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
   ImageMatcher(int width, int height, int window, int disparities, bool right_based,
-               const ImageLoops& loops = *image_loops().front());
+               const Simd& simd = best_simd());
   ImageMatcher(const ImageMatcher&) = delete;
   ImageMatcher& operator=(const ImageMatcher&) = delete;
 
@@ -39,7 +39,7 @@ class ImageMatcher {
   int width_;
   int height_;
   int radius_;
-  const ImageLoops& loops_;
+  const FrameSimd& simd_;
   MatchPlan plan_;
   int bands_ = 1;     // each of band_rows_ rows of windows
   int segments_ = 1;  // lanes of a band, each of plan_.columns columns of windows

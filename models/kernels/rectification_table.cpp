@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 namespace {
@@ -101,7 +101,7 @@ void require_usable(const RectificationTable& table, const GrayImage& image) {
 GrayImage rectify(const GrayImage& source, const RectificationTable& table) {
   require_usable(table, source);
   GrayImage rectified(table.width, table.height);
-  image_loops().front()->rectify(source.pixels.data(), table.entries.data(),
+  best_simd().frame.rectify(source.pixels.data(), table.entries.data(),
                                  static_cast<int>(table.entries.size()), table.width,
                                  rectified.pixels.data());
   return rectified;

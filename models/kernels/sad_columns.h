@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/kernels/vector_loops.h"
+#include "models/kernels/lane_array.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 
@@ -22,7 +23,7 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
 class SadColumns {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
-  SadColumns(int window, int disparities);
+  SadColumns(int window, int disparities, const Simd& simd = best_simd());
 
   void start_frame();
   // The next column of both sides: n pixels each, top first.
@@ -32,6 +33,7 @@ class SadColumns {
   int lanes() const { return lanes_; }
 
  private:
+  const ColumnSimd& simd_;
   int window_;
   int lanes_;
   int position_ = 0;                                  // of the newest right pixel in each history

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "models/kernels/image_filter.h"
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
 
@@ -16,9 +16,9 @@ namespace stereotlm::kernels {
 class StereoPipeline {
  public:
   // Throws std::invalid_argument if the configuration has problems, or the images are to be filtered but
-  // empty. `loops`: one of image_loops().
+  // empty. `simd`: one of simd_sets().
   StereoPipeline(int width, int height, const StereoConfig& config,
-                 const ImageLoops& loops = *image_loops().front());
+                 const Simd& simd = best_simd());
 
   // Images hold width * height pixels, tables as many entries, row-major; a table that is null does not
   // exist. The caller has checked the tables: valid entries lie inside the image.
@@ -39,7 +39,7 @@ class StereoPipeline {
   int height_;
   int radius_;
   std::optional<int> tolerance_;
-  const ImageLoops& loops_;
+  const FrameSimd& simd_;
   std::optional<ImageFilter> filter_;
   ImageMatcher matcher_;
   Side left_;

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "models/kernels/image_filter.h"
-#include "models/kernels/image_loops.h"
 #include "models/kernels/image_matcher.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/stereo.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "platform/board_yaml.h"
@@ -168,25 +168,25 @@ void add_kernels(const host::StereoPair& pair) {
   const int width = pair.left.width;
   const int height = pair.left.height;
   const auto table = std::make_shared<kernels::RectificationTable>(kernels::identity_table(width, height));
-  for (const kernels::ImageLoops* loops : kernels::image_loops()) {
-    const std::string end = std::string("_") + loops->name;
+  for (const kernels::Simd* simd : kernels::simd_sets()) {
+    const std::string end = std::string("_") + simd->name;
     add("kernels/two_tables" + end, [=, &pair](benchmark::State& state) {
       kernels::GrayImage out(width, height);
       for (auto _ : state) {
         for (const auto* image : {&pair.left, &pair.right})
-          loops->rectify(image->pixels.data(), table->entries.data(), width * height, width,
+          simd->frame.rectify(image->pixels.data(), table->entries.data(), width * height, width,
                          out.pixels.data());
       }
     });
     add("kernels/two_filters" + end, [=, &pair](benchmark::State& state) {
-      kernels::ImageFilter filter(width, height, kernels::log7(), *loops);
+      kernels::ImageFilter filter(width, height, kernels::log7(), *simd);
       std::vector<std::uint8_t> out(pair.left.pixels.size() + kernels::ImageFilter::kPadding);
       for (auto _ : state) {
         for (const auto* image : {&pair.left, &pair.right}) filter.run(image->pixels.data(), out.data());
       }
     });
     add("kernels/match" + end, [=, &pair](benchmark::State& state) {
-      kernels::ImageMatcher matcher(width, height, 7, 80, true, *loops);
+      kernels::ImageMatcher matcher(width, height, 7, 80, true, *simd);
       kernels::GrayImage left_based(width, height);
       kernels::GrayImage right_based(width, height);
       for (auto _ : state) {
@@ -195,7 +195,7 @@ void add_kernels(const host::StereoPair& pair) {
       }
     });
     add("kernels/pipeline" + end, [=, &pair](benchmark::State& state) {
-      kernels::StereoPipeline pipeline(width, height, {}, *loops);
+      kernels::StereoPipeline pipeline(width, height, {}, *simd);
       kernels::GrayImage out(width, height);
       for (auto _ : state) {
         pipeline.run(pair.left.pixels.data(), pair.right.pixels.data(), table->entries.data(),
@@ -261,7 +261,7 @@ int run(int argc, char** argv) {
   cv::setNumThreads(1);
   const BenchPair input = bench_pair(STEREOTLM_PICTURES);
   benchmark::AddCustomContext("pair", input.origin);
-  benchmark::AddCustomContext("vectors", kernels::image_loops().front()->name);
+  benchmark::AddCustomContext("vectors", kernels::best_simd().name);
   add_timed("start/fpl2003", [&input](benchmark::State& state) { start(state, input.pair); });
   add("opencv/stereo_bm", [&input](benchmark::State& state) { stereo_bm(state, input.pair); });
   add_kernels(input.pair);

@@ -22,13 +22,13 @@ TEST(LrCheck, AcceptsADifferenceUpToTheTolerance) {
   EXPECT_FALSE(left_right_consistent(0, 253, 252));
 }
 
-TEST(LrCheck, RefusesAnInvalidSide) {
+TEST(LrCheck, RejectsAPairWithAnInvalidSide) {
   EXPECT_FALSE(left_right_consistent(kInvalidDisparity, 253, 253));
   EXPECT_FALSE(left_right_consistent(253, kInvalidDisparity, 253));
   EXPECT_FALSE(left_right_consistent(kInvalidDisparity, kInvalidDisparity, 0));
 }
 
-TEST(LrCheck, LooksAtTheLeftSideOnlyWhenItIsOff) {
+TEST(LrCheck, IgnoresTheRightSideWhenItIsOff) {
   EXPECT_TRUE(left_right_consistent(3, kInvalidDisparity, std::nullopt));
   EXPECT_TRUE(left_right_consistent(3, 200, std::nullopt));
   EXPECT_FALSE(left_right_consistent(kInvalidDisparity, 3, std::nullopt));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/kernels/words.h"
@@ -65,7 +66,8 @@ std::uint8_t pixel_of(Content content, bool left, int column, int row, test::Spl
   return static_cast<std::uint8_t>(60 * ((column + (left ? 0 : 1)) % 3) + row);
 }
 
-// Every window size; each with disparities and sizes on both sides of the image's, and with many ties.
+// Image sizes lie on both sides of the window, disparities on both sides of the image's width, and many sums
+// are equal.
 TEST(Stereo, EqualsTheReferenceForEachWindowAndContent) {
   test::SplitMix64 random(3);
   int next = 0;
@@ -101,7 +103,7 @@ TEST(Stereo, EqualsTheReferenceForEachWindowAndContent) {
   }
 }
 
-// Left 0 10 20 10 0 .., right the same two columns further on: d = 2 meets exactly, d = 6 as well.
+// The left rows are 0 10 20 10 0 .., the right rows begin two columns later: d = 2 and d = 6 have a sum of 0.
 constexpr int kWidth = 12;
 
 GrayImage stripes(int first) {
@@ -147,7 +149,7 @@ TEST(Stereo, HasNoDisparityWhereTheLeftTableHasNoEntry) {
   RectificationTable left = identity_table(8, 5);
   RectificationTable right = identity_table(8, 5);
   left.entries[2 * 8 + 3] = 0;
-  right.entries[2 * 8 + 5] = 0;  // of no consequence: the pixel counts as 0, which it is
+  right.entries[2 * 8 + 5] = 0;  // has no effect: the pixel becomes 0, which it is already
   for (const std::optional<int> tolerance : {std::optional<int>(0), std::optional<int>()}) {
     const GrayImage image = disparity_image(black, black, &left, &right, {3, 4, log7(), tolerance});
     for (int row = 0; row < 5; ++row) {
@@ -192,7 +194,7 @@ TEST(Stereo, RepeatsTheEdgePixels) {
   EXPECT_EQ(filter_image(image, lower_minus_upper).pixels, std::vector<std::uint8_t>(4, 128));
 }
 
-TEST(StereoConfig, IsInRange) {
+TEST(StereoConfig, NamesTheRuleThatItBreaks) {
   const auto found = [](int window, int disparities, std::optional<int> tolerance) {
     return problems(StereoConfig{window, disparities, log7(), tolerance});
   };
@@ -215,25 +217,24 @@ TEST(StereoConfig, IsInRange) {
   EXPECT_EQ(found(1, 0, -1).size(), 3U);
 }
 
-TEST(Stereo, RefusesWhatDoesNotFitTogether) {
+TEST(Stereo, RefusesDifferentSizesAndBrokenRules) {
   const GrayImage image(8, 5);
   const RectificationTable table = identity_table(8, 5);
   const StereoConfig config;
   EXPECT_NO_THROW(disparity_image(image, image, &table, &table, config));
   EXPECT_THROW(disparity_image(image, GrayImage(8, 4), nullptr, nullptr, config), std::invalid_argument);
   EXPECT_THROW(disparity_image(GrayImage(4, 5), image, nullptr, nullptr, config), std::invalid_argument);
-  EXPECT_THROW(match(image, GrayImage(8, 4), 3, 2), std::invalid_argument);
-  for (const int window : {1, 4, 33}) EXPECT_THROW(match(image, image, window, 2), std::invalid_argument);
-  for (const int disparities : {0, 255})
-    EXPECT_THROW(match(image, image, 3, disparities), std::invalid_argument);
   EXPECT_NO_THROW(match(image, image, 3, 254));
-  const RectificationTable other = identity_table(8, 4);
-  EXPECT_THROW(disparity_image(image, image, &other, &table, config), std::invalid_argument);
-  EXPECT_THROW(disparity_image(image, image, &table, &other, config), std::invalid_argument);
+  EXPECT_THROW(match(image, GrayImage(8, 4), 3, 2), std::invalid_argument);
+  for (const auto& [window, disparities] :
+       {std::pair(1, 2), std::pair(4, 2), std::pair(33, 2), std::pair(3, 0), std::pair(3, 255)})
+    EXPECT_THROW(match(image, image, window, disparities), std::invalid_argument);
   RectificationTable broken = table;
   broken.entries[3] = make_entry(8, 0);
-  EXPECT_THROW(disparity_image(image, image, &broken, &table, config), std::invalid_argument);
-  EXPECT_THROW(disparity_image(image, image, &table, &broken, config), std::invalid_argument);
+  for (const RectificationTable& bad : {identity_table(8, 4), broken}) {
+    EXPECT_THROW(disparity_image(image, image, &bad, &table, config), std::invalid_argument);
+    EXPECT_THROW(disparity_image(image, image, &table, &bad, config), std::invalid_argument);
+  }
   EXPECT_THROW(disparity_image(image, image, nullptr, nullptr, {1, 80, log7(), 0}), std::invalid_argument);
   FilterKernel kernel = log7();
   kernel.size = 5;
