@@ -18,8 +18,8 @@ constexpr int padded_rows(int rows) { return (rows + kFilterBlock - 1) / kFilter
 // The loops over one column of the matcher, for one instruction set. Arrays over the disparities d hold
 // `lanes` values, a multiple of kLanePadding; those of more than 8 bits are a LaneArray's.
 struct ColumnSimd {
-  // One column of all column and window modules. For each d: adds the sum over the `rows` of |histories[row][d] -
-  // left[row]| to windows[d], subtracts leaving[d], and stores the sum in leaving[d].
+  // One column of all column and window modules. For each d: adds the sum over the `rows` of
+  // |histories[row][d] - left[row]| to windows[d], subtracts leaving[d], and stores the sum in leaving[d].
   void (*step_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
                        std::int16_t* leaving, std::int32_t* windows);
 
@@ -32,8 +32,8 @@ struct ColumnSimd {
   std::int32_t (*smallest_key)(const std::int32_t* sums, int candidates, int lanes);
 
   // Filters `rows` pixels of one column with a size x size kernel (size odd): out[k] = clamp(128 + floor(S /
-  // 2^shift), 0, 255), where S = sum over i, j of weights[i * size + j] * column i [k + j], and column i starts
-  // at columns + i * stride. Exact while no partial sum leaves -2^24..2^24. Reads columns up to
+  // 2^shift), 0, 255), where S = sum over i, j of weights[i * size + j] * column i [k + j], and column i
+  // starts at columns + i * stride. Exact while no partial sum leaves -2^24..2^24. Reads columns up to
   // padded_rows(rows) + size - 1, and writes `out` up to padded_rows(rows).
   void (*filter_column)(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
                         int shift, std::uint8_t* out);

@@ -28,8 +28,8 @@ struct MatchPlan {
   int first_outside = 0;    // from this position on the left window of some lane is outside the image
 };
 
-// The largest window whose sums leave two bits of 16 for the disparity: 7 * 7 * 255 * 4 fits into 16 bits, 9 *
-// 9 * 255 * 4 does not. Sums alone fit up to 15 * 15 * 255.
+// The largest window whose sums leave two bits of 16 for the disparity: 7 * 7 * 255 * 4 fits into 16 bits, 9
+// * 9 * 255 * 4 does not. Sums alone fit up to 15 * 15 * 255.
 inline constexpr int kLastNarrowWindow = 7;
 
 // Arrays of vectors, one per position, at multiples of kMostFrameVectorBytes.
@@ -63,7 +63,8 @@ struct FrameSimd {
   // out[i] = entering[i] + 256 * leaving[i].
   void (*pair_pixels)(const std::uint8_t* entering, const std::uint8_t* leaving, int width,
                       std::int16_t* out);
-  // Vector i receives from[lane][i] in each lane, for i < count. Reads and writes up to the next multiple of 8.
+  // Vector i receives from[lane][i] in each lane, for i < count. Reads and writes up to the next multiple of
+  // 8.
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
   // The reverse, to bytes.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);

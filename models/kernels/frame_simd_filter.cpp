@@ -5,7 +5,7 @@ namespace stereotlm::kernels::STEREOTLM_SIMD {
 
 void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, int width,
              std::uint8_t* out) {
-  // An entry is a pair of 16-bit numbers, column and row with the valid bit above it.
+  // An entry is a pair of 16-bit numbers: the column, and the row with the valid bit above it.
   const auto weights = reinterpret_cast<Halves>(words(width << 16 | 1));
   constexpr int kChunk = 512;
   alignas(kBytes) std::uint32_t places[kChunk];
@@ -28,7 +28,7 @@ void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, 
 
 namespace {
 
-// The sum of two rows, the second of which may be none, in `out`, or added to what is there.
+// Stores the sum of the first row and (kSecond) the second, or (kMore) adds it to `out`.
 template <bool kMore, bool kSecond>
 void add_two_rows(const std::uint8_t* first, const std::uint8_t* second, int width, std::int16_t* out) {
   std::ptrdiff_t u = 0;

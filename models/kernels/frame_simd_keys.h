@@ -4,8 +4,8 @@
 
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
-// Window sums of up to 14 bits, so that 16 hold a key: the sum above the last two bits of the disparity,
-// counted from the smallest value on. The group of 4 disparities is kept beside the best key.
+// Keys of 16 bits, for window sums of up to 14 bits: the sum above the last two bits of the disparity,
+// counted from the smallest 16-bit value. The first disparity of a group of 4 is kept beside the best key.
 struct NarrowKeys {
   static constexpr int kGroup = 4;
   static constexpr int kScale = 4;
@@ -21,13 +21,13 @@ struct NarrowKeys {
   static Key most(Key key, Halves floor) { return larger(key, floor); }
   static Key none() { return halves(32767); }
   static Best best_of_none() { return {none(), Halves{}}; }
-  // Sums decide: of equal ones the disparity that was there first, which is the smaller one.
+  // The smaller sum wins. Of equal sums `best` wins, whose disparity is smaller.
   static Best better(const Best& best, const Best& other) {
     const auto smaller_sum = (best.key & -kGroup) > other.key;
     return {smaller_sum ? other.key : best.key, smaller_sum ? other.group : best.group};
   }
   static Best better(const Best& best, Key key, int group) { return better(best, {key, halves(group)}); }
-  // Each lane gets that of the lane before it.
+  // Moves the best of each lane to the next lane.
   static Best load_moved(const Best* best, Halves floor) {
     const auto* lanes = reinterpret_cast<const std::int16_t*>(best);
     return {larger(load<Halves>(lanes - 1), floor), load<Halves>(lanes + kLanes - 1)};
@@ -35,7 +35,7 @@ struct NarrowKeys {
   static Halves disparity(const Best& best) { return best.group + (best.key & (kGroup - 1)); }
 };
 
-// 32 bits hold any sum and all of the disparity.
+// Keys of 32 bits: any sum above the whole disparity.
 struct WideKeys {
   static constexpr int kGroup = 2;
   static constexpr int kScale = 1;

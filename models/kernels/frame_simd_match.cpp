@@ -22,7 +22,8 @@ Halves difference_of_bytes(Bytes bytes) {
 #endif
 }
 
-// kScale * (what enters - what leaves), |right pixel - left pixel| each.
+// kScale times the change of a column sum: the difference |right - left| that enters less the one that
+// leaves.
 template <int kScale>
 Halves change(Halves right, Halves left) {
   const auto a = reinterpret_cast<Bytes>(right);
@@ -30,16 +31,15 @@ Halves change(Halves right, Halves left) {
   return difference_of_bytes<kScale>(larger(a, b) - smaller(a, b));
 }
 
-// Column sums of kCount neighbouring disparities, which lie side by side, at one position after the other.
-// Pointers and not indices, in an object that nothing else points to: a store could change what is read
-// through others.
+// Column sums of kCount neighbouring disparities, side by side, at one position after the other. The pointers
+// advance, and nothing else points to this object: the compiler then knows that no store changes them.
 template <int kScale, int kCount>
 struct ColumnSums {
   const std::int16_t* right;
   const std::int16_t* left;
   std::int16_t* sums;
 
-  // Adds the change at this position to the sum of the j-th disparity and returns it.
+  // Adds the change at this position to the sum of the j-th disparity, and returns the new sum.
   Halves add(Halves right_pixels, std::ptrdiff_t j) const {
     std::int16_t* place = sums + j * kLanes;
     const Halves sum = load<Halves>(place) + change<kScale>(right_pixels, load<Halves>(left + j * kLanes));
@@ -53,7 +53,7 @@ struct ColumnSums {
   }
 };
 
-// One group of disparities on its way along the row.
+// Matches one group of disparities along a row.
 template <class Keys, int kCount>
 struct Group {
   using Key = typename Keys::Key;
@@ -63,10 +63,10 @@ struct Group {
   const std::int16_t* outside;
   Best* right_best;
   Best* left_best;
-  std::ptrdiff_t window_begin;  // from the sums that enter the window to those that leave it
-  int first;                    // disparity
+  std::ptrdiff_t window_begin;  // from the sums that enter the window to the sums that leave it
+  int first;                    // disparity of the group
   Key keys[kCount];
-  Key passing[kCount];  // the best for left windows that the group's other disparities have yet to reach
+  Key passing[kCount];  // best keys of left windows that larger disparities of the group have yet to reach
 
   Group(const MatchPlan& plan, const MatchMemory& memory, int first_disparity, std::int16_t* column_sums)
       : columns{memory.right_pixels, memory.left_pixels + first_disparity * kLanes, column_sums},
@@ -197,7 +197,7 @@ struct MatchGroup {
 
 template <class Keys>
 void store_disparities(const typename Keys::Best* best, int count, std::int16_t* out) {
-  // In place: `out` is where the keys begin, and they are longer.
+  // Works in place: `out` is the beginning of the keys, which are longer.
   for (std::ptrdiff_t p = 0; p < count; ++p) store(Keys::disparity(best[p]), out + p * kLanes);
 }
 
@@ -209,7 +209,7 @@ void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   for (std::ptrdiff_t p = 0; p < plan.columns; ++p) right[p] = Keys::best_of_none();
   for (std::ptrdiff_t p = 0; p < left_positions; ++p) left[p] = Keys::best_of_none();
   visit_groups<Keys>(plan, memory, MatchGroup<Keys>{plan, memory});
-  // Left windows beyond the end of a segment belong to the next one, where their disparities are smaller.
+  // Left windows beyond the end of a segment belong to the next segment, where their disparities are smaller.
   const auto band_begins = load<Halves>(memory.band_begins);
   for (std::ptrdiff_t p = left_positions - 1; p >= plan.columns; --p) {
     auto& own = left[p - plan.columns];

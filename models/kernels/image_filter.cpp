@@ -35,7 +35,7 @@ ImageFilter::ImageFilter(int width, int height, const FilterKernel& kernel, cons
   }
   taps_ = {static_cast<int>(equal_rows_.size()), (kernel.size + 1) / 2, kernel.shift, nullptr};
   for (EqualRows& equal : equal_rows_) {
-    // Vectors run over the end, and with the last pair by one more column.
+    // Vectors read beyond the end, and the last pair reads one more column.
     equal.sums = VectorArray(static_cast<std::size_t>(width + kernel.size + 1) + kPadding);
     sums_.push_back(equal.sums.data());
     for (int column = 0; column < kernel.size; column += 2) {

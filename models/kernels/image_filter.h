@@ -18,8 +18,7 @@ class ImageFilter {
   static constexpr std::size_t kPadding = kMostFrameVectorBytes;
 
   // Throws std::invalid_argument if the kernel has problems or the image has no pixels.
-  ImageFilter(int width, int height, const FilterKernel& kernel,
-              const Simd& simd = best_simd());
+  ImageFilter(int width, int height, const FilterKernel& kernel, const Simd& simd = best_simd());
   ImageFilter(const ImageFilter&) = delete;
   ImageFilter& operator=(const ImageFilter&) = delete;
 
@@ -27,11 +26,11 @@ class ImageFilter {
   void run(const std::uint8_t* image, std::uint8_t* filtered);
 
  private:
-  // Kernel rows with the same weights: their pixels are added first.
+  // Kernel rows with the same weights: their pixels are added up before they are weighted.
   struct EqualRows {
     std::vector<int> rows;  // offsets from the centre
     std::vector<int> weights;
-    VectorArray sums;  // of their pixels, from `half` columns left of the image to as many right of it
+    VectorArray sums;  // of these pixels, with `half` more columns on each side of the image
   };
 
   void add_rows(EqualRows& equal, const std::uint8_t* image, int row);

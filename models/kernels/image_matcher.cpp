@@ -13,7 +13,7 @@ namespace {
 constexpr std::int16_t kSmallest = std::numeric_limits<std::int16_t>::min();
 constexpr std::int16_t kLargest = std::numeric_limits<std::int16_t>::max();
 
-// Column sums that are walked through once a row should stay in a core's second cache.
+// Column sums are read and written once a row, and should fit into a core's second-level cache.
 constexpr double kMostColumnSumBytes = 400e3;
 
 constexpr int divided_up(int value, int divisor) { return (value + divisor - 1) / divisor; }
@@ -62,8 +62,8 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
              column_sums_.data(), right_.best.data(), left_.best.data()};
 }
 
-// Segments share window - 1 columns with the next, bands as many rows: what is shared is done twice, at about
-// half the work of a window. More segments keep less column sums.
+// Neighbouring segments share window - 1 columns, and neighbouring bands share as many rows. What they share
+// is computed twice, at about half the work of a window. More segments need fewer column sums.
 void ImageMatcher::choose_bands() {
   const double shared = plan_.window - 1;
   double least = std::numeric_limits<double>::max();
@@ -92,8 +92,8 @@ void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
   side.best = VectorArray(2 * static_cast<std::size_t>(best_positions) * lanes);
 }
 
-// Row `step` of each band enters its windows. Bands that end below the image take its last row again; nothing
-// of them is used.
+// Row `step` of each band enters its windows. Rows below the image repeat its last row; their results are not
+// used.
 void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
   const auto width = static_cast<std::size_t>(width_);
   const auto row_of = [&](int row) {
@@ -105,7 +105,7 @@ void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
     const int row = band * band_rows_ + step;
     std::int16_t* pairs = side.rows.data() + static_cast<std::size_t>(band) * row_stride_;
     simd_.pair_pixels(row_of(row), step < plan_.window ? no_row_.data() : row_of(row - plan_.window), width_,
-                       pairs);
+                      pairs);
     for (int segment = 0; segment < segments_; ++segment)
       lanes[lane++] = pairs + std::ptrdiff_t{segment} * plan_.columns;
   }

@@ -9,7 +9,7 @@
 
 namespace stereotlm::kernels {
 
-// Contract 1.3 on whole images.
+// Matches whole images (contract 1.3).
 class ImageMatcher {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
@@ -18,15 +18,15 @@ class ImageMatcher {
   ImageMatcher(const ImageMatcher&) = delete;
   ImageMatcher& operator=(const ImageMatcher&) = delete;
 
-  // All width * height pixels, row-major. right_disparity is not touched without `right_based`.
+  // All width * height pixels, row-major. Without `right_based` right_disparity is not written.
   void run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
            std::uint8_t* right_disparity);
 
  private:
   struct Side {
-    VectorArray rows;               // per band: one row, each pixel with the one that leaves the window
-    VectorArray lanes;              // the same, one vector per position
-    VectorArray best;               // per position
+    VectorArray rows;   // per band: one row, each pixel paired with the pixel that leaves the window
+    VectorArray lanes;  // the same, as one vector per position
+    VectorArray best;   // per position: the best keys, then the disparities
     std::vector<std::uint8_t> out;  // per band: one row of disparities
     int positions = 0;
   };
@@ -52,7 +52,7 @@ class ImageMatcher {
   VectorArray outside_;
   VectorArray band_begins_;
   VectorArray column_sums_;
-  std::vector<std::uint8_t> no_row_;  // leaves the first windows
+  std::vector<std::uint8_t> no_row_;  // the black row that leaves the first windows
   MatchMemory memory_;
 };
 

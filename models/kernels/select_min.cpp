@@ -19,8 +19,7 @@ constexpr std::uint8_t disparity_of(std::int32_t key) {
 
 }  // namespace
 
-std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes,
-                             const Simd& simd) {
+std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes, const Simd& simd) {
   return disparity_of(simd.column.smallest_key(window_sums, candidates, lanes));
 }
 

@@ -7,7 +7,8 @@
 
 namespace stereotlm::kernels {
 
-// The inner loops of the kernels, built once per instruction set. The results are exact, and the same with each.
+// The inner loops of the kernels, built once per instruction set. The results are exact, and the same with
+// each.
 struct Simd {
   const char* name;
   FrameSimd frame;

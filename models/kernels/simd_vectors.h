@@ -1,8 +1,8 @@
 #pragma once
 
-// For the files that are compiled once per instruction set, in a namespace that STEREOTLM_SIMD names. Whatever
-// these files define lies in that namespace and they use no function of the standard library: the linker
-// keeps one copy of an inline function, which could be one that other machines cannot run.
+// Vectors of the compiler, for the files that are compiled once per instruction set. STEREOTLM_SIMD names the
+// namespace of all that these files define. They use no function of the standard library: of an inline
+// function the linker keeps one copy, which could be one that older machines cannot run.
 
 #include <cstddef>
 #include <cstdint>

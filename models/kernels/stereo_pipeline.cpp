@@ -63,7 +63,7 @@ void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* dispar
     return static_cast<std::uint8_t>(condition ? kInvalidDisparity : 0);
   };
   if (tolerance_) {
-    // Where windows are, every pixel has a left-based disparity, which points to another of them.
+    // Every pixel with a window has a left-based disparity, which points to a pixel with a window.
     const int tolerance = *tolerance_;
     const int count = width_ - 2 * radius_;
     for (int row = radius_; row < height_ - radius_; ++row) {

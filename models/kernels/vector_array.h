@@ -9,7 +9,7 @@
 
 namespace stereotlm::kernels {
 
-// 16-bit numbers for FrameSimd, zeros at first, aligned to the longest vector.
+// An array of 16-bit numbers for FrameSimd, at first zeros, aligned to the longest vector.
 class VectorArray {
  public:
   VectorArray() = default;

@@ -19,8 +19,8 @@ namespace {
 using test::RandomBoard;
 using test::SplitMix64;
 
-// Sends one frame through the filter. Pixel (u, v) must leave filtered, with its own valid bit, `half` columns
-// after it entered and `half` rows further up. Rows outside the image hold random pixels.
+// Sends one frame through the filter. Pixel (u, v) must leave filtered, with its own valid bit, `half`
+// columns after it entered and `half` rows further up. Rows outside the image hold random pixels.
 void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_per_column, int first_row,
                      int strips, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;

@@ -69,8 +69,8 @@ struct OpenCvMatch {
   bool unique = true;  // every minimum occurs once
 };
 
-// Sums the absolute differences of each candidate with a box filter, and takes the smallest sum of those whose
-// windows lie inside the image.
+// Sums the absolute differences of each candidate with a box filter, and takes the smallest sum of those
+// whose windows lie inside the image.
 OpenCvMatch matched_by_opencv(const GrayImage& left, const GrayImage& right, int window, int disparities) {
   const int width = left.width;
   const int height = left.height;
