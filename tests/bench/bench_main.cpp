@@ -175,7 +175,7 @@ void add_kernels(const host::StereoPair& pair) {
       for (auto _ : state) {
         for (const auto* image : {&pair.left, &pair.right})
           simd->frame.rectify(image->pixels.data(), table->entries.data(), width * height, width,
-                         out.pixels.data());
+                              out.pixels.data());
       }
     });
     add("kernels/two_filters" + end, [=, &pair](benchmark::State& state) {

@@ -22,18 +22,6 @@ TEST(LrCheck, AcceptsADifferenceUpToTheTolerance) {
   EXPECT_FALSE(left_right_consistent(0, 253, 252));
 }
 
-TEST(LrCheck, RejectsAPairWithAnInvalidSide) {
-  EXPECT_FALSE(left_right_consistent(kInvalidDisparity, 253, 253));
-  EXPECT_FALSE(left_right_consistent(253, kInvalidDisparity, 253));
-  EXPECT_FALSE(left_right_consistent(kInvalidDisparity, kInvalidDisparity, 0));
-}
-
-TEST(LrCheck, IgnoresTheRightSideWhenItIsOff) {
-  EXPECT_TRUE(left_right_consistent(3, kInvalidDisparity, std::nullopt));
-  EXPECT_TRUE(left_right_consistent(3, 200, std::nullopt));
-  EXPECT_FALSE(left_right_consistent(kInvalidDisparity, 3, std::nullopt));
-}
-
 struct Stream {
   std::vector<std::uint8_t> left;
   std::vector<bool> left_valid;

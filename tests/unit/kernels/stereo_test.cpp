@@ -17,9 +17,6 @@ namespace stereotlm::kernels {
 namespace {
 
 using test::RandomBoard;
-using Row = std::vector<int>;
-
-constexpr int kX = kInvalidDisparity;
 
 std::vector<int> with_invalid_as_minus_1(const GrayImage& image) {
   std::vector<int> values;
@@ -101,97 +98,6 @@ TEST(Stereo, EqualsTheReferenceForEachWindowAndContent) {
       }
     }
   }
-}
-
-// The left rows are 0 10 20 10 0 .., the right rows begin two columns later: d = 2 and d = 6 have a sum of 0.
-constexpr int kWidth = 12;
-
-GrayImage stripes(int first) {
-  constexpr std::uint8_t kPattern[] = {0, 10, 20, 10};
-  GrayImage image(kWidth, 3);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < kWidth; ++column) image.at(column, row) = kPattern[(column + first) % 4];
-  }
-  return image;
-}
-
-Row middle_row(const GrayImage& image) {
-  Row row;
-  for (int column = 0; column < image.width; ++column) row.push_back(image.at(column, 1));
-  return row;
-}
-
-TEST(Stereo, TakesTheSmallestDisparityOfATie) {
-  const Matches matches = match(stripes(0), stripes(2), 3, 10);
-  // At x = 2 the sums are 20 for d = 0 and 30 for d = 1.
-  EXPECT_EQ(middle_row(matches.left_based), (Row{kX, 0, 0, 2, 2, 2, 2, 2, 2, 2, 2, kX}));
-  // At x = 9 they are 40 and 30; left column 11 has no window.
-  EXPECT_EQ(middle_row(matches.right_based), (Row{kX, 2, 2, 2, 2, 2, 2, 2, 2, 1, 0, kX}));
-  for (int column = 0; column < kWidth; ++column) {
-    EXPECT_EQ(matches.left_based.at(column, 0), kX);
-    EXPECT_EQ(matches.right_based.at(column, 2), kX);
-  }
-}
-
-TEST(Stereo, ChecksTheTwoSidesAgainstEachOther) {
-  const auto row_with = [](std::optional<int> tolerance) {
-    return middle_row(
-        disparity_image(stripes(0), stripes(2), nullptr, nullptr, {3, 10, std::nullopt, tolerance}));
-  };
-  EXPECT_EQ(row_with(0), (Row{kX, kX, kX, 2, 2, 2, 2, 2, 2, 2, 2, kX}));
-  EXPECT_EQ(row_with(1), row_with(0));
-  EXPECT_EQ(row_with(2), (Row{kX, 0, 0, 2, 2, 2, 2, 2, 2, 2, 2, kX}));
-  EXPECT_EQ(row_with(std::nullopt), row_with(2));
-}
-
-TEST(Stereo, HasNoDisparityWhereTheLeftTableHasNoEntry) {
-  const GrayImage black(8, 5);
-  RectificationTable left = identity_table(8, 5);
-  RectificationTable right = identity_table(8, 5);
-  left.entries[2 * 8 + 3] = 0;
-  right.entries[2 * 8 + 5] = 0;  // has no effect: the pixel becomes 0, which it is already
-  for (const std::optional<int> tolerance : {std::optional<int>(0), std::optional<int>()}) {
-    const GrayImage image = disparity_image(black, black, &left, &right, {3, 4, log7(), tolerance});
-    for (int row = 0; row < 5; ++row) {
-      for (int column = 0; column < 8; ++column) {
-        const bool border = row == 0 || row == 4 || column == 0 || column == 7;
-        const bool invalid = border || (column == 3 && row == 2);
-        EXPECT_EQ(image.at(column, row), invalid ? kInvalidDisparity : 0) << column << ", " << row;
-      }
-    }
-  }
-}
-
-TEST(Stereo, FiltersOneWhitePixelToItsKernel) {
-  GrayImage image(9, 9);
-  image.at(4, 4) = 255;
-  const GrayImage filtered = filter_image(image, log7());
-  EXPECT_EQ(filtered.at(4, 4), 255);  // 128 + 255 * 112 / 64
-  EXPECT_EQ(filtered.at(5, 4), 255);  // 128 + floor(139.45)
-  EXPECT_EQ(filtered.at(6, 4), 64);   // 128 + floor(-63.75)
-  EXPECT_EQ(filtered.at(7, 4), 108);  // 128 + floor(-19.92)
-  EXPECT_EQ(filtered.at(5, 5), 128);
-  EXPECT_EQ(filtered.at(6, 5), 72);   // 128 + floor(-55.78)
-  EXPECT_EQ(filtered.at(6, 6), 104);  // 128 + floor(-23.90)
-  EXPECT_EQ(filtered.at(8, 8), 128);
-}
-
-TEST(Stereo, CorrelatesAndDoesNotMirrorTheKernel) {
-  GrayImage image(8, 3);
-  image.at(4, 1) = 10;
-  const FilterKernel kernel{3, {0, 0, 0, -1, 0, 1, 0, 0, 0}, 0};
-  const GrayImage filtered = filter_image(image, kernel);
-  EXPECT_EQ(filtered.at(3, 1), 138);
-  EXPECT_EQ(filtered.at(5, 1), 118);
-}
-
-TEST(Stereo, RepeatsTheEdgePixels) {
-  GrayImage image(4, 1);
-  image.pixels = {10, 20, 40, 80};
-  const FilterKernel right_minus_left{3, {0, 0, 0, -1, 0, 1, 0, 0, 0}, 0};
-  EXPECT_EQ(filter_image(image, right_minus_left).pixels, (std::vector<std::uint8_t>{138, 158, 188, 168}));
-  const FilterKernel lower_minus_upper{3, {0, -1, 0, 0, 0, 0, 0, 1, 0}, 0};
-  EXPECT_EQ(filter_image(image, lower_minus_upper).pixels, std::vector<std::uint8_t>(4, 128));
 }
 
 TEST(StereoConfig, NamesTheRuleThatItBreaks) {
