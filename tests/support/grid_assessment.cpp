@@ -1,4 +1,4 @@
-#include "calib/grid_assessment.h"
+#include "tests/support/grid_assessment.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@
 #include "calib/grid_in_view.h"
 #include "models/kernels/lr_check.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::test {
 namespace {
 
 // A corner, as the board has it and as whole-pixel disparities would at best.
@@ -24,12 +24,12 @@ struct MeasuredCorner {
 
 class Assessor {
  public:
-  Assessor(const Calibration& calibration, const kernels::GrayImage& disparity)
+  Assessor(const calib::Calibration& calibration, const kernels::GrayImage& disparity)
       : shape_(calibration.grid),
         geometry_{calibration.rectification.q, calibration.disparity_offset},
         disparity_(disparity) {}
 
-  GridAssessment assess(const GridPair& rectified) {
+  GridAssessment assess(const calib::GridPair& rectified) {
     for (std::size_t i = 0; i < rectified.left.size(); ++i) {
       const Eigen::Vector2d output = rectified.left[i] - Eigen::Vector2d(geometry_.disparity_offset, 0);
       measure(output, output.x() - rectified.right[i].x());
@@ -110,8 +110,8 @@ class Assessor {
     return std::sqrt(std::max(0.0, solver.eigenvalues()(0)) / static_cast<double>(points.size()));
   }
 
-  const GridShape& shape_;
-  DepthGeometry geometry_;
+  const calib::GridShape& shape_;
+  calib::DepthGeometry geometry_;
   const kernels::GrayImage& disparity_;
   std::vector<MeasuredCorner> corners_;
   GridAssessment result_;
@@ -131,7 +131,7 @@ double Deviations::mean_absolute() const {
   return percent.empty() ? 0 : sum / static_cast<double>(percent.size());
 }
 
-GridAssessment assess(const Calibration& calibration, const GridPair& corners,
+GridAssessment assess(const calib::Calibration& calibration, const calib::GridPair& corners,
                       const kernels::GrayImage& disparity) {
   if (disparity.width != calibration.rig.width || disparity.height != calibration.rig.height) {
     throw std::invalid_argument("disparities = " + std::to_string(disparity.width) + "x" +
@@ -143,4 +143,4 @@ GridAssessment assess(const Calibration& calibration, const GridPair& corners,
       .assess(rectified(calibration.rig, calibration.rectification, corners));
 }
 
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::test

@@ -7,7 +7,7 @@
 #include "calib/rig_fit.h"
 #include "models/kernels/gray_image.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::test {
 
 // Deviations from a known value, in percent of it.
 struct Deviations {
@@ -41,7 +41,7 @@ inline constexpr double kMostDifference = 1.5;  // pixels
 
 // `disparity`: the board's output for this pair, with the tables of the calibration. Throws
 // std::invalid_argument if its size is not that of the calibration's pictures.
-GridAssessment assess(const Calibration& calibration, const GridPair& corners,
+GridAssessment assess(const calib::Calibration& calibration, const calib::GridPair& corners,
                       const kernels::GrayImage& disparity);
 
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::test
