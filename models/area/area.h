@@ -11,7 +11,7 @@
 // The FPGA resources of the stereo core, counted part by part. The paper's figures 5, 6 and 8 and sections 1
 // and 2 of the contract give the adders, comparators, shift registers and memories. The 8 bits of a pixel,
 // the window and the disparities give their widths. One constant, how well LUTs fill slices, is fitted to the
-// paper's Table 2 (sw/explore/area_fit.h).
+// paper's Table 2 (sw/paper/area_fit.h).
 //
 // The count includes all parts that pixels, table entries, sums and disparities pass through. It leaves out
 // the parts that control them: counters, the addresses of tables and results, the repetition of edge pixels,

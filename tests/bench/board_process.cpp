@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <systemc>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
-#include "sw/simulation/make_simulation.h"
+#include "sw/runs/simulation/make_simulation.h"
 
 namespace stereotlm::bench {
 namespace {
@@ -34,7 +34,7 @@ class SteppedBoard {
       : config_(platform::load_board(setting.board, setting.sets)),
         tables_(setting.tables != nullptr ? *setting.tables : platform::identity_tables(config_)),
         pair_(pair),
-        simulation_(simulation::make_simulation(
+        simulation_(runs::make_simulation(
             config_, tables_, pair_,
             {setting.camera, setting.fidelity, std::numeric_limits<std::uint64_t>::max()}, binder_)) {
     if (setting.fidelity == fpga::Fidelity::kCycle) sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -62,12 +62,12 @@ class SteppedBoard {
   platform::Tables tables_;
   OnePair pair_;
   Binder binder_;
-  std::unique_ptr<simulation::Simulation> simulation_;
+  std::unique_ptr<runs::Simulation> simulation_;
 };
 
 // Sends the counts at the start and after each order, until the parent closes its end.
 void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, int orders,
-           const simulation::Child::Tell& tell) {
+           const process::Child::Tell& tell) {
   const auto send = [&tell](const BoardProcess::Count& count) {
     tell({reinterpret_cast<const char*>(&count), sizeof count});
   };
@@ -76,7 +76,7 @@ void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, i
   BoardProcess::Count ready;
   ready.start_seconds = seconds_since(start);
   send(ready);
-  for (std::uint32_t frames = 0; explore::read_all(orders, &frames, sizeof frames);) {
+  for (std::uint32_t frames = 0; process::read_all(orders, &frames, sizeof frames);) {
     const auto begin = std::chrono::steady_clock::now();
     board.run_frames(frames);
     const double seconds = seconds_since(begin);
@@ -91,7 +91,7 @@ void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, i
 }  // namespace
 
 BoardProcess::BoardProcess(const Setting& setting, const host::StereoPair& pair)
-    : child_([&](const simulation::Child::Tell& tell) {
+    : child_([&](const process::Child::Tell& tell) {
         orders_.close_write_end();
         serve(setting, pair, orders_.read_end(), tell);
       }) {
@@ -100,7 +100,7 @@ BoardProcess::BoardProcess(const Setting& setting, const host::StereoPair& pair)
 }
 
 void BoardProcess::run_frames(std::uint32_t frames) {
-  explore::write_all(orders_.write_end(), &frames, sizeof frames);
+  process::write_all(orders_.write_end(), &frames, sizeof frames);
   receive_count();
 }
 

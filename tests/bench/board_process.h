@@ -6,9 +6,9 @@
 
 #include "models/fpga/stereo_core.h"
 #include "models/host/frame_source.h"
-#include "platform/tables.h"
-#include "sw/explore/child_process.h"
-#include "sw/simulation/child.h"
+#include "platform/config/tables.h"
+#include "sw/process/child.h"
+#include "sw/process/child_process.h"
 
 namespace stereotlm::bench {
 
@@ -44,8 +44,8 @@ class BoardProcess {
  private:
   void receive_count();
 
-  explore::Pipe orders_;  // to the child: numbers of frames
-  simulation::Child child_;
+  process::Pipe orders_;  // to the child: numbers of frames
+  process::Child child_;
   Count count_;
 };
 
