@@ -8,8 +8,8 @@ namespace stereotlm::area {
 // The arithmetic of the filter for one pixel a cycle (contract 1.2, paper section 2.4). It receives the rows
 // of a column one after the other, top first:
 //   pairs    in a kernel whose rows are symmetric, two pixels of equal weight are added first
-//   rows     the m pixels of the new row, weighted for each row of the kernel; equal rows are shared. A weight
-//            that is no power of two is a multiplier of the device
+//   rows     the m pixels of the new row, weighted for each row of the kernel; equal rows are shared. A
+//            weight that is no power of two is a multiplier of the device
 //   chain    m sums wait for their last row (transposed filter). Each new row is added to all of them, and
 //            each sum moves one place on. The adders' LUTs have free inputs to select the contents of the
 //            line memories

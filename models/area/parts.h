@@ -24,7 +24,8 @@ struct Range {
 
 // The fewest bits that hold 0..largest; 0 bits for 0.
 int bits_of(std::int64_t largest);
-// The fewest bits that hold a range. Without positive values they hold the magnitude, and the circuit subtracts it.
+// The fewest bits that hold a range. Without positive values they hold the magnitude, and the circuit
+// subtracts it.
 int bits_of(Range range);
 
 // One LUT on the carry chain for each bit of the result. A subtracter takes the same.

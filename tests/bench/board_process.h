@@ -12,9 +12,9 @@
 
 namespace stereotlm::bench {
 
-// Runs a board in a child process, because SystemC elaborates once per process. The child simulates on order and
-// sleeps in between. A failure of the child is a std::runtime_error here; a broken identity of contract section
-// 6 is one too.
+// Runs a board in a child process, because SystemC elaborates once per process. The child simulates on order
+// and sleeps in between. A failure of the child is a std::runtime_error here; a broken identity of contract
+// section 6 is one too.
 class BoardProcess {
  public:
   struct Setting {

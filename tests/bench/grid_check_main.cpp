@@ -1,5 +1,5 @@
-// stereotlm-grid-check: how right a board's disparities are at the corners of the grid that its rig was
-// calibrated with, and the distances that follow from them.
+// stereotlm-grid-check measures how right a board's disparities are at the corners of the grid with which its
+// rig was calibrated, and how right the distances that follow from them are.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -15,10 +15,10 @@
 namespace stereotlm::test {
 namespace {
 
-// A corner, as the board has it and as whole-pixel disparities would at best.
+// A corner by the board's disparity, and by the best whole disparity.
 struct MeasuredCorner {
   bool is_right = false;
-  std::optional<Eigen::Vector3d> point;  // by the board, if it has answered
+  std::optional<Eigen::Vector3d> point;  // by the board, if it has a disparity
   std::optional<Eigen::Vector3d> best;   // by the rounded geometric disparity
 };
 
@@ -41,7 +41,7 @@ class Assessor {
   }
 
  private:
-  // `geometric`: without the offset.
+  // `geometric` does not include the offset.
   void measure(const Eigen::Vector2d& output, double geometric) {
     MeasuredCorner corner;
     const auto column = static_cast<int>(std::floor(output.x() + 0.5));
@@ -99,7 +99,7 @@ class Assessor {
     result_.plane_floor_percent = 100 * distance_from_plane(best) / result_.distance_mm;
   }
 
-  // Root of the mean square, of the plane for which it is least.
+  // Root mean square of the distances from the best plane.
   static double distance_from_plane(const std::vector<Eigen::Vector3d>& points) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& point : points) middle += point;

@@ -17,21 +17,21 @@ struct Deviations {
   double mean_absolute() const;
 };
 
-// What the disparities of a board say about a grid that it has seen, measured by the grid itself. A corner of
-// the left picture has the geometric disparity that follows from where both cameras see it.
+// Compares the disparities of a board with a grid that it has seen. The geometric disparity of a corner
+// follows from where both cameras see it.
 struct GridAssessment {
   std::size_t corners = 0;
-  std::size_t right = 0;       // the board's disparity there is within kMostDifference of the geometric one
-  std::size_t wrong = 0;       // it is not
-  std::size_t unanswered = 0;  // there is none, or the corner is outside the output
-  // Distances between neighbouring corners, against the side of a square: by the board's disparities, of
-  // corners that are right, and of all that are answered; and by the geometric disparities of the same
-  // corners rounded to whole pixels, below which no board can come.
+  std::size_t right = 0;       // the board's disparity is within kMostDifference of the geometric disparity
+  std::size_t wrong = 0;       // the board has another disparity
+  std::size_t unanswered = 0;  // the board has no disparity, or the corner is outside its output
+  // Distances between neighbouring corners, compared with the side of a square: by the board's disparities
+  // for right corners and for all answered corners, and by the geometric disparities of the right corners
+  // rounded to whole pixels, the least error that a board can have.
   Deviations lengths;
   Deviations lengths_of_answered;
   Deviations lengths_floor;
-  // Of corners that are right: mean distance from the camera, and how far they lie from one plane: root of
-  // the mean square, in percent of that distance. 0 with fewer than four.
+  // For right corners: the mean distance from the camera, and the root mean square of their distances from
+  // one plane, in percent of that distance. 0 with fewer than four right corners.
   double distance_mm = 0;
   double plane_percent = 0;
   double plane_floor_percent = 0;
@@ -39,7 +39,7 @@ struct GridAssessment {
 
 inline constexpr double kMostDifference = 1.5;  // pixels
 
-// `disparity`: the board's output for this pair, with the tables of the calibration. Throws
+// `disparity` is the board's output for this pair with the tables of the calibration. Throws
 // std::invalid_argument if its size is not that of the calibration's pictures.
 GridAssessment assess(const calib::Calibration& calibration, const calib::GridPair& corners,
                       const kernels::GrayImage& disparity);

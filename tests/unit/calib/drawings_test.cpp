@@ -130,16 +130,14 @@ TEST(CornersDrawing, RefusesPicturesAndCornersThatDoNotFit) {
   const auto draw = [&image](const CaptionedImage& right, const MarkedCorners& marked) {
     encode_corners_png(kShape, image, {}, right, marked);
   };
-  EXPECT_NO_THROW(draw(image, marked_corners()));
-  MarkedCorners too_few = marked_corners();
+  MarkedCorners too_few, too_few_marks, outside;
+  too_few = too_few_marks = outside = marked_corners();
+  EXPECT_NO_THROW(draw(image, outside));
   too_few.corners.pop_back();
-  EXPECT_THROW(draw(image, too_few), std::invalid_argument);
-  MarkedCorners other_marks = marked_corners();
-  other_marks.left_out = {true};
-  EXPECT_THROW(draw(image, other_marks), std::invalid_argument);
-  MarkedCorners outside = marked_corners();
+  too_few_marks.left_out = {true};
   outside.corners[3].x() = 199.6;
-  EXPECT_THROW(draw(image, outside), std::invalid_argument);
+  for (const MarkedCorners& marked : {too_few, too_few_marks, outside})
+    EXPECT_THROW(draw(image, marked), std::invalid_argument);
   EXPECT_THROW(draw({"", GrayImage(200, 156)}, {}), std::invalid_argument);
   EXPECT_THROW(encode_corners_png(kShape, {}, {}, {}, {}), std::invalid_argument);
 }

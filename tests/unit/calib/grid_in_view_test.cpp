@@ -28,7 +28,7 @@ TEST(DisparityOffset, NamesTheDisparitiesNeededIfTheyDoNotFit) {
             "disparities = 104: must be 105 or more for the grid's own, 100..204");
 }
 
-TEST(RowErrors, AreOfAbsoluteValues) {
+TEST(RowErrors, AverageAbsoluteValues) {
   RowErrors errors;
   EXPECT_EQ(errors.result().corners, 0U);
   errors.add({3, 10}, {9, 10.5});

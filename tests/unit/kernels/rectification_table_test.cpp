@@ -91,14 +91,6 @@ TEST(RectificationTable, RectifiesAsTheReferenceDoes) {
   EXPECT_GT(with_table, 100);
 }
 
-TEST(RectificationTable, GivesZeroWhereItIsNotValid) {
-  RectificationTable table = identity_table(4, 1);
-  table.entries = {make_entry(3, 0), make_entry(1, 0) & ~kEntryValid, make_entry(3, 0), 0};
-  GrayImage source(4, 1);
-  source.pixels = {10, 20, 30, 40};
-  EXPECT_EQ(rectify(source, table).pixels, (std::vector<std::uint8_t>{40, 0, 40, 0}));
-}
-
 TEST(RectificationTable, RefusesAnImageOfAnotherSizeAndABrokenTable) {
   RectificationTable table = identity_table(8, 3);
   EXPECT_NO_THROW(rectify(GrayImage(8, 3), table));

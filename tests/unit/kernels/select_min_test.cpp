@@ -77,14 +77,5 @@ TEST(SelectMinChain, RefusesDisparitiesOutsideTheirRange) {
   EXPECT_THROW(SelectMinChain(255), std::invalid_argument);
 }
 
-TEST(SelectMinChain, ForgetsThePreviousFrame) {
-  SelectMinChain chain(3);
-  LaneArray<std::int32_t> sums(3);
-  for (int column = 0; column < 5; ++column) chain.step(sums.data(), 3);
-  EXPECT_EQ(chain.step(sums.data(), 0), 0);
-  chain.start_frame();
-  for (int column = 0; column < 5; ++column) EXPECT_EQ(chain.step(sums.data(), 0), kInvalidDisparity);
-}
-
 }  // namespace
 }  // namespace stereotlm::kernels

@@ -22,8 +22,6 @@ using test::SplitMix64;
 // Sends all pictures of the board through one pipeline for each instruction set, forwards and backwards: no
 // frame may leave a trace in the next.
 void expect_reference(const RandomBoard& board) {
-  const StereoConfig config{board.window, board.disparities, test::filter_kernel(board.filter),
-                            board.lr_tolerance};
   const auto entries = [](const std::optional<std::vector<std::uint32_t>>& table) {
     return table ? table->data() : nullptr;
   };
@@ -36,7 +34,7 @@ void expect_reference(const RandomBoard& board) {
         test::compute_reference(test::reference_input(board, static_cast<int>(picture))).disparity);
   for (const Simd* simd : simd_sets()) {
     SCOPED_TRACE(simd->name);
-    StereoPipeline pipeline(board.width, board.height, config, *simd);
+    StereoPipeline pipeline(board.width, board.height, test::stereo_config(board), *simd);
     for (const std::size_t picture : order) {
       std::vector<std::uint8_t> disparity(expected[picture].size(), 99);
       pipeline.run(board.pictures[picture].left.data(), board.pictures[picture].right.data(),

@@ -7,12 +7,6 @@
 namespace stereotlm::kernels {
 namespace {
 
-TEST(Words, HoldTheLowestColumnInTheLowestByte) {
-  EXPECT_EQ(pixel_of_word(0x44332211U, 0), 0x11);
-  EXPECT_EQ(pixel_of_word(0x44332211U, 4 * 7 + 3), 0x44);
-  EXPECT_EQ(insert_pixel(0x44332211U, 4 * 9 + 1, 0x00), 0x44330011U);
-}
-
 TEST(Words, HoldPixelsAsTheReferenceDoes) {
   const std::vector<std::uint8_t> pixels = {0, 1, 254, 255, 128, 7, 0, 99};
   std::vector<std::uint32_t> words(2, 0xDEADBEEFU);
