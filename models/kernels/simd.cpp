@@ -33,8 +33,9 @@ std::vector<const Simd*> sets_of_this_machine() {
   return sets;
 }
 
-// The sets of this machine from `best` on; all if it is null.
-std::vector<const Simd*> sets_up_to(const char* best) {
+}  // namespace
+
+std::vector<const Simd*> simd_sets_from(const char* best) {
   std::vector<const Simd*> sets = sets_of_this_machine();
   if (best == nullptr) return sets;
   std::string names;
@@ -45,10 +46,8 @@ std::vector<const Simd*> sets_up_to(const char* best) {
   throw std::invalid_argument(std::string("STEREOTLM_VECTORS = ") + best + ": this machine has " + names);
 }
 
-}  // namespace
-
 const std::vector<const Simd*>& simd_sets() {
-  static const std::vector<const Simd*> sets = sets_up_to(std::getenv("STEREOTLM_VECTORS"));
+  static const std::vector<const Simd*> sets = simd_sets_from(std::getenv("STEREOTLM_VECTORS"));
   return sets;
 }
 

@@ -15,9 +15,10 @@ struct Simd {
   ColumnSimd column;
 };
 
-// The instruction sets that this machine has, the best first: avx512, avx2, base. The environment variable
-// STEREOTLM_VECTORS names the best one that is used, for measurements. Throws std::invalid_argument if the
-// machine does not have it.
+// The instruction sets of this machine from `best` on: avx512, avx2, base. All of them if `best` is null.
+// Throws std::invalid_argument if the machine does not have `best`.
+std::vector<const Simd*> simd_sets_from(const char* best);
+// The sets that are used. For measurements the environment variable STEREOTLM_VECTORS names the best of them.
 const std::vector<const Simd*>& simd_sets();
 inline const Simd& best_simd() { return *simd_sets().front(); }
 

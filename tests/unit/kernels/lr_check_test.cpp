@@ -83,10 +83,8 @@ TEST(LrCheck, StreamsWithADelayOfTheDisparities) {
 TEST(LrCheck, RefusesDisparitiesOrToleranceOutsideTheirRange) {
   EXPECT_NO_THROW(LrCheck(1, 0));
   EXPECT_NO_THROW(LrCheck(254, 253));
-  EXPECT_THROW(LrCheck(0, 0), std::invalid_argument);
-  EXPECT_THROW(LrCheck(255, 0), std::invalid_argument);
-  EXPECT_THROW(LrCheck(8, -1), std::invalid_argument);
-  EXPECT_THROW(LrCheck(8, 254), std::invalid_argument);
+  for (const int disparities : {0, 255}) EXPECT_THROW(LrCheck(disparities, 0), std::invalid_argument);
+  for (const int tolerance : {-1, 254}) EXPECT_THROW(LrCheck(8, tolerance), std::invalid_argument);
 }
 
 }  // namespace

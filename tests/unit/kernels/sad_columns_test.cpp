@@ -116,12 +116,9 @@ TEST(CandidateCount, CountsTheWindowsInsideBothImages) {
         const int r = (window - 1) / 2;
         for (int row = 0; row < height; ++row) {
           for (int column = 0; column < width; ++column) {
+            const bool inside = column + r < width && row - r >= 0 && row + r < height;
             int expected = 0;
-            for (int d = 0; d < disparities; ++d) {
-              const bool inside =
-                  column - d - r >= 0 && column + r < width && row - r >= 0 && row + r < height;
-              expected += inside ? 1 : 0;
-            }
+            for (int d = 0; d < disparities; ++d) expected += inside && column - d - r >= 0 ? 1 : 0;
             ASSERT_EQ(candidate_count(column, row, width, height, window, disparities), expected);
           }
         }

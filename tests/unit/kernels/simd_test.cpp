@@ -2,32 +2,23 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <stdexcept>
-#include <string>
 
 namespace stereotlm::kernels {
 namespace {
 
 TEST(Simd, ListsTheInstructionSetsOfTheMachineBestFirst) {
   int lanes = kMostFrameLanes;
-  for (const Simd* simd : simd_sets()) {
+  for (const Simd* simd : simd_sets_from(nullptr)) {
     EXPECT_LE(simd->frame.lanes, lanes) << simd->name;
     lanes = simd->frame.lanes;
+    EXPECT_EQ(simd_sets_from(simd->name).front(), simd);
   }
-  EXPECT_EQ(simd_sets().back()->name, std::string("base"));
-}
-
-// Each test is a process of its own, in which the variable is read once.
-TEST(Simd, UsesNoBetterSetThanTheEnvironmentNames) {
-  setenv("STEREOTLM_VECTORS", "base", 1);
-  EXPECT_EQ(simd_sets().size(), 1U);
-  EXPECT_EQ(best_simd().name, std::string("base"));
+  EXPECT_EQ(simd_sets_from("base").size(), 1U);
 }
 
 TEST(Simd, RefusesASetThatTheMachineDoesNotHave) {
-  setenv("STEREOTLM_VECTORS", "mmx", 1);
-  EXPECT_THROW(simd_sets(), std::invalid_argument);
+  EXPECT_THROW(simd_sets_from("mmx"), std::invalid_argument);
 }
 
 }  // namespace
