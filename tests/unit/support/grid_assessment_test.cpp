@@ -1,4 +1,4 @@
-#include "calib/grid_assessment.h"
+#include "tests/support/grid_assessment.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "calib/synthetic_rig.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::test {
 namespace {
 
 // The true rig, and a board that answers with whole disparities.
@@ -21,7 +21,7 @@ class GridAssessmentTest : public testing::Test {
     made_.disparity_offset = 15;
     const auto corners = known_.grid_corners(made_.grid, 0);
     corners_ = {corners.left, corners.right};
-    const GridPair its = rectified(made_.rig, made_.rectification, corners_);
+    const calib::GridPair its = rectified(made_.rig, made_.rectification, corners_);
     for (std::size_t i = 0; i < its.left.size(); ++i) {
       const double d = its.left[i].x() - its.right[i].x() - made_.disparity_offset;
       set(its.left[i], static_cast<int>(std::floor(d + 0.5)));
@@ -36,9 +36,9 @@ class GridAssessmentTest : public testing::Test {
         static_cast<std::uint8_t>(disparity);
   }
 
-  SyntheticRig known_{6, 640, 480};
-  Calibration made_;
-  GridPair corners_;
+  calib::SyntheticRig known_{6, 640, 480};
+  calib::Calibration made_;
+  calib::GridPair corners_;
   kernels::GrayImage disparity_{640, 480, 255};
   std::vector<Eigen::Vector2d> places_;
   std::vector<int> disparities_;
@@ -92,4 +92,4 @@ TEST_F(GridAssessmentTest, RefusesDisparitiesOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::test

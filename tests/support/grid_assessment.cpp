@@ -1,4 +1,4 @@
-#include "calib/grid_assessment.h"
+#include "tests/support/grid_assessment.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -12,24 +12,24 @@
 #include "calib/grid_in_view.h"
 #include "models/kernels/lr_check.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::test {
 namespace {
 
-// A corner, as the board has it and as whole-pixel disparities would at best.
+// A corner by the board's disparity, and by the best whole disparity.
 struct MeasuredCorner {
   bool is_right = false;
-  std::optional<Eigen::Vector3d> point;  // by the board, if it has answered
+  std::optional<Eigen::Vector3d> point;  // by the board, if it has a disparity
   std::optional<Eigen::Vector3d> best;   // by the rounded geometric disparity
 };
 
 class Assessor {
  public:
-  Assessor(const Calibration& calibration, const kernels::GrayImage& disparity)
+  Assessor(const calib::Calibration& calibration, const kernels::GrayImage& disparity)
       : shape_(calibration.grid),
         geometry_{calibration.rectification.q, calibration.disparity_offset},
         disparity_(disparity) {}
 
-  GridAssessment assess(const GridPair& rectified) {
+  GridAssessment assess(const calib::GridPair& rectified) {
     for (std::size_t i = 0; i < rectified.left.size(); ++i) {
       const Eigen::Vector2d output = rectified.left[i] - Eigen::Vector2d(geometry_.disparity_offset, 0);
       measure(output, output.x() - rectified.right[i].x());
@@ -41,7 +41,7 @@ class Assessor {
   }
 
  private:
-  // `geometric`: without the offset.
+  // `geometric` does not include the offset.
   void measure(const Eigen::Vector2d& output, double geometric) {
     MeasuredCorner corner;
     const auto column = static_cast<int>(std::floor(output.x() + 0.5));
@@ -99,7 +99,7 @@ class Assessor {
     result_.plane_floor_percent = 100 * distance_from_plane(best) / result_.distance_mm;
   }
 
-  // Root of the mean square, of the plane for which it is least.
+  // Root mean square of the distances from the best plane.
   static double distance_from_plane(const std::vector<Eigen::Vector3d>& points) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& point : points) middle += point;
@@ -110,8 +110,8 @@ class Assessor {
     return std::sqrt(std::max(0.0, solver.eigenvalues()(0)) / static_cast<double>(points.size()));
   }
 
-  const GridShape& shape_;
-  DepthGeometry geometry_;
+  const calib::GridShape& shape_;
+  calib::DepthGeometry geometry_;
   const kernels::GrayImage& disparity_;
   std::vector<MeasuredCorner> corners_;
   GridAssessment result_;
@@ -131,7 +131,7 @@ double Deviations::mean_absolute() const {
   return percent.empty() ? 0 : sum / static_cast<double>(percent.size());
 }
 
-GridAssessment assess(const Calibration& calibration, const GridPair& corners,
+GridAssessment assess(const calib::Calibration& calibration, const calib::GridPair& corners,
                       const kernels::GrayImage& disparity) {
   if (disparity.width != calibration.rig.width || disparity.height != calibration.rig.height) {
     throw std::invalid_argument("disparities = " + std::to_string(disparity.width) + "x" +
@@ -143,4 +143,4 @@ GridAssessment assess(const Calibration& calibration, const GridPair& corners,
       .assess(rectified(calibration.rig, calibration.rectification, corners));
 }
 
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::test
