@@ -94,10 +94,9 @@ class Allocate(ProgramTest):
         plan = f"board: {self.board(text)}\n{how}\nzip:\n  - {{{keys}}}\n"
         store = self.folder / "all.db"
         self.succeeds(run("sweep", self.file("all.yaml", plan), "--out", store))
-        columns = ['"cameras.left.dropped_pixels" + "cameras.right.dropped_pixels"', '"frames_per_second.system"']
-        if source == "preloaded":
-            columns = ["0", '"frames_per_second.core"']
-        columns += [f'"allocation.{name}"' for name in BUFFERS]
+        dropped = " + ".join(f'"cameras.{side}.dropped_pixels"' for side in ("left", "right"))
+        lost, rate = ("0", "core") if source == "preloaded" else (dropped, "system")
+        columns = [lost, f'"frames_per_second.{rate}"', *(f'"allocation.{name}"' for name in BUFFERS)]
         found = self.query(store, f"SELECT {', '.join(columns)} FROM points WHERE status = 'ok'")
         self.assertEqual(len(found), len(chosen))
         rates = {}

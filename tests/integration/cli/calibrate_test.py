@@ -82,16 +82,6 @@ class Made(CalibrateTest):
         names = [path.name for path in self.folder.glob("new*")]
         self.assertEqual(sorted(names), ["new.yaml", "new_drawings", "new_left.lut", "new_right.lut"])
 
-    def test_replaces_what_a_run_that_was_killed_has_left(self):
-        self.succeeds(self.calibrate())
-        aside = self.folder / "new.partial"
-        self.file("new.partial/new/new.yaml", "half")
-        self.file("new.partial/names", "new.yaml\n")
-        (aside / "earlier").mkdir()
-        self.new.rename(aside / "earlier" / "new.yaml")
-        self.succeeds(self.calibrate())
-        self.assertFalse(aside.exists())
-
     def test_takes_pictures_whose_names_look_like_patterns(self):
         folder = self.folder / "br[1]"
         folder.mkdir()
@@ -99,13 +89,6 @@ class Made(CalibrateTest):
         for path in [*pairs["left"], *pairs["right"]]:
             shutil.copy(self.pictures / path.name, path)
         self.succeeds(self.calibrate(**pairs))
-
-    def test_leaves_its_pictures_beside_it(self):
-        shutil.copytree(self.pictures, self.folder / "new_pictures")
-        with self.unchanged(self.folder / "new_pictures"):
-            for _ in range(2):
-                mine = {side: [self.folder / "new_pictures" / f"{side}_0[0-2].png"] for side in SIDES}
-                self.succeeds(self.calibrate(**mine))
 
     def test_doubts_pictures_whose_names_do_not_go_together(self):
         process = self.calibrate(left="left_0[01].png", right="right_0[02].png")

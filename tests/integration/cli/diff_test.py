@@ -3,7 +3,6 @@
 import csv
 import functools
 import json
-import re
 import shutil
 import signal
 
@@ -106,20 +105,6 @@ class WorkedValues(DiffTest):
         for line in self.succeeds(run("diff", self.alone, self.shared)).splitlines():
             self.assertLessEqual(len(line), max(100, len(str(self.alone)) + 3), line)
 
-    def test_say_in_which_rows(self):
-        # 4 cycles of latency, 7 a column, 82 columns behind the first one, and the write.
-        lines = self.lines(self.alone, self.shared)
-        (parting,) = (line for line in lines if line.startswith(PARTING))
-        self.assertRegex(parting, rf"^{PARTING}0, row 0: whole after 5059 cycles in A, \d+ in B$")
-        rows = [re.fullmatch(r"(\d+)(?:\.\.(\d+))? (\S+) (\S+) (\S+) 0 0 0 0", line) for line in lines]
-        rows = [row.groups() for row in rows if row]
-        self.assertEqual(sum(int(row[2]) for row in rows), 2_137_602)
-        self.assertEqual(sum(int(row[4]) for row in rows), 2_137_602)
-        # 640 columns of 7 slots take twice as long.
-        (longest,) = (row for row in rows if int(row[1] or row[0]) - int(row[0]) > 400)
-        self.assertEqual(longest[3], "+4480")
-        self.assertEqual(int(rows[-1][1] or rows[-1][0]), 479)
-
     def test_are_in_the_table_for_other_programs(self):
         path = self.folder / "rows.csv"
         self.lines(self.alone, self.shared, "--csv", path)
@@ -135,12 +120,6 @@ class WorkedValues(DiffTest):
 
 
 class Frames(DiffTest):
-    def test_part_where_the_first_one_is_contended(self):
-        board = sets("allocation.disparity=[bank4, bank0]", "allocation.left_image=[bank1, bank0]")
-        lines = self.lines(*(shared_run(*SCENE, "--frames", "4", *more) for more in ([], board)))
-        (parting,) = (line for line in lines if line.startswith(PARTING))
-        self.assertTrue(parting.startswith(f"{PARTING}1, row "), parting)
-
     def test_of_different_numbers_are_compared_as_far_as_both_go(self):
         lines = self.lines(*(shared_run(*SCENE, "--frames", frames) for frames in ("3", "4")))
         self.assertIn("frames 3 4", lines)
@@ -173,17 +152,6 @@ class Frames(DiffTest):
 
 
 class Disparities(DiffTest):
-    def test_that_differ_are_counted(self):
-        few = sets("matcher.disparities=8")
-        a, b = (shared_run(*SCENE, *few, *more) for more in ([], sets("matcher.lr_tolerance=off")))
-        (line,) = (line for line in self.lines(a, b) if line.startswith("disparities"))
-        ours, theirs = (read_png(folder / "disparity.png")[3] for folder in (a, b))
-        other = [(x, y) for y in range(HEIGHT) for x in range(WIDTH) if ours[y][x] != theirs[y][x]]
-        self.assertGreater(len(other), 1)
-        x, y = other[0]
-        first = f"in frame 0 at ({x}, {y}): {ours[y][x]} in A, {theirs[y][x]} in B"
-        self.assertEqual(line, f"disparities: {len(other)} pixels differ, in 1 of 1 frame; the first {first}")
-
     def test_are_not_compared_where_one_run_has_none(self):
         a, b = shared_run(*SCENE), shared_run(*SMALL, "--timing-only")
         self.assertIn("disparities: not compared: there are none in B", self.lines(a, b))
@@ -198,8 +166,12 @@ class Disparities(DiffTest):
             self.assertIn(str(path), " ".join(lines))
             self.assertIn(sha256(path), " ".join(lines))
         self.assertIn("no figure and no row differs", lines)
-        differs = r"\d+ pixels? differs?, in 1 of 1 frame; the first in frame 0 at "
-        self.assertRegex(lines[-1], rf"^disparities: {differs}")
+        ours, theirs = (read_png(folder / "disparity.png")[3] for folder in (self.a, self.b))
+        pixels = [(x, y) for y in range(HEIGHT) for x in range(WIDTH) if ours[y][x] != theirs[y][x]]
+        x, y = pixels[0]
+        first = f"in frame 0 at ({x}, {y}): {ours[y][x]} in A, {theirs[y][x]} in B"
+        differ = f"{len(pixels)} pixels differ, in 1 of 1 frame; the first {first}"
+        self.assertEqual(lines[-1], f"disparities: {differ}")
 
 
 class Computer(DiffTest):

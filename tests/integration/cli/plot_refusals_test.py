@@ -7,10 +7,11 @@ import signal
 import subprocess
 
 import program
-from plots import ALLOCATIONS, ENDINGS, LAYOUT, WINDOWS, PlotTest, change, make_database, reader, script, script_with
+from plots import ALLOCATIONS, ENDINGS, LAYOUT, WINDOWS
+from plots import PlotTest, change, make_database, reader, script, script_with
 from program import run, wait_until
 
-HEADER = ["name", "run.source", "matcher.window", "matcher.fetch", "frames_per_second.core", "bound.core", "pci.clocks"]
+HEADER = "name run.source matcher.window matcher.fetch frames_per_second.core bound.core pci.clocks".split()
 FOLDER = "must be empty or hold only files that plot writes"
 ALL = "plot_all.py"
 
@@ -62,7 +63,7 @@ class Refusals(PlotTest):
         """The lines, without what stands before each."""
         lines = self.refused(script(ALL, store, "--out", self.out, *options))
         self.assertFalse(self.out.exists())
-        return [line.removeprefix(f"{ALL}: error: ") for line in lines]
+        return [line.removeprefix("stereotlm: error: ") for line in lines]
 
     def test_of_the_command_line_are_said_at_once(self):
         axes = "must be two columns, each with min or max: area.slices:min,frames_per_second.core:max"
@@ -72,8 +73,9 @@ class Refusals(PlotTest):
             f"--pareto = a:max: {axes}",
             "--out: missing: the folder of the figures",
         ])
-        for wrong in ("matcher.window", "matcher.window:least,bound.core:max", "",
-                      "matcher.window:max,matcher.window:min", "matcher.window:max,bound.core:max,run.source:min"):
+        window = "matcher.window:max"
+        for wrong in ("", "matcher.window", window, "matcher.window:least,bound.core:max",
+                      f"{window},matcher.window:min", f"{window},bound.core:max,run.source:min"):
             process = run("plot", self.store, "--out", self.out, "--pareto", wrong)
             self.refused_in_one_line(process, f"--pareto = {wrong}: must be two columns")
 
@@ -102,7 +104,8 @@ class Refusals(PlotTest):
         change(foreign, "CREATE TABLE points(a)")
         early = make_database(self.folder / "early.db", HEADER, [])
         change(early, "PRAGMA user_version = 1")
-        empty, failed = (make_database(self.folder / f"{name}.db", ["name"], []) for name in ("empty", "failed"))
+        empty = make_database(self.folder / "empty.db", ["name"], [])
+        failed = shutil.copy(empty, self.folder / "failed.db")
         change(failed, "INSERT INTO points VALUES('0', 'failed', 'why', '0.1.0', '', 'a')")
         for path, reason in (
             (none, "cannot be opened: No such file or directory"),
@@ -124,8 +127,8 @@ class Refusals(PlotTest):
             path.symlink_to(self.left)
 
         folder = pathlib.Path.mkdir
-        for make, name in ((file, "notes.txt"), (file, "window.pdf"), (file, ".partial"), (folder, "window.png"),
-                           (folder, "frames"), (link, "window.png"), (link, ".partial")):
+        for make, name in ((file, "notes.txt"), (file, "window.pdf"), (file, ".partial"), (folder, "frames"),
+                           (folder, "window.png"), (link, "window.png"), (link, ".partial")):
             given = self.folder / "given"
             given.mkdir()
             make(given / name)
@@ -163,8 +166,7 @@ class Refusals(PlotTest):
 class Environment(PlotTest):
     @program.slow
     def test_has_no_effect(self):
-        rows = [("made", "preloaded", window, "column", 90 / window, 90 / window, None) for window in (3, 5)]
-        store = make_database(self.folder / "made.db", HEADER, rows)
+        store = self.sweep(WINDOWS)
         self.file("matplotlib.py", "raise ImportError('another one')\n")
         self.succeeds(run("plot", store, "--out", self.out))
         harmless = {"MPLBACKEND": "nonsense", "PYTHONSAFEPATH": "1"}

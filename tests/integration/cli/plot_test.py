@@ -346,37 +346,26 @@ class ChangedDatabases(FigureTest):
         self.store = self.sweep(ALLOCATIONS + "  matcher.disparities: [4, 8]\n")
         self.hash = sorted(self.database(self.store)[0])[1]
 
-    def refused_with(self, process, text):
-        self.refused_in_one_line(process, text.replace("POINT", f"point {self.hash}") + "\n")
-
     def test_are_refused_where_a_value_is_no_number(self):
         whole = self.store.read_bytes()
-        for figure, column, value, found in (
-            ("disparities", "matcher.disparities", "'x'", "x"),
-            ("disparities", "frames_per_second.core", "NULL", "absent"),
-            ("disparities", "bound.core", "9e999", "inf"),
-            ("disparities", "area.slices_percent", "'x'", "x"),
-            ("banks", "frames_per_second.core", "'x'", "x"),
-            ("banks", "area.block_rams_percent", "-9e999", "-inf"),
-            ("states", "frames_per_second.core", "NULL", "absent"),
-            ("states", "ports.result.idle_cycles", "NULL", "absent"),
-            ("states", "ports.host.grants", "'x'", "x"),
-            ("states", "frames", "9e999", "inf"),
-            ("stalls", "ports.left_lut.stall_cycles", "NULL", "absent"),
-            ("stalls", "frames", "''", ""),
-            ("use", "banks.bank3.utilization", "'x'", "x"),
-            ("use", "frames_per_second.core", "9e999", "inf"),
-            ("pareto", "frames_per_second.core", "-9e999", "-inf"),
-            ("pareto", "frames_per_second.core", "1.7e308", "1.7e+308"),
-            ("pareto", "area.slices", "'x'", "x"),
-            ("pareto", "area.multipliers_percent", "'x'", "x"),
-        ):
+        columns = {
+            "disparities": [*RATES, "matcher.disparities", "area.slices_percent"],
+            "banks": ["frames_per_second.core", "area.block_rams_percent"],
+            "states": ["frames_per_second.core", "frames", "ports.result.idle_cycles", "ports.host.grants"],
+            "stalls": ["frames", "ports.left_lut.stall_cycles"],
+            "use": ["frames_per_second.core", "banks.bank3.utilization"],
+            "pareto": ["frames_per_second.core", "area.slices", "area.multipliers_percent"],
+        }
+        rows = [(figure, column, "'x'", "x") for figure in columns for column in columns[figure]]
+        values = {"NULL": "absent", "9e999": "inf", "-9e999": "-inf", "1.7e308": "1.7e+308", "''": ""}
+        rows += [("states", "frames_per_second.core", *value) for value in values.items()]
+        for figure, column, value, found in rows:
             with self.subTest(figure=figure, column=column, value=value):
                 assignment = f"{reader.quoted(column)} = {value}"
                 change(self.store, f"UPDATE points SET {assignment} WHERE hash = ?", self.hash)
-                problem = f"{figure} not drawn: POINT: {column} = {found}: {reader.NUMBER}"
+                problem = f"{figure} not drawn: point {self.hash}: {column} = {found}: {reader.NUMBER}"
                 process = script(f"plot_{figure}.py", self.store, "--out", self.out)
-                self.refused_with(process, f"plot_{figure}.py: error: {problem}")
+                self.refused_in_one_line(process, f"plot_{figure}.py: error: {problem}\n")
                 self.store.write_bytes(whole)
 
     def test_are_refused_where_frames_blame_or_text_are_wrong(self):
@@ -427,8 +416,9 @@ class Studies(FigureTest):
         (self.folder / "sw").symlink_to(results.parent / "sw")
         for name in ("study.py", "fetch/report.py"):
             shutil.copy(results / name, self.folder / "results" / name)
-        header = [*HEADER, "matcher.disparities", "matcher.fetch", "frames_per_second.core", "area.slices_percent",
-                  "area.block_rams", "area.block_rams_percent", "area.multipliers_percent"]
+        areas = ["slices_percent", "block_rams", "block_rams_percent", "multipliers_percent"]
+        header = [*HEADER, "matcher.disparities", "matcher.fetch", "frames_per_second.core"]
+        header += [f"area.{part}" for part in areas]
         rows = [("made", "preloaded", 7, disparities, fetch, 18, *area) for fetch in ("column", "line_buffer")
                 for disparities, *area in ((80, 50, 9, 10, 0), (120, 70, 9, 100, 100), (160, 80, 9, 101, 0),
                                            (200, 90, 9, 50, 101), (240, 101, 9, 50, 0))]

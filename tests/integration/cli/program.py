@@ -3,6 +3,7 @@
 The path of the program is the first argument of each script.
 """
 
+import concurrent.futures
 import contextlib
 import ctypes
 import functools
@@ -20,7 +21,7 @@ import unittest
 
 from pictures import noise, pgm
 
-PROGRAM = None  # set by main()
+PROGRAM = os.path.abspath(sys.argv.pop(1))
 
 
 def sets(*assignments):
@@ -35,7 +36,7 @@ PRELOADED = ["--source", "preloaded"]
 # A frame of the small core takes 1.6 times as long as one of the cameras, as on the paper's board at 7x7.
 CAMERA_RATES = sets("cameras.frame_rate_hz=1000", f"fpga.clock_mhz={5992 / 1600}")
 CYCLE = ["--fidelity", "cycle"]  # also for runs that have to take a while
-RESULT_FILES = ["config.yaml", "disparity.pfm", "disparity.png", "disparity_color.png", "run.json", "stats.json"]
+RESULT_FILES = "config.yaml disparity.pfm disparity.png disparity_color.png run.json stats.json".split()
 
 
 def words(arguments):
@@ -44,7 +45,8 @@ def words(arguments):
 
 def run(*arguments, **options):
     """The finished process, with text output."""
-    return subprocess.run(words(arguments), capture_output=True, text=True, timeout=300, check=False, **options)
+    pipes = {"capture_output": True, "text": True, "timeout": 300, "check": False}
+    return subprocess.run(words(arguments), **pipes, **options)
 
 
 def wait_until(is_so, seconds=60):
@@ -64,23 +66,11 @@ def of_plain_user():
                 raise OSError(ctypes.get_errno(), "prctl")
 
 
-def has_address_sanitizer():
-    return b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()
+HAS_ADDRESS_SANITIZER = b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()
 
-
-def slow(test):
-    """Leaves a case out under the sanitizers, where it would take many seconds.
-
-    The release build runs it; other cases run the same code under the sanitizers.
-    """
-
-    @functools.wraps(test)
-    def wrapper(self):
-        if has_address_sanitizer():
-            self.skipTest("slow under the sanitizers")
-        test(self)
-
-    return wrapper
+# Marks a case, or a class of cases, that is left out under the sanitizers because it would take too long. The
+# release build runs it; under the sanitizers other cases run the same code.
+slow = unittest.skipIf(HAS_ADDRESS_SANITIZER, "too slow under the sanitizers")
 
 
 def sha256(path):
@@ -147,7 +137,8 @@ class ProgramTest(unittest.TestCase):
     def result(self, folder=None):
         """The bytes of all files of a result folder, by name."""
         folder = folder or self.out
-        return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        files = (path for path in folder.rglob("*") if path.is_file())
+        return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
     def stats(self, folder=None):
         return json.loads(((folder or self.out) / "stats.json").read_text())
@@ -156,11 +147,12 @@ class ProgramTest(unittest.TestCase):
         return json.loads((self.out / "run.json").read_text())
 
     @contextlib.contextmanager
-    def unchanged(self, folder):
-        """No file of the folder comes, goes or changes meanwhile."""
-        before = self.result(folder)
+    def unchanged(self, path):
+        """The file, or each file of the folder, stays as it is meanwhile, and none is added."""
+        of = lambda: self.result(path) if path.is_dir() else path.read_bytes()
+        before = of()
         yield
-        self.assertTrue(self.result(folder) == before, f"{folder} has changed")
+        self.assertTrue(of() == before, f"{path} has changed")
 
     def is_in(self, folder, *names):
         """These are all entries of the folder."""
@@ -169,8 +161,8 @@ class ProgramTest(unittest.TestCase):
     # Commands.
 
     def run_arguments(self, *more, board="fpl2003", left=None, right=None):
-        pair = ["--left", self.left if left is None else left, "--right", self.right if right is None else right]
-        return ["run", board, *SMALL, *PRELOADED, *pair, *more]
+        left, right = self.left if left is None else left, self.right if right is None else right
+        return ["run", board, *SMALL, *PRELOADED, "--left", left, "--right", right, *more]
 
     def run_small(self, *more, **pair):
         """A small run of a pair."""
@@ -230,7 +222,17 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(len(self.ended(process, 1, *texts)), 1, process.stderr)
 
 
-def main():
+class AtOnce(unittest.TestSuite):
+    """Runs its cases in threads, for scripts whose cases wait most of the time."""
+
+    def run(self, result, debug=False):
+        with concurrent.futures.ThreadPoolExecutor() as threads:
+            list(threads.map(lambda case: case.run(result), self))
+        return result
+
+
+def main(suite=unittest.TestSuite):
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
-    sys.modules["program"].PROGRAM = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+    loader = unittest.TestLoader()
+    loader.suiteClass = suite
+    unittest.main(testLoader=loader)

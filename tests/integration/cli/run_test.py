@@ -1,14 +1,24 @@
-"""Runs that succeed: what they print and write."""
+"""Runs: what they print and write, saved frames, the progress line, interrupts."""
 
 import os
+import re
+import resource
+import signal
 import subprocess
 import unittest
 
 import program
 from pictures import noise, pgm, ppm, read_pfm, read_png
-from program import HEIGHT, PRELOADED, RESULT_FILES, SMALL, WIDTH, ProgramTest, run, sets, sha256
+from program import CYCLE, HEIGHT, PRELOADED, RESULT_FILES, SMALL, WIDTH
+from program import ProgramTest, run, sets, sha256, wait_until
+from terminal import PROGRESS, Terminal
 
 DISPARITY_FILES = ("disparity.png", "disparity.pfm", "disparity_color.png")
+MOST = "18446744073709551615"
+
+
+def frame_names(count):
+    return [f"{frame:06}.png" for frame in range(count)]
 
 
 class ResultFiles(ProgramTest):
@@ -44,22 +54,14 @@ class ResultFiles(ProgramTest):
         self.assertEqual(accesses, sum(port["grants"] for port in stats["ports"]))
         self.assertNotIn("failed", stats)
         self.assertNotIn("accuracy", stats)
+        bounds = self.succeeds(run("bounds", "fpl2003", *SMALL)).splitlines()[-1]
+        self.assertIn(f"area of the core: {stats['area']['slices']} of 33792 slices", bounds)
         # Frames take the banks of a list in turn.
         words = WIDTH * HEIGHT // 4
         writes = [bank["writes"] for bank in stats["banks"]]
         self.assertEqual(writes, [0, 0, 0, 0, 2 * words, words, 0, 0])
         for first, second in (("bank0", "bank1"), ("bank2", "bank3")):
             self.assertEqual(banks[first]["reads"], 2 * banks[second]["reads"])
-
-    def test_area_is_that_of_the_board(self):
-        self.succeeds(self.run_small("--out", self.out))
-        area = self.stats()["area"]
-        shares = [f"{part}{percent}" for part in ("block_rams", "multipliers") for percent in ("", "_percent")]
-        self.assertEqual(list(area), ["slices", "slices_percent", "luts", "flip_flops", *shares])
-        self.assertEqual(area["slices_percent"], 100 * area["slices"] / 33792)
-        bounds = self.succeeds(run("bounds", "fpl2003", *SMALL)).splitlines()[-1]
-        self.assertTrue(bounds.startswith(f"area of the core: {area['slices']} of 33792 slices"), bounds)
-        self.assertIn(f", {area['block_rams']} of 144 block RAMs, ", bounds)
 
     def test_are_byte_identical_again_and_disparities_for_any_number_of_frames(self):
         options = ["--out", self.out, "--truth", self.left, "--truth-scale", "4"]
@@ -92,12 +94,6 @@ class ResultFiles(ProgramTest):
             self.assertEqual(said[name]["sha256"], sha256(path))
         self.assertEqual(said["truth_scale"], 0.5)
         self.assertEqual("stereotlm " + said["version"], self.succeeds(run("--version")).strip())
-
-    def test_replace_an_earlier_result_whole(self):
-        for name in ("run.json", "depth.ply"):
-            self.file(f"out/{name}", "old")
-        self.succeeds(self.run_small("--out", self.out))
-        self.is_in(self.out, *RESULT_FILES)
 
     def test_are_not_written_without_out(self):
         with self.unchanged(self.folder):
@@ -163,6 +159,133 @@ class Output(ProgramTest):
         self.assertEqual(process.returncode, 1, "the table cannot be printed")
         with self.unchanged(self.out):
             self.succeeds(self.run_small("--out", self.out))
+
+
+class SaveFrames(ProgramTest):
+    def save(self, *more):
+        self.succeeds(self.run_small("--save-frames", "--out", self.out, *more))
+
+    def test_writes_the_disparities_of_each_frame(self):
+        self.save("--frames", "100")
+        self.is_in(self.out, *RESULT_FILES, "frames")
+        self.is_in(self.out / "frames", *frame_names(100))
+        last = (self.out / "disparity.png").read_bytes()
+        self.assertEqual(set(self.result(self.out / "frames").values()), {last})
+        self.assertEqual(read_png(self.out / "disparity.png")[:3], (WIDTH, HEIGHT, 1))
+
+    def test_on_a_full_disk_is_an_error_that_keeps_the_earlier_result(self):
+        self.succeeds(self.run_small("--out", self.out))
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+        with self.unchanged(self.out):
+            command = self.run_arguments("--save-frames", "--frames", "3", "--out", self.out)
+            process = run(*command, preexec_fn=limit)
+            self.fails(process, "'frames/000000.png' cannot be written: File too large")
+
+
+class SavingInterrupted(ProgramTest):
+    """A run of many frames that has saved some aside."""
+
+    def begin(self, *source):
+        command = ["run", "fpl2003", *SMALL, *PRELOADED, *source, "--save-frames", "--out", self.out]
+        process = self.start(*command)
+        some = self.out / ".partial" / "new" / "frames" / "000010.png"
+        wait_until(lambda: some.exists() or process.poll() is not None)
+        return process
+
+    def interrupt(self, process):
+        """What it says."""
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        return errors
+
+    def test_an_interrupt_keeps_the_frames_that_are_finished(self):
+        self.succeeds(self.run_small("--frames", "2", "--save-frames", "--out", self.out))
+        earlier = self.result()
+        process = self.begin(*self.pair, "--frames", "1000000000")
+        now = self.result()
+        self.assertEqual({name: now.get(name) for name in earlier}, earlier)  # until the run ends
+        done = int(re.search(r"interrupted after (\d+) of", self.interrupt(process))[1])
+        self.is_in(self.out / "frames", *frame_names(done))
+        self.assertEqual(self.stats()["frames"], done)
+        with self.unchanged(self.out):
+            self.succeeds(self.run_small("--frames", done, "--save-frames", "--out", self.out))
+
+    def test_an_interrupt_leaves_out_the_truth_of_a_pair_that_was_not_reached(self):
+        errors = self.interrupt(self.begin("--sequence", self.sequence(1000), "--truth", self.left))
+        note = "note: --truth is of the pair of frame 999, which was not reached: no accuracy\n"
+        self.assertIn(note, errors)
+        self.assertNotIn("accuracy", self.stats())
+        self.assertNotIn("truth", self.run_json())
+
+
+class ProgressLine(ProgramTest):
+    def start_slow(self, **options):
+        """At a terminal, a run of a thousand frames that takes a while."""
+        return Terminal(self.run_arguments(*CYCLE, "--frames", "1000"), **options)
+
+    def test_shows_rate_and_remaining_time_and_is_erased(self):
+        terminal = self.start_slow()
+        done, total, percent, _, rate, left = terminal.read_until(PROGRESS)[0]
+        status, out = terminal.finish()
+        self.assertEqual(status, 0, terminal.text)
+        self.assertIn("1000 frames", out)
+        self.assertEqual(total, "1000")
+        self.assertAlmostEqual(float(percent), float(done) / 10, delta=0.1)
+        self.assertGreater(float(rate), 0)
+        self.assertRegex(left, r"^\d+:\d\d$")
+        self.assertEqual(terminal.shown(), [""])
+
+    def test_fits_into_a_narrow_terminal_where_a_signal_that_the_caller_ignores_changes_nothing(self):
+        ignore = lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
+        terminal = self.start_slow(columns=20, preexec_fn=ignore)
+        status, out = terminal.interrupt(r"/1000 fra", signal.SIGINT)
+        self.assertLess(max(len(part) for part in terminal.text.split("\r")), 20)
+        self.assertEqual(status, 0)
+        self.assertIn("1000 frames", out)
+
+    def test_is_not_there_without_a_terminal(self):
+        process = self.run_small("--frames", "1000")
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
+
+
+class Interrupted(ProgramTest):
+    def interrupt(self, *arguments, number=signal.SIGINT):
+        """An endless run that this signal ends: the terminal, and the table that it prints."""
+        terminal = Terminal(self.run_arguments("--frames", MOST, *arguments))
+        status, out = terminal.interrupt(PROGRESS, number)
+        self.assertEqual(status, 130)
+        return terminal, out
+
+    def test_has_the_result_of_a_whole_run_of_the_frames_that_were_finished(self):
+        terminal, out = self.interrupt("--out", self.out)
+        self.is_in(self.out, *RESULT_FILES)
+        stats = self.stats()
+        frames = stats["frames"]
+        self.assertGreater(frames, 0)
+        self.assertEqual(len(stats["frame_cycles"]), frames)
+        self.assertNotIn("failed", stats)
+        self.assertIn(f"{frames} frame", out)
+        note = f"stereotlm: note: interrupted after {frames} of {MOST} frames"
+        self.assertIn(note, terminal.shown()[0])
+        whole = self.folder / "whole"
+        self.succeeds(self.run_small("--out", whole, "--frames", frames))
+        self.assertTrue(self.result() == self.result(whole))
+
+    def test_prints_the_table_without_out_too(self):
+        self.assertIn("worst stall", self.interrupt(number=signal.SIGTERM)[1])
+
+    def test_before_the_first_frame_is_finished_leaves_the_earlier_result(self):
+        self.succeeds(self.run_small("--out", self.out))
+        size = 2048
+        big = self.file("big.pgm", pgm(size, size, bytes(size * size)))
+        board = sets(f"image.width={size}", f"image.height={size}", "matcher.window=31",
+                     "ssram.default.words=4194304")
+        with self.unchanged(self.out):
+            pair = ["--left", big, "--right", big]
+            terminal = Terminal(["run", "fpl2003", *PRELOADED, *CYCLE, *pair, *board, "--out", self.out])
+            self.assertEqual(terminal.interrupt(PROGRESS, signal.SIGINT), (130, ""))
+            self.assertIn("interrupted after 0 of 1 frames: there is no result", terminal.text)
 
 
 if __name__ == "__main__":

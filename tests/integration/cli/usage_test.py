@@ -8,9 +8,9 @@ COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate 
 UNBUILT_COMMANDS = ["report"]
 UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
 OPTIONS_OF_RUN = (
-    "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,--truth-scale,--set,"
-    "--out,--save-frames,--fidelity fast|cycle,--timing-only,--verify,--trace,default 1"
-).split(",")
+    "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
+    "--truth-scale,--set,--out,--save-frames,--fidelity fast|cycle,--timing-only,--verify,--trace,default 1"
+)
 NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
 
 
@@ -23,7 +23,7 @@ class Help(ProgramTest):
 
     def test_of_run_names_its_options_and_defaults(self):
         text = self.succeeds(run("run", "--help"))
-        for part in OPTIONS_OF_RUN:
+        for part in OPTIONS_OF_RUN.split(","):
             self.assertIn(part, text)
 
     def test_of_each_command_says_how_to_use_it_in_104_columns(self):
@@ -112,7 +112,7 @@ class Refusals(ProgramTest):
             ([*two, "side_by_side"], "--video 'a' 'b': must name one file with --video-layout side_by_side"),
             ([*two, "top_bottom"], "--video 'a' 'b': must name one file with --video-layout top_bottom"),
             ([*pair, "--truth-scale", "2"], "--truth-scale: goes with --truth F"),
-            ([*synthetic, "--truth", "t"], "--truth: does not go with --synthetic, whose scene is its own truth"),
+            ([*synthetic, "--truth", "t"], "does not go with --synthetic, whose scene is its own truth"),
             ([*timing, "--truth", self.left], f"--truth: {no_disparities}"),
             ([*timing, *saved], f"--save-frames: {no_disparities}"),
             ([*pair, "--save-frames"], "--save-frames: goes with --out DIR"),
