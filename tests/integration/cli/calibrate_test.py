@@ -8,7 +8,7 @@ import time
 
 import program
 from pictures import pgm, read_pfm, read_png, read_png_16
-from program import PRELOADED, RESULT_FILES, SMALL, ProgramTest, made_rig, run, sets, wait_until
+from program import PRELOADED, RESULT_FILES, ProgramTest, made_rig, run, sets, wait_until
 
 GRID = ["--grid", "7x5", "--square-mm", "30"]
 SIDES = ("left", "right")

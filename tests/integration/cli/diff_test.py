@@ -9,8 +9,7 @@ import signal
 import program
 from pictures import avi, noise, pgm, read_png
 from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH
-from program import ProgramTest, run, sets, sha256, shared_folder
-from terminal import Terminal
+from program import ProgramTest, Terminal, run, sets, sha256, shared_folder
 
 SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
 SCENE = [*SMALL, "--synthetic", "1"]

@@ -5,8 +5,8 @@ import signal
 
 import program
 from pictures import avi, noise
-from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, run, sets, wait_until
-from terminal import PROGRESS, Terminal
+from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, PROGRESS, SMALL, WIDTH
+from program import ProgramTest, Terminal, run, sets, wait_until
 
 # Some seconds a frame, cycle by cycle.
 SLOW = ["--timing-only", *sets("image.width=2048", "image.height=2048", "matcher.window=31",

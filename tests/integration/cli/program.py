@@ -6,16 +6,22 @@ The path of the program is the first argument of each script.
 import concurrent.futures
 import contextlib
 import ctypes
+import fcntl
 import functools
 import hashlib
 import json
 import os
 import pathlib
+import pty
+import re
+import select
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 import unittest
 
@@ -37,6 +43,10 @@ PRELOADED = ["--source", "preloaded"]
 CAMERA_RATES = sets("cameras.frame_rate_hz=1000", f"fpga.clock_mhz={5992 / 1600}")
 CYCLE = ["--fidelity", "cycle"]  # also for runs that have to take a while
 RESULT_FILES = "config.yaml disparity.pfm disparity.png disparity_color.png run.json stats.json".split()
+
+PROGRESS = re.compile(
+    r"(\d+\.\d\d)/(\d+) frames   (\d+\.\d) %   (\d+\.\d\d) M cycles/s   (\d+\.\d\d) frames/s   (\S+) left"
+)
 
 
 def words(arguments):
@@ -220,6 +230,69 @@ class ProgramTest(unittest.TestCase):
     def fails(self, process, *texts):
         """In one line, once it had begun."""
         self.assertEqual(len(self.ended(process, 1, *texts)), 1, process.stderr)
+
+
+class Terminal:
+    """A process whose standard error is a terminal of its own."""
+
+    def __init__(self, arguments, columns=100, **options):
+        self.master, slave = pty.openpty()
+        os.set_blocking(self.master, False)
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        command = words(arguments)
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=slave, text=True, **options)
+        os.close(slave)
+        self.text = ""
+
+    def read_until(self, pattern, seconds=60):
+        """Reads until the pattern is there; its matches."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            found = re.findall(pattern, self.text)
+            if found:
+                return found
+            if self.read(0.1) is None:
+                raise AssertionError(f"ended without {pattern}: {self.text!r}")
+        raise AssertionError(f"not within {seconds} s: {pattern} in {self.text!r}")
+
+    def read(self, seconds):
+        """Whether there was anything to read within this time; None where nothing will come any more."""
+        if not select.select([self.master], [], [], seconds)[0]:
+            return False
+        try:
+            self.text += os.read(self.master, 65536).decode()
+        except OSError:
+            return None
+        return True
+
+    def interrupt(self, pattern, number):
+        """Sends the signal once the pattern is shown; (exit status, standard output)."""
+        self.read_until(pattern)
+        self.process.send_signal(number)
+        return self.finish()
+
+    def finish(self):
+        """(exit status, standard output)."""
+        out, _ = self.process.communicate(timeout=60)
+        while self.read(0.1):
+            pass
+        os.close(self.master)
+        return self.process.returncode, out
+
+    def shown(self):
+        """What the terminal shows, line by line."""
+        lines = []
+        for line in self.text.replace("\r\n", "\n").split("\n"):
+            screen = []
+            column = 0
+            for character in line:
+                if character == "\r":
+                    column = 0
+                    continue
+                screen[column : column + 1] = [character]
+                column += 1
+            lines.append("".join(screen).rstrip())
+        return lines
 
 
 class AtOnce(unittest.TestSuite):

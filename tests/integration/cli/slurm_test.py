@@ -8,10 +8,9 @@ import socket
 import subprocess
 
 import program
-from program import run, wait_until
+from program import Terminal, run, wait_until
 from slurm_cluster import Cluster
 from sweep_test import MORE, PLAN, SweepTest
-from terminal import Terminal
 
 # Long enough to do something while it runs.
 SLOW = """

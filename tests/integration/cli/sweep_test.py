@@ -6,8 +6,7 @@ import signal
 import sqlite3
 
 import program
-from program import HEIGHT, WIDTH, ProgramTest, run, wait_until
-from terminal import Terminal
+from program import HEIGHT, WIDTH, ProgramTest, Terminal, run, wait_until
 
 PLAN = f"""
 board: fpl2003
@@ -192,15 +191,6 @@ vary:
         ((config, *figures),) = self.query(f"SELECT {columns} FROM points", store)
         stats = self.run_point(config, "--frames", 2, "--calibration", self.rig)
         self.assertEqual(figures, [stats["frames_per_second"]["system"], stats["pci"]["busy_clocks"]])
-
-    def test_is_part_of_a_point(self):
-        self.succeeds(self.sweep())
-        plain = self.plan_of("", "plain.yaml", self.TEXT.replace(", calibration: RIG", ""))
-        self.assertIn("6 ok, 0 impossible, 0 failed\n", self.succeeds(self.sweep(plan=plain)))
-        key = '"run.calibration"'
-        counts = self.query(f"SELECT count(*), count(DISTINCT {key}), count({key}) FROM points")
-        self.assertEqual(counts, [(12, 1, 6)])
-        self.assertIn("0 ok, 0 impossible, 0 failed, 6 there already", self.succeeds(self.sweep()))
 
     def test_is_found_from_the_working_directory_and_replaced_by_the_option(self):
         self.succeeds(self.sweep())
