@@ -46,7 +46,7 @@ struct AllocateOptions {
   Typed keep_option;
   Typed out;
 
-  // As check_usage() leaves them.
+  // Set by check_usage().
   bool camera = true;
   std::optional<int> banks;
   double keep_percent = kDefaultKeepPercent;
@@ -88,7 +88,7 @@ struct AllocateOptions {
   }
 };
 
-// Another pair for each frame.
+// A source with a different pair for each frame.
 class ScenePairs : public host::FrameSource {
  public:
   explicit ScenePairs(const BoardConfig& board)
@@ -109,7 +109,7 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
   return explore::allocation_text(explore::placed(board, placement));
 }
 
-// What the lines of the table are about.
+// The subject of the table's lines.
 struct Context {
   const AllocationSearch& search;
   const BoardConfig& board;
@@ -138,9 +138,9 @@ std::string table(const Context& context, const std::vector<BestPlacement>& all)
   return text;
 }
 
-// Runs the best of each number of banks with pixels, each frame with another pair, fed by an ideal host: all
-// have to give the same disparities, and the cycles that were found. Says how many do; nothing once
-// interrupted.
+// Repeats the best allocation for each number of banks with pixels and an ideal host, each frame with another
+// pair. All must give the same disparities, and the cycles that the search found. Returns how many do; an empty
+// text when interrupted.
 std::string check_pixels(const Context& context, const platform::Tables& tables,
                          const std::vector<BestPlacement>& all) {
   ScenePairs pairs(context.board);
@@ -173,7 +173,7 @@ std::string check_pixels(const Context& context, const platform::Tables& tables,
                      checked, frames);
 }
 
-// What has been shown.
+// What the search has proved.
 std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
   const auto is_out = [](const BestPlacement& best) { return best.reached_by == 0; };
   const bool holds_buffers_only = !all.empty() && is_out(all.front());
@@ -200,7 +200,7 @@ std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
                      keep_percent, kept->banks, rate_text(rate(*kept)), 100 * rate(*kept) / rate(*top));
 }
 
-// What does not count though it was tried.
+// Allocations that were simulated but do not count.
 std::string out_text(const Context& context, const std::vector<BestPlacement>& all,
                      const std::string& store) {
   std::uint64_t losing = 0;
@@ -221,7 +221,7 @@ std::string out_text(const Context& context, const std::vector<BestPlacement>& a
   return text;
 }
 
-// What was tried, and why that is all.
+// The number of simulated allocations, and why no other can be better.
 std::string space_text(const Context& context, int banks) {
   const AllocationSearch& search = context.search;
   std::string text =
@@ -259,7 +259,7 @@ AllocationSearch search_of(const BoardConfig& board, int banks, const explore::P
   }
 }
 
-// How many more banks it takes.
+// The number of further banks.
 std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run) {
   const auto most = static_cast<int>(board.banks.size());
   const auto no_bound = [](const BoardConfig&) { return 0.0; };
