@@ -20,7 +20,7 @@ ComputerCounters::Camera counters_of(const capture::Camera& camera, const captur
   return {camera.stats().frames, grabber.undecided(), grabber.stats()};
 }
 
-// A frame that begins at the very end is dropped: no capture has taken it.
+// A frame that begins at the end of the run counts as dropped: no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
   const capture::CaptureBoard::Stats& capture = camera.capture;
   CameraStatistics statistics;
@@ -36,7 +36,7 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
   return statistics;
 }
 
-// Nearest rank.
+// The percentile by nearest rank.
 Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
   std::sort(values_ps.begin(), values_ps.end());
   const auto rank = [&values_ps](std::size_t percent) {

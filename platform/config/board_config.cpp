@@ -19,7 +19,7 @@
 namespace stereotlm::platform {
 namespace {
 
-// The rules of single fields. A field that breaks its rule is remembered by the path of its key.
+// Checks the rules of single fields and stores the path of each key whose field breaks its rule.
 class FieldChecker {
  public:
   explicit FieldChecker(const BoardConfig& board) : board_(board), writable_(board) {}
@@ -33,10 +33,10 @@ class FieldChecker {
   }
 
   bool broke(const std::string& path) const { return broken_.count(path) > 0; }
-  // By the place of the key in the table: problems in the order of the fields.
+  // Problems by the index of the key in the table, so that they are in the order of the fields.
   std::multimap<std::size_t, std::string> found;
 
-  // Of the first key at or below the path.
+  // The index of the first key at or below the path.
   static std::size_t order_of(const std::string& path) {
     const std::string schema = schema_path(path);
     const auto& keys = board_keys();
@@ -130,7 +130,7 @@ class FieldChecker {
   void check_buffer(const Key&, const std::optional<std::string>&) {}  // a table may be absent
 
   const BoardConfig& board_;
-  BoardConfig writable_;  // what the accessors of the keys work on
+  BoardConfig writable_;  // a copy, because the keys' accessors need a mutable board
   std::set<std::string> broken_;
 };
 

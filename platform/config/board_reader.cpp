@@ -17,14 +17,14 @@
 namespace stereotlm::platform {
 namespace {
 
-// A value that may be overruled: where it stands, and what it is if it could be read.
+// A value that a later source may override: its place, and the value if it could be read.
 struct Given {
   bool present = false;
   Place place;
   std::optional<int> value;
 };
 
-// `ssram.default`, or one bank's own entry.
+// The entry of `ssram.default` or of one bank.
 struct BankEntry {
   Place key;
   Given words;
@@ -147,7 +147,7 @@ class BoardReader {
     std::copy(ports.begin(), ports.end(), board_.fpga.arbiter.priority.begin());
   }
 
-  // Whether the bank exists is a rule between keys.
+  // That the bank exists is a rule between keys.
   void read_banks_of(const Key& key, const YamlNode& node, std::vector<std::string>& banks) {
     const std::vector<YamlNode> single = {node};
     const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
@@ -278,13 +278,13 @@ class BoardReader {
     return bank;
   }
 
-  // Turnaround cycles in one entry with a kind that has none are a mistake. Where the kind is inherited they
-  // have no effect unless it is sync_burst.
+  // Turnaround cycles beside a kind without turnaround in the same entry are a mistake. With an inherited kind
+  // they are allowed, and have no effect unless the kind has turnaround.
   void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;
     if (!given.value || !kind.value || is_sync_burst(*kind.value)) return;
-    // A preset's own, under a kind that the file or `--set` has put in its place, is inherited.
+    // The value of a preset whose kind is overridden by the file or `--set` counts as inherited.
     if (given.place.source == Place::kPreset) return;
     const auto name = memory::kBankKindNames[static_cast<std::size_t>(*kind.value)];
     values_.report_between_keys(
@@ -298,7 +298,7 @@ class BoardReader {
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
     const std::string path = "ssram.banks";
-    // The number of banks is checked first: the checks of their names take time that grows with its square.
+    // Checks the number of banks first: the time to check their names grows with its square.
     if (node.is_map() && !memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
       Place place = node.place;
       for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
@@ -355,7 +355,7 @@ class BoardReader {
     board_.banks.push_back(std::move(bank));
   }
 
-  // A rule between keys is reported at the value that was written last, of equals at the first involved.
+  // A rule between keys is reported at the value that was written last; if several were, at the first of them.
   void check_rules() {
     const auto is_valid = [this](const std::string& path) { return values_.find(path) != nullptr; };
     for (const BrokenRule& rule : broken_rules(board_, is_valid)) {

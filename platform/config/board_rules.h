@@ -11,13 +11,13 @@ namespace stereotlm::platform {
 // A rule between several keys that a board breaks.
 struct BrokenRule {
   std::string text;  // `path = value: rule`
-  // The values that take part, as dotted paths; first the one that the text names. An element of a list is
-  // `allocation.disparity[1]`.
+  // Dotted paths of the values that take part; the first is the one that the text names. An element of a list
+  // is `allocation.disparity[1]`.
   std::vector<std::string> involved;
 };
 
-// Every broken rule between keys, in the order of the keys. `is_valid(path)` says whether the value of a key
-// is known to keep its own rule; a rule that involves another value is not checked.
+// Every broken rule between keys, in the order of the keys. `is_valid(path)` tells whether a value keeps its
+// own rule. A rule is checked only if all values that take part do.
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
                                      const std::function<bool(const std::string&)>& is_valid);
 

@@ -57,7 +57,8 @@ class BoardWriter {
 
   std::vector<BoardValue> values() {
     for (const Key& key : board_keys()) {
-      if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0) continue;  // told by others
+      if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0)
+        continue;  // written with the section they belong to
       if (key.path.find("pci.load.") == 0 && !board_.pci.load) continue;
       if (key.path.find("ssram.") == 0) continue;
       values_.push_back({key.path, std::visit([&](const auto& rule) { return value(key, rule); }, key.rule)});
@@ -164,7 +165,7 @@ class BoardWriter {
   }
 
   const BoardConfig& board_;
-  BoardConfig writable_;  // what the accessors of the keys work on
+  BoardConfig writable_;  // a copy, because the keys' accessors need a mutable board
   std::string out_;
   std::vector<BoardValue> values_;
 };

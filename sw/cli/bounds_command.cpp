@@ -30,29 +30,29 @@ void add_new(Names& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-// One resource.
+// A resource and its bound.
 struct Row {
-  std::string role;  // "port left_lut"; of a bank what lies in it, "bank of left_image left_lut"
+  std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
   std::uint64_t cycles = 0;
-  Names banks;  // that have this role
+  Names banks;  // banks with this role
 
   std::string label() const { return banks.empty() ? role : fmt::format("bank {}", fmt::join(banks, ", ")); }
 };
 
-// A list of the allocation.
+// A list of the allocation and its banks.
 struct List {
   std::string name;  // "left_image"
-  Names banks;       // that it takes
+  Names banks;       // banks in the list
 };
 
-// Frames whose bounds differ in nothing but the names of banks.
+// Frames whose bounds differ only in the names of banks.
 struct Group {
   std::vector<std::uint64_t> frames;
   std::vector<List> lists;
   std::vector<Row> rows;
 };
 
-// The buffers that a frame uses.
+// The buffers of a frame.
 std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
   std::vector<PlacedBuffer> all = platform::buffers(board.allocation);
   std::map<platform::Buffer, std::uint64_t> lengths;
@@ -86,7 +86,7 @@ Group group_of(const BoardConfig& board, const platform::Tables& tables, std::ui
   return group;
 }
 
-// Takes the frame of `other` into the group, if it belongs there.
+// Adds the frame of `other` to the group if its bounds are equal.
 bool take_in(Group& group, const Group& other) {
   const auto is_like = [](const Row& a, const Row& b) { return a.role == b.role && a.cycles == b.cycles; };
   if (!std::is_permutation(group.rows.begin(), group.rows.end(), other.rows.begin(), other.rows.end(),

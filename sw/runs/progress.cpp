@@ -33,7 +33,7 @@ std::string progress_text(const RunState& state, double seconds) {
   const auto done = static_cast<double>(state.frames_done);
   const double frame_cycles = state.frames_done > 0 ? static_cast<double>(state.cycles_of_done) / done
                                                     : static_cast<double>(state.least_frame_cycles);
-  // The frame may be longer than the ones before it.
+  // The running frame may be longer than earlier ones.
   const double part =
       std::min(0.999, static_cast<double>(state.cycles - state.cycles_of_done) / frame_cycles);
   const double position = state.frames_done == state.frames ? frames : done + part;
@@ -70,7 +70,7 @@ void ProgressLine::show(const std::function<std::string(double seconds)>& line) 
   if (now < next_) return;
   next_ = now + kBetweenDrawings;
   std::string text = line(std::chrono::duration<double>(now - start_).count());
-  text.resize(std::min(text.size(), terminal_columns() - 1));  // a line that wraps cannot be drawn over
+  text.resize(std::min(text.size(), terminal_columns() - 1));  // a wrapped line cannot be overwritten
   const std::size_t columns = text.size();
   if (columns < columns_drawn_) text.append(columns_drawn_ - columns, ' ');
   columns_drawn_ = columns;
