@@ -90,7 +90,7 @@ board.yaml:6:9: ssram.default.words: missing: 1..67108864
 board.yaml:6:9: ssram.default.kind: missing: zbt_pipelined, zbt_flow_through or sync_burst)");
 }
 
-TEST(BoardSyntax, MissesEachKeyThatIsLeftOut) {
+TEST(BoardSyntax, ReportsEachKeyThatIsLeftOut) {
   for (const KeyInfo& key : keys()) {
     const bool is_optional = key.path == "extends" || key.path == "pci.load" ||
                              key.path == "pci.load.first_us" || key.path == "pci.load.access_us" ||
@@ -232,7 +232,7 @@ TEST(BoardSyntax, NamesTheNearestPresetForAnUnknownOne) {
   EXPECT_NE(refusal_of_board("", {}).find("not a preset"), std::string::npos);
 }
 
-TEST(BoardSyntax, KeepsEachDiagnosticByItself) {
+TEST(BoardSyntax, GivesEachDiagnosticItsPlaceAndText) {
   try {
     load_board("fpl2003", {"image.width=3", "image.height=0"});
     FAIL() << "a board";
