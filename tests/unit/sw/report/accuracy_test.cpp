@@ -27,43 +27,28 @@ struct RowCase {
   const char* claim;
   Row disparity;
   Row truth;
-  double scale;
   Accuracy expected;
+  double scale = 1;
 };
 
 TEST(Accuracy, CountsTheKnownVisiblePixelsOfARow) {
   const std::vector<RowCase> cases = {
-      {"errors of 1, 2, 0 and 1: bad is an error of more than 1",
-       {0, 0, 0, 0, 3, 4, 2, 1},
-       {0, 0, 0, 0, 2, 2, 2, 2},
-       1,
-       {25, 0, 100}},
-      {"errors of 3, 2, 0 and 2: bad is an error of more than 2",
-       {0, 0, 0, 0, 5, 4, 2, 0},
-       {0, 0, 0, 0, 2, 2, 2, 2},
-       1,
-       {75, 25, 100}},
-      {"a truth of 2.25 and an error of 1.25", {kNone, kNone, kNone, 1}, {0, 0, 0, 9}, 4, {100, 0, 100}},
-      {"a truth of 2.25 and an error of 0.75", {kNone, kNone, kNone, 3}, {0, 0, 0, 9}, 4, {0, 0, 100}},
-      {"an unanswered pixel is not bad", {0, 0, kNone, 9}, {0, 0, 1, 1}, 1, {100, 100, 50}},
-      {"unknown pixels do not count", {9, kNone, 9, 1}, {0, 0, 0, 1}, 1, {0, 0, 100}},
-      {"all pixels are unknown", {1, 2}, {0, 0}, 1, {kNothing, kNothing, kNothing}},
-      {"no pixel is answered", {kNone, kNone}, {0, 1}, 1, {kNothing, kNothing, 0}},
-      {"column -1 of the right picture does not exist", {9}, {1}, 1, {kNothing, kNothing, kNothing}},
-      {"column 0 of the right picture exists", {kNone, 1}, {0, 1}, 1, {0, 0, 100}},
-      {"column -0.5 rounds up to 0", {1}, {2}, 4, {0, 0, 100}},
-      {"column -0.75 is outside", {1}, {3}, 4, {kNothing, kNothing, kNothing}},
-      {"pixels 3 and 5 both lie in right column 2: the nearer pixel 5 occludes the unanswered pixel 3",
-       {0, 0, 0, kNone, 0, 3},
-       {0, 0, 0, 1, 0, 3},
-       1,
-       {0, 0, 100}},
-      {"truths that differ by just 1 do not occlude", {0, 0, 0, kNone, 2}, {0, 0, 0, 1, 2}, 1, {0, 0, 50}},
-      {"a nearer pixel in right column -9 does not occlude one in column 0",
-       {kNone, kNone},
-       {9, 1},
-       1,
-       {kNothing, kNothing, 0}},
+      {"bad: more than 1 off", {0, 0, 0, 0, 3, 4, 2, 1}, {0, 0, 0, 0, 2, 2, 2, 2}, {25, 0, 100}},
+      {"bad: more than 2 off", {0, 0, 0, 0, 5, 4, 2, 0}, {0, 0, 0, 0, 2, 2, 2, 2}, {75, 25, 100}},
+      {"a truth of 2.25 and an error of 1.25", {kNone, kNone, kNone, 1}, {0, 0, 0, 9}, {100, 0, 100}, 4},
+      {"a truth of 2.25 and an error of 0.75", {kNone, kNone, kNone, 3}, {0, 0, 0, 9}, {0, 0, 100}, 4},
+      {"an unanswered pixel is not bad", {0, 0, kNone, 9}, {0, 0, 1, 1}, {100, 100, 50}},
+      {"unknown pixels do not count", {9, kNone, 9, 1}, {0, 0, 0, 1}, {0, 0, 100}},
+      {"all pixels are unknown", {1, 2}, {0, 0}, {kNothing, kNothing, kNothing}},
+      {"no pixel is answered", {kNone, kNone}, {0, 1}, {kNothing, kNothing, 0}},
+      {"column -1 of the right picture does not exist", {9}, {1}, {kNothing, kNothing, kNothing}},
+      {"column 0 of the right picture exists", {kNone, 1}, {0, 1}, {0, 0, 100}},
+      {"column -0.5 rounds up to 0", {1}, {2}, {0, 0, 100}, 4},
+      {"column -0.75 is outside", {1}, {3}, {kNothing, kNothing, kNothing}, 4},
+      // Pixels 3 and 5 lie in right column 2.
+      {"a nearer pixel occludes", {0, 0, 0, kNone, 0, 3}, {0, 0, 0, 1, 0, 3}, {0, 0, 100}},
+      {"a pixel nearer by just 1 does not", {0, 0, 0, kNone, 2}, {0, 0, 0, 1, 2}, {0, 0, 50}},
+      {"a nearer pixel outside occludes nothing", {kNone, kNone}, {9, 1}, {kNothing, kNothing, 0}},
   };
   for (const RowCase& one : cases) {
     SCOPED_TRACE(one.claim);
