@@ -125,8 +125,8 @@ TEST_F(FrameBounds, LeaveOutATableThatDoesNotExist) {
   EXPECT_EQ(bound_of("matcher"), 2 + kSlots + kAfter);
 }
 
-// A slot keeps its place of the lane for the latencies and the cycle in which it is consumed: 2 + 2 + 1 cycles
-// with a table.
+// A slot keeps its place in the lane for both latencies and the cycle in which it is consumed. With a table
+// these are 2 + 2 + 1 cycles.
 TEST_F(FrameBounds, CountTheRoundsOfATablePortThroughTheLane) {
   for (const int places : {1, 2, 4, 5, 6, 64}) {
     board.fpga.lane_fifo_slots = places;

@@ -217,7 +217,7 @@ TEST_F(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
 }
 
 TEST_F(CollectStatistics, ReportsAFrameRateAboveItsBound) {
-  // The table of the run has no valid entries, so it reads no pixels. The table of the bound has only valid ones.
+  // The left table of the run has no valid entries. The tables of the bound have only valid ones.
   board.allocation.left_lut = "bank0";
   board.allocation.left_image = {"bank0"};
   board.allocation.right_image = {"bank2"};
