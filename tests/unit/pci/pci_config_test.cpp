@@ -83,31 +83,31 @@ TEST(PciBus, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(PciBus("bus", config), std::invalid_argument);
 }
 
-TEST(PciLoadConfig, AllowsTheEndsOfEachRange) {
-  EXPECT_EQ(problems(PciLoadConfig{0, 1, 0, 0, 0}), Problems{});
-  EXPECT_EQ(problems(PciLoadConfig{0xFFFF'F000, 1024, 1'000'000'000'000'000, 1'000'000'000'000'000,
+TEST(TrafficGeneratorConfig, AllowsTheEndsOfEachRange) {
+  EXPECT_EQ(problems(TrafficGeneratorConfig{0, 1, 0, 0, 0}), Problems{});
+  EXPECT_EQ(problems(TrafficGeneratorConfig{0xFFFF'F000, 1024, 1'000'000'000'000'000, 1'000'000'000'000'000,
                                    1'000'000'000'000}),
             Problems{});
 }
 
-TEST(PciLoadConfig, RefusesWhatLiesOutsideItsRange) {
+TEST(TrafficGeneratorConfig, RefusesWhatLiesOutsideItsRange) {
   EXPECT_EQ(
-      problems(PciLoadConfig{2, 0, 1'000'000'000'000'001, 1'000'000'000'000'002, 1'000'000'000'001}),
+      problems(TrafficGeneratorConfig{2, 0, 1'000'000'000'000'001, 1'000'000'000'000'002, 1'000'000'000'001}),
       (Problems{"address = 2: must be 0..4294967292, a multiple of 4", "burst_words = 0: must be 1..1024",
                 "first_request_ps = 1000000000000001: must be 0..1000000000000000",
                 "interval_ps = 1000000000000002: must be 0..1000000000000000",
                 "access_ps = 1000000000001: must be 0..1000000000000"}));
-  EXPECT_EQ(problems(PciLoadConfig{0, 1025, 0, 0, 0}), Problems{"burst_words = 1025: must be 1..1024"});
+  EXPECT_EQ(problems(TrafficGeneratorConfig{0, 1025, 0, 0, 0}), Problems{"burst_words = 1025: must be 1..1024"});
 }
 
-TEST(PciLoadConfig, RefusesATransferThatLeavesTheAddresses) {
-  EXPECT_EQ(problems(PciLoadConfig{0xFFFF'FFF8, 2, 0, 0, 0}), Problems{});
-  EXPECT_EQ(problems(PciLoadConfig{0xFFFF'FFF8, 3, 0, 0, 0}),
+TEST(TrafficGeneratorConfig, RefusesATransferThatLeavesTheAddresses) {
+  EXPECT_EQ(problems(TrafficGeneratorConfig{0xFFFF'FFF8, 2, 0, 0, 0}), Problems{});
+  EXPECT_EQ(problems(TrafficGeneratorConfig{0xFFFF'FFF8, 3, 0, 0, 0}),
             Problems{"burst_words = 3: must be at most 2 from its address on"});
 }
 
 TEST(TrafficGenerator, RefusesAConfigurationWithProblems) {
-  PciLoadConfig config;
+  TrafficGeneratorConfig config;
   config.burst_words = 0;
   EXPECT_THROW(TrafficGenerator("load", config), std::invalid_argument);
 }

@@ -15,7 +15,7 @@ constexpr std::uint32_t kDeviceBytes = 0x1000;
 // A load with its device in a window without wait clocks, a scripted master m0 and its target.
 class TrafficGeneratorTest : public testing::Test {
  protected:
-  void build(const PciLoadConfig& config, int latency_timer_clocks = 64) {
+  void build(const TrafficGeneratorConfig& config, int latency_timer_clocks = 64) {
     PciBusConfig bus_config;
     bus_config.latency_timer_clocks = latency_timer_clocks;
     bus_config.masters = {"load", "m0"};
@@ -27,7 +27,7 @@ class TrafficGeneratorTest : public testing::Test {
     master.pci.bind(bus->slots[1]);
     binder.bind(bus->targets[1], target.socket, "bus_to_target");
   }
-  static PciLoadConfig reads(int burst_words, std::uint64_t interval_ps) {
+  static TrafficGeneratorConfig reads(int burst_words, std::uint64_t interval_ps) {
     return {kDevice, burst_words, 0, interval_ps, 0};
   }
   std::uint64_t edge(std::uint64_t clock) const { return bus->clock().edge_ps(clock); }
@@ -58,7 +58,7 @@ TEST_F(TrafficGeneratorTest, AsksOnceAnInterval) {
 }
 
 TEST_F(TrafficGeneratorTest, BeginsWithItsFirstRequest) {
-  PciLoadConfig config = reads(8, 0);
+  TrafficGeneratorConfig config = reads(8, 0);
   config.first_request_ps = 10'000'000;
   build(config);
   const std::uint64_t first = bus->clock().edge_at_or_after(config.first_request_ps);
@@ -105,7 +105,7 @@ TEST_F(TrafficGeneratorTest, GoesOnWithTheRestOfATransferThatWasCut) {
 
 // The wait for the first word keeps the others off the bus, whatever the latency timer says.
 TEST_F(TrafficGeneratorTest, HoldsTheBusForTheAccessTimeOfItsDevice) {
-  PciLoadConfig config = reads(1, 0);
+  TrafficGeneratorConfig config = reads(1, 0);
   config.access_ps = 50'000'000;
   build(config);
   master.bursts = {write_of(1)};
@@ -157,7 +157,7 @@ class PciLoadDevice : public testing::Test {
     PciBusConfig config;
     config.masters = {"load"};
     bus = std::make_unique<PciBus>("bus", config);
-    load = std::make_unique<TrafficGenerator>("load", PciLoadConfig{0, 1, 1'000'000, 0, 5'000});
+    load = std::make_unique<TrafficGenerator>("load", TrafficGeneratorConfig{0, 1, 1'000'000, 0, 5'000});
     load->pci.bind(bus->slots[0]);
     binder = std::make_unique<test::MonitoringBinder>(options);
     binder->bind(host.socket, load->device, "host_to_device");
