@@ -28,8 +28,8 @@ class Clock {
   std::uint64_t edge_at_or_after(std::uint64_t time_ps) const {
     const double edges = static_cast<double>(time_ps) * edges_per_ps_;
     auto edge = static_cast<std::uint64_t>(edges);
-    // Rounding moves an edge by at most half a ps. Farther than twice that, plus the error of `edges`, from an
-    // edge, the estimate is certain.
+    // Rounding moves an edge by at most half a ps. Farther than twice that, plus the error of `edges`, from
+    // an edge, the estimate is certain.
     const double past_edge = edges - static_cast<double>(edge);
     const double doubt = edges_per_ps_ + edges * 0x1p-50;
     if (past_edge > doubt && past_edge < 1 - doubt) return edge + 1;

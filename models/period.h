@@ -18,8 +18,8 @@ struct DecimalNumber {
 // 0.001 <= value <= 1000 its numerator is below 10^17 and its denominator at most 10^19.
 DecimalNumber decimal_of(double value);
 
-// A period of a rational number of ps. Each multiple is rounded once, halves up, from its exact value, so that
-// nothing drifts.
+// A period of a rational number of ps. Each multiple is rounded once, halves up, from its exact value, so
+// that nothing drifts.
 class Period {
  public:
   // A period of numerator / denominator ps. Both are below 2^127.

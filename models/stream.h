@@ -4,8 +4,8 @@
 
 namespace stereotlm {
 
-// A stream between two stages of a pipeline. A stage pushes one beat into the next stage, which takes it in the
-// same cycle. There is no back pressure: the pipeline's control decides which stage pushes in a cycle.
+// A stream between two stages of a pipeline. A stage pushes one beat into the next stage, which takes it in
+// the same cycle. There is no back pressure: the pipeline's control decides which stage pushes in a cycle.
 template <class Beat>
 class StreamIf : public virtual sc_core::sc_interface {
  public:

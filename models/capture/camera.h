@@ -18,13 +18,13 @@ class CameraSource {
   virtual const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) = 0;
 };
 
-// The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it is
-// triggered. A taken frame is sent line by line, with blanking. Cost: one event per frame, and one per line of
-// a taken frame.
+// The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it
+// is triggered. A taken frame is sent line by line, with blanking. Cost: one event per frame, and one per
+// line of a taken frame.
 //
-// A trigger is accepted from the last pixel of a frame on, and begins the next frame at once. The camera ignores
-// and counts a trigger that comes earlier, one that comes while another trigger is pending, and every trigger
-// if it runs freely.
+// A trigger is accepted from the last pixel of a frame on, and begins the next frame at once. The camera
+// ignores and counts a trigger that comes earlier, one that comes while another trigger is pending, and
+// every trigger if it runs freely.
 //
 // SC_REPORT_ERROR (type /stereotlm/camera): a picture of another size; TakeFrame for a frame that is not the
 // running one or has been taken already.
@@ -46,8 +46,8 @@ class Camera : public sc_core::sc_module {
   StreamIn<TakeFrame, Camera, &Camera::take> takes_in{"takes_in", this};
   StreamIn<Trigger, Camera, &Camera::trigger> triggers_in{"triggers_in", this};
 
-  // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems or the kernel's
-  // time resolution is not 1 ps.
+  // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems or the
+  // kernel's time resolution is not 1 ps.
   Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source);
 
   const CameraTiming& timing() const { return timing_; }

@@ -25,8 +25,8 @@ int CameraTiming::pixels_by(int row, std::uint64_t since_begin_ps) const {
   constexpr double kPixelsPerStep = 1.0 / kPixelSteps;
   const double arrived = (steps - row_steps) * kPixelsPerStep + 1;
   int pixels = static_cast<int>(std::clamp(arrived, 0.0, static_cast<double>(width_)));
-  // Rounding moves an arrival by at most half a ps. Farther than twice that, plus the error of `steps`, from an
-  // arrival, the estimate is certain.
+  // Rounding moves an arrival by at most half a ps. Farther than twice that, plus the error of `steps`, from
+  // an arrival, the estimate is certain.
   const double doubt = (steps_per_ps_ + steps * 0x1p-49) * kPixelsPerStep;
   const double past_pixel = arrived - pixels;
   if (past_pixel > doubt && past_pixel < 1 - doubt) return pixels;

@@ -121,8 +121,8 @@ void CaptureBoard::take_line(const VideoLine& line) {
   proceed();
 }
 
-// If the bus is idle, requests it for the time at which the FIFO needs it, or finishes the capture at the time
-// at which the FIFO has finished.
+// If the bus is idle, requests it for the time at which the FIFO needs it, or finishes the capture at the
+// time at which the FIFO has finished.
 void CaptureBoard::proceed() {
   if (bus_state_ != BusState::kIdle) return;
   const std::uint64_t now = Clock::now_ps();

@@ -21,23 +21,24 @@ namespace stereotlm::capture {
 // The other board of a pair. Both boards take a camera frame, or neither does.
 class CapturePartnerIf : public virtual sc_core::sc_interface {
  public:
-  // Whether this board can start with the frame. Called after the time at which the frame begins; further calls
-  // return the same answer.
+  // Whether this board can start with the frame. Called after the time at which the frame begins; further
+  // calls return the same answer.
   virtual bool can_start(std::uint64_t frame, std::uint64_t begin_ps) = 0;
 };
 
 // A PXC200 (Bt848 family; contract section 3, "Capture board"). It takes a camera's frames into its FIFO and
 // writes them by bus mastering. Registers: capture_registers.h. Register accesses take no time and no DMI;
-// arming and triggering count at the time that their access is annotated with. Debug transport reads registers.
+// arming and triggering count at the time that their access is annotated with. Debug transport reads
+// registers.
 //
 // The board decides 1 ps after the beginning of a frame whether it takes the frame: then everything that
 // happens at the beginning has happened, in whatever order. A word leaves the FIFO at the end of its data
-// clock. The board requests the bus in advance, for the time at which the FIFO will need it. A burst, pixel or
-// word therefore costs no event beside those of the bus.
+// clock. The board requests the bus in advance, for the time at which the FIFO will need it. A burst, pixel
+// or word therefore costs no event beside those of the bus.
 //
-// SC_REPORT_ERROR (type /stereotlm/capture_board): a line that no capture expects; a grant that the board has
-// not requested, or for a time before its request; the end of a burst that does not run, or with a result that
-// the burst cannot have.
+// SC_REPORT_ERROR (type /stereotlm/capture_board): a line that no capture expects; a grant that the board
+// has not requested, or for a time before its request; the end of a burst that does not run, or with a
+// result that the burst cannot have.
 class CaptureBoard : public sc_core::sc_module, private pci::PciMasterIf, private CapturePartnerIf {
  public:
   // Each frame is started or dropped, for one reason. A frame is not counted in its first ps.

@@ -19,8 +19,8 @@ struct LineWords {
 };
 
 // The FIFO of a capture board: its words at each time, and the time at which it requests the bus (contract
-// section 3, "Capture board"). The times of all pixels are known in advance, so the state is computed only when
-// it is needed. No SystemC, no pixels.
+// section 3, "Capture board"). The times of all pixels are known in advance, so the state is computed only
+// when it is needed. No SystemC, no pixels.
 //
 // A word enters the FIFO with its first pixel, and is complete when its last pixel has arrived. A pixel that
 // needs a new word is dropped, with the rest of its line, if the FIFO holds `fifo_words` words when the pixel

@@ -22,9 +22,9 @@ struct Capture {
 // status, and drives the interrupt.
 class CaptureRegisterFile : public InterruptIf {
  public:
-  // Carries out an access and sets its response status. A refused access has no effect; its errors are those of
-  // fpga/register_file.h. Arming counts at the time of the access, `delay` from now. Returns whether the access
-  // triggers the cameras.
+  // Carries out an access and sets its response status. A refused access has no effect; its errors are those
+  // of fpga/register_file.h. Arming counts at the time of the access, `delay` from now. Returns whether the
+  // access triggers the cameras.
   bool access(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
   // Debug transport, which only reads.
   unsigned debug(tlm::tlm_generic_payload& access) const;

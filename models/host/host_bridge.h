@@ -12,9 +12,9 @@
 namespace stereotlm::host {
 
 // The bridge between a processor and the PCI bus. It turns each access into bursts at the same addresses.
-// b_transport waits for the time of the access, and returns when the last word has been transferred. The bridge
-// repeats a retried burst and continues a cut one until all words have been transferred. Accesses of several
-// processes are served in the order in which they arrive.
+// b_transport waits for the time of the access, and returns when the last word has been transferred. The
+// bridge repeats a retried burst and continues a cut one until all words have been transferred. Accesses of
+// several processes are served in the order in which they arrive.
 //
 // | access                                                         | response                       |
 // |----------------------------------------------------------------|--------------------------------|

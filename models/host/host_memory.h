@@ -11,9 +11,9 @@ namespace stereotlm::host {
 
 inline constexpr kernels::IntegerRule kHostMemoryRule{4, std::int64_t{1} << 31, 4};
 
-// The memory of the host, for any number of initiators. An access has any whole number of 32-bit words, with or
-// without byte enables. It takes no time, since the bus in front of the memory accounts for it, and b_transport
-// never waits. Refused accesses have no effect:
+// The memory of the host, for any number of initiators. An access has any whole number of 32-bit words, with
+// or without byte enables. It takes no time, since the bus in front of the memory accounts for it, and
+// b_transport never waits. Refused accesses have no effect:
 //
 // | access                                                       | response                       |
 // |--------------------------------------------------------------|--------------------------------|

@@ -22,13 +22,13 @@ struct IdealHostConfig {
   fpga::FrameBuffers buffers;
 };
 
-// A host without a computer around it (contract section 2, `preloaded`). The tables are in their banks before
-// cycle 0. Pictures enter and results leave their buffers in zero time, and each frame starts when the last one
-// ends. The host drives the core's registers and reaches the memory by debug transport.
+// A host without a computer around it (contract section 2, `preloaded`). The tables are in their banks
+// before cycle 0. Pictures enter and results leave their buffers in zero time, and each frame starts when
+// the last one ends. The host drives the core's registers and reaches the memory by debug transport.
 //
-// SC_REPORT_ERROR (type /stereotlm/ideal_host): a picture of the wrong size, a register or memory that refuses
-// an access, a core that does not start or that reports an error. The host then stops, and finished() stays
-// false.
+// SC_REPORT_ERROR (type /stereotlm/ideal_host): a picture of the wrong size, a register or memory that
+// refuses an access, a core that does not start or that reports an error. The host then stops, and
+// finished() stays false.
 class IdealHost : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};
@@ -36,7 +36,8 @@ class IdealHost : public sc_core::sc_module {
   sc_core::sc_in<bool> done{"done"};
 
   // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Throws
-  // std::invalid_argument if a list of buffers is empty, or a side has only one of a table and a buffer for it.
+  // std::invalid_argument if a list of buffers is empty, or a side has only one of a table and a buffer for
+  // it.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);

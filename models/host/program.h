@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <stdexcept>
 
-// The hardware as a program on the host sees it. There is no SystemC in it: the same program can run on a real
-// machine, with registers mapped by mmap and interrupts by UIO.
+// The hardware as a program on the host sees it. There is no SystemC in it: the same program can run on a
+// real machine, with registers mapped by mmap and interrupts by UIO.
 namespace stereotlm::host {
 
 // The hardware answered an access with an error.
@@ -20,9 +20,10 @@ class HostBus {
   // Access to a 32-bit register, at a multiple of 4. Throws BusError.
   virtual std::uint32_t read(std::uint64_t address) = 0;
   virtual void write(std::uint64_t address, std::uint32_t value) = 0;
-  // Waits until the interrupt line that all devices share is asserted. The line is level-sensitive: while it is
-  // asserted, the call returns at once. Throws std::logic_error if the line is still asserted and the program
-  // has accessed no register since the last return, because a program that loops here would stop time.
+  // Waits until the interrupt line that all devices share is asserted. The line is level-sensitive: while it
+  // is asserted, the call returns at once. Throws std::logic_error if the line is still asserted and the
+  // program has accessed no register since the last return, because a program that loops here would stop
+  // time.
   virtual void wait_for_interrupt() = 0;
   // Host memory at the address at which devices reach it. The pointer stays valid while the program runs.
   // Throws std::out_of_range unless all of these bytes are memory.

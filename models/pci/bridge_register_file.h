@@ -19,9 +19,9 @@ class BridgeRegisterFile : public InterruptIf {
   // `channels` outlives it.
   explicit BridgeRegisterFile(DmaChannels& channels) : channels_(channels) {}
 
-  // Carries out an access and sets its response status. An access that is not one aligned word of a register,
-  // or in the wrong direction, is refused without effect. Returns the channel whose start bit has been written,
-  // or null.
+  // Carries out an access and sets its response status. An access that is not one aligned word of a
+  // register, or in the wrong direction, is refused without effect. Returns the channel whose start bit has
+  // been written, or null.
   DmaChannel* access(tlm::tlm_generic_payload& access);
 
   // The first word on the board that an aperture leads to, as kPage names it.
@@ -33,10 +33,9 @@ class BridgeRegisterFile : public InterruptIf {
   const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
 
  private:
-  // Where an offset leads: the register of this name of page or channel `index`.
   struct Decoded {
-    std::uint64_t name = 0;
-    std::size_t index = 0;
+    std::uint64_t name = 0;  // offset of the register, of page 0 or channel 0
+    std::size_t index = 0;   // number of the page or channel
   };
 
   static Decoded decode(std::uint64_t offset);

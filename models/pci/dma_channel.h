@@ -21,12 +21,12 @@ struct BridgeTransfer {
   bool failed = false;     // once it has ended: a target refused it
 };
 
-// One DMA channel of the bridge. It follows a chain of descriptors (bridge_registers.h) and splits the words of
-// each descriptor into bursts. While it writes a burst on one bus, it reads the next burst on the other bus;
-// both must end before its next step.
+// One DMA channel of the bridge. It follows a chain of descriptors (bridge_registers.h) and splits the words
+// of each descriptor into bursts. While it writes a burst on one bus, it reads the next burst on the other
+// bus; both must end before its next step.
 //
-// The channel decides, and the bridge acts: each step names the transfers that the bridge is to start, and the
-// bridge calls next_step() when one of them has ended. Plain C++ without time.
+// The channel decides, and the bridge acts: each step names the transfers that the bridge is to start, and
+// the bridge calls next_step() when one of them has ended. Plain C++ without time.
 class DmaChannel {
  public:
   struct Step {

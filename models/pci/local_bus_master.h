@@ -17,12 +17,11 @@ namespace stereotlm::pci {
 // and runs one burst at a time: posted writes first, then the read of the slave window, then the DMA channels
 // in turn. Channel 1 has the first turn; a burst that ends while nothing waits passes the turn on.
 //
-// The end of a burst takes effect when it is needed. If the burst was refused or something waits for its end,
-// an event comes at that time; otherwise the next call of settle() finds that the burst has ended. A frame's
-// worth of posted bursts thus costs no events of its own.
+// The end of a burst costs an event only if the burst was refused or something waits for its end. Otherwise
+// the end takes effect in the next call of settle().
 class LocalBusMaster : public sc_core::sc_module {
  public:
-  // Receives what a burst has led to, when its end takes effect.
+  // Is called when the end of a burst takes effect.
   class Listener {
    public:
     virtual ~Listener() = default;
@@ -32,26 +31,26 @@ class LocalBusMaster : public sc_core::sc_module {
 
   tlm_utils::simple_initiator_socket<LocalBusMaster> bus{"bus"};
 
-  // `config` has no problems. `channels` and `listener` outlive it.
+  // `config` must have no problems. `channels` and `listener` outlive the master.
   LocalBusMaster(const sc_core::sc_module_name& name, const PciBridgeConfig& config, DmaChannels& channels,
                  Listener& listener);
 
   const PostedWrites& posted() const { return posted_; }
   // Words that can be posted now.
   std::size_t free_places() const;
-  // Posts words, at most free_places(), after settle(). They wait until send_posted().
+  // Appends words to the posted writes, at most free_places(). settle() comes before, send_posted() after.
   void post(std::uint64_t address, const void* words, std::size_t count);
-  // Serves the posted words: at once if the bus is free and `delay` is zero.
+  // Has the posted writes served: at once if the bus is free and `delay` is zero.
   void send_posted(const sc_core::sc_time& delay);
 
-  // Reads words behind all writes posted before. Waits until the words are there; false: refused.
+  // Reads words, behind all writes posted before. Waits until the words have arrived. False: refused.
   bool read(std::uint64_t address, void* words, std::size_t count);
 
-  // Starts a DMA transfer. It waits for its turn.
+  // Starts a DMA transfer, which waits for its turn.
   void start(BridgeTransfer& transfer);
   // Whether the burst of this transfer runs.
   bool runs(const BridgeTransfer& transfer) const { return &transfer == running_; }
-  // The channel of the transfer waits for its end from now on.
+  // From now on the channel of the transfer waits for its end.
   void await_end_of(const BridgeTransfer& transfer) {
     if (runs(transfer)) wake();
   }
@@ -78,11 +77,11 @@ class LocalBusMaster : public sc_core::sc_module {
   bool has_ended() const;
 
   std::size_t burst_words_;  // longest burst of posted writes
-  std::size_t places_;       // for posted words
+  std::size_t places_;       // words of posted writes that it holds at most
   DmaChannels& channels_;
   Listener& listener_;
   PostedWrites posted_;
-  BridgeTransfer read_;  // of the slave window
+  BridgeTransfer read_;  // the read of the slave window
   sc_core::sc_event read_ended_{"read_ended"};
 
   bool busy_ = false;                  // a burst runs

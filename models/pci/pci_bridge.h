@@ -30,9 +30,9 @@ namespace stereotlm::pci {
 //   one PCI master, which serves them in the order in which they ask.
 // - LocalBusMaster arbitrates the local bus.
 //
-// Errors: bits of kInterruptStatus. Answered with an error response, without effect: a register access that is
-// not one aligned word or in the wrong direction, a slave access outside the window, and a posted write of more
-// words than there are free places.
+// Errors: bits of kInterruptStatus. Answered with an error response, without effect: a register access that
+// is not one aligned word or in the wrong direction, a slave access outside the window, and a posted write
+// of more words than there are free places.
 class PciBridge : public sc_core::sc_module,
                   private PciMasterIf,
                   private PciStopIf,
@@ -49,7 +49,7 @@ class PciBridge : public sc_core::sc_module,
   tlm_utils::simple_target_socket<PciBridge> slave{"slave"};
   tlm_utils::simple_target_socket<PciBridge> registers{"registers"};
   sc_core::sc_export<PciStopIf> stop{"stop"};    // STOP# of the slave window
-  PciMasterPort pci{"pci"};                      // the DMA channels
+  PciMasterPort pci{"pci"};                      // bus mastering of the DMA channels
   tlm::tlm_initiator_socket<32> local{"local"};  // to fpga/local_bus.h
   sc_core::sc_in<bool> doorbell{"doorbell"};     // from the FPGA; its rising edge raises kDoorbell
   InterruptOut interrupt{"interrupt"};           // INTA#

@@ -28,9 +28,9 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // events: its grant and its end. A request that cuts the burst moves the second one.
 //
 // Arbitration: round robin, from the slot after the last one granted, at first from slot 0. It considers the
-// requests made at or before the beginning of the clock, and decides when nothing else is pending at that time
-// (DecisionPoint): requests and target registers count as they stand after everything that happens at the
-// clock's edge. If a master returns its grant unused, the next request is granted in the same clock.
+// requests made at or before the beginning of the clock, and decides when nothing else is pending at that
+// time (DecisionPoint): requests and target registers count as they stand after everything that happens at
+// the clock's edge. If a master returns its grant unused, the next request is granted in the same clock.
 //
 // Latency timer: the address clock is clock 0. If another master waits, the burst ends with the first word
 // transferred in clock latency_timer_clocks or later. A request made during the burst counts from the first
@@ -40,10 +40,10 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // At the address clock, `stops` returns how many words the target can take; with 0 (a retry) the burst ends
 // with its address clock. Time that b_transport takes keeps the bus occupied and delays end_burst().
 //
-// Read: the target receives one b_transport for all words in the address clock, with the end of that clock as
-// its delay. The first word is transferred after the window's wait clocks, and not before the first clock that
-// begins at or after the time at which b_transport returns, its delay included. The master receives the words
-// that have been transferred.
+// Read: the target receives one b_transport for all words in the address clock, with the end of that clock
+// as its delay. The first word is transferred after the window's wait clocks, and not before the first clock
+// that begins at or after the time at which b_transport returns, its delay included. The master receives the
+// words that have been transferred.
 //
 // A memory that grants DMI without latency is accessed directly, at the same times.
 //

@@ -43,10 +43,11 @@ struct PciBridgeConfig {
   std::vector<AddressRange> buffers = {};  // on the local bus: words for the banks are counted by buffer
 };
 
-// A master that loads the bus: it reads the same words again and again. Transfer k = 0, 1, .. requests the bus
-// at first_request_ps + k * interval_ps, or at the end of transfer k - 1 if that is later. With interval_ps = 0
-// it requests the bus all the time. Its own device (TrafficGenerator::device) delays the first word by
-// access_ps. During that time no other master gets the bus, because the latency timer cuts no wait clocks.
+// A master that loads the bus: it reads the same words again and again. Transfer k = 0, 1, .. requests the
+// bus at first_request_ps + k * interval_ps, or at the end of transfer k - 1 if that is later. With
+// interval_ps = 0 it requests the bus all the time. Its own device (TrafficGenerator::device) delays the
+// first word by access_ps. During that time no other master gets the bus, because the latency timer cuts no
+// wait clocks.
 struct TrafficGeneratorConfig {
   std::uint32_t address = 0;           // address of the first word, kAddressRule
   int burst_words = 32;                // words of one transfer, kLoadBurstRule

@@ -39,7 +39,8 @@ struct BurstResult {
 class PciMasterIf {
  public:
   virtual ~PciMasterIf() = default;
-  // GNT#: the address clock begins now, at `address_clock_ps`. A burst without words returns the grant unused.
+  // GNT#: the address clock begins now, at `address_clock_ps`. A burst without words returns the grant
+  // unused.
   virtual PciBurst begin_burst(std::uint64_t address_clock_ps) = 0;
   // The last data clock has ended. The master may request again at once.
   virtual void end_burst(const BurstResult& result) = 0;

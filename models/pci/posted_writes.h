@@ -6,8 +6,9 @@
 
 namespace stereotlm::pci {
 
-// A queue of posted writes: the words that wait in the bridge for the local bus, each with its address there. A
-// burst keeps its places until it has been sent. Plain C++. After construction only waiting() allocates memory.
+// A queue of posted writes: the words that wait in the bridge for the local bus, each with its address
+// there. A burst keeps its places until it has been sent. Plain C++. After construction only waiting()
+// allocates memory.
 class PostedWrites {
  public:
   // The oldest words, as far as their addresses are contiguous and in one bank.

@@ -29,7 +29,7 @@ class PlainTarget {
 // What a master does with the bus.
 struct PlainBurst {
   bool write = true;
-  PlainTarget* target = nullptr;
+  PlainTarget* target = nullptr;  // null: no target answers
   int wait_clocks = 0;
   std::uint64_t word = 0;  // the first, of the target
   PlainWords words;        // to write; to read, only their number counts
