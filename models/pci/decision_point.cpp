@@ -33,7 +33,8 @@ void DecisionPoint::request() {
 
 void DecisionPoint::decide_when_settled() {
   if (sc_core::sc_pending_activity_at_current_time()) return settle_.notify(sc_core::SC_ZERO_TIME);
-  for (DecisionPoint* const point : std::exchange(requested_, {})) point->decide_();
+  for (DecisionPoint* const point : requested_) point->decide_();
+  requested_.clear();
 }
 
 }  // namespace stereotlm::pci
