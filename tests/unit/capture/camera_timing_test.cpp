@@ -49,10 +49,6 @@ TEST(CameraTiming, PutsEveryPixelAtItsRoundedExactTime) {
   }
 }
 
-TEST(CameraTiming, PutsPixel560OfThePaperAt45Point6Microseconds) {
-  EXPECT_EQ(timing_of(640, 480, 29.97).pixel_ps(560, 0) / 100'000, 456U);  // 45.6 us; contract section 3
-}
-
 TEST(CameraTiming, FillsAFrameWithLinesAndBlanking) {
   // 35 line times for 32 rows; rows are contiguous, and the last one ends 3 line times before the frame.
   const CameraTiming timing = timing_of(640, 32, 10);

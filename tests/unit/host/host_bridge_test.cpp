@@ -36,18 +36,11 @@ class HostBridgeTest : public testing::Test {
     sc_core::sc_spawn(std::move(body));
     sc_core::sc_start();
   }
-  // The processor accesses `words` at kBase + 0x20, which must succeed.
-  void access(tlm::tlm_command command) {
-    tlm::tlm_generic_payload payload;
-    payload.set_command(command);
-    payload.set_address(kBase + 0x20);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
-    payload.set_data_length(static_cast<unsigned>(4 * words.size()));
-    payload.set_streaming_width(static_cast<unsigned>(4 * words.size()));
-    sc_core::sc_time delay;
-    cpu.socket->b_transport(payload, delay);
-    EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
+  void write_words() { EXPECT_EQ(cpu.write_words(kBase + 0x20, {5, 6, 7}).status, tlm::TLM_OK_RESPONSE); }
+  void read_words(std::size_t count) {
+    const auto answer = cpu.read_words(kBase + 0x20, count);
+    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(answer.words, pci::words_from(0x20, count));
   }
   std::uint64_t edge(std::uint64_t clock) const { return bench->edge(clock); }
   pci::TestTarget& target() { return *bench->targets[0]; }
@@ -57,7 +50,6 @@ class HostBridgeTest : public testing::Test {
   std::unique_ptr<PciBusBench> bench;
   test::TestHost cpu{"cpu"};
   HostBridge bridge{"bridge"};
-  Words words{5, 6, 7};
 };
 
 TEST_F(HostBridgeTest, AccessesAWordInOneBurstAtTheTimeOfTheAccess) {
@@ -81,12 +73,11 @@ TEST_F(HostBridgeTest, AccessesAWordInOneBurstAtTheTimeOfTheAccess) {
 TEST_F(HostBridgeTest, TransfersSeveralWordsInOneBurst) {
   build();
   simulate([this] {
-    access(tlm::TLM_WRITE_COMMAND);
-    access(tlm::TLM_READ_COMMAND);
+    write_words();
+    read_words(3);
   });
   ASSERT_EQ(target().accesses.size(), 2U);
   EXPECT_EQ(target().accesses[0].words, (Words{5, 6, 7}));
-  EXPECT_EQ(words, pci::words_from(0x20, 3));
 }
 
 TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
@@ -94,7 +85,7 @@ TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
   int refusals = 3;
   target().writable = [&refusals](auto, auto count) { return refusals-- > 0 ? 0U : count; };
   simulate([this] {
-    access(tlm::TLM_WRITE_COMMAND);
+    write_words();
     EXPECT_EQ(Clock::now_ps(), edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
   });
   EXPECT_EQ(stats().retries, 3U);
@@ -104,7 +95,7 @@ TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
 TEST_F(HostBridgeTest, ContinuesADisconnectedBurst) {
   build();
   target().writable = [](auto, auto count) { return std::min<std::size_t>(count, 2); };
-  simulate([this] { access(tlm::TLM_WRITE_COMMAND); });
+  simulate([this] { write_words(); });
   ASSERT_EQ(target().accesses.size(), 2U);
   EXPECT_EQ(target().accesses[0].words, (Words{5, 6}));
   EXPECT_EQ(target().accesses[1].address, 0x28U);
@@ -112,14 +103,12 @@ TEST_F(HostBridgeTest, ContinuesADisconnectedBurst) {
 }
 
 TEST_F(HostBridgeTest, ContinuesAReadThatTheLatencyTimerCut) {
-  words.assign(40, 0);
   build({}, 10);
   bench->masters[0]->bursts = {pci::read_of(1)};
   simulate([this] {
     bench->masters[0]->request();
-    access(tlm::TLM_READ_COMMAND);
+    read_words(40);
   });
-  EXPECT_EQ(words, pci::words_from(0x20, 40));
   EXPECT_EQ(stats().transactions, 2U);
   EXPECT_EQ(stats().words, 40U);
 }

@@ -30,26 +30,10 @@ class HostMemoryTest : public testing::Test {
     binder->bind(other.socket, memory.port, "other_to_memory");
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
-  // One access at address 8, which must succeed in no time.
-  void access(tlm::tlm_command command, Words& words) {
-    payload.set_command(command);
-    payload.set_address(8);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
-    payload.set_data_length(static_cast<unsigned>(4 * words.size()));
-    payload.set_streaming_width(static_cast<unsigned>(4 * words.size()));
-    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-    payload.set_dmi_allowed(false);
-    sc_time delay;
-    host.socket->b_transport(payload, delay);
-    EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
-  }
-
   std::unique_ptr<test::MonitoringBinder> binder;
   TestHost host{"test_host"};
   TestHost other{"other_host"};
   HostMemory memory{"memory", kBytes};
-  tlm::tlm_generic_payload payload;
 };
 
 TEST_F(HostMemoryTest, KeepsWordsOfAnyNumberOfInitiatorsInNoTime) {
@@ -67,13 +51,14 @@ TEST_F(HostMemoryTest, KeepsWordsOfAnyNumberOfInitiatorsInNoTime) {
 TEST_F(HostMemoryTest, TakesAnyNumberOfWordsAtOnce) {
   build();
   for (const std::uint32_t count : {1U, 2U, 5U, 14U}) {  // 14: up to the last word
-    Words written(count);
-    for (std::uint32_t i = 0; i < count; ++i) written[i] = 100 * count + i;
-    access(tlm::TLM_WRITE_COMMAND, written);
-    EXPECT_EQ(host.debug_read(8, count), written);
-    Words read(count);
-    access(tlm::TLM_READ_COMMAND, read);
-    EXPECT_EQ(read, written);
+    Words words(count);
+    for (std::uint32_t i = 0; i < count; ++i) words[i] = 100 * count + i;
+    EXPECT_EQ(host.write_words(8, words).status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(host.debug_read(8, count), words);
+    const auto answer = host.read_words(8, count);
+    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(answer.words, words);
+    EXPECT_EQ(answer.at, sc_core::SC_ZERO_TIME);
   }
 }
 
@@ -82,13 +67,23 @@ TEST_F(HostMemoryTest, MovesTheEnabledBytesOnly) {
   host.debug_write(8, {0x1111'1111, 0x2222'2222});
   // A pattern that is not as long as a word: bytes 0, 3 and 6 are disabled.
   std::array<unsigned char, 3> enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED, TLM_BYTE_ENABLED};
+  Words words = {0xAAAA'AAAA, 0xBBBB'BBBB};
+  tlm::tlm_generic_payload payload;
+  payload.set_address(8);
+  payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+  payload.set_data_length(8);
+  payload.set_streaming_width(8);
   payload.set_byte_enable_ptr(enables.data());
   payload.set_byte_enable_length(3);
-  Words words = {0xAAAA'AAAA, 0xBBBB'BBBB};
-  access(tlm::TLM_WRITE_COMMAND, words);
+  sc_time delay;
+  payload.set_command(tlm::TLM_WRITE_COMMAND);
+  host.socket->b_transport(payload, delay);
   EXPECT_EQ(host.debug_read(8, 2), (Words{0x11AA'AA11, 0xBB22'BBBB}));
   words = {0, 0};
-  access(tlm::TLM_READ_COMMAND, words);
+  payload.set_command(tlm::TLM_READ_COMMAND);
+  payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  payload.set_dmi_allowed(false);
+  host.socket->b_transport(payload, delay);
   EXPECT_EQ(words, (Words{0x00AA'AA00, 0xBB00'BBBB}));
 }
 

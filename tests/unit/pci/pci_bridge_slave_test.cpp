@@ -24,8 +24,13 @@ TEST_F(PciBridgeSlave, PostsWritesToTheBoardWordsThatThePageOfTheirApertureNames
     EXPECT_EQ(local.bursts.back().address, byte_on_bus(2 * aperture + 1, 100 * aperture + 3));
     EXPECT_EQ(local.bursts.back().words, words_from(address, 5));
   }
-  EXPECT_EQ(dut->stats().posted_words, 20U);
-  EXPECT_EQ(dut->words_taken().total(), 20U);
+  burst(true, kSlave + bridge::kApertureBytes - 8, 4);  // across the border of two apertures
+  run(5);
+  ASSERT_EQ(local.bursts.size(), bridge::kApertures + 2U);
+  EXPECT_EQ(local.bursts[4].address, byte_on_bus(1, bridge::kApertureBytes / 4 - 2));
+  EXPECT_EQ(local.bursts[5].address, byte_on_bus(3, 100));
+  EXPECT_EQ(dut->stats().posted_words, 24U);
+  EXPECT_EQ(dut->words_taken().total(), 24U);
   EXPECT_EQ(dut->words_held().total(), 0U);
 }
 

@@ -10,40 +10,21 @@ namespace {
 
 constexpr std::size_t kWords = 100;
 
+struct RequestTime {
+  std::uint64_t clock = 0;
+  std::uint64_t offset_ps = 0;
+  int deltas = 0;
+};
 // A burst of master 0 from clock 0 on, and a request of master 1.
 struct Cut {
   const char* name;
+  RequestTime request;
+  std::uint64_t last_clock;  // expected clock of the burst's last word
   Script script = write_of(kWords);
   int wait_clocks = 3;
   int timer = 20;
-  std::uint64_t request_clock = 0;
-  std::uint64_t request_offset_ps = 0;
-  int request_deltas = 0;
-  std::uint64_t last_clock = 20;  // expected clock of the burst's last word
 };
 void PrintTo(const Cut& cut, std::ostream* out) { *out << cut.name; }
-
-Cut request_in(const char* name, std::uint64_t clock, std::uint64_t last_clock) {
-  Cut cut{name};
-  cut.request_clock = clock;
-  cut.last_clock = last_clock;
-  return cut;
-}
-Cut request_a_ps_late() {
-  Cut cut = request_in("asked_a_ps_behind_its_edge", 20, 21);
-  cut.request_offset_ps = 1;
-  return cut;
-}
-Cut request_in_a_later_delta() {
-  Cut cut = request_in("asked_in_a_later_delta_at_its_edge", 20, 20);
-  cut.request_deltas = 7;
-  return cut;
-}
-Cut burst_of(const char* name, const Script& script, std::uint64_t last_clock = 20) {
-  Cut cut{name, script};
-  cut.last_clock = last_clock;
-  return cut;
-}
 
 class PciBusLatencyTimer : public testing::TestWithParam<Cut> {};
 
@@ -53,7 +34,7 @@ TEST_P(PciBusLatencyTimer, CutsWithAWordInItsClockOrLaterIfAnotherMasterWaits) {
   bench.masters[0]->bursts = {cut.script};
   bench.masters[1]->bursts = {write_of(1)};
   bench.request_at(0, 0);
-  bench.request_at(bench.edge(cut.request_clock) + cut.request_offset_ps, 1, cut.request_deltas);
+  bench.request_at(bench.edge(cut.request.clock) + cut.request.offset_ps, 1, cut.request.deltas);
   sc_core::sc_start();
   ASSERT_EQ(bench.masters[0]->ended.size(), 1U);
   ASSERT_EQ(bench.masters[1]->ended.size(), 1U);
@@ -74,15 +55,16 @@ TEST_P(PciBusLatencyTimer, CutsWithAWordInItsClockOrLaterIfAnotherMasterWaits) {
 
 INSTANTIATE_TEST_SUITE_P(
     PciBus, PciBusLatencyTimer,
-    testing::Values(Cut{"another_waits"}, request_in("asked_a_clock_before", 19, 20),
-                    request_in("asked_at_its_edge", 20, 20), request_in_a_later_delta(), request_a_ps_late(),
-                    request_in("asked_later", 50, 50),
-                    request_in("asked_in_the_clock_of_the_last_word", 3 + kWords, 3 + kWords),
-                    request_in("asked_in_the_clock_of_the_last_word_but_one", 2 + kWords, 2 + kWords),
-                    burst_of("read", read_of(kWords)), burst_of("burst_that_ends_with_it", write_of(17)),
-                    burst_of("burst_of_one_more_word", write_of(18)),
-                    Cut{"timer_within_the_wait_clocks", write_of(kWords), 9, 7, 0, 0, 0, 10},
-                    Cut{"timer_0", write_of(kWords), 0, 0, 0, 0, 0, 1}),
+    testing::Values(Cut{"another_waits", {}, 20}, Cut{"asked_a_clock_before", {19}, 20},
+                    Cut{"asked_at_its_edge", {20}, 20}, Cut{"asked_in_a_later_delta", {20, 0, 7}, 20},
+                    Cut{"asked_a_ps_behind_its_edge", {20, 1}, 21}, Cut{"asked_later", {50}, 50},
+                    Cut{"asked_in_the_clock_of_the_last_word", {3 + kWords}, 3 + kWords},
+                    Cut{"asked_in_the_clock_of_the_last_word_but_one", {2 + kWords}, 2 + kWords},
+                    Cut{"read", {}, 20, read_of(kWords)},
+                    Cut{"burst_that_ends_with_it", {}, 20, write_of(17)},
+                    Cut{"burst_of_one_more_word", {}, 20, write_of(18)},
+                    Cut{"timer_within_the_wait_clocks", {}, 10, write_of(kWords), 9, 7},
+                    Cut{"timer_0", {}, 1, write_of(kWords), 0, 0}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(PciBus, CutsByTheEarliestOfTwoRequests) {

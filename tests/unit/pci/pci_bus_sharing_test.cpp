@@ -179,11 +179,5 @@ TEST(PciBus, DecidesBesideAnotherBusWithTheSameEdges) {
   }
 }
 
-TEST(PciBus, HasTheClockOfEachSlot) {
-  PciBusBench bench(PciBusBench::with_window(0));
-  sc_core::sc_start(sc_core::SC_ZERO_TIME);
-  EXPECT_EQ(bench.masters[0]->pci->clock().edge_ps(7), bench.edge(7));
-}
-
 }  // namespace
 }  // namespace stereotlm::pci
