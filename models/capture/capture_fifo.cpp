@@ -80,7 +80,7 @@ int CaptureFifo::grant(std::vector<LineWords>& burst) {
   owed_ = complete_words();
   int granted = 0;
   for (const LineWords& line : lines_) {
-    const bool contiguous = burst.empty() || (line.row == burst.back().row + 1 && line.first == 0 &&
+    const bool contiguous = burst.empty() || (line.row == burst.back().row + 1 &&
                                               burst.back().first + burst.back().count == words_per_line_);
     const int count = std::min(owed_ - granted, line.count);
     if (!contiguous || count == 0) break;

@@ -52,50 +52,53 @@ TEST_F(CaptureBurst, RequestsTheBusAtItsTriggerAndAtTheEndOfALine) {
   }
 }
 
-// The first clock that begins at or after word 2 is complete, and the clock before.
-class CaptureGrant : public CaptureBurst, public testing::WithParamInterface<std::uint64_t> {};
+// The first burst is granted the first clock that begins at or after a word is complete, or one before.
+struct Grant {
+  int fifo_words;
+  int word;
+  int row;
+  std::uint64_t clocks_before;
+  std::size_t words;  // of the burst
+};
+
+class CaptureGrant : public CaptureBurst, public testing::WithParamInterface<Grant> {};
 
 TEST_P(CaptureGrant, TakesTheWordsThatAreCompleteAsItsClockBegins) {
-  const std::uint64_t clocks_before = GetParam();
-  board = {4, 1};
+  const Grant& grant = GetParam();
+  board = {grant.fifo_words, 1};
   build_and_arm();
-  grant_in(0, edge_at_or_after(word_ps(2, 0)) - clocks_before);
+  grant_in(0, edge_at_or_after(word_ps(grant.word, grant.row)) - grant.clocks_before);
   run_frame();
-  EXPECT_EQ(burst(0).words.size(), 3 - clocks_before);
-  EXPECT_EQ(burst(1).address, kAddress + 4 * burst(0).words.size());
-  if (clocks_before == 1) {
-    EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);  // word 2 has come meanwhile
+  EXPECT_EQ(burst(0).words.size(), grant.words);
+  EXPECT_EQ(burst(1).address, kAddress + 4 * grant.words);
+  if (grant.clocks_before == 1) {
+    EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);  // the word has come meanwhile
   }
   EXPECT_EQ(captured(), sent());
 }
 
-INSTANTIATE_TEST_SUITE_P(ClocksBefore, CaptureGrant, testing::Values(0U, 1U));
+INSTANTIATE_TEST_SUITE_P(Words, CaptureGrant,
+                         testing::Values(Grant{4, 2, 0, 0, 3}, Grant{4, 2, 0, 1, 2}, Grant{12, 1, 2, 0, 10}),
+                         [](const auto& tested) { return std::to_string(tested.param.words); });
 
-TEST_F(CaptureBurst, LeavesOutAWordThatIsCompleteAPsAfterTheAddressClockBegins) {
-  // Edges are at whole ns. The frame rate is one at which word 1 is complete 1 ps after an edge.
+// Edges are at whole ns. The frame rate is one at which word 1 is complete some ps after an edge.
+class CaptureGrantEdge : public CaptureBurst, public testing::WithParamInterface<std::uint64_t> {};
+
+TEST_P(CaptureGrantEdge, TakesAWordThatIsCompleteAtTheEdgeButNotAPsLater) {
+  const std::uint64_t late_ps = GetParam();
   board = {4, 1};
   clock_mhz = 1000;
-  for (int i = 0; i < 100'000 && CameraTiming(camera).pixel_ps(7, 0) % 1000 != 1; ++i)
+  for (int i = 0; i < 100'000 && CameraTiming(camera).pixel_ps(7, 0) % 1000 != late_ps; ++i)
     camera.frame_rate_hz = (10'000 + i) / 100.0;
   build_and_arm();
-  ASSERT_EQ(word_ps(1, 0) % 1000, 1U);
-  BusTurn turn;
-  turn.busy_clocks = word_ps(1, 0) / 1000 - edge_at_or_after(word_ps(0, 0));
-  plan(0, turn);
+  grant_in(0, word_ps(1, 0) / 1000);
   run_frame();
-  EXPECT_EQ(burst(0).address_clock_ps, word_ps(1, 0) - 1);
-  EXPECT_EQ(burst(0).words.size(), 1U);
+  EXPECT_EQ(burst(0).address_clock_ps, word_ps(1, 0) - late_ps);
+  EXPECT_EQ(burst(0).words.size(), 2 - late_ps);
   EXPECT_EQ(captured(), sent());
 }
 
-TEST_F(CaptureBurst, WritesSeveralLinesInOneBurst) {
-  board = {12, 1};
-  build_and_arm();
-  grant_in(0, edge_at_or_after(word_ps(1, 2)));
-  run_frame();
-  EXPECT_EQ(burst(0).words.size(), 10U);
-  EXPECT_EQ(captured(), sent());
-}
+INSTANTIATE_TEST_SUITE_P(LatePs, CaptureGrantEdge, testing::Values(0U, 1U));
 
 // The first `bursts` bursts transfer `words` words each.
 struct Cuts {

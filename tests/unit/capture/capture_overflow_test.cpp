@@ -69,6 +69,9 @@ TEST_F(CaptureOverflow, EndsTheCaptureWithTheLastPixelIfItIsDropped) {
   EXPECT_EQ(side->status(), registers::kStatusDone);
   EXPECT_TRUE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->board.last_capture()->end_ps, pixel_ps(15, 1));
+  side->arm(kAddress);
+  run_to(side->camera.timing().frame_ps(1) + pixel_ps(1, 0));
+  EXPECT_EQ(side->board.stats().dropped_pixels, 12U);  // as before, in the next capture
 }
 
 TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
@@ -84,6 +87,8 @@ TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
     EXPECT_EQ(side->board.stats().dropped_pixels, dropped_by(column)) << column;
   }
   EXPECT_GT(burst(0).end_ps, pixel_ps(600, 0));
+  run_to(pixel_ps(100, 1));
+  EXPECT_EQ(side->board.stats().dropped_pixels, 80U);
   run_frame();
   EXPECT_EQ(side->board.stats().dropped_pixels, 80U);
   EXPECT_EQ(side->board.stats().words, 640U * 480 / 4 - 20);

@@ -249,18 +249,6 @@ TEST_F(CaptureRegisters, ReportALineThatNoCaptureExpects) {
   EXPECT_THROW(side->board.lines_in->push({2, pixels.data()}), sc_core::sc_report);
 }
 
-TEST_F(CaptureRegisters, CountEveryFrameOnce) {
-  build();
-  for (std::uint64_t number = 1; number < 20; ++number) {
-    run_to(frame_ps(number) - 1);
-    if (number % 3 == 0) side->arm(kAddress);  // for frame 3, 6, .. 18
-  }
-  const CaptureBoard::Stats counted = stats();
-  EXPECT_EQ(counted.started_frames, 6U);
-  EXPECT_EQ(counted.captured_frames, 6U);
-  EXPECT_EQ(counted.started_frames + counted.dropped_frames(), side->camera.stats().frames);
-}
-
 TEST(CaptureBoard, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(CaptureBoard("refused", CaptureBoardConfig{140, 141}), std::invalid_argument);
 }

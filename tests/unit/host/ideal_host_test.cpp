@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
+#include <ostream>
 #include <stdexcept>
 #include <vector>
 
@@ -61,7 +63,7 @@ class Sink : public FrameSink {
 // Registers and memory of a core. A frame takes it kFrameTime; then the disparity buffer is filled with the sum
 // of a left and a right pixel.
 class IdealHostTest : public testing::Test {
- protected:
+ public:
   void build(const IdealHostConfig& host_config, const kernels::RectificationTable* left_table = nullptr,
              const kernels::RectificationTable* right_table = nullptr) {
     host = std::make_unique<IdealHost>("host", host_config, left_table, right_table, source, sink);
@@ -231,32 +233,47 @@ TEST_F(IdealHostTest, DoesNothingForNoFrames) {
   EXPECT_TRUE(source.asked.empty());
 }
 
-TEST_F(IdealHostTest, ReportsALeftPictureOfAnotherSize) {
+struct Fault {
+  const char* name;
+  std::function<void(IdealHostTest&)> set;
+  const char* text;
+  bool at_start = true;  // of the first frame, otherwise at its end
+};
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class IdealHostFault : public IdealHostTest, public testing::WithParamInterface<Fault> {};
+
+TEST_P(IdealHostFault, IsReportedAndEndsTheRun) {
   build(config(2));
-  source.width = kWidth + 4;
-  expect_report("frame 0: picture of 8 x 2 for images of 4 x 2");
-  EXPECT_TRUE(controls.empty());
+  GetParam().set(*this);
+  expect_report(GetParam().text);
+  EXPECT_EQ(sc_core::sc_time_stamp(), GetParam().at_start ? sc_core::SC_ZERO_TIME : kFrameTime);
 }
 
-TEST_F(IdealHostTest, ReportsARightPictureOfAnotherSize) {
-  build(config(2));
-  source.height = 1;
-  expect_report("frame 0: picture of 4 x 1 for images of 4 x 2");
-}
-
-TEST_F(IdealHostTest, ReportsAnErrorOfTheCore) {
-  build(config(2));
-  status_of_done = registers_of::kStatusDone | registers_of::kStatusError;
-  expect_report("frame 0: the core reports an error");
-}
-
-TEST_F(IdealHostTest, ReportsACoreThatDoesNotStart) {
-  build(config(2));
-  starts = false;
-  expect_report(
-      "frame 0: the core refuses to start with the bases left_image 0x00000000, right_image 0x04000000, "
-      "disparity 0x08000000");
-}
+// The host reads the status once to start a frame and once at its end.
+INSTANTIATE_TEST_SUITE_P(
+    IdealHost, IdealHostFault,
+    testing::Values(
+        Fault{"left_picture_of_another_size", [](auto& test) { test.source.width = kWidth + 4; },
+              "frame 0: picture of 8 x 2 for images of 4 x 2"},
+        Fault{"right_picture_of_another_size", [](auto& test) { test.source.height = 1; },
+              "frame 0: picture of 4 x 1 for images of 4 x 2"},
+        Fault{"memory_takes_a_part_of_a_buffer", [](auto& test) { test.most_bytes = kPixels - 1; },
+              "the buffer at base 0 takes 7 of 8 bytes"},
+        Fault{"register_refuses_a_write", [](auto& test) { test.refuse_registers = true; },
+              "register 16 refuses a write"},
+        Fault{"status_refuses_the_first_read", [](auto& test) { test.refuse_reads_from = 0; },
+              "register 4 refuses a read"},
+        Fault{"status_refuses_the_second_read", [](auto& test) { test.refuse_reads_from = 1; },
+              "register 4 refuses a read", false},
+        Fault{"core_does_not_start", [](auto& test) { test.starts = false; },
+              "frame 0: the core refuses to start with the bases left_image 0x00000000, right_image "
+              "0x04000000, disparity 0x08000000"},
+        Fault{
+            "core_reports_an_error",
+            [](auto& test) { test.status_of_done = registers_of::kStatusDone | registers_of::kStatusError; },
+            "frame 0: the core reports an error", false}),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST_F(IdealHostTest, ReportsACoreThatDoesNotStartASecondTime) {
   IdealHostConfig lists = config(2);
@@ -283,33 +300,6 @@ TEST_F(IdealHostTest, StopsAtAnErrorThatDoesNotEndTheSimulation) {
   EXPECT_FALSE(sc_core::sc_pending_activity());
   EXPECT_FALSE(host->finished());
   EXPECT_EQ(controls.size(), 1U);
-}
-
-TEST_F(IdealHostTest, ReportsMemoryThatTakesOnlyAPartOfABuffer) {
-  build(config(1));
-  most_bytes = kPixels - 1;
-  expect_report("the buffer at base 0 takes 7 of 8 bytes");
-}
-
-TEST_F(IdealHostTest, ReportsARegisterThatRefusesAWrite) {
-  build(config(1));
-  refuse_registers = true;
-  expect_report("register 16 refuses a write");
-}
-
-// The status is read once to start a frame and once at its end.
-TEST_F(IdealHostTest, ReportsAStatusRegisterThatRefusesTheFirstRead) {
-  build(config(1));
-  refuse_reads_from = 0;
-  expect_report("register 4 refuses a read");
-  EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
-}
-
-TEST_F(IdealHostTest, ReportsAStatusRegisterThatRefusesAReadAtTheEndOfAFrame) {
-  build(config(1));
-  refuse_reads_from = 1;
-  expect_report("register 4 refuses a read");
-  EXPECT_EQ(sc_core::sc_time_stamp(), kFrameTime);
 }
 
 TEST_F(IdealHostTest, RefusesAnEmptyListATableWithoutBufferAndABufferWithoutTable) {
