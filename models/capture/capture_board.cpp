@@ -13,10 +13,6 @@ void report(const sc_core::sc_object& board, const std::string& text) {
   SC_REPORT_ERROR("/stereotlm/capture_board", (std::string(board.name()) + ": " + text).c_str());
 }
 
-bool is_error(pci::BurstEnd end) {
-  return end == pci::BurstEnd::kMasterAbort || end == pci::BurstEnd::kTargetError;
-}
-
 }  // namespace
 
 CaptureBoard::CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config)

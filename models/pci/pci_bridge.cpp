@@ -144,7 +144,6 @@ void PciBridge::start_on_pci(BridgeTransfer& transfer) {
   transfer.under_way = true;
   transfer.failed = false;
   pci_queue_.push_back(&transfer);
-  if (pci_queue_.size() == 1) pci_done_ = 0;
   pci->request(*this);
 }
 
@@ -162,7 +161,7 @@ void PciBridge::end_burst(const BurstResult& result) {
                 transfer.words.begin() + static_cast<std::ptrdiff_t>(pci_done_));
   }
   pci_done_ += result.words;
-  const bool failed = result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError;
+  const bool failed = is_error(result.end);
   const bool ended = failed || pci_done_ == transfer.words.size();
   if (ended) {
     pci_queue_.pop_front();

@@ -271,7 +271,7 @@ void PciBus::count(std::size_t master, const BurstResult& result) {
   ++stats.transactions;
   stats.words += result.words;
   if (result.end == BurstEnd::kDisconnect && result.words == 0) ++stats.retries;
-  if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) ++stats.aborts;
+  if (is_error(result.end)) ++stats.aborts;
 }
 
 // Outside the data clocks, the words of the result stand.

@@ -27,6 +27,9 @@ enum class BurstEnd : std::uint8_t {
   kMasterAbort,   // no target at this address; no word was transferred
   kTargetError,   // the target answered with an error; no word was transferred
 };
+constexpr bool is_error(BurstEnd end) {
+  return end == BurstEnd::kMasterAbort || end == BurstEnd::kTargetError;
+}
 
 // The result of a burst. Word i was transferred in bus clock first_data_clock + i, and left at its end.
 struct BurstResult {

@@ -20,7 +20,7 @@ PciBurst TrafficGenerator::begin_burst(std::uint64_t /*address_clock_ps*/) {
 }
 
 void TrafficGenerator::end_burst(const BurstResult& result) {
-  if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) {
+  if (is_error(result.end)) {
     SC_REPORT_ERROR(
         "/stereotlm/traffic_generator",
         (std::string(name()) + ": address = " + std::to_string(config_.address) + ": " +

@@ -58,7 +58,7 @@ struct Grant {
   int word;
   int row;
   std::uint64_t clocks_before;
-  std::size_t words;  // of the burst
+  std::size_t words;  // expected length of the burst
 };
 
 class CaptureGrant : public CaptureBurst, public testing::WithParamInterface<Grant> {};

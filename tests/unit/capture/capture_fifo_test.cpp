@@ -50,13 +50,13 @@ TEST_F(CaptureFifoTest, RequestsTheBusAtItsTriggerOrAtTheEndOfTheLine) {
   }
 }
 
-TEST_F(CaptureFifoTest, RequestsTheBusAfterABurstForNewWordsAsBefore) {
+TEST_F(CaptureFifoTest, RequestsTheBusAgainForWordsThatArriveAfterTheGrant) {
   struct Case {
     const char* what;
     CaptureBoardConfig config;
     std::uint64_t granted_ps;
     int granted;
-    std::uint64_t end_ps;  // of the burst
+    std::uint64_t end_ps;  // end of the burst
     int left;              // words that have left by then
     std::optional<std::uint64_t> next_ps;
   };

@@ -123,7 +123,7 @@ struct Arming {
   const char* name;
   int write_ps;
   std::uint64_t delay_ps;
-  std::uint64_t frame;  // that is captured
+  std::uint64_t frame;  // expected number of the captured frame
 };
 void PrintTo(const Arming& arming, std::ostream* out) { *out << arming.name; }
 

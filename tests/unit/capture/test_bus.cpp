@@ -31,7 +31,7 @@ void TestBus::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
   }
 }
 
-// At the time of the request.
+// Called at the time of the request.
 void TestBus::ask() {
   turn_ = plan ? plan(requests_ps.size()) : turn;
   requests_ps.push_back(Clock::now_ps());

@@ -237,7 +237,7 @@ struct Fault {
   const char* name;
   std::function<void(IdealHostTest&)> set;
   const char* text;
-  bool at_start = true;  // of the first frame, otherwise at its end
+  bool at_start = true;  // true: at the start of the first frame; false: at its end
 };
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 

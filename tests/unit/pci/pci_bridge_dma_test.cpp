@@ -77,6 +77,8 @@ TEST_F(PciBridgeDma, CountsTheWordsThatWaitForTheLocalBus) {
 TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrivedAndRefusesAStartMeanwhile) {
   build();
   for (const std::uint32_t channel : {0U, 1U}) {
+    write_register(bridge::kDmaControl + channel * bridge::kChannelStride, 2);  // not the start bit
+    EXPECT_EQ(read_register(bridge::kDmaStatus + channel * bridge::kChannelStride), 0U);
     local.held = true;
     start(channel, kChain, {{kData, 0, 4}});
     run(20);
@@ -192,7 +194,7 @@ TEST_P(PciBridgeDmaError, StopsTheChannelUntilItsNextStart) {
   const Broken& broken = GetParam();
   build();
   local.refused_address = broken.refused_address;
-  host.debug_write(broken.chain / 16 * 16, {broken.pci, 0, broken.words, 0});
+  host.debug_write(broken.chain, {broken.pci, 0, broken.words, 0});
   start(1, broken.chain);
   run(20);
   EXPECT_EQ(status(), bridge::kDmaError << 1U);

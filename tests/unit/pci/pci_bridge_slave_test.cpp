@@ -129,6 +129,8 @@ TEST_F(PciBridgeSlave, RaisesTheInterruptWhileAnEnabledStatusBitIsSet) {
   run(1);
   EXPECT_FALSE(dut->interrupt->is_asserted());
   EXPECT_EQ(status(), bridge::kDoorbell);
+  write_register(bridge::kInterruptEnable, UINT32_MAX);
+  EXPECT_EQ(read_register(bridge::kInterruptEnable), bridge::kAllInterrupts);
   write_register(bridge::kInterruptEnable, bridge::kDoorbell);
   EXPECT_TRUE(dut->interrupt->is_asserted());
   write_register(bridge::kInterruptStatus, bridge::kAllInterrupts & ~bridge::kDoorbell);

@@ -119,8 +119,8 @@ class PlainScript : private test::PlainMaster, private test::PlainTarget {
   const Board& board_;
   Log& log_;
   std::size_t number_;
-  std::size_t next_ = 0;  // request
-  std::size_t line_ = 0;  // of the running burst
+  std::size_t next_ = 0;  // number of the next request
+  std::size_t line_ = 0;  // line of the running burst in the log
 };
 
 struct Outcome {

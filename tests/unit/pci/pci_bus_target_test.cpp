@@ -100,7 +100,7 @@ TEST_F(PciBusTarget, IsReportedIfItAcceptsMoreWordsThanAsked) {
   expect_report(write_of(8), "bus.stop_0: 9 of 8 words can be written");
 }
 
-// Times from the end of the address clock on: clocks and ps.
+// The time that a read takes, from the end of the address clock on.
 struct ReadTime {
   const char* name;
   std::uint64_t blocked_clocks;
@@ -113,7 +113,7 @@ void PrintTo(const ReadTime& time, std::ostream* out) { *out << time.name; }
 
 class PciBusReadTime : public PciBusTarget, public testing::WithParamInterface<ReadTime> {};
 
-TEST_P(PciBusReadTime, AddsWaitClocksThatTheWindowDoesNotHave) {
+TEST_P(PciBusReadTime, DelaysTheFirstWordOnlyBeyondTheWaitClocks) {
   const ReadTime& time = GetParam();
   const std::uint64_t blocked_ps = bench.edge(1 + time.blocked_clocks) - bench.edge(1) + time.blocked_ps;
   const std::uint64_t all_ps = bench.edge(1 + time.blocked_clocks + time.delay_clocks) - bench.edge(1) +
@@ -161,7 +161,7 @@ TEST_P(PciBusTargetError, EndsAWriteAfterItsWordsAndAReadWithTheClockOfItsFirstW
 INSTANTIATE_TEST_SUITE_P(PciBus, PciBusTargetError, testing::Bool(),
                          [](const auto& write) { return write.param ? "write" : "read"; });
 
-TEST_F(PciBusTarget, IsMissedForFourClocksByABurstThatIsNotInsideItsWindow) {
+TEST_F(PciBusTarget, LeavesABurstThatIsNotInsideItsWindowToAMasterAbortAfterFourClocks) {
   const std::uint64_t base = PciBusBench::kBase;
   const std::uint64_t end = base + PciBusBench::kBytes;
   for (const bool write : {true, false}) {
@@ -185,7 +185,7 @@ TEST_F(PciBusTarget, IsMissedForFourClocksByABurstThatIsNotInsideItsWindow) {
   EXPECT_EQ(bench.bus->stats().busy_clocks, 10U * 5 + 1 + kWait + 4);
 }
 
-TEST_F(PciBusTarget, IsNotReachedAtAnAddressBetweenWords) {
+TEST_F(PciBusTarget, IsNotReachedAtAnAddressThatIsNotAMultipleOfFour) {
   expect_report(write_of(1, 2), "address = 65538: must be a multiple of 4");
 }
 
