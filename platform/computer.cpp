@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "platform/frame_buffers.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -17,7 +17,7 @@ enum Window : std::size_t {
 };
 enum Interrupt : std::size_t { kBridgeInterrupt, kLeftInterrupt, kRightInterrupt, kInterruptCount };
 
-// Registers on add-in boards answer as fast as the bridge.
+// Registers of add-in boards have the access time of the bridge.
 pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes) {
   const DeviceMap map;
   const auto window = [](std::uint64_t base, std::uint64_t bytes, int wait_clocks) {

@@ -5,9 +5,9 @@
 
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
-#include "sw/cli/problems.h"
-#include "sw/cli/python_script.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/process/python_script.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -28,7 +28,7 @@ constexpr const char* kFooter =
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
 
-// What they mean, and what is wrong with them, is the script's to say.
+// The arguments are passed to the script, which checks them.
 struct PlotOptions {
   Typed database;
   Typed out;
@@ -45,7 +45,7 @@ struct PlotOptions {
                   "area.slices:min,frames_per_second.core:max");
   }
 
-  // A value that looks like an option stays a value.
+  // Passes values that look like options as values.
   std::vector<std::string> arguments() const {
     std::vector<std::string> words;
     if (out.is_given()) words.push_back("--out=" + out.text);
@@ -58,9 +58,9 @@ struct PlotOptions {
 
 int plot(const PlotOptions& options) {
   try {
-    become_script("plot_all.py", options.arguments());
+    process::become_script("plot_all.py", options.arguments());
   } catch (const std::runtime_error& error) {
-    refuse(error.what());
+    process::refuse(error.what());
   }
 }
 

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
 #include "sw/driver/stereo_driver.h"
 
 namespace stereotlm::driver {
 
-// The driver that a board needs. Throws std::invalid_argument if the board has problems.
+// The configuration of a board's driver. Throws std::invalid_argument if the board has problems.
 DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames);
 
 }  // namespace stereotlm::driver

@@ -26,7 +26,7 @@ void PlainPciBus::await_grant() {
 }
 
 void PlainPciBus::grant(std::uint64_t clock) {
-  if (busy_) return;  // somebody else was granted meanwhile
+  if (busy_) return;  // another master has been granted
   for (std::size_t turn = 0; turn < slots_.size(); ++turn) {
     const std::size_t master = (next_turn_ + turn) % slots_.size();
     Slot& slot = slots_[master];
@@ -88,7 +88,7 @@ void PlainPciBus::end_word(std::uint64_t clock) {
   }
 }
 
-// Its request was there as the clock began.
+// Whether another master's request was pending as the clock began.
 bool PlainPciBus::another_waits(std::uint64_t clock) const {
   for (std::size_t master = 0; master < slots_.size(); ++master) {
     const auto& request_ps = slots_[master].request_ps;
@@ -97,7 +97,7 @@ bool PlainPciBus::another_waits(std::uint64_t clock) const {
   return false;
 }
 
-// Now, as the idle clock begins.
+// Called as the idle clock begins.
 void PlainPciBus::end(std::uint64_t idle_clock) {
   busy_clocks_ += idle_clock - address_clock_;
   free_clock_ = idle_clock + 1;

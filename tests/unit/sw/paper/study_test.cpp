@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "platform/board_rules.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -113,7 +113,7 @@ TEST(Study, HasARowForEachAllocationOfTheComputer) {
 // The core of a board whose frames are independent: a cycle for each buffer beside another one in its bank.
 explore::Figures made_up_frame(const explore::Point& point) {
   std::map<std::string, int> buffers;
-  for (const platform::Buffer& buffer : platform::buffers(point.board->allocation)) ++buffers[buffer.bank];
+  for (const platform::PlacedBuffer& buffer : platform::buffers(point.board->allocation)) ++buffers[buffer.bank];
   std::int64_t cycles = 1'000'000;
   for (const auto& [bank, count] : buffers) cycles += 1'000 * (count - 1);
   explore::Figures figures;

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/capture/capture_config.h"
+#include "models/fpga/core_config.h"
+#include "models/kernels/filter_kernel.h"
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::platform {
+
+using capture::CameraTrigger;
+enum class CaptureDestination { kBoard, kHostMemory };
+
+// One board as its YAML file describes it (contract section 4). Plain values; the defaults are the paper's
+// board, preset `fpl2003`. Each field has its unit and range beside it; problems() checks them all.
+struct ImageConfig {
+  int width = 640;   // pixels, 4..2048, a multiple of 4
+  int height = 480;  // pixels, 1..2048
+};
+
+struct CamerasConfig {
+  double frame_rate_hz = 29.97;  // 0.1..1000
+  CameraTrigger trigger = CameraTrigger::kFreeRunning;
+};
+
+struct CaptureConfig {
+  CaptureDestination destination = CaptureDestination::kBoard;
+  int host_frames = 3;          // pairs in the ring in host memory, 1..64
+  int fifo_words = 140;         // 32-bit words, 1..4096
+  int fifo_trigger_words = 32;  // 32-bit words, 1..fifo_words
+};
+
+// A traffic generator on the PCI bus: a further master that reads from a device of its own. Times are rounded
+// to picoseconds.
+struct PciLoadConfig {
+  int burst_words = 32;    // 32-bit words per transfer, 1..1024
+  double interval_us = 0;  // time from one request to the next, 0..10^9; 0: requests again at once
+  double first_us = 0;     // time of the first request, 0..10^9
+  double access_us = 0;    // wait of the bus before the first word of a transfer, 0..10^6
+};
+
+struct PciConfig {
+  double clock_mhz = 33.333;                         // 1..1000
+  int latency_timer_clocks = 64;                     // 0..255
+  int bridge_wait_clocks = 4;                        // 0..255
+  int memory_wait_clocks = 8;                        // 0..255
+  std::optional<PciLoadConfig> load = std::nullopt;  // nullopt: none
+};
+
+struct BridgeConfig {
+  double local_clock_mhz = 40;  // 1..1000
+  int dma_burst_words = 32;     // 32-bit words, 1..1024
+  int posted_words = 64;        // 32-bit words, 1..4096
+};
+
+struct FpgaConfig {
+  std::string device = "xc2v6000";
+  double clock_mhz = 40;  // 1..1000
+  memory::ArbiterConfig arbiter;
+  int lane_fifo_slots = 16;          // slots, 1..64
+  int result_fifo_words = 8;         // 32-bit words, 1..64
+  int pipeline_latency_cycles = 16;  // cycles, 0..1024
+};
+
+// One SSRAM bank with everything that `ssram.default` supplies filled in.
+struct BankConfig {
+  std::string name;
+  int words = 524288;  // 32-bit words, 1..2^26
+  memory::BankKind kind = memory::BankKind::kZbtPipelined;
+  int turnaround_cycles = 0;  // 1..16 with sync_burst, else 0
+};
+
+// The bank of each buffer, by name. The frames use the entries of a list in turn. A list has 1 to 3 entries;
+// the two image lists are equally long. A table without value does not exist (`none`).
+struct AllocationConfig {
+  std::vector<std::string> left_image = {"bank0", "bank1"};
+  std::vector<std::string> right_image = {"bank2", "bank3"};
+  std::vector<std::string> disparity = {"bank4", "bank5"};
+  std::optional<std::string> left_lut = "bank6";
+  std::optional<std::string> right_lut = "bank7";
+};
+
+struct MatcherConfig {
+  int window = 7;                                                 // odd, 3..31
+  int disparities = 80;                                           // 1..254
+  std::optional<kernels::FilterKernel> filter = kernels::log7();  // nullopt: none
+  fpga::Fetch fetch = fpga::Fetch::kColumn;
+  std::optional<int> lr_tolerance = 0;  // 0..253; nullopt: off
+};
+
+struct BoardConfig {
+  std::string name = "fpl2003";
+  ImageConfig image;
+  CamerasConfig cameras;
+  CaptureConfig capture;
+  PciConfig pci;
+  BridgeConfig bridge;
+  FpgaConfig fpga;
+  std::vector<BankConfig> banks = {{"bank0"}, {"bank1"}, {"bank2"}, {"bank3"},
+                                   {"bank4"}, {"bank5"}, {"bank6"}, {"bank7"}};  // 1..64, in the file's order
+  AllocationConfig allocation;
+  MatcherConfig matcher;
+};
+
+bool operator==(const PciLoadConfig& a, const PciLoadConfig& b);
+bool operator==(const BoardConfig& a, const BoardConfig& b);
+inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a == b); }
+
+// Every broken rule as `path.of.key = value: rule`, in the order of the fields; empty if the board can be
+// built. The reader of board files adds file, line and column to the same rules.
+std::vector<std::string> problems(const BoardConfig& board);
+
+// The place of a buffer: an index into BoardConfig::banks, and the first word in that bank.
+struct BufferPlace {
+  int bank = 0;
+  std::uint32_t first_word = 0;
+};
+
+// The places of all buffers (contract 1.5). Buffers that share a bank begin at word 0 and follow each other in
+// the order left_image, right_image, disparity (each in list order), left_lut, right_lut.
+struct BufferLayout {
+  std::vector<BufferPlace> left_image;
+  std::vector<BufferPlace> right_image;
+  std::vector<BufferPlace> disparity;
+  std::optional<BufferPlace> left_lut;
+  std::optional<BufferPlace> right_lut;
+};
+
+// Throws std::invalid_argument with all problems() if there are any.
+BufferLayout layout_buffers(const BoardConfig& board);
+
+// The number of frames after which all allocation lists start over: the least common multiple of their
+// lengths.
+std::uint64_t allocation_period_frames(const BoardConfig& board);
+
+// The configuration of one bank's module.
+memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig& bank);
+
+// The configuration of the core. Throws as layout_buffers() does.
+fpga::CoreConfig core_config(const BoardConfig& board);
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,113 @@
+#include "platform/config/board_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/config/board_keys.h"
+#include "platform/config/buffer_layout.h"
+
+namespace stereotlm::platform {
+namespace {
+
+class RuleChecker {
+ public:
+  RuleChecker(const BoardConfig& board, const std::function<bool(const std::string&)>& is_valid)
+      : board_(board), is_valid_(is_valid) {}
+
+  std::vector<BrokenRule> check() {
+    check_trigger();
+    check_bank_depths();
+    check_list_lengths();
+    check_bank_names();
+    return std::move(found_);
+  }
+
+ private:
+  bool all_valid(const std::vector<std::string>& paths) const {
+    return std::all_of(paths.begin(), paths.end(), is_valid_);
+  }
+
+  void check_trigger() {
+    const std::vector<std::string> involved = {"capture.fifo_trigger_words", "capture.fifo_words"};
+    const CaptureConfig& capture = board_.capture;
+    if (!all_valid(involved) || capture.fifo_trigger_words <= capture.fifo_words) return;
+    found_.push_back({fmt::format("capture.fifo_trigger_words = {}: 1..fifo_words, which is {}",
+                                  capture.fifo_trigger_words, capture.fifo_words),
+                      involved});
+  }
+
+  void check_bank_depths() {
+    if (!all_valid({"image.width", "image.height", "ssram.banks"})) return;
+    std::vector<PlacedBuffer> known = buffers(board_.allocation);
+    known.erase(
+        std::remove_if(known.begin(), known.end(),
+                       [this](const PlacedBuffer& buffer) { return !is_valid_(key_of(buffer.buffer)); }),
+        known.end());
+    for (const BankConfig& bank : board_.banks) {
+      std::uint64_t needed = 0;
+      for (const PlacedBuffer& buffer : known) {
+        if (buffer.bank == bank.name) needed += buffer_words(buffer, board_.image);
+      }
+      if (needed > static_cast<std::uint64_t>(bank.words)) report_depth(bank, known, needed);
+    }
+  }
+
+  void report_depth(const BankConfig& bank, const std::vector<PlacedBuffer>& known, std::uint64_t needed) {
+    std::vector<std::string> involved = {fmt::format("ssram.banks.{}.words", bank.name)};
+    if (!is_valid_(involved.front())) return;
+    std::vector<std::string> held;
+    for (const PlacedBuffer& buffer : known) {
+      if (buffer.bank != bank.name) continue;
+      involved.push_back(buffer.path());
+      held.push_back(buffer.label());
+    }
+    involved.insert(involved.end(), {"image.width", "image.height"});
+    found_.push_back(
+        {fmt::format("{} = {}: {} words missing, its buffers ({}) need {}", involved.front(), bank.words,
+                     needed - static_cast<std::uint64_t>(bank.words), fmt::join(held, ", "), needed),
+         involved});
+  }
+
+  void check_list_lengths() {
+    const std::vector<std::string> involved = {key_of(Buffer::kRightImage), key_of(Buffer::kLeftImage)};
+    const AllocationConfig& allocation = board_.allocation;
+    if (!all_valid(involved) || allocation.right_image.size() == allocation.left_image.size()) return;
+    found_.push_back({fmt::format("allocation.right_image = {}: must be as long as left_image, which is {}",
+                                  list_text(allocation.right_image), list_text(allocation.left_image)),
+                      involved});
+  }
+
+  void check_bank_names() {
+    if (!is_valid_("ssram.banks")) return;
+    std::vector<std::string> names;
+    names.reserve(board_.banks.size());
+    for (const BankConfig& bank : board_.banks) names.push_back(bank.name);
+    for (const PlacedBuffer& buffer : buffers(board_.allocation)) {
+      if (!is_valid_(key_of(buffer.buffer)) ||
+          std::find(names.begin(), names.end(), buffer.bank) != names.end())
+        continue;
+      found_.push_back({fmt::format("{} = {}: not a bank of this board{}", key_of(buffer.buffer), buffer.bank,
+                                    nearest_text(buffer.bank, names)),
+                        {buffer.path(), "ssram.banks"}});
+    }
+  }
+
+  const BoardConfig& board_;
+  const std::function<bool(const std::string&)>& is_valid_;
+  std::vector<BrokenRule> found_;
+};
+
+}  // namespace
+
+std::vector<BrokenRule> broken_rules(const BoardConfig& board,
+                                     const std::function<bool(const std::string&)>& is_valid) {
+  return RuleChecker(board, is_valid).check();
+}
+
+std::string list_text(const std::vector<std::string>& words) {
+  return fmt::format("[{}]", fmt::join(words, ", "));
+}
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "sw/explore/store/store.h"
+
+namespace stereotlm::explore {
+
+// The contents of stats.json as one row of a database.
+struct Figures {
+  // Each with the dotted path of its key; an element of a list is named by its member `name`, as in
+  // "banks.bank0.reads". A list of numbers is one text, "[1,2]".
+  std::vector<platform::BoardValue> values;
+  std::vector<StoredBlame> blame;
+};
+
+// `document`: as report::stats_document() returns it.
+Figures figures_of(const nlohmann::ordered_json& document);
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_config.h"
+#include "platform/config/board_draft.h"
+#include "platform/config/yaml_tree.h"
+#include "sw/explore/plan/plan_values.h"
+#include "sw/explore/plan/points.h"
+
+namespace stereotlm::explore {
+
+// One value that a plan gives a key.
+struct PlanValue {
+  std::string path;
+  platform::YamlNode value;
+};
+
+// The plan of a sweep: a board, values for some of its keys, and the combinations of these values that are
+// points. Each point is made from its number, so that a plan takes as much memory for a million points as for
+// ten.
+class Plan : public Points {
+ public:
+  // Reads a plan file. `board`: a board in place of the one that the plan names; empty: none. Throws
+  // platform::BoardError with everything that is wrong, and with the number of points that the plan would
+  // have.
+  static Plan load(const std::string& path, const std::string& board = "");
+
+  // The number of points before conditions.
+  std::uint64_t size() const override { return sample_ ? sample_->points : product_; }
+  // number: 0..size()-1. Reads a board each time.
+  Point point(std::uint64_t number) const override;
+  const std::vector<Condition>& conditions() const override { return conditions_; }
+  // Paths whose values vary, in the order of the file.
+  std::vector<std::string> varied() const;
+  // Names of all banks of all points, sorted.
+  const std::vector<std::string>& banks() const { return banks_; }
+  const std::string& path() const { return path_; }
+  const std::string& board() const { return board_; }  // name of a preset, or path of a board file
+
+  // Path of the calibration that `run` names; empty: none. And the place of that value in the plan.
+  const std::string& calibration() const { return calibration_; }
+  const std::string& calibration_place() const { return calibration_place_; }
+  // Gives all points the tables of a calibration of images of that size, in place of the identity. Points
+  // whose boards cannot have them become impossible. Returns the rule that is broken if no point can have
+  // them. `sha256`: of the tables.
+  std::optional<std::string> use_calibration(const std::string& sha256, int width, int height);
+
+ private:
+  friend class PlanReader;
+
+  // Values that vary together: at place i each path takes its value i.
+  struct Axis {
+    std::vector<std::string> paths;
+    std::vector<PlanValues> values;  // [path]; all have the same size
+
+    std::uint64_t size() const { return values.front().size(); }
+  };
+  struct Sample {
+    std::uint64_t points = 0;
+    std::uint64_t seed = 0;
+  };
+
+  Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
+  std::vector<PlanValue> values_at(std::uint64_t number) const;
+  // The values that the plan gives a point.
+  struct Combination {
+    platform::BoardDraft draft;
+    PointRun run;
+  };
+  Combination combination(std::uint64_t number) const;
+  // The reason for which a board cannot have the tables of the calibration: its image size, or a side without
+  // a buffer for a table. Nothing without a calibration.
+  std::optional<std::string> size_problem(const platform::BoardConfig& board) const;
+  std::optional<std::string> buffer_problem(const platform::BoardConfig& board) const;
+  bool varies(const std::string& path) const;  // the key or a key below it varies
+
+  std::string path_;
+  std::string board_;
+  std::string calibration_;
+  std::string calibration_place_;
+  int tables_width_ = 0;   // pixels
+  int tables_height_ = 0;  // pixels
+  std::optional<platform::BoardDraft> base_;
+  std::optional<platform::BoardConfig> base_board_;
+  std::vector<std::string> banks_;
+  PointRun run_;
+  std::vector<Axis> axes_;  // the last varies fastest
+  std::uint64_t product_ = 1;
+  std::vector<Condition> conditions_;
+  std::optional<Sample> sample_;
+};
+
+}  // namespace stereotlm::explore

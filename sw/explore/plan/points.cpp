@@ -1,0 +1,76 @@
+#include "sw/explore/plan/points.h"
+
+#include <fmt/format.h>
+
+#include "platform/config/yaml_values.h"
+#include "sw/files/sha256.h"
+
+namespace stereotlm::explore {
+
+std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board) {
+  if (run.frames > 0) return run.frames;
+  return run.camera ? kCameraFrames : platform::allocation_period_frames(board);
+}
+
+bool may_vary(const std::string& run_key) { return run_key == kSourcePath || run_key == kFramesPath; }
+
+std::string run_key_problem(const std::string& run_key, const platform::YamlNode& value) {
+  const bool is_source = value.is_scalar() && (value.text == "preloaded" || value.text == "camera");
+  if (run_key == kSourcePath && !is_source)
+    return "preloaded (the board alone) or camera (the whole computer)";
+  if (run_key == kFramesPath && !kFramesRule.allows(platform::integer_of(value).value_or(0)))
+    return kFramesRule.text() + ", the frames of each point";
+  if (run_key == kCalibrationPath && (!value.is_scalar() || value.text.empty()))
+    return "the file of a calibration, as written by stereotlm calibrate";
+  return "";
+}
+
+void apply_run_key(const std::string& run_key, const platform::YamlNode& value, PointRun& run) {
+  if (run_key == kSourcePath) run.camera = value.text == "camera";
+  if (run_key == kFramesPath)
+    run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
+}
+
+namespace {
+
+// The members that possible and impossible points have in common.
+Point point_of(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& board,
+               const PointRun& run) {
+  Point point;
+  point.number = number;
+  point.yaml = yaml;
+  point.run = run;
+  point.values = values_of(board);
+  const char* const source = run.camera ? "camera" : "preloaded";
+  point.values.push_back({kSourcePath, source});
+  point.values.push_back({kFramesPath, static_cast<std::int64_t>(run.frames)});
+  std::string text = fmt::format("{}run: {{source: {}, frames: {}}}\n", yaml, source, run.frames);
+  if (!run.calibration.empty()) {
+    point.values.push_back({kCalibrationPath, run.calibration});
+    text += fmt::format("calibration: {}\n", run.calibration);
+  }
+  point.hash = files::sha256_hex(text.data(), text.size());
+  return point;
+}
+
+}  // namespace
+
+Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run) {
+  Point point = point_of(number, to_yaml(board), board, {run.camera, frames_of(run, board), run.calibration});
+  point.board = board;
+  return point;
+}
+
+Point impossible_point(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& asked_for,
+                       const PointRun& run, const std::string& reason) {
+  Point point = point_of(number, yaml, asked_for, run);
+  point.reason = reason;
+  return point;
+}
+
+const std::vector<Condition>& Points::conditions() const {
+  static const std::vector<Condition> kNone;
+  return kNone;
+}
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stereotlm::explore {
+
+// A command of Slurm failed. what() has the words of Slurm.
+class SlurmError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A job, or one task of a job array, as squeue lists it.
+struct SlurmTask {
+  std::string job;                     // number of the job, or of the job array
+  std::optional<std::uint64_t> index;  // of a task in its job array
+  std::string state;                   // "PENDING", "RUNNING", "NODE_FAIL", ..
+  std::string reason;                  // for waiting: "Resources", ..
+
+  bool is_live() const;  // it waits, runs, or still has processes
+};
+
+// The jobs of a name, including those that ended in the last minutes. Throws SlurmError.
+std::vector<SlurmTask> slurm_jobs(const std::string& name);
+
+// Reads the output of squeue in the format that slurm_jobs() asks for. Throws SlurmError.
+std::vector<SlurmTask> read_squeue(const std::string& text);
+
+// Submits the shell script `script` with these arguments. `options`: of sbatch; of repeated options the last
+// counts. Returns the number of the job. Throws SlurmError.
+std::string submit_to_slurm(const std::vector<std::string>& options, const std::string& script,
+                            const std::vector<std::string>& arguments);
+
+// Cancels jobs, given by their numbers. Throws SlurmError.
+void cancel_in_slurm(const std::vector<std::string>& jobs);
+
+// The indices of tasks as the option --array has them: "0,3,5-9". The numbers ascend.
+std::string array_text(const std::vector<std::uint64_t>& numbers);
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "sw/explore/store/database.h"
+
+namespace stereotlm::explore {
+
+// Stall cycles of one point, with the members of platform::BlameRow.
+struct StoredBlame {
+  std::string port;
+  std::string bank;
+  std::string by;
+  std::int64_t cycles = 0;
+};
+
+// Everything that a database holds about one point.
+struct StoredPoint {
+  std::string hash;
+  std::string status;  // "ok"; "impossible": there is no such board; "failed": the run ended with an error
+  std::string reason;  // of a status other than "ok"
+  std::string config;  // the board in full
+  std::vector<platform::BoardValue> keys;     // of the board and the run; each has a column
+  std::vector<platform::BoardValue> figures;  // each has a column; no path is that of a key
+  std::vector<StoredBlame> blame;
+};
+
+// Writes results of points to an SQLite file. Table `points` has one row for each point, table `blame`
+// several, and table `keys` lists the columns of `points` that hold keys of a board or a run. A point is
+// stored completely or not at all, whatever ends the process. Several processes may add points at the same
+// time. Member functions throw DatabaseError. Must not be used across fork().
+class Store {
+ public:
+  // Opens the file, or makes it. Throws if it holds points of another version of the program.
+  Store(const std::string& path, const std::string& version,
+        std::chrono::milliseconds busy_timeout = Database::kBusyTimeout);
+
+  // Throws if the file has columns of a bank whose name differs from one of these only in case.
+  void check_banks(const std::vector<std::string>& banks) const;
+
+  bool has(const std::string& hash);
+  // Returns false, and changes nothing, if the store has the point already.
+  bool add(const StoredPoint& point);
+
+ private:
+  void create();
+  void read_columns();
+  // A prepared INSERT for points that have these columns behind kFirstColumns.
+  struct Insertion {
+    std::vector<std::string> paths;
+    std::unique_ptr<Statement> statement;
+  };
+  // Adds the columns that the table lacks.
+  Statement& insertion(const StoredPoint& point, const std::vector<const platform::BoardValue*>& values);
+  void add_columns(const StoredPoint& point);
+
+  Database database_;
+  std::string version_;
+  std::set<std::string> columns_;
+  std::unique_ptr<Statement> find_;
+  std::unique_ptr<Statement> insert_blame_;
+  std::vector<Insertion> insertions_;
+};
+
+}  // namespace stereotlm::explore

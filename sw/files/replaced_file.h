@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "sw/files/new_file.h"
+
+namespace stereotlm::files {
+
+// Follows symbolic links from `path` to a file, which need not exist. Returns the path of that file. Throws
+// std::system_error.
+std::filesystem::path linked_file(const std::filesystem::path& path);
+
+// Renames `made`, a complete new file, to `file` in the same folder. If `file` exists, `made` gets its mode and
+// owner first. Only root may change the owner: for other users the owner stays. If the group cannot be changed
+// either, it gets the permissions of all other users. Throws std::system_error.
+void take_place(const std::filesystem::path& made, const std::filesystem::path& file);
+
+// A file that commit() replaces as a whole, see take_place(). Before, it is unchanged. If the path is a symbolic
+// link, the file that it leads to is replaced and the link stays. The new content goes to a file in the same
+// folder whose name begins with the file's own. All functions throw std::system_error with the cause as code.
+class ReplacedFile {
+ public:
+  // Throws also if the file exists and is no regular file.
+  explicit ReplacedFile(const std::filesystem::path& path);
+  // Without commit(): removes the new content.
+  ~ReplacedFile();
+  ReplacedFile(const ReplacedFile&) = delete;
+  ReplacedFile& operator=(const ReplacedFile&) = delete;
+
+  void write(std::string_view bytes) { file_->write(bytes); }
+  void commit();
+
+ private:
+  bool make();
+
+  std::filesystem::path path_;
+  std::filesystem::path aside_;  // empty after commit()
+  std::unique_ptr<NewFile> file_;
+  int lock_ = -1;  // descriptor of the file aside, which is locked while this process writes it
+};
+
+// Removes files that killed processes have written aside for the file `path`.
+void remove_left_aside(const std::filesystem::path& path) noexcept;
+
+}  // namespace stereotlm::files

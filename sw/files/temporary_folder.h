@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace stereotlm::files {
+
+// The folder for temporary files: the value of the first of TMPDIR, TMP, TEMP and TEMPDIR that is set, else
+// /tmp.
+struct TemporaryPlace {
+  std::string variable;
+  std::string folder;
+};
+TemporaryPlace temporary_place();
+
+// A new folder for temporary files. The destructor removes it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();  // throws std::runtime_error with the place if it cannot be created
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace stereotlm::files

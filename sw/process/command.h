@@ -1,0 +1,28 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stereotlm::process {
+
+// The program was not found.
+class CommandMissing : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// The output of a program and the way in which it ended.
+struct CommandEnd {
+  int status = 0;  // exit status, or 128 + the number of the signal that ended it
+  std::string out;
+  std::string errors;
+};
+
+// Runs the program words[0], which is looked for in PATH, with these words and without a shell, and waits
+// until it ends. Its standard input is empty. It has the environment of this process without the variables
+// that begin with one of `hidden`. Ctrl-C in a terminal does not reach it. Throws CommandMissing and
+// std::system_error.
+CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden = {});
+
+}  // namespace stereotlm::process

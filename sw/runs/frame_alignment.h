@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "models/fpga/row_profile.h"
+#include "sw/report/pixel_comparison.h"
+#include "sw/report/row_comparison.h"
+#include "sw/report/rows_csv.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/recorded_run.h"
+#include "sw/runs/rerun.h"
+
+namespace stereotlm::runs {
+
+// Why the rows or pixels of two runs, A and B, cannot be compared; empty if they can.
+struct DiffLimits {
+  DiffLimits(const RecordedRun& a, const RecordedRun& b);
+
+  std::string rows;
+  std::string pixels;
+};
+
+// Repeats two recorded runs side by side and compares them: the rows of equal frames of the core, and the
+// disparities of equal camera frames.
+class FrameAlignment {
+ public:
+  // Starts both runs. All arguments outlive the object; `csv` may be null.
+  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, report::RowsCsv* csv);
+
+  // Runs until both have ended. Returns false at the first interrupt. Throws what Rerun::next() throws.
+  bool run();
+
+  const report::RowComparison& rows() const { return rows_; }
+  const report::PixelComparison& pixels() const { return pixels_; }
+
+ private:
+  // One of the two runs, with its next frame.
+  struct Side {
+    explicit Side(const RecordedRun& run) : rerun(run) {}
+
+    Rerun rerun;
+    std::optional<Rerun::Frame> ahead;
+    std::deque<fpga::RowProfile> rows;  // rows of frames that the other run has not reached
+  };
+
+  bool read(Side& side);
+  bool advance(Side& side, const Side& other);
+  void compare_rows();
+
+  const DiffLimits& limits_;
+  report::RowsCsv* csv_;
+  std::uint64_t frames_;  // frames of the longer run
+  report::RowComparison rows_;
+  report::PixelComparison pixels_;
+  Side a_;
+  Side b_;
+  ProgressLine progress_;
+};
+
+}  // namespace stereotlm::runs

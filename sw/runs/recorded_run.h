@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "platform/config/board_config.h"
+#include "sw/process/problems.h"
+#include "sw/runs/run_input.h"
+#include "sw/runs/run_json.h"
+
+namespace stereotlm::runs {
+
+// The content of a result folder of `run --out`: board, options and figures of the run.
+struct RecordedRun {
+  std::string argument;  // its name on the command line: "A"
+  std::string folder;    // the folder as typed
+  platform::BoardConfig board;
+  std::string run_json;
+  RecordedOptions options;  // from run.json
+  std::string stats_json;
+};
+
+// Reads config.yaml, run.json and stats.json of the folder and checks that every input exists with its SHA-256.
+// Reports all problems and returns nullopt if there are any.
+std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
+                                             process::Problems& problems);
+
+// "A 'results/demo/a'"
+std::string name_of(const RecordedRun& run);
+
+// The input to repeat the run, with its pictures opened. Reports problems; the result is not usable then.
+RunInput open_again(const RecordedRun& run, process::Problems& problems);
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
+#include "sw/media/truth.h"
+#include "sw/runs/result_folder.h"
+#include "sw/runs/run_json.h"
+#include "sw/runs/sources/pair_source.h"
+
+namespace stereotlm::calib {
+struct Calibration;
+}
+
+namespace stereotlm::runs {
+
+// The inputs of a run, loaded and checked.
+struct RunInput {
+  platform::BoardConfig board;
+  std::shared_ptr<const calib::Calibration> calibration;  // null: no calibration
+  platform::Tables tables;
+  std::unique_ptr<PairSource> pairs;  // null: blank pictures; only with timing_only
+  bool camera = true;                 // --source camera, else preloaded
+  bool fast = true;                   // --fidelity fast, else cycle
+  bool timing_only = false;
+  std::uint64_t frames = 1;              // frames to deliver
+  std::optional<media::Truth> truth;     // ground truth of the pair that the last frame shows
+  std::string config_yaml;               // text of the result file config.yaml
+  RecordedOptions described;             // content of run.json; `frames` as requested
+  std::unique_ptr<ResultFolder> folder;  // null: no result files
+};
+
+}  // namespace stereotlm::runs

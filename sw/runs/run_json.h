@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stereotlm::runs {
+
+struct InputFile {
+  std::string path;    // absolute, UTF-8
+  std::string sha256;  // SHA-256 of its content, 64 hexadecimal digits
+};
+
+struct InputCalibration {
+  InputFile file;
+  InputFile left_lut;
+  InputFile right_lut;
+};
+
+struct InputFolder {
+  std::string path;              // absolute, UTF-8
+  std::vector<InputFile> files;  // paths are names in the folder
+};
+
+// The options of a `run` except the board, which config.yaml holds in full. A run with both gives the same
+// bytes again.
+struct RecordedOptions {
+  std::string program_version;
+  std::string source;    // "preloaded"
+  std::string fidelity;  // "fast"
+  bool timing_only = false;
+  bool verify = false;  // also false if the comparison was interrupted
+  std::uint64_t frames = 1;
+  std::optional<InputFile> left;
+  std::optional<InputFile> right;
+  std::optional<InputFolder> sequence;
+  std::vector<InputFile> video;
+  std::string video_layout;  // only with a video
+  std::optional<std::uint64_t> synthetic;
+  std::optional<InputCalibration> calibration;
+  std::optional<InputFile> truth;
+  double truth_scale = 1;  // only with a truth
+  bool save_frames = false;
+};
+
+// The text of run.json. Keys are the names of the options; an option that was not given is absent. Throws
+// std::runtime_error with the option's name if a path is not absolute or not UTF-8.
+std::string run_json(const RecordedOptions& options);
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,25 @@
+#include "sw/runs/simulation/preloaded_simulation.h"
+
+namespace stereotlm::runs {
+
+PreloadedSimulation::PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                                         host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                                         fpga::Fidelity fidelity)
+    : Simulation(board, pairs, frames, fidelity),
+      board_(board),
+      tables_(tables),
+      system_("system", board, tables, frames, *this, *this, binder, fidelity),
+      counters_(platform::counters_of(system_.board)) {}
+
+platform::Statistics PreloadedSimulation::statistics() const {
+  return platform::collect_statistics(board_, tables_, system_.board, counters_);
+}
+
+// Takes the counters at the end of each frame: when a run is interrupted, they must not include a part of the
+// running frame.
+void PreloadedSimulation::take(std::uint64_t frame, const kernels::GrayImage& disparity) {
+  counters_ = platform::counters_of(system_.board);
+  add_result({frame, disparity});
+}
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
+#include "sw/process/problems.h"
+#include "sw/runs/run_json.h"
+#include "sw/runs/sources/open_source.h"
+
+namespace stereotlm::calib {
+struct Calibration;
+}
+
+namespace stereotlm::runs {
+
+// The file of --calibration and the tables beside it.
+struct CalibrationInput {
+  std::shared_ptr<const calib::Calibration> calibration;  // never null
+  platform::Tables tables;
+  InputCalibration described;
+  std::vector<NamedFile> files;
+};
+
+// Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there are
+// any: a damaged file, another size than the board's pictures, tables other than those it was written with, a
+// side without table. `board`: null if unknown, which is reported elsewhere. `named`: the option that gave the
+// path.
+std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
+                                                 process::Problems& problems,
+                                                 const std::string& named = "--calibration");
+
+// The SHA-256 over both tables. It identifies a calibration.
+std::string sha256_of(const platform::Tables& tables);
+
+// The tables of the calibration, or identity tables without one.
+platform::Tables tables_of(const platform::BoardConfig& board,
+                           const std::optional<CalibrationInput>& calibration);
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_config.h"
+#include "sw/process/problems.h"
+#include "sw/runs/run_json.h"
+#include "sw/runs/sources/pair_source.h"
+#include "sw/runs/sources/picture_source.h"
+
+namespace stereotlm::runs {
+
+// A file that an option names, directly or by its folder.
+struct NamedFile {
+  std::string option;
+  std::string path;
+
+  std::string text() const { return option + " '" + path + "'"; }
+};
+
+struct OpenedSource {
+  std::unique_ptr<PairSource> pairs;  // null if it cannot be used
+  std::vector<NamedFile> files;       // files that were named or found, usable or not
+  std::vector<std::string> notes;     // for standard error
+};
+
+// Opens the source of pictures and checks all its pictures. Reports problems. Fills the fields of `described`
+// that concern the pictures. `board`: null if unknown, which is reported elsewhere; sizes are not checked
+// then.
+OpenedSource open_source(const PictureSource& options, const platform::BoardConfig* board,
+                         RecordedOptions& described, process::Problems& problems);
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "platform/config/board_config.h"
+#include "sw/runs/run_json.h"
+#include "sw/runs/sources/pair_source.h"
+
+namespace stereotlm::runs {
+
+// The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their names.
+// Other files in the folder are ignored. The first pictures are kept in memory, up to 128 MB. The others are
+// decoded again at each use.
+class SequencePairs : public PairSource {
+ public:
+  // Reads every picture once. Throws std::runtime_error, without the option's name, if the folder cannot be
+  // read, holds no pair or a picture without partner, or holds a picture that cannot be read or has another
+  // size than the board's images. `board`: null if unknown.
+  SequencePairs(const std::string& folder, const platform::BoardConfig* board);
+
+  const InputFolder& input() const { return contents_.input; }  // for run.json
+  std::uint64_t pictures_converted() const {
+    return contents_.converted;
+  }  // pictures converted from colour to grey
+
+ private:
+  struct Contents {
+    InputFolder input;  // its files are left and right in turn
+    std::uint64_t converted = 0;
+    std::vector<kernels::GrayImage> kept;  // pictures of the first files
+  };
+  static Contents read(const std::string& folder, const platform::BoardConfig* board);
+
+  explicit SequencePairs(Contents contents);
+  host::StereoPair load(std::uint64_t index) override;
+  kernels::GrayImage load_picture(std::size_t number) const;
+
+  Contents contents_;
+};
+
+}  // namespace stereotlm::runs

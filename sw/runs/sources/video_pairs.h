@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_config.h"
+#include "sw/media/video.h"
+#include "sw/runs/sources/pair_source.h"
+#include "sw/runs/sources/picture_source.h"
+
+namespace stereotlm::runs {
+
+// The pairs of `--video F [F2] --video-layout L`.
+class VideoPairs : public PairSource {
+ public:
+  // Decodes each video once. Throws std::runtime_error, without the option's name, if a video cannot be decoded,
+  // if its frames have another size than the layout needs, or if two videos differ in their number of frames.
+  // `board`: null if unknown; the pairs are then not usable.
+  VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board);
+
+  // Notes for standard error: videos with fewer frames than their headers state.
+  const std::vector<std::string>& notes() const { return contents_.notes; }
+
+ private:
+  struct Contents {
+    std::vector<std::unique_ptr<media::Video>> videos;
+    std::vector<std::string> notes;
+  };
+  static Contents open(const PictureSource::Video& options, const platform::BoardConfig* board);
+
+  VideoPairs(Contents contents, VideoLayout layout);
+  host::StereoPair load(std::uint64_t index) override;
+
+  Contents contents_;
+  VideoLayout layout_;
+};
+
+}  // namespace stereotlm::runs

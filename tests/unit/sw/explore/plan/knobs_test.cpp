@@ -1,0 +1,155 @@
+#include "sw/explore/plan/knobs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "sw/explore/store/bank_names.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using platform::BoardConfig;
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using Texts = std::vector<std::string>;
+
+constexpr const char* kBufferPairs = "allocation.left_image, right_image";
+constexpr const char* kKind = "ssram.banks.*.kind";
+constexpr const char* kTurnaround = "ssram.banks.*.turnaround_cycles";
+constexpr const char* kOwnFilter = "matcher.filter={kernel: [[0, 0, 0], [1, 0, -1], [0, 0, 0]], shift: 0}";
+
+BoardConfig board_with(const Texts& sets) { return platform::load_board("fpl2003", sets); }
+
+// A bank of fpl2003 that has turnaround.
+std::string burst(const std::string& bank, int cycles) {
+  return "ssram.banks." + bank + "={kind: sync_burst, turnaround_cycles: " + std::to_string(cycles) + "}";
+}
+
+std::vector<KnobStep> steps_of(const std::string& knob, const BoardConfig& board) {
+  std::vector<KnobStep> found;
+  for (const KnobStep& step : knob_steps(board, true)) {
+    if (step.knob == knob) found.push_back(step);
+  }
+  return found;
+}
+
+TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
+  struct Case {
+    std::string knob;
+    Texts sets;
+    std::string steps;
+  };
+  const Case cases[] = {
+      {"fpga.lane_fifo_slots", {}, "16 -> 17; 16 -> 15; "},
+      {"fpga.lane_fifo_slots", {"fpga.lane_fifo_slots=1"}, "1 -> 2; "},
+      {"fpga.clock_mhz", {}, "40 -> 41; 40 -> 39; "},
+      {"matcher.window", {}, "7 -> 9; 7 -> 5; "},
+      {"capture.fifo_trigger_words", {"capture.fifo_words=32"}, "32 -> 31; "},
+      {"pci.load.burst_words", {}, ""},
+      {"pci.load.burst_words", {"pci.load={burst_words: 8, interval_us: 10}"}, "8 -> 9; 8 -> 7; "},
+      {"fpga.arbitration", {}, "fixed_priority -> round_robin; "},
+      {"matcher.fetch", {}, "column -> line_buffer; "},
+      {"matcher.filter", {}, "log7 -> none; "},
+      {"matcher.filter", {"matcher.filter=none"}, "none -> log7; "},
+      {"matcher.filter", {kOwnFilter}, "its own -> none; its own -> log7; "},
+      {kKind, {}, "zbt_pipelined -> zbt_flow_through; zbt_pipelined -> sync_burst; "},
+      {kKind,
+       {burst("bank3", 5)},
+       "different -> zbt_pipelined; different -> zbt_flow_through; different -> sync_burst; "},
+      {kTurnaround, {}, ""},
+      {kTurnaround, {burst("bank3", 5)}, "5 -> 6; 5 -> 4; "},
+      {kTurnaround, {burst("bank3", 1)}, "1 -> 2; "},
+      {kTurnaround,
+       {burst("bank3", 5), burst("bank4", 2)},
+       "different -> one more each; different -> one less each; "},
+      {kBufferPairs, {}, "2 buffers -> 3 buffers; 2 buffers -> 1 buffer; "},
+      {"allocation.disparity", {"allocation.disparity=bank4"}, "1 buffer -> 2 buffers; "},
+      {"a bank more", {}, ""},
+      {"a bank more",
+       {"allocation.disparity=[bank0, bank5]"},
+       "left_image[0] in bank0 -> in one of its own; disparity[0] in bank0 -> in one of its own; "},
+      {"a bank less",  // the other banks have no buffers
+       {"allocation={left_image: bank0, right_image: bank0, disparity: bank0, left_lut: none, right_lut: "
+        "none}"},
+       ""}};
+  for (const Case& one : cases) {
+    std::string found;
+    for (const KnobStep& step : steps_of(one.knob, board_with(one.sets)))
+      found += step.from + " -> " + step.to + "; ";
+    EXPECT_EQ(found, one.steps) << one.knob;
+  }
+}
+
+TEST(KnobSteps, ChangeNothingButTheirKnob) {
+  const std::string bursts = "ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}";
+  const std::string shared = "allocation.disparity=[bank0, bank5]";
+  struct Case {
+    std::string knob;
+    Texts sets;
+    std::size_t number;
+    Texts changed;
+  };
+  const std::vector<Case> cases = {
+      {"fpga.lane_fifo_slots", {}, 0, {"fpga.lane_fifo_slots=17"}},
+      {"fpga.priority",
+       {},
+       1,
+       {"fpga.priority=[host, left_pixel, result, right_pixel, left_lut, right_lut]"}},
+      {kKind, {}, 1, {bursts}},
+      {kKind, {burst("bank3", 5)}, 2, {bursts, burst("bank3", 5)}},
+      {kTurnaround, {burst("bank3", 5), burst("bank4", 2)}, 0, {burst("bank3", 6), burst("bank4", 3)}},
+      {kTurnaround, {burst("bank3", 5), burst("bank4", 2)}, 1, {burst("bank3", 4), burst("bank4", 1)}},
+      {kBufferPairs,
+       {},
+       0,
+       {"allocation.left_image=[bank0, bank1, bank0]", "allocation.right_image=[bank2, bank3, bank2]"}},
+      {kBufferPairs, {}, 1, {"allocation.left_image=bank0", "allocation.right_image=bank2"}},
+      {"a bank more",
+       {shared, burst("bank0", 3)},
+       1,
+       {burst("bank0", 3), burst("new_bank", 3), "allocation.disparity=[new_bank, bank5]"}},
+      {"a bank less", {}, 11, {"allocation.left_image=[bank0, bank5]"}}};
+  for (const auto& [knob, sets, number, changed] : cases)
+    EXPECT_EQ(steps_of(knob, board_with(sets)).at(number).board, board_with(changed)) << knob;
+}
+
+TEST(KnobSteps, AreValidBoardsThatDifferAndAreMarkedByTheirEffect) {
+  const BoardConfig board = board_with({"allocation.disparity=[bank0, bank5]"});
+  EXPECT_EQ(steps_of("fpga.priority", board).size(), 5U);
+  EXPECT_EQ(steps_of("a bank less", board_with({})).size(), 8U * 7 - 2) << "no bank holds both tables";
+  for (const KnobStep& step : knob_steps(board, true)) {
+    EXPECT_THAT(platform::problems(step.board), IsEmpty()) << step.knob;
+    EXPECT_FALSE(step.board == board) << step.knob;
+    EXPECT_EQ(step.only_best, step.knob.find("a bank ") == 0) << step.knob;
+    EXPECT_EQ(step.changes_disparities, step.knob.find("matcher.") == 0 && step.knob != "matcher.fetch");
+  }
+}
+
+TEST(KnobSteps, GiveNoBankANameThatDiffersFromAnotherOnlyInCase) {
+  BoardConfig shared = board_with({"ssram.banks={New_Bank: {}, b: {words: 1048576}}",
+                                   "allocation={left_image: New_Bank, right_image: b, disparity: b, "
+                                   "left_lut: b, right_lut: b}"});
+  const std::vector<KnobStep> steps = steps_of("a bank more", shared);
+  ASSERT_FALSE(steps.empty());
+  for (const KnobStep& step : steps) EXPECT_EQ(bank_names_problem(step.board), std::nullopt);
+  shared.banks.push_back({"new_bank"});
+  EXPECT_NE(bank_names_problem(shared), std::nullopt);
+}
+
+TEST(KnobSteps, OfTheBoardAloneDoNotChangeTheComputer) {
+  std::set<std::string> knobs;
+  for (const KnobStep& step : knob_steps(board_with({}), false)) knobs.insert(step.knob);
+  for (const char* const knob :
+       {"pci.clock_mhz", "cameras.trigger", "capture.fifo_words", "bridge.posted_words", "image.width"})
+    EXPECT_THAT(knobs, Not(Contains(knob)));
+  EXPECT_THAT(knobs, Contains("fpga.clock_mhz"));
+}
+
+}  // namespace
+}  // namespace stereotlm::explore

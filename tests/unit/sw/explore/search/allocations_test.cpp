@@ -1,0 +1,279 @@
+#include "sw/explore/search/allocations.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
+#include "sw/explore/search/allocation_search.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using platform::BoardConfig;
+
+BoardConfig fpl2003(const std::vector<std::string>& sets = {}) {
+  return platform::load_board("fpl2003", sets);
+}
+
+std::vector<Placement> placements_of(const BoardConfig& board, int most_banks) {
+  std::vector<Placement> all;
+  for_each_placement(board, most_banks, [&all](const Placement& placement) { all.push_back(placement); });
+  return all;
+}
+
+// Those of the board fpl2003.
+std::vector<Placement> fitting_placements() {
+  std::vector<Placement> all = placements_of(fpl2003(), 8);
+  const auto is_too_large = [board = fpl2003()](const Placement& one) { return !fits(board, one); };
+  all.erase(std::remove_if(all.begin(), all.end(), is_too_large), all.end());
+  return all;
+}
+
+int banks_of(const BoardConfig& board) {
+  std::set<std::string> names;
+  for (const auto& buffer : platform::buffers(board.allocation)) names.insert(buffer.bank);
+  return static_cast<int>(names.size());
+}
+
+TEST(Placements, AreTheSetPartitionsIfAllBanksAreEqual) {
+  const std::vector<std::uint64_t> partitions_into_at_most = {1, 128, 1094, 2795, 3845, 4111, 4139, 4140};
+  for (int banks = 1; banks <= 8; ++banks) {
+    EXPECT_EQ(placements_of(fpl2003(), banks).size(),
+              partitions_into_at_most[static_cast<std::size_t>(banks) - 1]);
+  }
+}
+
+TEST(Placements, FitIfEachBankHoldsItsBuffers) {
+  // Two tables of 307,200 words do not fit into 524,288; a table and two buffers of 76,800 do.
+  EXPECT_FALSE(fits(fpl2003(), {0, 1, 2, 3, 4, 5, 6, 6}));
+  EXPECT_TRUE(fits(fpl2003(), {0, 0, 1, 1, 2, 2, 0, 1}));
+  EXPECT_FALSE(fits(fpl2003(), {0, 0, 0, 1, 2, 2, 0, 1}));
+}
+
+// The test lists all ways to put five buffers into four banks, of which a and c are equal.
+TEST(Placements, AreVisitedOnceForEachExchangeOfEqualBanks) {
+  for (const char* const banks :
+       {"{a: {}, b: {words: 1048576}, c: {}, d: {kind: zbt_flow_through}}",
+        "{a: {kind: sync_burst, turnaround_cycles: 2}, b: {kind: sync_burst, turnaround_cycles: 1}, "
+        "c: {kind: sync_burst, turnaround_cycles: 2}, d: {}}"}) {
+    const BoardConfig board = fpl2003({std::string("ssram.banks=") + banks,
+                                       "allocation={left_image: a, right_image: a, disparity: [a, b], "
+                                       "left_lut: c, right_lut: none}"});
+    ASSERT_EQ(platform::buffers(board.allocation).size(), 5U);
+    for (int most_banks = 1; most_banks <= 4; ++most_banks) {
+      std::set<Placement> expected;
+      for (int code = 0; code < 1024; ++code) {
+        Placement placement;
+        for (int i = 0; i < 5; ++i) placement.push_back(code >> (2 * i) & 3);
+        if (banks_used(placement) > most_banks) continue;
+        Placement exchanged = placement;
+        for (int& bank : exchanged) bank = bank == 0 ? 2 : bank == 2 ? 0 : bank;
+        expected.insert(std::min(placement, exchanged));
+      }
+      const auto found = placements_of(board, most_banks);
+      EXPECT_EQ(std::set<Placement>(found.begin(), found.end()), expected) << banks << ' ' << most_banks;
+      EXPECT_EQ(found.size(), expected.size()) << "each once";
+    }
+  }
+}
+
+TEST(Placements, AreWrittenIntoTheBoard) {
+  EXPECT_EQ(allocation_text(placed(fpl2003(), {0, 1, 2, 2, 3, 4, 5, 0})),
+            "left_image bank0 bank1, right_image bank2 bank2, disparity bank3 bank4, left_lut bank5, "
+            "right_lut bank0");
+  EXPECT_EQ(allocation_text(placed(fpl2003({"allocation.left_lut=none"}), {0, 1, 2, 2, 3, 4, 0})),
+            "left_image bank0 bank1, right_image bank2 bank2, disparity bank3 bank4, right_lut bank0");
+}
+
+TEST(BoardOfFrame, HasTheBuffersOfTheFrameInTheFirstBanksThatAreEqual) {
+  const Placement placement = {6, 7, 6, 5, 4, 4, 3, 7};
+  const auto text_of = [&placement](const BoardConfig& board, std::uint64_t frame) {
+    return allocation_text(board_of_frame(board, placement, frame));
+  };
+  EXPECT_EQ(text_of(fpl2003(), 0),
+            "left_image bank0, right_image bank0, disparity bank1, left_lut bank2, right_lut bank3");
+  EXPECT_EQ(text_of(fpl2003(), 1),
+            "left_image bank0, right_image bank1, disparity bank2, left_lut bank3, right_lut bank0");
+  EXPECT_EQ(text_of(fpl2003({"ssram.banks.bank0.kind=zbt_flow_through"}), 0),
+            "left_image bank1, right_image bank1, disparity bank2, left_lut bank3, right_lut bank4");
+}
+
+// A bound that rules nothing out.
+double no_bound(const BoardConfig& /*board*/) { return 1e9; }
+
+AllocationSearch core_search(const BoardConfig& board, int most_banks) {
+  return AllocationSearch(board, most_banks, {}, no_bound);
+}
+
+TEST(AllocationSearch, NeedsAFrameForEachWayInWhichTheBuffersOfAFrameShareBanks) {
+  const AllocationSearch search = core_search(fpl2003(), 8);
+  EXPECT_TRUE(search.by_frames());
+  EXPECT_EQ(search.placements(), 4140U);
+  EXPECT_EQ(search.fitting(), 2507U);
+  EXPECT_EQ(search.size(), 35U);
+  EXPECT_EQ(search.next().size(), 35U);
+  EXPECT_EQ(search.most_left(), 35U);
+  EXPECT_EQ(search.point(0).run.frames, 1U);
+  EXPECT_EQ(core_search(fpl2003({"ssram.default.words=2097152"}), 8).size(), 52U)
+      << "the set partitions of five buffers, if a bank holds everything";
+}
+
+TEST(AllocationSearch, RunsEachPlacementIfFramesAreNotIndependent) {
+  for (const char* const set :
+       {"fpga.arbitration=round_robin", "ssram.banks.bank3={kind: sync_burst, turnaround_cycles: 1}"}) {
+    const AllocationSearch core = core_search(fpl2003({set}), 3);
+    EXPECT_FALSE(core.by_frames());
+    EXPECT_EQ(core.size(), core.fitting());
+    EXPECT_EQ(core.point(0).run.frames, 2U);
+  }
+  const AllocationSearch computer(fpl2003(), 3, {true, 0, ""}, no_bound);
+  EXPECT_EQ(computer.size(), computer.fitting());
+  EXPECT_EQ(computer.point(0).run.frames, kCameraFrames);
+}
+
+// What the test expects of the placements with one number of banks.
+struct Expected {
+  std::uint64_t placements = 0;
+  std::uint64_t losing = 0;
+  std::uint64_t failed = 0;
+  double rate = 0;
+  std::uint64_t reached_by = 0;
+
+  void take(double one) {
+    if (one > rate) reached_by = 0;
+    rate = std::max(rate, one);
+    reached_by += one == rate ? 1 : 0;
+  }
+};
+
+void expect_best(const BestPlacement& best, const Expected& expected) {
+  EXPECT_EQ(best.placements, expected.placements) << best.banks;
+  EXPECT_EQ(best.reached_by, expected.reached_by) << best.banks;
+  EXPECT_EQ(best.frames_per_second, expected.rate) << best.banks;
+  EXPECT_EQ(banks_used(best.witness), best.reached_by > 0 ? best.banks : 0);
+}
+
+// Made-up cycles: a frame takes longer if its buffers share banks, and one of the boards fails.
+TEST(AllocationSearch, ByFramesFindsTheBestPlacementsWithoutFailedFrames) {
+  AllocationSearch search = core_search(fpl2003(), 8);
+  const std::string failing = allocation_text(*search.point(1).board);
+  const auto cycles_of = [](const BoardConfig& frame) {
+    return 1000 * (6 - static_cast<std::uint64_t>(banks_of(frame)));
+  };
+  std::map<int, Expected> expected;  // [banks]
+  for (const Placement& placement : fitting_placements()) {
+    Expected& of_banks = expected[banks_used(placement)];
+    ++of_banks.placements;
+    const BoardConfig frames[] = {board_of_frame(fpl2003(), placement, 0),
+                                  board_of_frame(fpl2003(), placement, 1)};
+    if (allocation_text(frames[0]) == failing || allocation_text(frames[1]) == failing) {
+      ++of_banks.failed;
+    } else {
+      of_banks.take(40e6 * 2 / static_cast<double>(cycles_of(frames[0]) + cycles_of(frames[1])));
+    }
+  }
+  for (const std::size_t number : search.next()) {
+    AllocationOutcome outcome;
+    outcome.cycles = cycles_of(*search.point(number).board);
+    if (number == 1) outcome = {0, 0, {}, false, "no slot consumed"};
+    search.record(number, outcome);
+  }
+  EXPECT_TRUE(search.next().empty());
+  EXPECT_EQ(search.most_left(), 0U);
+  EXPECT_EQ(search.first_failure(), failing + ": no slot consumed");
+  const auto all = search.best();
+  ASSERT_EQ(all.size(), expected.size());
+  for (const BestPlacement& best : all) {
+    expect_best(best, expected[best.banks]);
+    EXPECT_EQ(best.failed, expected[best.banks].failed);
+    EXPECT_EQ(best.known, best.placements);
+    EXPECT_EQ(best.frames_per_second, 40e6 * 2 / static_cast<double>(best.outcome.cycles));
+  }
+  EXPECT_GT(all.front().failed, 0U);
+  EXPECT_EQ(all.back().outcome.cycles, 2000U) << "a bank for each buffer of a frame";
+}
+
+// Made-up runs of a computer, with rates from 10 to 20 frames/s, and bounds by up to a tenth above them.
+class ComputerSearch : public ::testing::Test {
+ protected:
+  static std::size_t mixed(const BoardConfig& board) {
+    return std::hash<std::string>()(allocation_text(board));
+  }
+  static AllocationOutcome outcome_of(const BoardConfig& board) {
+    const double rate = 10 + static_cast<double>(mixed(board) % 101) / 10;
+    const std::size_t fate = mixed(board) / 10100 % 20;
+    return {1000, rate, rate + 1, fate < 2, fate == 2 ? "no slot consumed" : ""};
+  }
+  static double bound_of(const BoardConfig& board) {
+    return outcome_of(board).frames_per_second * (1 + static_cast<double>(mixed(board) / 101 % 100) / 1000);
+  }
+
+  AllocationSearch search{fpl2003(), 8, {true, 0, ""}, bound_of};
+};
+
+TEST_F(ComputerSearch, FindsTheBestPlacementsAndLeavesOutThoseThatABoundRulesOut) {
+  std::map<int, Expected> expected;  // [banks]
+  for (std::size_t number = 0; number < search.size(); ++number) {
+    const BoardConfig board = *search.point(number).board;
+    const AllocationOutcome outcome = outcome_of(board);
+    ++expected[banks_of(board)].placements;
+    if (!outcome.loses_pixels && outcome.failure.empty())
+      expected[banks_of(board)].take(outcome.frames_per_second);
+  }
+  std::uint64_t simulated = 0;
+  std::uint64_t given_up = 0;
+  for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
+    for (const std::size_t number : numbers) {
+      const BoardConfig board = *search.point(number).board;
+      const AllocationOutcome outcome = outcome_of(board);
+      Expected& of_banks = expected[banks_of(board)];
+      ++simulated;
+      EXPECT_LE(search.rate_to_reach(number), of_banks.rate) << "of a placement that does not count";
+      if (!outcome.loses_pixels && outcome.frames_per_second < search.rate_to_reach(number) &&
+          number % 2 == 0) {
+        search.record_given_up(number);
+        ++given_up;
+      } else {
+        search.record(number, outcome);
+        of_banks.failed += outcome.failure.empty() || outcome.loses_pixels ? 0 : 1;
+        of_banks.losing += outcome.loses_pixels ? 1 : 0;
+      }
+    }
+    EXPECT_LE(simulated + search.most_left(), search.size());
+  }
+  EXPECT_LT(simulated, search.size() / 2);
+  EXPECT_GT(given_up, 0U);
+  std::uint64_t ended = 0;
+  std::uint64_t out = 0;
+  for (const BestPlacement& best : search.best()) {
+    expect_best(best, expected[best.banks]);
+    EXPECT_EQ(best.losing, expected[best.banks].losing);
+    EXPECT_EQ(best.failed, expected[best.banks].failed);
+    ended += best.known + best.given_up;
+    out += best.losing * best.failed;
+    if (best.reached_by == 0) continue;
+    EXPECT_EQ(outcome_of(placed(fpl2003(), best.witness)).frames_per_second, best.frames_per_second);
+    EXPECT_EQ(best.outcome.steady, best.frames_per_second + 1);
+  }
+  EXPECT_EQ(ended, simulated);
+  EXPECT_GT(out, 0U) << "some lose pixels and some fail";
+}
+
+TEST_F(ComputerSearch, RefusesARateAboveItsBoundUnlessPixelsAreLost) {
+  const std::size_t number = search.next().front();
+  EXPECT_THROW(search.record(number, {1000, 100, 100, false, ""}), std::logic_error);
+  search.record(number, {1000, 100, 100, true, ""});
+}
+
+}  // namespace
+}  // namespace stereotlm::explore

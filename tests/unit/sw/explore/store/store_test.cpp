@@ -1,0 +1,266 @@
+#include "sw/explore/store/store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sw/explore/store/merge_stores.h"
+#include "sw/explore/store/store_reader.h"
+#include "tests/unit/sw/explore/store_files.h"
+
+namespace stereotlm::explore {
+namespace {
+
+namespace fs = std::filesystem;
+using test::message_of;
+using test::read_file;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kVersion = "1";
+
+StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
+  StoredPoint point = ok_point(hash);
+  point.config = "name: x\n";
+  point.keys = {{"image.width", std::int64_t{640}}};
+  point.figures = {{"cycles", cycles}, {"rate", 0.5}};
+  point.blame = {{"left_pixel", "bank0", "host", 3}};
+  return point;
+}
+
+StoredPoint point_with_key(const std::string& hash, const std::string& key) {
+  StoredPoint point = ok_point(hash);
+  point.keys = {{key, std::int64_t{1}}};
+  return point;
+}
+
+class StoreTest : public StoreFiles {
+ protected:
+  std::string open_error(const std::string& name, const std::string& version = kVersion) const {
+    return message_of([&] { Store(file(name), version); });
+  }
+};
+
+TEST_F(StoreTest, KeepsARowForEachPoint) {
+  {
+    Store store(file("a.db"), kVersion);
+    EXPECT_FALSE(store.has("h1"));
+    EXPECT_TRUE(store.add(point("h1", 7)));
+    EXPECT_TRUE(store.has("h1"));
+    EXPECT_THAT(hashes("a.db"), ElementsAre("h1"));
+    EXPECT_FALSE(store.add(point("h1", 8))) << "the first of equal points stays";
+  }
+  EXPECT_THAT(
+      rows("a.db", "SELECT hash, status, reason, version, config, \"image.width\", cycles, rate FROM points"),
+      ElementsAre("h1|ok||1|name: x\n|640|7|0.5"));
+  EXPECT_THAT(rows("a.db", "SELECT * FROM blame"), ElementsAre("h1|left_pixel|bank0|host|3"));
+  Store store(file("a.db"), kVersion);
+  EXPECT_TRUE(store.has("h1"));
+  EXPECT_TRUE(store.add(point("h2")));
+}
+
+TEST_F(StoreTest, AddsAPointAfterOneWithTheSameNewColumnsThatCouldNotBeAdded) {
+  Store store(file("a.db"), kVersion);
+  StoredPoint broken = point("h1");
+  broken.blame.push_back(broken.blame.front());  // the same row twice
+  EXPECT_THAT(message_of([&] { store.add(broken); }), HasSubstr("UNIQUE constraint failed"));
+  EXPECT_FALSE(store.has("h1"));
+  EXPECT_THAT(rows("a.db", "SELECT count(*) FROM pragma_table_info('points')"), ElementsAre("5"));
+  EXPECT_TRUE(store.add(point("h1")));
+  EXPECT_THAT(rows("a.db", "SELECT hash, \"image.width\", cycles FROM points"), ElementsAre("h1|640|7"));
+}
+
+TEST_F(StoreTest, TakesPointsWithAnyColumnsFromSeveralConnections) {
+  Store one(file("a.db"), kVersion);
+  Store two(file("a.db"), kVersion);
+  one.add(point("h1"));
+  two.add(point("h2"));
+  StoredPoint other = point("h3");
+  other.keys.push_back({"select \"from\"", "a'b"});
+  other.figures = {{"frames_per_second.system", 2.5}};
+  one.add(other);
+  other.hash = "h4";
+  two.add(other);
+  one.add(point("h5"));
+  EXPECT_TRUE(two.has("h5"));
+  EXPECT_THAT(rows("a.db",
+                   "SELECT hash, cycles, \"frames_per_second.system\", \"select \"\"from\"\"\" FROM points "
+                   "ORDER BY hash"),
+              ElementsAre("h1|7||", "h2|7||", "h3||2.5|a'b", "h4||2.5|a'b", "h5|7||"));
+}
+
+TEST_F(StoreTest, ListsTheColumnsThatHoldKeys) {
+  StoredPoint other = point("h2");
+  other.keys.push_back({"bridge.posted_words", std::int64_t{64}});
+  other.figures.push_back({"bridge.posted_words.counted", std::int64_t{9}});
+  add("a.db", {point("h1")});
+  add("b.db", {other});
+  merge({"a.db", "b.db"}, "ab.db");
+  EXPECT_THAT(rows("a.db", "SELECT name FROM keys"), ElementsAre("image.width"));
+  for (const char* const name : {"b.db", "ab.db"})
+    EXPECT_THAT(rows(name, "SELECT name FROM keys"), ElementsAre("bridge.posted_words", "image.width"));
+}
+
+TEST_F(StoreTest, IsReadAndNotChangedOnceItIsFinished) {
+  add("a.db", {point("h1")});
+  merge({"a.db"}, "a.db");
+  const std::string before = read_file(file("a.db"));
+  FinishedStore one(file("a.db"), kVersion);
+  FinishedStore two(file("a.db"), kVersion);
+  EXPECT_TRUE(one.has("h1"));
+  EXPECT_TRUE(two.has("h1"));
+  EXPECT_FALSE(one.has("h2"));
+  EXPECT_THAT(names(), ElementsAre("a.db")) << "no file that machines would have to share";
+  EXPECT_EQ(read_file(file("a.db")), before);
+}
+
+TEST_F(StoreTest, HoldsPointsOfOneVersion) {
+  add("a.db", {point("h1")});
+  const std::string text = file("a.db") + ": holds points of version 1; this is version 2: give another file";
+  EXPECT_EQ(open_error("a.db", "2"), text);
+  EXPECT_EQ(message_of([&] { FinishedStore(file("a.db"), "2"); }), text);
+  for (const std::string hash : {"h0", "h1", "h2"}) {
+    add(hash + ".db", {point(hash)}, "2");
+    EXPECT_THAT(merge_error({"a.db", hash + ".db"}, "c.db"),
+                AllOf(HasSubstr(hash + ".db"), HasSubstr("version 2"), HasSubstr(": they do not mix")));
+    EXPECT_FALSE(fs::exists(file("c.db")));
+  }
+  EXPECT_EQ(merge_error({"a.db", "h2.db"}, "c.db"), file("h2.db") + ": holds points of version 2, and " +
+                                                        file("a.db") + " of version 1: they do not mix");
+}
+
+TEST_F(StoreTest, RefusesFilesThatAreNotItsOwn) {
+  const auto make = [this](const std::string& name, const std::string& sql) {
+    Database(file(name), Database::Access::kCreate).execute(sql);
+  };
+  add("a.db", {point("h1")});
+  test::write_file(file("text"), std::string(5000, 'x'));
+  make("foreign.db", "CREATE TABLE points(x)");
+  make("early.db", "PRAGMA application_id = 0x53544C4D; PRAGMA user_version = 1; CREATE TABLE points(hash)");
+  const std::string layout =
+      file("early.db") + ": its layout is 1, of another version; this version writes 2";
+  EXPECT_EQ(open_error("text"), file("text") + ": not a database");
+  EXPECT_THAT(merge_error({"a.db"}, "text"), HasSubstr("text: not a database"));
+  EXPECT_EQ(read_file(file("text")), std::string(5000, 'x'));
+  EXPECT_EQ(open_error("foreign.db"), file("foreign.db") + ": not a database of stereotlm sweep");
+  EXPECT_EQ(open_error("early.db"), layout);
+  EXPECT_EQ(merge_error({"early.db"}, "new.db"), layout);
+  EXPECT_THAT(open_error("none/a.db"), HasSubstr("No such file or directory"));
+  EXPECT_THAT(merge_error({"none.db"}, "c.db"), HasSubstr("none.db: "));
+  EXPECT_FALSE(fs::exists(file("none.db")));
+}
+
+TEST_F(StoreTest, HasNoColumnsThatDifferOnlyInCase) {
+  add("a.db", {point_with_key("h1", "ssram.banks.a.words")});
+  add("b.db", {point_with_key("h2", "ssram.banks.A.words")});
+  const Store store(file("a.db"), kVersion);
+  store.check_banks({"a", "b"});
+  EXPECT_EQ(message_of([&store] {
+              store.check_banks({"b", "A"});
+            }),
+            file("a.db") +
+                ": its column ssram.banks.a.words differs from ssram.banks.A.words only in case: "
+                "give another file");
+  EXPECT_EQ(merge_error({"a.db", "b.db"}, "c.db"),
+            file("b.db") + ": its column ssram.banks.A.words differs from ssram.banks.a.words of " +
+                file("a.db") + " only in case: they do not mix");
+}
+
+TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
+  StoredPoint wide = point("h2");
+  wide.keys = {{"matcher.window", std::int64_t{7}}};
+  for (const char* const bank : {"bank10", "bank2", "bank1", "bank12", "bank"})
+    wide.figures.push_back({std::string("banks.") + bank + ".reads", std::int64_t{1}});
+  add("a.db", {point("h3")});
+  add("b.db", {wide, point("h1")});
+  add("all.db", {point("h1"), wide, point("h3")});
+  test::write_file(file("ab.db"), "");
+  merge({"a.db", "b.db"}, "ab.db");
+  merge({"b.db", "a.db", "b.db"}, "ba.db");
+  merge({"all.db"}, "all.db");
+  merge({"ab.db"}, "again.db");
+  for (const char* const name : {"ba.db", "all.db", "again.db"})
+    EXPECT_EQ(read_file(file(name)), read_file(file("ab.db"))) << name;
+  EXPECT_THAT(rows("ab.db", "SELECT hash FROM points"), ElementsAre("h1", "h2", "h3"));
+  EXPECT_THAT(rows("ab.db", "SELECT name FROM pragma_table_info('points') WHERE cid > 4"),
+              ElementsAre("banks.bank.reads", "banks.bank1.reads", "banks.bank2.reads", "banks.bank10.reads",
+                          "banks.bank12.reads", "cycles", "image.width", "matcher.window", "rate"));
+  EXPECT_THAT(rows("ab.db", "SELECT hash, cycles FROM blame"), ElementsAre("h1|3", "h2|3", "h3|3"));
+  Store continued(file("ab.db"), kVersion);
+  EXPECT_FALSE(continued.add(point("h1")));
+  EXPECT_TRUE(continued.add(point("h0")));
+}
+
+TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
+  StoredPoint blamed = point("h1");
+  blamed.blame.front().cycles = 4;
+  add("a.db", {point("h1")});
+  add("b.db", {point("h1", 8)});
+  add("blamed.db", {blamed});
+  for (const std::string other : {"b.db", "blamed.db"})
+    EXPECT_EQ(merge_error({"a.db", other}, "c.db"),
+              file(other) + ": holds another result of point h1 than " + file("a.db"));
+  EXPECT_THAT(names(), Not(Contains(HasSubstr("c.db"))));
+}
+
+// A process has added a point and ended at once, so that only the journal has the point. The journal may be
+// gone after the merge, whatever ends it.
+TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
+  add("a.db", {point("h1")});
+  const pid_t child = fork();
+  if (child == 0) {
+    auto* const store = new Store(file("a.db"), kVersion);
+    store->add(point("h2"));
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_GT(fs::file_size(file("a.db-wal")), 0U);
+  EXPECT_THAT(merge_error({"a.db", "none.db"}, "a.db"), HasSubstr("none.db: "));
+  for (const char* const ending : {"-wal", "-shm"}) fs::remove(file("a.db") + ending);
+  EXPECT_THAT(hashes("a.db"), ElementsAre("h1", "h2"));
+}
+
+TEST_F(StoreTest, RemovesTheFileOfAKilledMergeAndNoOther) {
+  add("a.db", {point("h1")});
+  const std::vector<std::string> others = {"a.db.new",
+                                           "a.db.merging-mine",
+                                           "a.db.merging-0123456789abcdeX",
+                                           "a.db.merging-0123456789abcde",
+                                           "a.db.merging-0123456789abcdef0",
+                                           "b.db.merging-0123456789abcdef"};
+  for (const std::string& other : others) test::write_file(file(other), "mine");
+  test::write_file(file("a.db.merging-0123456789abcdef"), "half");
+  merge({"a.db"}, "a.db");
+  for (const std::string& other : others) EXPECT_EQ(read_file(file(other)), "mine") << other;
+  EXPECT_EQ(names().size(), others.size() + 1);
+}
+
+TEST_F(StoreTest, BehindALinkIsReplacedAndKeepsItsModeAndOwner) {
+  constexpr uid_t kOther = 4711;
+  fs::create_directory(file("real"));
+  fs::create_symlink("real/b.db", file("b.db"));
+  add("a.db", {point("h1")});
+  add("b.db", {point("h2")});
+  ASSERT_EQ(chmod(file("real/b.db").c_str(), 0640), 0);
+  const bool is_given_away = chown(file("real/b.db").c_str(), kOther, kOther) == 0;  // only root can
+  merge({"a.db", "b.db"}, "b.db");
+  EXPECT_TRUE(fs::is_symlink(file("b.db")));
+  EXPECT_THAT(hashes("real/b.db"), ElementsAre("h1", "h2"));
+  struct stat now = {};
+  ASSERT_EQ(stat(file("real/b.db").c_str(), &now), 0);
+  EXPECT_EQ(now.st_mode & 07777U, 0640U);
+  EXPECT_EQ(now.st_uid, is_given_away ? kOther : geteuid());
+  EXPECT_THAT(names_in(file("real")), ElementsAre("b.db")) << "without its journal";
+}
+
+}  // namespace
+}  // namespace stereotlm::explore

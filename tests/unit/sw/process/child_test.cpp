@@ -1,0 +1,104 @@
+#include "sw/process/child.h"
+
+#include <gtest/gtest.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stereotlm::process {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(Child, SendsMessagesOfAnySizeAndContentInOrder) {
+  const std::vector<std::string> messages = {"", std::string(1'000'000, 'x'), std::string("a\0b\n", 4),
+                                             "last"};
+  Child child([&](const Child::Tell& tell) {
+    for (const std::string& message : messages) tell(message);
+  });
+  for (const std::string& message : messages) EXPECT_TRUE(child.next() == message);
+  EXPECT_EQ(child.next(), std::nullopt);
+}
+
+TEST(Child, WorksOnACopy) {
+  int value = 1;
+  Child child([&value](const Child::Tell& tell) { tell(std::to_string(++value)); });
+  EXPECT_EQ(child.next(), "2");
+  EXPECT_EQ(value, 1);
+}
+
+TEST(Child, HasNewsOnceItHasSentAMessageOrEnded) {
+  Pipe gate;
+  Child child([&gate](const Child::Tell& tell) {
+    char byte = 0;
+    if (read_all(gate.read_end(), &byte, 1)) tell("told");
+  });
+  EXPECT_FALSE(child.has_news(0ms));
+  EXPECT_FALSE(child.has_news(20ms));
+  ASSERT_TRUE(write_all(gate.write_end(), "", 1));
+  EXPECT_TRUE(child.has_news(30s));
+  EXPECT_EQ(child.next(), "told");
+  EXPECT_TRUE(child.has_news(30s));
+  EXPECT_EQ(child.next(), std::nullopt);
+}
+
+TEST(Child, IsWaitedForUntilASignalIsCaught) {
+  struct sigaction action = {};
+  action.sa_handler = [](int) {};
+  action.sa_flags = SA_RESTART;
+  ASSERT_EQ(sigaction(SIGALRM, &action, nullptr), 0);
+  Child child([](const Child::Tell& /*tell*/) {
+    for (;;) pause();
+  });
+  itimerval soon = {{0, 10'000}, {0, 10'000}};  // repeated, in case the first comes before the wait
+  ASSERT_EQ(setitimer(ITIMER_REAL, &soon, nullptr), 0);
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_FALSE(child.has_news(30s));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 20s);
+  soon = {};
+  ASSERT_EQ(setitimer(ITIMER_REAL, &soon, nullptr), 0);
+}
+
+TEST(Child, ReportsHowItHasFailedBehindItsMessages) {
+  const std::vector<std::pair<void (*)(), std::string>> failures = {
+      {[] { throw std::logic_error("the disk is gone"); }, "the disk is gone"},
+      {[] { throw 5; }, "an exception of an unknown type"},
+      {[] { throw std::bad_alloc(); }, std::bad_alloc().what()},
+      {[] { raise(SIGKILL); }, "the process was ended by signal 9 (Killed)"},
+      {[] { _exit(3); }, "the process ended with status 3 before its work was done"}};
+  for (const auto& [fail, text] : failures) {
+    Child child([fail = fail](const Child::Tell& tell) {
+      tell("before");
+      fail();
+    });
+    EXPECT_EQ(child.next(), "before");
+    try {
+      child.next();
+      ADD_FAILURE() << text;
+    } catch (const EndedBySignal& end) {
+      EXPECT_EQ(end.signal(), SIGKILL);
+      EXPECT_EQ(end.what(), text);
+    } catch (const std::exception& error) {
+      EXPECT_EQ(error.what(), text);
+      EXPECT_EQ(dynamic_cast<const std::bad_alloc*>(&error) != nullptr, text == std::bad_alloc().what());
+    }
+  }
+}
+
+TEST(Child, IsGoneWhenItIsDestroyedWhileItWaitsForAReader) {
+  Child child([](const Child::Tell& tell) {
+    const std::string message(100'000, 'x');
+    for (;;) tell(message);
+  });
+  EXPECT_EQ(child.next().value().size(), 100'000U);
+}
+
+}  // namespace
+}  // namespace stereotlm::process
