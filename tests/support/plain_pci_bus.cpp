@@ -45,6 +45,11 @@ void PlainPciBus::begin(std::uint64_t clock) {
   address_clock_ = clock;
   burst_ = slots_[owner_].master->burst();
   words_done_ = 0;
+  if (burst_.target == nullptr) {
+    const std::uint64_t idle_clock = clock + 1 + 4;  // 4 clocks without DEVSEL#
+    events_.at(clock_.edge(idle_clock), PlainPhase::kEffects, [this, idle_clock] { end(idle_clock); });
+    return;
+  }
   const std::uint64_t first_data_clock = clock + 1 + static_cast<std::uint64_t>(burst_.wait_clocks);
   if (burst_.write) {
     const std::size_t taken = burst_.target->takes(burst_.words.size());

@@ -29,7 +29,7 @@ class PlainTarget {
 // A burst of a master.
 struct PlainBurst {
   bool write = true;
-  PlainTarget* target = nullptr;
+  PlainTarget* target = nullptr;  // null: no target answers
   int wait_clocks = 0;
   std::uint64_t word = 0;  // the first, of the target
   PlainWords words;        // of a read only their number counts

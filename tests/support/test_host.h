@@ -35,6 +35,13 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   Answer write(std::uint64_t address, std::uint32_t word, sc_core::sc_time delay = {}) {
     return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
   }
+  // Words by b_transport.
+  Answer read_words(std::uint64_t address, std::size_t count) {
+    return block(tlm::TLM_READ_COMMAND, address, std::vector<std::uint32_t>(count), {});
+  }
+  Answer write_words(std::uint64_t address, std::vector<std::uint32_t> words) {
+    return block(tlm::TLM_WRITE_COMMAND, address, std::move(words), {});
+  }
 
   // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
@@ -126,7 +133,11 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return transaction;
   }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word, sc_core::sc_time delay) {
-    Transaction& transaction = prepare(command, address, {word});
+    return block(command, address, std::vector<std::uint32_t>{word}, delay);
+  }
+  Answer block(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words,
+               sc_core::sc_time delay) {
+    Transaction& transaction = prepare(command, address, std::move(words));
     socket->b_transport(transaction.payload, delay);
     return answer_of(transaction, delay);
   }
