@@ -97,32 +97,39 @@ void audit_flow(const fpga::FrameGeometry& geometry, const BoardCounters& counte
 
 }  // namespace
 
+BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
+  BoardCounters counters;
+  counters.frames = frames.frame_cycles().size();
+  for (std::size_t port = 0; port < kPortCount; ++port)
+    counters.ports[port] = frames.control().port_cycles(static_cast<Port>(port));
+  counters.banks.reserve(arbiters.size());
+  for (const memory::BankArbiter& arbiter : arbiters)
+    counters.banks.push_back({arbiter.stats(), arbiter.uncounted_accesses(), 0});
+  counters.left.consumed = frames.control().lane(fpga::Side::kLeft).consumed();
+  counters.right.consumed = frames.control().lane(fpga::Side::kRight).consumed();
+  return counters;
+}
+
 BoardCounters counters_of(const Board& board) {
   const fpga::StereoCore& core = board.core;
-  BoardCounters counters;
-  counters.frames = core.frame_cycles().size();
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    counters.ports[port] = core.control().port_cycles(static_cast<Port>(port));
-  }
-  counters.banks.reserve(board.banks.size());
+  const fpga::CoreDatapath& datapath = core.datapath();
+  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbiters());
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-    const memory::BankArbiter& arbiter = core.crossbar().arbiters()[bank];
     const memory::SsramBank::Stats& stats = board.banks[bank].stats();
-    counters.banks.push_back(
-        {arbiter.stats(), arbiter.uncounted_accesses(),
-         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank)});
+    counters.banks[bank].accesses =
+        stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
   }
-  counters.left = {core.sequencer().stats(fpga::Side::kLeft).slots, core.control().left().consumed()};
-  counters.right = {core.sequencer().stats(fpga::Side::kRight).slots, core.control().right().consumed()};
-  counters.packed_words = core.result_packer().stats().words;
-  counters.written_words = core.result_writer().stats().writes;
+  counters.left.issued = datapath.sequencer().stats(fpga::Side::kLeft).slots;
+  counters.right.issued = datapath.sequencer().stats(fpga::Side::kRight).slots;
+  counters.packed_words = datapath.result_packer().stats().words;
+  counters.written_words = datapath.result_writer().stats().writes;
   return counters;
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters) {
   const bool is_cycle = board.core.fidelity() == fpga::Fidelity::kCycle;
-  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frame_cycles(), counters);
+  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frames().frame_cycles(), counters);
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,

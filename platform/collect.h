@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/lane_control.h"
+#include "models/fpga/frame_run.h"
+#include "models/fpga/port_cycles.h"
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/memory_config.h"
 #include "platform/board.h"
@@ -38,6 +39,8 @@ struct BoardCounters {
 };
 
 BoardCounters counters_of(const Board& board);
+// What control and arbiters alone have counted. The rest is 0: accesses, slots issued, words packed and written.
+BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters);
 
 // The figures of the frames that `counters` cover, with their bound, and the identities of contract section 6
 // checked: those that do not hold are listed in `failed`. `counters` are of this board, now or earlier.

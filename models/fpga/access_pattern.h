@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -64,5 +65,7 @@ class AccessPattern {
   std::uint64_t empty_slots_ = 0;
   std::uint64_t pixel_accesses_ = 0;
 };
+
+using AccessPatterns = std::array<AccessPattern, 2>;  // [side]
 
 }  // namespace stereotlm::fpga

@@ -3,13 +3,12 @@
 #include <cstdint>
 #include <systemc>
 
+#include "models/fpga/core_ports.h"
 #include "models/kernels/column_filter.h"
 #include "models/kernels/words.h"
 
 // What the stages of the FPGA hand to each other.
 namespace stereotlm::fpga {
-
-enum class Side : std::uint8_t { kLeft, kRight };
 
 // A turn of the sequence: the rectified pixel to fetch.
 struct Slot {

@@ -93,7 +93,10 @@ void RegisterFile::start(const sc_core::sc_time& delay) {
     return;
   }
   busy_ = true;
-  start_out->push({bases_[0], bases_[1], bases_[2], bases_[3], bases_[4], delay});
+  FrameStart start{{}, delay};
+  for (std::size_t port = 0; port < kCorePortCount; ++port)
+    start.bases[port] = bases_[base_index(kCorePorts[port].base_register)];
+  start_out->push(start);
 }
 
 void RegisterFile::refuse_start() {

@@ -7,18 +7,15 @@
 #include <systemc>
 #include <tlm>
 
+#include "models/fpga/core_ports.h"
 #include "models/fpga/register_map.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
-// The base registers as they stood at the start strobe: bank and first word, as in register_map.h.
+// A start strobe, with the base registers as they stood then.
 struct FrameStart {
-  std::uint32_t left_image = 0;
-  std::uint32_t right_image = 0;
-  std::uint32_t disparity = 0;
-  std::uint32_t left_lut = 0;
-  std::uint32_t right_lut = 0;
+  FrameBases bases{};
   sc_core::sc_time delay{};  // of the strobe, from now
 };
 

@@ -45,6 +45,7 @@ inline constexpr std::uint32_t kStatusError = 1U << 2U;
 constexpr std::uint32_t base(std::uint32_t bank, std::uint32_t first_word) {
   return bank << 26U | first_word;
 }
+constexpr std::uint32_t bank_of(std::uint32_t base) { return base >> 26U; }
 // The byte address on the crossbar that it stands for.
 constexpr std::uint64_t base_address(std::uint32_t value) {
   return static_cast<std::uint64_t>(value >> 26U) << 28U | (value & 0x03FF'FFFFULL) << 2U;

@@ -21,13 +21,21 @@ void Progress::add(const Progress& other, std::uint64_t times) {
   words += other.words * times;
 }
 
+void Progress::subtract(const Progress& other, std::uint64_t times) {
+  cycles -= other.cycles * times;
+  columns -= other.columns * times;
+  left_slots -= other.left_slots * times;
+  right_slots -= other.right_slots * times;
+  words -= other.words * times;
+}
+
 std::size_t TransitionCache::Hash::operator()(const State& state) const {
   std::uint64_t hash = 0;
   const auto mix = [&hash](std::uint64_t word) {
     hash = (hash ^ word) * 0x9e3779b97f4a7c15U;
     hash ^= hash >> 32U;
   };
-  for (const LaneControl::State& lane : {state.control.left, state.control.right}) {
+  for (const LaneControl::State& lane : state.control.lanes) {
     mix(lane.counts);
     mix(lane.marks);
   }
@@ -77,7 +85,7 @@ TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progr
     }
   }
   for (Group* const walked : walked_) {
-    control.count(walked->counts, walked->times);
+    control.add(walked->counts, walked->times);
     arbitration.count_skipped(walked->decided, walked->times);
     walked->times = 0;
   }

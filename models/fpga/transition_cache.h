@@ -25,7 +25,7 @@ struct Progress {
   // How many times this distance fits into `room`; `cycles` is not 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other, std::uint64_t times = 1);
-  void subtract(const Progress& other, std::uint64_t times = 1) { add(other, ~times + 1); }
+  void subtract(const Progress& other, std::uint64_t times = 1);
 };
 
 // Memo of state transitions, one per group of four columns of the matcher. The state of the control objects

@@ -121,7 +121,7 @@ class ComputerTest : public testing::Test {
   }
   double fps() const { return deliveries->steady_fps(); }
   double core_fps() const {
-    return board.fpga.clock_mhz * 1e6 / static_cast<double>(computer->board.core.frame_cycles().front());
+    return board.fpga.clock_mhz * 1e6 / static_cast<double>(computer->board.core.frames().frame_cycles().front());
   }
   double camera_fps() const { return board.cameras.frame_rate_hz; }
 
