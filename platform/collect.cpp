@@ -129,7 +129,8 @@ BoardCounters counters_of(const Board& board) {
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters) {
   const bool is_cycle = board.core.fidelity() == fpga::Fidelity::kCycle;
-  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frames().frame_cycles(), counters);
+  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frames().frame_cycles(),
+                            counters);
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,

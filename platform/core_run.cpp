@@ -87,8 +87,8 @@ class CoreRun {
   fpga::AccessPatterns patterns_{fpga::AccessPattern(frames_.control().geometry()),
                                  fpga::AccessPattern(frames_.control().geometry())};
   // Of all frames.
-  std::vector<std::uint64_t> accesses_;       // [bank]
-  std::array<std::uint64_t, 2> issued_{};     // [side]: slots
+  std::vector<std::uint64_t> accesses_;    // [bank]
+  std::array<std::uint64_t, 2> issued_{};  // [side]: slots
   std::uint64_t packed_words_ = 0;
   std::uint64_t written_words_ = 0;
 };

@@ -18,7 +18,9 @@ struct BufferBases {
   std::optional<std::uint32_t> right_lut;
 
   FrameBases of_frame(std::uint64_t frame) const {
-    const auto in_turn = [frame](const std::vector<std::uint32_t>& list) { return list[frame % list.size()]; };
+    const auto in_turn = [frame](const std::vector<std::uint32_t>& list) {
+      return list[frame % list.size()];
+    };
     return {left_lut.value_or(0), right_lut.value_or(0), in_turn(left_images), in_turn(right_images),
             in_turn(disparities)};
   }

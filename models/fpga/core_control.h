@@ -14,16 +14,16 @@
 
 namespace stereotlm::fpga {
 
-// [port]: read latency of the bank that holds the port's buffer in a frame, 1 or 2 cycles. Without meaning for
-// a port that writes, or that the core does not have.
+// [port]: read latency of the bank that holds the port's buffer in a frame, 1 or 2 cycles. Without meaning
+// for a port that writes, or that the core does not have.
 using FrameLatencies = std::array<int, kCorePortCount>;
 
 // [side]: whether the table entry is valid that the LUT port has read in a cycle; false if it has read none.
 using EntriesRead = std::array<bool, 2>;
 
 // The timing of the whole core (contract section 2): what every port requests in a cycle, and what follows
-// from the grants. Plain C++ without data and without SystemC: the core's process and run_core() step the same
-// object.
+// from the grants. Plain C++ without data and without SystemC: the core's process and run_core() step the
+// same object.
 //
 // A cycle is decide(), then the arbitration of the ports that request, then commit().
 class CoreControl {

@@ -22,11 +22,11 @@ constexpr memory::Port pixel_port(Side side) {
 
 // One of the core's own ports on the banks. In a frame it accesses one buffer, in one direction.
 struct CorePort {
-  const char* buffer;            // name of the buffer
-  std::uint64_t base_register;   // register_map.h: bank and first word of the buffer
+  const char* buffer;             // name of the buffer
+  std::uint64_t base_register;    // register_map.h: bank and first word of the buffer
   std::uint64_t bytes_per_pixel;  // of the buffer
-  bool write;                    // direction of all its accesses
-  bool CoreConfig::*needs;       // the port exists if this is true; null: always
+  bool write;                     // direction of all its accesses
+  bool CoreConfig::*needs;        // the port exists if this is true; null: always
 };
 
 // The core's own ports come before the host's.

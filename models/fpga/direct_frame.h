@@ -14,11 +14,12 @@
 
 namespace stereotlm::fpga {
 
-// The data of a frame that is worked on at once: read from memory when the frame starts, and written back with
-// its last write. Plain C++; where memory grants direct access is the caller's business.
+// The data of a frame that is worked on at once: read from memory when the frame starts, and written back
+// with its last write. Plain C++; where memory grants direct access is the caller's business.
 class DirectFrame {
  public:
-  using Buffers = std::array<AddressRange, kCorePortCount>;  // [port that accesses it]; empty if there is none
+  using Buffers =
+      std::array<AddressRange, kCorePortCount>;  // [port that accesses it]; empty if there is none
 
   // Memory of the buffers, in which words are in the host's byte order. Null: no direct access is granted.
   struct Table {
@@ -26,8 +27,8 @@ class DirectFrame {
     bool may_have_changed = true;  // since the last frame
   };
   struct Memory {
-    std::array<Table, 2> tables;                       // [side]; without meaning for a side without table
-    std::array<const std::uint8_t*, 2> images{};       // [side]
+    std::array<Table, 2> tables;                  // [side]; without meaning for a side without table
+    std::array<const std::uint8_t*, 2> images{};  // [side]
     std::uint8_t* disparities = nullptr;
   };
 

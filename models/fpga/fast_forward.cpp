@@ -89,9 +89,9 @@ Progress FastForward::room(std::uint64_t cycle, std::uint64_t end) const {
 // Whether a whole group fits. (A walk that ends with the last uniform column ends at a group whose state is
 // not the core's: nothing may be recorded there.)
 bool FastForward::holds_group(const Progress& room) const {
-  const std::uint64_t slots =
-      control().match().draining() ? 0
-                                   : 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
+  const std::uint64_t slots = control().match().draining()
+                                  ? 0
+                                  : 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
   return room.columns >= 4 && room.left_slots >= slots && room.right_slots >= slots;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,7 +17,7 @@ namespace stereotlm::fpga {
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
-  explicit FastForward(CoreStepper& stepper, std::size_t most_groups = TransitionCache::kMost)
+  FastForward(CoreStepper& stepper, std::size_t most_groups)
       : stepper_(stepper), entries_(stepper), known_(most_groups) {}
 
   // A frame with these accesses starts; the ports are routed and the stepper is at its first cycle. The

@@ -5,8 +5,12 @@
 namespace stereotlm::fpga {
 
 FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
-                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles)
-    : config_(config), stepper_(config, arbitration), watchdog_(stall_timeout_cycles) {
+                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
+                   std::size_t most_groups)
+    : config_(config),
+      stepper_(config, arbitration),
+      fast_forward_(stepper_, most_groups),
+      watchdog_(stall_timeout_cycles) {
   for (const memory::SsramBankConfig& bank : banks)
     latencies_.push_back(memory::read_latency_cycles(bank.kind));
 }

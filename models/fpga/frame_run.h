@@ -20,9 +20,11 @@ namespace stereotlm::fpga {
 // ends; then end() is to be called.
 class FrameRun {
  public:
-  // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
+  // `arbitration` outlives this object. `most_groups`: cap of the transition cache. Throws
+  // std::invalid_argument if the configuration has problems.
   FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
-           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles);
+           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
+           std::size_t most_groups = TransitionCache::kMost);
 
   bool has_bank(std::uint32_t base) const { return registers::bank_of(base) < latencies_.size(); }
   int read_latency_cycles(std::size_t bank) const { return latencies_[bank]; }
@@ -54,7 +56,9 @@ class FrameRun {
   bool is_finishing() const { return state_ == State::kFinishing; }
   std::uint64_t cycle() const { return cycle_; }              // the next to run
   std::uint64_t first_cycle() const { return first_cycle_; }  // of the frame that was started last
-  std::uint64_t done_cycle() const { return done_cycle_; }    // the first after the frame that was finished last
+  std::uint64_t done_cycle() const {
+    return done_cycle_;
+  }  // the first after the frame that was finished last
   CoreControl& control() { return stepper_.control(); }
   const CoreControl& control() const { return stepper_.control(); }
   // Words written by the frame that was started last.
@@ -81,7 +85,7 @@ class FrameRun {
   CoreConfig config_;
   std::vector<int> latencies_;  // [bank]: of a read, cycles
   CoreStepper stepper_;
-  FastForward fast_forward_{stepper_};
+  FastForward fast_forward_;
   StallWatchdog watchdog_;
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;

@@ -45,8 +45,8 @@ class HostPort {
   // Runs the frame ahead to the waiting word. Then steps the frame, and serves the words of the burst, up to
   // the end of the burst or the last write of the frame, and for a bounded number of cycles.
   void serve_contended();
-  // Serves the words of an uncontended burst, also before their time where no event can interfere. Returns the
-  // time, in ps, at which to call again: later than now, or the end of a finishing frame, which must have
+  // Serves the words of an uncontended burst, also before their time where no event can interfere. Returns
+  // the time, in ps, at which to call again: later than now, or the end of a finishing frame, which must have
   // ended by then. Nothing if no word waits any more.
   std::optional<std::uint64_t> serve_uncontended();
   // Serves an uncontended burst that has just begun, if no event can interfere.

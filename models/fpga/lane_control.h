@@ -66,8 +66,8 @@ class LaneControl {
     arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
-  // Corrects whether the slots need an access that are taken and not handled: bit i of `marks` is that of slot
-  // handled() + i.
+  // Corrects whether the slots need an access that are taken and not handled: bit i of `marks` is that of
+  // slot handled() + i.
   void correct_marks(std::uint64_t marks) { marks_ = from_handled_on(marks); }
 
   // The state that determines the lane's next cycles, together with the slots that it has not taken yet.

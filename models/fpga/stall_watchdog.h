@@ -8,8 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// Finds frames that make no progress: no slot is consumed and no result is written, because the arbiters never
-// grant one of the core's ports. Plain C++.
+// Finds frames that make no progress: no slot is consumed and no result is written, because the arbiters
+// never grant one of the core's ports. Plain C++.
 class StallWatchdog {
  public:
   explicit StallWatchdog(std::uint64_t timeout_cycles) : timeout_cycles_(timeout_cycles) {}
@@ -19,9 +19,9 @@ class StallWatchdog {
     work_ = work;
     work_cycle_ = cycle;
   }
-  // To be called regularly while a frame runs; a stall is found in the first call that is late enough. Returns
-  // the cycles without progress if they have reached the timeout, else 0. After a timeout they are counted
-  // anew.
+  // To be called regularly while a frame runs; a stall is found in the first call that is late enough.
+  // Returns the cycles without progress if they have reached the timeout, else 0. After a timeout they are
+  // counted anew.
   std::uint64_t stalled_cycles(std::uint64_t cycle, std::uint64_t work);
 
  private:

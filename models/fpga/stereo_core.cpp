@@ -102,8 +102,7 @@ void StereoCore::write_directly() {
 
 void StereoCore::end_frame() {
   frames_.end();
-  register_file_.finish_frame(frames_.frame_cycles().back(),
-                              failed_ || datapath_.errors() != errors_before_);
+  register_file_.finish_frame(frames_.frame_cycles().back(), failed_ || datapath_.errors() != errors_before_);
 }
 
 void StereoCore::route_host(const HostRoute& route) {
@@ -154,10 +153,9 @@ void StereoCore::run() {
 void StereoCore::check_progress() {
   const std::uint64_t cycles = frames_.stalled_cycles();
   if (cycles == 0) return;
-  SC_REPORT_ERROR("/stereotlm/core",
-                  (std::string(name()) + ": no slot consumed and no result written for " +
-                   std::to_string(cycles) + " cycles; " + waits())
-                      .c_str());
+  SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": no slot consumed and no result written for " +
+                                      std::to_string(cycles) + " cycles; " + waits())
+                                         .c_str());
 }
 
 bool StereoCore::fast_forwards() const {
@@ -247,11 +245,11 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const bool host_requests = local_bus_.requests(edge_ps);
   PortMask granted = 0;
   if (frames_.is_running()) {
-    granted = frames_.step(host_requests,
-                           [this, &at](const CoreControl::Decision& decision, PortMask grants) {
-                             crossbar_.grant(grants);
-                             return datapath_.move(control(), decision, grants, at);
-                           });
+    granted =
+        frames_.step(host_requests, [this, &at](const CoreControl::Decision& decision, PortMask grants) {
+          crossbar_.grant(grants);
+          return datapath_.move(control(), decision, grants, at);
+        });
     if (control().frame_done()) finish_frame();
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(Port::kHost) : PortMask{0});

@@ -29,9 +29,9 @@ struct StereoCoreConfig {
   std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U;  // of a frame that makes no progress
 };
 
-// The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the local bus,
-// the register file, and the one clocked process that steps them. Stages exchange data through streams, reach
-// memory through the crossbar's sockets, and move when CoreControl says so.
+// The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the local
+// bus, the register file, and the one clocked process that steps them. Stages exchange data through streams,
+// reach memory through the crossbar's sockets, and move when CoreControl says so.
 //
 // At Fidelity::kCycle the process runs ahead of the kernel, up to the next pending event and by at most 8192
 // cycles (also past the end of an sc_start()); every access carries its own time. The process sleeps while no

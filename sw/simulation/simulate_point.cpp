@@ -49,7 +49,8 @@ std::optional<Json> simulate_computer(const explore::Point& point, const platfor
     simulation->advance();
     if (!hopeless || simulation->frames_started() == 0) continue;
     const fpga::StereoCore& core = simulation->computer().board.core;
-    if (hopeless({simulation->frames_started() - 1, seconds(board, core.frames().first_cycle())})) return std::nullopt;
+    if (hopeless({simulation->frames_started() - 1, seconds(board, core.frames().first_cycle())}))
+      return std::nullopt;
   }
   return document_of(simulation->statistics());
 }

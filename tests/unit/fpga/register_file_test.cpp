@@ -76,12 +76,7 @@ TEST_F(RegisterFileTest, HandsTheBasesToTheCoreWithTheStrobe) {
   EXPECT_TRUE(starts.beats.empty());
   control(kControlStart);
   ASSERT_EQ(starts.beats.size(), 1U);
-  const FrameStart& start = starts.beats[0];
-  EXPECT_EQ(start.left_image, 10U);
-  EXPECT_EQ(start.right_image, 11U);
-  EXPECT_EQ(start.disparity, 12U);
-  EXPECT_EQ(start.left_lut, 13U);
-  EXPECT_EQ(start.right_lut, 14U);
+  EXPECT_EQ(starts.beats[0].bases, (FrameBases{13, 14, 10, 11, 12}));  // by ports
   EXPECT_EQ(status(), kStatusBusy);
 }
 

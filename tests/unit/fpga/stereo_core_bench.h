@@ -114,6 +114,7 @@ class StereoCoreBench : public testing::Test {
     });
   }
 
+  const std::vector<std::uint64_t>& frame_cycles() const { return core->frames().frame_cycles(); }
   // frame_cycles if nothing contends, with both latencies of the slower side.
   std::uint64_t frame_cycles_alone(std::uint64_t latencies) const {
     const FrameGeometry& geometry = core->control().geometry();
@@ -121,12 +122,14 @@ class StereoCoreBench : public testing::Test {
   }
   std::uint64_t pipeline() const { return static_cast<std::uint64_t>(config.core.pipeline_latency_cycles); }
   const PortCycles& port(memory::Port which) const { return core->control().port_cycles(which); }
-  // Transported, and direct.
-  std::uint64_t accesses(Bank bank) const {
-    const memory::SsramBank::Stats& stats = banks[bank]->stats();
-    return stats.reads + stats.writes + core->crossbar().direct_accesses(bank);
+  // Words that reached a bank by transport, and directly.
+  std::uint64_t transported(std::uint32_t bank) const {
+    return banks[bank]->stats().reads + banks[bank]->stats().writes;
   }
-  std::uint64_t blamed(Bank bank, memory::Port victim, memory::Port by) const {
+  std::uint64_t accesses(std::uint32_t bank) const {
+    return transported(bank) + core->crossbar().direct_accesses(bank);
+  }
+  std::uint64_t blamed(std::uint32_t bank, memory::Port victim, memory::Port by) const {
     return core->crossbar().arbiters()[bank].stats().blame[memory::index_of(victim)][memory::index_of(by)];
   }
 

@@ -105,7 +105,7 @@ TEST_P(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
   ASSERT_EQ(memory.answers.size(), 1U);
   EXPECT_EQ(memory.answers[0].word, words_of(left)[4]);
   EXPECT_EQ(memory.answers[0].at, edge(3 + kReadEnd));
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4) + 1});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4) + 1});
   EXPECT_EQ(port(Port::kHost).granted(), 1U);
   EXPECT_EQ(port(Port::kHost).stalled(), 0U);
   EXPECT_EQ(port(Port::kHost).idle(), frame_cycles_alone(4) + 1 - pipeline() - 1);
@@ -119,7 +119,7 @@ TEST_P(StereoCoreHost, CostsNothingInABankThatNoPortWants) {
   at(edge(0), [this] { start(); });
   at(edge(3 - kFirst), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 0), 5); });
   finish();
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(memory.answers[0].at, edge(3 + kWriteEnd));
   EXPECT_EQ(port(Port::kHost).granted(), 1U);
   const memory::ArbiterStats stats = core->crossbar().arbiters()[kSpare].stats();
@@ -135,7 +135,7 @@ TEST_P(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
   finish();
   ASSERT_EQ(memory.answers.size(), 1U);
   EXPECT_EQ(memory.answers[0].at, edge(5 + kReadEnd));
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(port(Port::kHost).stalled(), 2U);
   EXPECT_EQ(port(Port::kHost).granted(), 1U);
   EXPECT_EQ(blamed(kLeft, Port::kHost, Port::kLeftPixel), 2U);
@@ -171,21 +171,21 @@ TEST_P(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
   EXPECT_EQ(memory.answers[1].word, banks[kResult]->words()[11]);
   EXPECT_EQ(port(Port::kHost).granted(), 1U);  // in the cycle of the last write, and no later
   EXPECT_EQ(uncounted(), 1U);
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
 }
 
 TEST_P(StereoCoreHost, AsksThroughTheEndOfAFrameAndTheBeginOfTheNext) {
   build(small_board());
   on_done = [this] {
-    if (core->frame_cycles().size() == 1) start();
+    if (frame_cycles().size() == 1) start();
   };
   at(edge(0), [this] {
     start();
-    while (core->frame_cycles().size() < 2) memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0));
+    while (frame_cycles().size() < 2) memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0));
   });
   finish();
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>(2, frame_cycles_alone(4)));
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>(2, frame_cycles_alone(4)));
   for (std::size_t word = 1; word < memory.answers.size(); ++word)
     EXPECT_EQ(memory.answers[word].at - memory.answers[word - 1].at, edge(kFirst + kReadEnd)) << word;
   EXPECT_EQ(port(Port::kHost).granted() + uncounted(), memory.answers.size());

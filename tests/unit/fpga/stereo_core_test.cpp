@@ -41,36 +41,27 @@ class StereoCoreTest : public StereoCoreFidelities {
   }
 };
 
-TEST_P(StereoCoreTest, BeginsInTheCycleThatBeginsWithTheStrobe) {
+TEST_P(StereoCoreTest, BeginsInTheFirstCycleAtOrAfterItsStrobe) {
   build(small_board());
-  at(edge(10), [this] { start(); });
+  struct Strobe {
+    sc_time at;
+    sc_time delay;  // that its access carries
+    std::uint64_t first_cycle;
+  };
+  const std::vector<Strobe> strobes = {{edge(10), {}, 10},
+                                       {edge(1000) - kPicosecond, {}, 1000},
+                                       {edge(2000) + kPicosecond, {}, 2001},
+                                       {edge(3000), edge(3), 3003}};
+  std::vector<sc_time> ends;
+  for (const Strobe& strobe : strobes) {
+    at(strobe.at, [this, strobe] {
+      const auto value = registers::kControlStart | registers::kControlAcknowledge;
+      registers.write(registers::kControl, value, strobe.delay);
+    });
+    ends.push_back(edge(strobe.first_cycle + frame_cycles_alone(4)));
+  }
   finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
-}
-
-TEST_P(StereoCoreTest, BeginsInTheCycleAfterAStrobeAPicosecondEarlier) {
-  build(small_board());
-  at(edge(10) - kPicosecond, [this] { start(); });
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
-}
-
-TEST_P(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
-  build(small_board());
-  at(edge(10) + kPicosecond, [this] { start(); });
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(11 + frame_cycles_alone(4)));
-}
-
-TEST_P(StereoCoreTest, BeginsAfterTheDelayThatItsStrobeCarries) {
-  build(small_board());
-  at(edge(10), [this] { registers.write(registers::kControl, registers::kControlStart, edge(3)); });
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(13 + frame_cycles_alone(4)));
+  EXPECT_EQ(done_at, ends);
 }
 
 TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
@@ -79,11 +70,11 @@ TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   run_until(edge(frame_cycles_alone(4)) - kPicosecond);
   EXPECT_EQ(status(), kStatusBusy);
   EXPECT_FALSE(done.read());
-  EXPECT_TRUE(core->frame_cycles().empty());
+  EXPECT_TRUE(frame_cycles().empty());
   run_until(edge(frame_cycles_alone(4)) + kPicosecond);
   EXPECT_EQ(status(), kStatusDone);
   EXPECT_TRUE(done.read());
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(registers.read(registers::kFrameCyclesLow).word, frame_cycles_alone(4));
   EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
 }
@@ -122,7 +113,7 @@ TEST_P(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
   set_base(registers::kLeftImageBase, kLeft);
   start();
   finish();
-  EXPECT_EQ(core->frame_cycles(), (std::vector<std::uint64_t>{frame_cycles_alone(3), frame_cycles_alone(2)}));
+  EXPECT_EQ(frame_cycles(), (std::vector<std::uint64_t>{frame_cycles_alone(3), frame_cycles_alone(2)}));
   EXPECT_EQ(result_words(), expected_words());
 }
 
@@ -142,9 +133,10 @@ TEST_P(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
   start();
   finish();
   EXPECT_EQ(result_words(), expected_words());
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  ASSERT_NE(core->left_row_buffer(), nullptr);
-  EXPECT_EQ(core->left_row_buffer()->stats().columns, core->left_filter().stats().columns);
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  const CoreDatapath::Lane& lane = core->datapath().lane(Side::kLeft);
+  ASSERT_NE(lane.row_buffer, nullptr);
+  EXPECT_EQ(lane.row_buffer->stats().columns, lane.filter.stats().columns);
 }
 
 TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
@@ -158,9 +150,9 @@ TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
   start();
   finish();
   EXPECT_EQ(result_words(), expected_words());
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(2)});
-  EXPECT_EQ(core->left_lut_reader(), nullptr);
-  EXPECT_EQ(core->right_row_buffer(), nullptr);
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(2)});
+  EXPECT_EQ(core->datapath().lane(Side::kLeft).lut_reader, nullptr);
+  EXPECT_EQ(core->datapath().lane(Side::kRight).row_buffer, nullptr);
   EXPECT_EQ(port(Port::kLeftLut).idle(), frame_cycles_alone(2) - pipeline());
 }
 
@@ -170,17 +162,21 @@ TEST_P(StereoCoreTest, CountsTheSameAtAllItsStages) {
   finish();
   const FrameGeometry& geometry = core->control().geometry();
   const std::uint64_t columns = (geometry.slots + geometry.drain_cycles) / 3;
-  EXPECT_EQ(core->sequencer().stats(Side::kRight).slots, geometry.slots);
-  EXPECT_EQ(core->control().left().consumed(), geometry.slots);
-  EXPECT_EQ(core->left_lut_reader()->stats().reads, port(Port::kLeftLut).granted());
-  EXPECT_EQ(core->left_pixel_reader().stats().reads, port(Port::kLeftPixel).granted());
-  EXPECT_EQ(core->right_pixel_reader().stats().passed_slots, port(Port::kRightPixel).passed());
-  EXPECT_EQ(core->right_filter().stats().columns, columns);
-  EXPECT_EQ(core->sad_array().stats().columns, columns);
-  EXPECT_EQ(core->select_min_chain().stats().columns, core->select_min_tree().stats().columns);
-  EXPECT_EQ(core->lr_check().stats().answered + core->lr_check().stats().invalid, 48U);
-  EXPECT_EQ(core->result_packer().stats().words, 12U);
-  EXPECT_EQ(core->result_writer().stats().writes, 12U);
+  const CoreDatapath& datapath = core->datapath();
+  for (const Side side : kSides) {
+    const CoreDatapath::Lane& lane = datapath.lane(side);
+    EXPECT_EQ(datapath.sequencer().stats(side).slots, geometry.slots);
+    EXPECT_EQ(core->control().lane(side).consumed(), geometry.slots);
+    EXPECT_EQ(lane.lut_reader->stats().reads, port(lut_port(side)).granted());
+    EXPECT_EQ(lane.pixel_reader.stats().reads, port(pixel_port(side)).granted());
+    EXPECT_EQ(lane.pixel_reader.stats().passed_slots, port(pixel_port(side)).passed());
+    EXPECT_EQ(lane.filter.stats().columns, columns);
+  }
+  EXPECT_EQ(datapath.sad_array().stats().columns, columns);
+  EXPECT_EQ(datapath.select_min_chain().stats().columns, datapath.select_min_tree().stats().columns);
+  EXPECT_EQ(datapath.lr_check().stats().answered + datapath.lr_check().stats().invalid, 48U);
+  EXPECT_EQ(datapath.result_packer().stats().words, 12U);
+  EXPECT_EQ(datapath.result_writer().stats().writes, 12U);
   EXPECT_EQ(accesses(kLeft), port(Port::kLeftPixel).granted());
   EXPECT_EQ(accesses(kResult), 12U);
 }
@@ -194,7 +190,7 @@ TEST_P(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
   at(edge(2), [this] { start(); });
   finish();
   const std::uint64_t cycles = frame_cycles_alone(4);
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>(3, cycles));
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>(3, cycles));
   EXPECT_EQ(done_at, (std::vector<sc_time>{edge(2 + cycles), edge(2 + 2 * cycles), edge(2 + 3 * cycles)}));
   EXPECT_EQ(result_words(), expected_words());
 }
@@ -219,7 +215,7 @@ TEST_P(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
   });
   finish();
   EXPECT_EQ(status(), kStatusDone | kStatusError);
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(result_words(), expected_words());
 }
 
@@ -231,7 +227,7 @@ TEST_P(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtT
   at(edge(2 * cycles), [this] { control(registers::kControlAcknowledge); });
   at(edge(3 * cycles), [this] { start(); });
   on_done = [this] {
-    if (core->frame_cycles().size() == 2) start();
+    if (frame_cycles().size() == 2) start();
   };
   run_until(edge(cycles) + kPicosecond);
   EXPECT_EQ(status(), kStatusDone | kStatusError);
@@ -280,7 +276,7 @@ TEST_P(StereoCoreBases, MustLieInABankThatTheBoardHas) {
   finish();
   EXPECT_EQ(status(), kStatusError);
   EXPECT_TRUE(done_at.empty());
-  EXPECT_TRUE(core->frame_cycles().empty());
+  EXPECT_TRUE(frame_cycles().empty());
   for (const auto& bank : banks) EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
   set_base(base_register(), kSpare);
   start();
@@ -304,7 +300,7 @@ TEST_P(StereoCoreBases, RaiseErrorBehindABanksEndAndTheFrameEnds) {
   start();
   finish();
   EXPECT_EQ(status(), kStatusDone | kStatusError);
-  EXPECT_EQ(core->frame_cycles().size(), 2U);
+  EXPECT_EQ(frame_cycles().size(), 2U);
   EXPECT_GT(banks[kSpare]->stats().errors, 0U);
   set_base(base_register(), kSpare, last_fit);
   start();

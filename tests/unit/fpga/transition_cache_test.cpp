@@ -45,7 +45,7 @@ class TransitionCacheTest : public testing::Test {
     for (std::size_t i = 0; i < groups; ++i) {
       TransitionCache::Group& one = group(i);
       one.progress = {10 + i, 4, 8, 8, 1};
-      one.counts[memory::index_of(Port::kResult)].count(Intent::kRequest, true, i + 1);
+      one.counts[memory::index_of(Port::kResult)].add(Intent::kRequest, true, i + 1);
       one.next = &group(i + 1 < groups ? i + 1 : back_to);
     }
   }

@@ -163,7 +163,7 @@ TEST(CollectStatistics, TellsWhatDoesNotHoldInTheMiddleOfAFrame) {
                                    frame - kPipeline)));
   EXPECT_THAT(statistics.failed,
               Contains(fmt::format("left lane: slots consumed = {}, but slots of the sequence = 288",
-                                   control.left().consumed())));
+                                   control.lane(fpga::Side::kLeft).consumed())));
   EXPECT_THAT(statistics.failed, Contains(StartsWith("bank bank1: busy + turnaround + idle cycles = ")));
   // At the end all of them hold.
   EXPECT_THAT(run.finish().failed, IsEmpty());
