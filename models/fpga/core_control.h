@@ -130,12 +130,14 @@ inline bool CoreControl::commit(const Decision& decision, memory::PortMask grant
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     cycles_[port].add(decision.intents[port], is_granted(port));
   const bool consumes_slot = decision.consume && !decision.drain;
-  for (const Side side : kSides) {
+  const auto commit_lane = [&](Side side) {
     const std::size_t lut = index_of(lut_port(side));
     const std::size_t pixel = index_of(pixel_port(side));
     lanes_[index_of(side)].commit({decision.intents[lut], decision.intents[pixel]}, is_granted(lut),
                                   is_granted(pixel), entries_valid[index_of(side)], consumes_slot);
-  }
+  };
+  commit_lane(Side::kLeft);
+  commit_lane(Side::kRight);
   const bool four_columns = decision.consume && match_.consume();
   result_.commit(is_granted(index_of(memory::Port::kResult)), four_columns && match_.word_leaves());
   return four_columns;

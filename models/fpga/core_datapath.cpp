@@ -92,19 +92,30 @@ EntriesRead CoreDatapath::move(const CoreControl& control, const CoreControl::De
                                PortMask granted, const sc_core::sc_time& at) {
   const auto moving = static_cast<PortMask>(granted | decision.passes());
   EntriesRead entries_valid{};
-  for (const Side side : kSides) {
-    if (!has(moving, lut_port(side))) continue;
+  const auto take_slot = [&](Side side, Lane& lane) {
+    if (!has(moving, lut_port(side))) return;
     issue(side, control, at);
-    entries_valid[index_of(side)] = lanes_[index_of(side)].lut_reader->entry_valid();
-  }
-  for (const Side side : kSides) {
-    if (!has(moving, pixel_port(side))) continue;
-    Lane& lane = lanes_[index_of(side)];
+    entries_valid[index_of(side)] = lane.lut_reader->entry_valid();
+  };
+  const auto handle_slot = [&](Side side, Lane& lane) {
+    if (!has(moving, pixel_port(side))) return;
     lane.lut_reader ? lane.pixel_reader.handle(at) : issue(side, control, at);
-  }
+  };
+  Lane& left = lanes_[0];
+  Lane& right = lanes_[1];
+  take_slot(Side::kLeft, left);
+  take_slot(Side::kRight, right);
+  handle_slot(Side::kLeft, left);
+  handle_slot(Side::kRight, right);
   if (has(granted, Port::kResult)) result_writer_.write(at);
   if (!decision.consume) return entries_valid;
-  for (Lane& lane : lanes_) decision.drain ? lane.pixel_reader.release_blank() : lane.pixel_reader.release();
+  if (decision.drain) {
+    left.pixel_reader.release_blank();
+    right.pixel_reader.release_blank();
+  } else {
+    left.pixel_reader.release();
+    right.pixel_reader.release();
+  }
   return entries_valid;
 }
 
