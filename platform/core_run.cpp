@@ -14,7 +14,7 @@
 #include "models/fpga/frame_run.h"
 #include "models/memory/arbitration.h"
 #include "platform/collect.h"
-#include "platform/frame_buffers.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -29,7 +29,7 @@ class CoreRun {
  public:
   CoreRun(const BoardConfig& board, const Tables& tables, std::uint64_t stall_timeout_cycles)
       : config_(core_config(board)),
-        buffers_(frame_buffers(board)),
+        buffers_(buffer_bases(board)),
         banks_(bank_configs(board)),
         stall_timeout_cycles_(stall_timeout_cycles),
         arbitration_(board.fpga.arbiter, banks_),
@@ -40,7 +40,7 @@ class CoreRun {
   }
 
   void run_frame() {
-    frames_.start(frames_.done_cycle(), buffers_.of_frame(frame_cycles().size()), patterns_);
+    frames_.start_direct(frames_.done_cycle(), buffers_.of_frame(frame_cycles().size()), patterns_);
     while (!frames_.control().frame_done()) {
       frames_.run_ahead(frames_.cycle() + stall_timeout_cycles_);
       if (frames_.stalled_cycles() != 0) throw_stuck();

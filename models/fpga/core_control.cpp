@@ -64,7 +64,7 @@ void CoreControl::skip_to(const State& state, std::uint64_t columns, std::uint64
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {
   const std::uint64_t consumes = match_.cycles_left();
-  // The last word enters the queue in the last consume-cycle, and is written in a later cycle.
+  // The last word enters the queue when the matcher has consumed all, and is written in a later cycle.
   if (consumes > 0) return cycle + consumes;
   return cycle + result_.words_left() - 1;
 }

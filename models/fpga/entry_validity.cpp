@@ -5,7 +5,7 @@ namespace stereotlm::fpga {
 EntryValidity::EntryValidity(CoreStepper& stepper)
     : stepper_(stepper), all_valid_(stepper.control().geometry()) {}
 
-void EntryValidity::start_frame(const AccessPatterns& patterns) {
+void EntryValidity::start_direct_frame(const AccessPatterns& patterns) {
   for (const Side side : kSides) {
     sides_[index_of(side)] = {&patterns[index_of(side)], stepper_.arbitration().is_alone(pixel_port(side))};
   }

@@ -56,8 +56,8 @@ std::uint64_t FastForward::skip_known(std::uint64_t cycle, std::uint64_t end) {
   return cycle;
 }
 
-// Whether the slots to be taken next lie in a run of uniform columns. At the beginning of another run the
-// cache is cleared.
+// Whether the slots to be taken next lie in a run of uniform columns. Clears the cache at the beginning of
+// another run.
 bool FastForward::has_uniform_slots() {
   if (control().match().draining()) return true;
   const auto lane = [this](Side side) -> const LaneControl& { return control().lane(side); };
@@ -70,7 +70,7 @@ bool FastForward::has_uniform_slots() {
   return true;
 }
 
-// The slots of the frame up to the end of the run of uniform columns.
+// The number of slots of the frame up to the end of the run of uniform columns.
 std::uint64_t FastForward::uniform_slots(Side side) const {
   return entries_.uniform_until(side) * static_cast<std::uint64_t>(control().geometry().slots_per_column);
 }
@@ -78,7 +78,7 @@ std::uint64_t FastForward::uniform_slots(Side side) const {
 // How far the core can run before a run of uniform columns ends, or a row of results is complete.
 Progress FastForward::room(std::uint64_t cycle, std::uint64_t end) const {
   const bool drains = control().match().draining();
-  // A port decides by the slot behind the last one taken: that slot must be in the run too.
+  // A port decides by the slot after the last one taken: that slot must be in the run too.
   const auto slots = [this, drains](Side side) {
     return drains ? 0 : uniform_to_[index_of(side)] - 1 - control().lane(side).taken();
   };
@@ -112,7 +112,7 @@ void FastForward::end_group(std::uint64_t cycle) {
   stepped_.reset();
 }
 
-// Since the frame began, or some other cycle.
+// The distance from some fixed cycle before or in the frame.
 Progress FastForward::progress(std::uint64_t cycle) const {
   return {cycle, control().match().columns(), control().lane(Side::kLeft).taken(),
           control().lane(Side::kRight).taken(), control().result().words_written()};

@@ -11,8 +11,8 @@
 
 namespace stereotlm::fpga {
 
-// Many cycles of a frame at once, without data. A transition of the core that is in the TransitionCache is
-// skipped; others are stepped and recorded. While rows are recorded, the cycles around the end of each row
+// Runs many cycles of a frame at once, without data. A transition of the core that is in the TransitionCache
+// is skipped; others are stepped and recorded. While rows are recorded, the cycles around the end of each row
 // are stepped.
 class FastForward {
  public:
@@ -20,19 +20,19 @@ class FastForward {
   FastForward(CoreStepper& stepper, std::size_t most_groups)
       : stepper_(stepper), entries_(stepper), known_(most_groups) {}
 
-  // A frame with these accesses starts; the ports are routed and the stepper is at its first cycle. The
-  // patterns outlive the frame.
-  void start_frame(const AccessPatterns& patterns) {
-    entries_.start_frame(patterns);
+  // A frame with these accesses starts, which is fast-forwarded. The ports are routed, and the stepper has
+  // started the frame. The patterns outlive the frame.
+  void start_direct_frame(const AccessPatterns& patterns) {
+    entries_.start_direct_frame(patterns);
     forget();
   }
-  // A frame starts that is not fast-forwarded.
-  void start_frame_with_data() {
-    entries_.start_frame_with_data();
+  // A frame starts that the owner steps.
+  void start_stepped_frame() {
+    entries_.start_stepped_frame();
     forget();
   }
-  // To be called before the route of the host changes within a frame, and after the last cycle of a frame:
-  // corrects the counts that are provisional until then. The routes of the core's own ports stay.
+  // To be called before the route of the host changes within a frame, and after the last cycle of a frame.
+  // Corrects the counts that are provisional until then.
   void settle();
 
   // Runs one cycle, in which the host requests or not. Returns the ports granted.
@@ -42,7 +42,7 @@ class FastForward {
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
 
  private:
-  // The group that is being stepped, and recorded at its end.
+  // The group that is being stepped; it is recorded at its end.
   struct Stepped {
     TransitionCache::Group* group;
     Progress begin;

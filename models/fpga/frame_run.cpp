@@ -15,14 +15,14 @@ FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBank
     latencies_.push_back(memory::read_latency_cycles(bank.kind));
 }
 
-void FrameRun::start_with_data(std::uint64_t cycle, const FrameBases& bases) {
+void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
   begin(cycle, bases);
-  fast_forward_.start_frame_with_data();
+  fast_forward_.start_stepped_frame();
 }
 
-void FrameRun::start(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
+void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
   begin(cycle, bases);
-  fast_forward_.start_frame(patterns);
+  fast_forward_.start_direct_frame(patterns);
 }
 
 void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {

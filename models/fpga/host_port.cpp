@@ -8,7 +8,7 @@ namespace {
 using memory::Port;
 
 constexpr memory::PortMask kHostMask = memory::mask_of(Port::kHost);
-// Most cycles of one serve_contended().
+// Most cycles in which one serve_contended() serves.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
 std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
@@ -49,7 +49,7 @@ void HostPort::serve_contended() {
   const std::uint64_t now_ps = present_ps();
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
-  frames_.run_ahead(first);  // before the host is routed: its route prevents skipping
+  frames_.run_ahead(first);  // before join(): the route of the host prevents skipping
   join();
   const std::uint64_t end = frames_.cycle() + kMostCycles;
   while (frames_.cycle() < end && !frames_.control().frame_done() && bus_.word_waits()) {
@@ -68,9 +68,9 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
   const memory::Arbitration& arbitration = crossbar_.arbitration();
   const std::uint64_t now_ps = present_ps();
   const std::size_t bank = *burst_.bank;
-  count_served(UINT64_MAX, true);  // words of the previous burst, which has ended
+  count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
   served_bank_ = bank;
-  // The first undecided cycle: a word that was refused until the frame ended requests from here on.
+  // The first cycle that is not decided: a word that was refused up to the end of a frame requests from here.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
   if (is_moved_ && !arbitration.needs_turnaround(bank) && bus_.is_in_step_with(clock_)) serve_in_step(cycle);
@@ -101,8 +101,8 @@ memory::BankArbiter::Outcome HostPort::decide(std::uint64_t cycle) {
   return crossbar_.arbitration().decide_unrouted(*burst_.bank, cycle, Port::kHost, burst_.write);
 }
 
-// Moves the data of a burst that has just begun at once, if no frame can start before its end and its bank
-// grants direct access.
+// Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
+// direct access.
 void HostPort::move_burst() {
   const std::uint64_t bytes = burst_.end - burst_.first;
   if (is_moved_ || !is_only_master_ || bus_.words_left() * 4 != bytes) return;
@@ -129,7 +129,7 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, clock_.edge_at_or_after(bus_.request_ps()));
   const std::size_t words = bus_.words_left();
   served_.push_back({first, 1, decide(first)});
-  // After its own grant each further request has the same outcome.
+  // After the first grant each further request has the same outcome.
   if (words > 1) served_.push_back({first + 1, words - 1, decide(first + 1)});
   const std::uint64_t last = first + words - 1;
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));

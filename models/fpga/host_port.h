@@ -28,10 +28,10 @@ class HostPort {
   // Only the local bus can start frames: then no frame starts within a burst. Default: others can too.
   void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
 
-  // A burst goes to these words now, or has ended.
+  // A burst begins, or has ended; see LocalBus::route_out.
   void route(const HostRoute& route);
   const HostRoute& burst() const { return burst_; }
-  // The words of the burst whose data has not been moved.
+  // The words of the burst that are not granted yet.
   AddressRange words_left() const { return {burst_.end - 4 * bus_.words_left(), burst_.end}; }
 
   // The burst takes part in the arbitration of its bank from now on.
@@ -42,19 +42,19 @@ class HostPort {
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
   bool is_contended() const;
-  // Runs the frame ahead to the waiting word. Then steps the frame, and serves the words of the burst, up to
-  // the end of the burst or the last write of the frame, and for a bounded number of cycles.
+  // Runs the frame ahead to the waiting word. Then steps the frame and serves the words of the burst, to the
+  // end of the burst or of the frame, but not more than 8192 cycles.
   void serve_contended();
-  // Serves the words of an uncontended burst, also before their time where no event can interfere. Returns
-  // the time, in ps, at which to call again: later than now, or the end of a finishing frame, which must have
-  // ended by then. Nothing if no word waits any more.
+  // Serves the words of an uncontended burst. A word may be served early, but never before a pending event
+  // that could start a frame on its bank. Returns the time to call again, in ps: either a later time, or the
+  // end of the finishing frame, which must be ended first. Returns nothing if no word waits any more.
   std::optional<std::uint64_t> serve_uncontended();
-  // Serves an uncontended burst that has just begun, if no event can interfere.
+  // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_at_once();
 
-  // Counts the words that were served in cycles of the running frame, before its cycle().
+  // Counts the words that were served before the frame's cycle(), as words in the frame.
   void count_words_in_frame() { count_served(frames_.cycle(), true); }
-  // Counts all other words that were served.
+  // Counts all other words that were served, as words outside a frame.
   void count_words_outside() { count_served(UINT64_MAX, false); }
 
  private:
@@ -84,7 +84,7 @@ class HostPort {
   bool is_joined_ = false;       // the burst takes part in the arbitration
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
-  std::size_t served_bank_ = 0;  // of all served_
+  std::size_t served_bank_ = 0;  // bank of all served_
 };
 
 }  // namespace stereotlm::fpga

@@ -7,7 +7,7 @@
 
 namespace stereotlm::fpga {
 
-// When the matcher consumes, and which consume-cycle completes a word of results.
+// Decides when the matcher consumes slots, and which of its cycles completes a word of results.
 class MatchControl {
  public:
   explicit MatchControl(const FrameGeometry& geometry) : geometry_(geometry) {}
@@ -18,12 +18,12 @@ class MatchControl {
     k_ = 0;
     columns_ = 0;
   }
-  // After the last slot the matcher runs on by the columns of the drain, which need no slots.
+  // After the last slot the matcher consumes the columns of the drain, which need no slots.
   bool draining() const { return slots_left_ == 0; }
   bool decide(bool slots_ready, bool result_queue_has_room) const {
     return result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready);
   }
-  // One consume-cycle. True if it completes four columns, from column result_delay_columns % 4 on.
+  // Consumes in one cycle. True if this completes four columns, counted from column result_delay_columns % 4.
   bool consume() {
     --(draining() ? drain_left_ : slots_left_);
     if (++k_ < geometry_.slots_per_column) return false;
@@ -57,7 +57,7 @@ class MatchControl {
         columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
     columns_ += columns;
   }
-  // Consume-cycles to come.
+  // Cycles of the frame in which the matcher has still to consume.
   std::uint64_t cycles_left() const { return slots_left_ + drain_left_; }
 
  private:
@@ -65,7 +65,7 @@ class MatchControl {
   std::uint64_t slots_left_ = 0;
   std::uint64_t drain_left_ = 0;
   int k_ = 0;
-  std::uint64_t columns_ = 0;  // consumed
+  std::uint64_t columns_ = 0;  // consumed columns
 };
 
 }  // namespace stereotlm::fpga

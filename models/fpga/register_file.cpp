@@ -112,7 +112,7 @@ void RegisterFile::finish_frame(std::uint64_t frame_cycles, bool access_error) {
   done_changed_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// The line has one driver, whichever process changes the register.
+// A process of its own: the line then has one driver, whichever process changes the register.
 void RegisterFile::drive_done() { done.write(done_); }
 
 }  // namespace stereotlm::fpga

@@ -41,7 +41,7 @@ class ResultControl {
     written_ += words;
   }
 
-  // Words of this frame.
+  // Words of the frame.
   std::uint64_t words_written() const { return written_; }
   std::uint64_t words_left() const { return words_per_frame_ - written_; }
   // The most words queued at one time, over all frames.

@@ -9,13 +9,13 @@ namespace {
 using memory::Port;
 using memory::PortMask;
 
-// Most cycles between two returns to the kernel, and so between two checks of the stall timeout.
+// Most cycles between two returns to the kernel, while the process steps. Each return checks for a stall.
 constexpr std::uint64_t kMostSteppedCycles = 8192;
 // The same while the process fast-forwards.
 constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 
 std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-// No event occurs before this time.
+// No event can occur before this time.
 std::uint64_t horizon_ps() { return present_ps() + Clock::to_ps(sc_core::sc_time_to_pending_activity()); }
 
 constexpr bool has_host(PortMask mask) { return (mask & memory::mask_of(Port::kHost)) != 0; }
@@ -61,16 +61,16 @@ void StereoCore::start_frame(const FrameStart& start) {
   const std::uint64_t cycle = clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay));
   is_direct_ = config_.fidelity != Fidelity::kCycle && works_directly(start.bases);
   if (is_direct_) {
-    frames_.start(cycle, start.bases, direct_frame_.patterns());
+    frames_.start_direct(cycle, start.bases, direct_frame_.patterns());
   } else {
     ++stepped_frames_;
-    frames_.start_with_data(cycle, start.bases);
+    frames_.start_stepped(cycle, start.bases);
     host_port_.join();
   }
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// Reads the data of a frame that can work directly on memory.
+// Reads the data of the frame. False if the frame cannot work directly on memory.
 bool StereoCore::works_directly(const FrameBases& bases) {
   direct_frame_.set_buffers(bases);
   const HostRoute& burst = host_port_.burst();
@@ -79,7 +79,7 @@ bool StereoCore::works_directly(const FrameBases& bases) {
          direct_frame_.read(datapath_.direct_memory(direct_frame_.buffers()));
 }
 
-// The last write of the frame was granted in the last cycle.
+// Called after the cycle in which the last write of the frame was granted.
 void StereoCore::finish_frame() {
   host_port_.count_words_in_frame();
   frames_.finish();
@@ -208,7 +208,7 @@ void StereoCore::run_cycles() {
   const std::uint64_t period_ps = clock_.edge_ps(1);
   const sc_core::sc_time period = Clock::to_time(period_ps);
   std::uint64_t horizon = horizon_ps();
-  sc_core::sc_time at;  // of the cycle, from now; mostly one period later than that of the last
+  sc_core::sc_time at;  // start of the cycle, from now; mostly one period after that of the cycle before
   std::uint64_t offset_before = 0;
   for (const std::uint64_t last = frames_.cycle() + kMostSteppedCycles;;) {
     std::uint64_t next = frames_.cycle();

@@ -50,7 +50,7 @@ TransitionCache::Group& TransitionCache::at(const State& state) {
   return entry->second;
 }
 
-void TransitionCache::pass(Group& group, std::uint64_t times) {
+void TransitionCache::follow(Group& group, std::uint64_t times) {
   if (group.times == 0) walked_.push_back(&group);
   group.times += times;
 }
@@ -65,7 +65,7 @@ TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progr
   std::uint64_t steps = 0;
   std::uint64_t mark_after = 1;
   while (group->next != nullptr && group->progress.fits(room)) {
-    pass(*group, 1);
+    follow(*group, 1);
     room.subtract(group->progress);
     progress.add(group->progress);
     since_mark.add(group->progress);
@@ -74,7 +74,7 @@ TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progr
     if (group == mark) {
       const std::uint64_t times = since_mark.times_in(room);
       if (times == 0) continue;
-      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) pass(*group, times);
+      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) follow(*group, times);
       room.subtract(since_mark, times);
       progress.add(since_mark, times);
     } else if (steps == mark_after) {

@@ -9,7 +9,7 @@
 namespace stereotlm::platform {
 
 // Throws as layout_buffers() does.
-fpga::BufferBases frame_buffers(const BoardConfig& board);
+fpga::BufferBases buffer_bases(const BoardConfig& board);
 
 // The addresses of the buffers on the local bus, in the order of buffers() in board_rules.h. Throws as
 // layout_buffers() does.

@@ -85,9 +85,9 @@ class Core {
 
   void start(std::uint64_t cycle) {
     if (way_ == Way::kAhead) {
-      frames_.start(cycle, setting_.bases, patterns_);
+      frames_.start_direct(cycle, setting_.bases, patterns_);
     } else {
-      frames_.start_with_data(cycle, setting_.bases);
+      frames_.start_stepped(cycle, setting_.bases);
     }
   }
   bool done() const { return frames_.control().frame_done(); }

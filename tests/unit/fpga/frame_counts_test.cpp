@@ -23,7 +23,7 @@ class FrameCountsTest : public testing::Test {
   FrameCountsTest() {
     FrameBases bases{};
     for (std::uint32_t port = 0; port < kCorePortCount; ++port) bases[port] = registers::base(port, 0);
-    run_.start(0, bases, patterns_);
+    run_.start_direct(0, bases, patterns_);
   }
   // After the cycles of the frame before `end`.
   FrameCounts counts(std::uint64_t end) {
