@@ -7,16 +7,14 @@
 #include <array>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tests/unit/fpga/random_core.h"
+#include "tests/unit/support/random_memory.h"
 
 namespace stereotlm::fpga {
 namespace {
 
-using memory::ArbitrationPolicy;
-using memory::BankKind;
 using memory::Port;
 
 constexpr std::uint64_t kNever = UINT64_MAX;
@@ -45,18 +43,9 @@ struct Setting {
 Setting random_setting(test::SplitMix64& random) {
   Setting setting;
   setting.core = random_core(random, 64);
-  if (random.chance(40)) setting.arbiter.policy = ArbitrationPolicy::kRoundRobin;
-  auto& priority = setting.arbiter.priority;
-  for (std::size_t place = 0; place < priority.size(); ++place)
-    std::swap(priority[place],
-              priority[static_cast<std::size_t>(random.between(static_cast<int>(place), 5))]);
+  setting.arbiter = test::random_arbiter(random);
   const int banks = random.between(1, 6);
-  for (int bank = 0; bank < banks; ++bank) {
-    memory::SsramBankConfig config;
-    config.kind = static_cast<BankKind>(random.between(0, 2));
-    if (config.kind == BankKind::kSyncBurst) config.turnaround_cycles = random.mostly_small(1, 3, 16);
-    setting.banks.push_back(config);
-  }
+  for (int bank = 0; bank < banks; ++bank) setting.banks.push_back(test::random_bank(random));
   for (std::size_t& bank : setting.bank_of) bank = static_cast<std::size_t>(random.between(0, banks - 1));
   setting.left_entries = random_entries(random, setting.core);
   setting.right_entries = random_entries(random, setting.core);
