@@ -5,7 +5,7 @@
 #include "models/binder.h"
 #include "models/fpga/stereo_core.h"
 #include "models/memory/ssram_bank.h"
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
 
 namespace stereotlm::platform {
 

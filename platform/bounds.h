@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "platform/tables.h"
 
 namespace stereotlm::platform {
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "models/memory/memory_config.h"
-#include "platform/area.h"
 #include "platform/audit.h"
 #include "platform/bounds.h"
+#include "platform/config/board_area.h"
 
 namespace stereotlm::platform {
 namespace {

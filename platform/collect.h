@@ -9,9 +9,9 @@
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/memory_config.h"
 #include "platform/board.h"
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "platform/tables.h"
 
 namespace stereotlm::platform {
 

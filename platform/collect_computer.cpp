@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "platform/audit.h"
-#include "platform/board_rules.h"
 #include "platform/bounds.h"
+#include "platform/config/board_rules.h"
 
 namespace stereotlm::platform {
 namespace {

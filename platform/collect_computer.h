@@ -8,11 +8,11 @@
 #include "models/fpga/local_bus.h"
 #include "models/pci/pci_bridge.h"
 #include "models/pci/pci_bus.h"
-#include "platform/board_config.h"
 #include "platform/collect.h"
 #include "platform/computer.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "platform/tables.h"
 
 namespace stereotlm::platform {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "platform/frame_buffers.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {

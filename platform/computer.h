@@ -16,7 +16,7 @@
 #include "models/pci/pci_bus.h"
 #include "models/pci/traffic_generator.h"
 #include "platform/board.h"
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
 #include "platform/device_map.h"
 
 namespace stereotlm::platform {

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "platform/tables.h"
 
 namespace stereotlm::platform {
 

@@ -6,8 +6,8 @@
 #include "models/binder.h"
 #include "models/host/ideal_host.h"
 #include "platform/board.h"
-#include "platform/board_config.h"
-#include "platform/tables.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 
 namespace stereotlm::platform {
 

@@ -8,25 +8,25 @@
 #include <thread>
 #include <vector>
 
-#include "platform/board_rules.h"
 #include "platform/bounds.h"
+#include "platform/config/board_rules.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/progress.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/version.h"
-#include "sw/explore/allocation_run.h"
-#include "sw/explore/allocation_search.h"
-#include "sw/explore/bank_names.h"
-#include "sw/explore/store.h"
-#include "sw/explore/store_lock.h"
-#include "sw/explore/sweep.h"
+#include "sw/explore/search/allocation_run.h"
+#include "sw/explore/search/allocation_search.h"
+#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
+#include "sw/explore/store/store_lock.h"
+#include "sw/explore/sweep/sweep.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/simulation/simulate_point.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -62,7 +62,7 @@ struct AllocateOptions {
   }
 
   void check_usage() {
-    Problems problems;
+    process::Problems problems;
     if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
       camera = source.text == "camera";
     }
@@ -149,10 +149,10 @@ std::string check_pixels(const Context& context, const platform::Tables& tables,
   const Placement* first_witness = nullptr;
   std::size_t checked = 0;
   for (const BestPlacement& best : all) {
-    if (interrupted()) return "";
+    if (process::interrupted()) return "";
     if (best.reached_by == 0) continue;
     const auto run =
-        simulation::simulate_pixels(explore::placed(context.board, best.witness), tables, pairs, frames);
+        runs::simulate_pixels(explore::placed(context.board, best.witness), tables, pairs, frames);
     if (checked++ == 0) {
       first = run.disparities_sha256;
       first_witness = &best.witness;
@@ -253,8 +253,9 @@ AllocationSearch search_of(const BoardConfig& board, int banks, const explore::P
   try {
     return AllocationSearch(board, banks, run, bound);
   } catch (const std::length_error& error) {
-    refuse(fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike",
-                       banks, error.what()));
+    process::refuse(
+        fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike", banks,
+                    error.what()));
   }
 }
 
@@ -269,7 +270,7 @@ std::string fewest_text(const BoardConfig& board, int banks, const explore::Poin
 }
 
 int allocate(const AllocateOptions& options) {
-  Problems problems;
+  process::Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
@@ -281,13 +282,13 @@ int allocate(const AllocateOptions& options) {
   problems.check();
   explore::SweepOptions sweep;
   sweep.store = options.out.text;
-  sweep.version = kVersion;
+  sweep.version = process::kVersion;
   sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
-  const platform::Tables tables = tables_of(*board, calibration);
-  const explore::PointRun run = {options.camera, 0, calibration ? sha256_of(calibration->tables) : ""};
+  const platform::Tables tables = runs::tables_of(*board, calibration);
+  const explore::PointRun run = {options.camera, 0, calibration ? runs::sha256_of(calibration->tables) : ""};
   const std::uint64_t frames = explore::frames_of(run, *board);
   const platform::FrameAccesses accesses = platform::frame_accesses(*board, tables);
-  const platform::FrameBegin first = {0, options.camera ? simulation::first_start_s(*board, tables) : 0};
+  const platform::FrameBegin first = {0, options.camera ? runs::first_start_s(*board, tables) : 0};
   const auto rate_from = [&](const BoardConfig& one, const platform::FrameBegin& begin) {
     return static_cast<double>(frames) / platform::least_delivery_s(one, accesses, frames, begin);
   };
@@ -296,8 +297,9 @@ int allocate(const AllocateOptions& options) {
   };
   AllocationSearch search = search_of(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {
-    refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", *options.banks,
-                       search.placements(), fewest_text(*board, *options.banks, run)));
+    process::refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}",
+                                *options.banks, search.placements(),
+                                fewest_text(*board, *options.banks, run)));
   }
   std::vector<std::string> names;
   for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
@@ -305,36 +307,35 @@ int allocate(const AllocateOptions& options) {
     const explore::StoreLock lock(sweep.store);
     explore::Store(sweep.store, sweep.version).check_banks(names);
   } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--out {}", error.what()));
+    process::refuse(fmt::format("--out {}", error.what()));
   }
-  catch_interrupts();
-  simulation::PointSimulator simulator =
-      calibration ? simulation::PointSimulator(tables) : simulation::PointSimulator();
+  process::catch_interrupts();
+  runs::PointSimulator simulator = calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);
     return simulator(point,
                      [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
   };
-  ProgressLine progress;
+  runs::ProgressLine progress;
   const auto keep_going = [&progress](std::uint64_t done, std::uint64_t left) {
     progress.show([&](double) { return fmt::format("{} boards simulated, {} left at most", done, left); });
-    return !interrupted();
+    return !process::interrupted();
   };
   const bool is_whole = explore::simulate(search, evaluate, sweep, keep_going);
   progress.erase();
   if (!is_whole) {
-    say("note", kGoesOn);
+    process::say("note", kGoesOn);
     return kInterrupted;
   }
   const Context context = {search, *board, bound};
   const std::vector<BestPlacement> all = search.best();
   const std::string pixels = check_pixels(context, tables, all);
-  if (interrupted()) {
-    say("note", kGoesOn);
+  if (process::interrupted()) {
+    process::say("note", kGoesOn);
     return kInterrupted;
   }
-  print(space_text(context, *options.banks) + table(context, all) + certificate(all, options.keep_percent) +
-        out_text(context, all, sweep.store) + pixels);
+  process::print(space_text(context, *options.banks) + table(context, all) +
+                 certificate(all, options.keep_percent) + out_text(context, all, sweep.store) + pixels);
   return kDone;
 }
 

@@ -1,6 +1,6 @@
 #include "sw/cli/board_options.h"
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 
 namespace stereotlm::cli {
 
@@ -17,18 +17,18 @@ void BoardOptions::add_to(CLI::App& command) {
       "identity");
 }
 
-void BoardOptions::check_given(Problems& problems) {
+void BoardOptions::check_given(process::Problems& problems) {
   if (calibration_option_.is_given()) calibration_ = calibration_option_.text;
   if (!board_.is_given()) problems.add("BOARD: missing: a preset or the path of a board file");
 }
 
 void BoardOptions::check_usage() {
-  Problems problems;
+  process::Problems problems;
   check_given(problems);
   problems.check();
 }
 
-std::optional<platform::BoardConfig> BoardOptions::load(Problems& problems) const {
+std::optional<platform::BoardConfig> BoardOptions::load(process::Problems& problems) const {
   try {
     return platform::load_board(board_.text, sets_.text);
   } catch (const platform::BoardError& error) {
@@ -37,10 +37,10 @@ std::optional<platform::BoardConfig> BoardOptions::load(Problems& problems) cons
   }
 }
 
-std::optional<CalibrationInput> BoardOptions::load_calibration(const platform::BoardConfig* board,
-                                                               Problems& problems) const {
+std::optional<runs::CalibrationInput> BoardOptions::load_calibration(const platform::BoardConfig* board,
+                                                                     process::Problems& problems) const {
   if (!calibration_) return std::nullopt;
-  return cli::load_calibration(*calibration_, board, problems);
+  return runs::load_calibration(*calibration_, board, problems);
 }
 
 }  // namespace stereotlm::cli

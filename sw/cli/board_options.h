@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_config.h"
-#include "sw/cli/calibration_input.h"
-#include "sw/cli/problems.h"
+#include "platform/config/board_config.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/runs/sources/calibration_input.h"
 
 namespace CLI {
 class App;
@@ -22,19 +22,19 @@ class BoardOptions {
   void add_to(CLI::App& command);
 
   // While the command's callback runs: reports what is missing; or throws Refused.
-  void check_given(Problems& problems);
+  void check_given(process::Problems& problems);
   void check_usage();
 
   // BOARD as it was typed.
   const std::string& name() const { return board_.text; }
 
   // The board; nothing if it is wrong, with every reason reported.
-  std::optional<platform::BoardConfig> load(Problems& problems) const;
+  std::optional<platform::BoardConfig> load(process::Problems& problems) const;
 
   // The calibration that was given, if any, as checked, for that board; nothing if it is wrong too, with
   // every reason reported. `board`: null if it is wrong.
-  std::optional<CalibrationInput> load_calibration(const platform::BoardConfig* board,
-                                                   Problems& problems) const;
+  std::optional<runs::CalibrationInput> load_calibration(const platform::BoardConfig* board,
+                                                         process::Problems& problems) const;
 
  private:
   Typed board_;

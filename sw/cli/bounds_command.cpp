@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "platform/area.h"
-#include "platform/board_rules.h"
 #include "platform/bounds.h"
-#include "platform/tables.h"
+#include "platform/config/board_area.h"
+#include "platform/config/board_rules.h"
+#include "platform/config/tables.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/streams.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -165,11 +165,11 @@ std::string area_lines(const BoardConfig& board) {
 }
 
 int bounds(const BoardOptions& options) {
-  Problems problems;
+  process::Problems problems;
   const auto board = options.load(problems);
   const auto calibration = options.load_calibration(board ? &*board : nullptr, problems);
   problems.check();
-  const platform::Tables tables = tables_of(*board, calibration);
+  const platform::Tables tables = runs::tables_of(*board, calibration);
   const std::uint64_t frames = platform::allocation_period_frames(*board);
   std::vector<Group> groups;
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
@@ -190,7 +190,7 @@ int bounds(const BoardOptions& options) {
       fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", bound.core, bound.core_limited_by);
   text += fmt::format("bound of the system: {:.3f} frames/s, limited by {}\n", *bound.system,
                       bound.system_limited_by);
-  print(text + area_lines(*board));
+  process::print(text + area_lines(*board));
   return kDone;
 }
 

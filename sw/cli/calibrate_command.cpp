@@ -16,18 +16,18 @@
 #include "calib/synthetic_rig.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/calibrate_options.h"
-#include "sw/cli/calibration_library.h"
 #include "sw/cli/calibration_output.h"
 #include "sw/cli/calibration_summary.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/grid_pictures.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/media_library.h"
-#include "sw/cli/streams.h"
-#include "sw/report/replaced_file.h"
-#include "sw/report/sha256.h"
-#include "sw/report/whole_file.h"
+#include "sw/files/replaced_file.h"
+#include "sw/files/sha256.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/runs/sources/calibration_library.h"
+#include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -39,32 +39,32 @@ constexpr int kSyntheticHeight = 480;
 constexpr int kSyntheticPairs = 9;
 
 [[noreturn]] void refuse_step(const std::string& option, const std::exception& error) {
-  refuse(option + (option.empty() ? "" : " ") + error.what());
+  process::refuse(option + (option.empty() ? "" : " ") + error.what());
 }
 
 int print_grid(const CalibrateOptions& options) {
   try {
     const bool is_pdf = fs::path(options.out).extension() == ".pdf";
-    const CalibrationFunctions& functions = calibration_functions();
+    const runs::CalibrationFunctions& functions = runs::calibration_functions();
     const std::string sheet =
         is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
-    report::remove_left_aside(options.out);
+    files::remove_left_aside(options.out);
     if (!fs::exists(fs::symlink_status(options.out))) {
-      report::replace_file(options.out, sheet);
-    } else if (report::read_whole_file(options.out) != sheet) {
+      files::replace_file(options.out, sheet);
+    } else if (files::read_whole_file(options.out) != sheet) {
       throw std::runtime_error(
           fmt::format("'{}': exists and is another file: must be moved away", options.out));
     }
   } catch (const std::system_error& error) {
-    refuse(fmt::format("--out '{}': cannot be written: {}", options.out, error.code().message()));
+    process::refuse(fmt::format("--out '{}': cannot be written: {}", options.out, error.code().message()));
   } catch (const std::invalid_argument& error) {
     refuse_step("--print-grid:", error);
   } catch (const std::exception& error) {
     refuse_step("--out", error);
   }
-  print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n", options.out,
-                    options.grid.columns + 1, options.grid.rows + 1, options.grid.square_mm,
-                    options.grid.columns, options.grid.rows));
+  process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n",
+                             options.out, options.grid.columns + 1, options.grid.rows + 1,
+                             options.grid.square_mm, options.grid.columns, options.grid.rows));
   return kDone;
 }
 
@@ -91,41 +91,43 @@ class Calibrator {
   }
 
   int run() {
-    catch_interrupts();
-    Problems problems;
+    process::catch_interrupts();
+    process::Problems problems;
     try {
       output_ = std::make_unique<CalibrationOutput>(options_.out, options_.synthetic.has_value());
     } catch (const std::exception& error) {
       problems.add(fmt::format("--out {}", error.what()));
     }
     load_pictures(problems);
-    if (interrupted()) return leave();
+    if (process::interrupted()) return leave();
     problems.check();
     calibrate();
-    for (const std::string& picture : result_.skipped) say("note", picture + ": the pair is skipped");
+    for (const std::string& picture : result_.skipped)
+      process::say("note", picture + ": the pair is skipped");
     try {
       write();
-      if (interrupted()) return leave();
+      if (process::interrupted()) return leave();
       output_->commit();
     } catch (const std::runtime_error& error) {
       refuse_step("--out", error);
     }
-    print(calibration_summary(result_, request_.pictures.size()) + written_text());
+    process::print(calibration_summary(result_, request_.pictures.size()) + written_text());
     return kDone;
   }
 
  private:
   static int leave() {
-    say("note", "interrupted: nothing was written");
+    process::say("note", "interrupted: nothing was written");
     return kInterrupted;
   }
 
   // On a thread of its own: OpenCV cannot be asked to stop. An interrupt ends the process.
   void calibrate() {
     constexpr std::chrono::milliseconds kBetweenLooks{50};
-    auto result = std::async(std::launch::async, calibration_functions().calibrate, std::cref(request_));
+    auto result =
+        std::async(std::launch::async, runs::calibration_functions().calibrate, std::cref(request_));
     while (result.wait_for(kBetweenLooks) != std::future_status::ready) {
-      if (!interrupted()) continue;
+      if (!process::interrupted()) continue;
       output_.reset();
       std::_Exit(leave());
     }
@@ -136,7 +138,7 @@ class Calibrator {
     }
   }
 
-  void load_pictures(Problems& problems) {
+  void load_pictures(process::Problems& problems) {
     if (!options_.synthetic) {
       request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
       if (output_) check_pictures_survive(problems);
@@ -152,7 +154,7 @@ class Calibrator {
   }
 
   // The folder of drawings is replaced whole.
-  void check_pictures_survive(Problems& problems) const {
+  void check_pictures_survive(process::Problems& problems) const {
     std::error_code none;  // what cannot be found was not read either
     const fs::path drawings = fs::weakly_canonical(output_->files().drawings, none);
     for (const calib::PicturePair& pair : request_.pictures) {
@@ -165,22 +167,22 @@ class Calibrator {
   }
 
   void write() {
-    const RigFiles& files = output_->files();
+    const runs::RigFiles& files = output_->files();
     const std::string left = calib::lut_bytes(result_.tables.left);
     const std::string right = calib::lut_bytes(result_.tables.right);
-    result_.calibration.left_lut_sha256 = report::sha256_hex(left.data(), left.size());
-    result_.calibration.right_lut_sha256 = report::sha256_hex(right.data(), right.size());
+    result_.calibration.left_lut_sha256 = files::sha256_hex(left.data(), left.size());
+    result_.calibration.right_lut_sha256 = files::sha256_hex(right.data(), right.size());
     output_->add(files.left_lut, left);
     output_->add(files.right_lut, right);
-    output_->add(files.calibration, calibration_functions().calibration_yaml(result_.calibration));
+    output_->add(files.calibration, runs::calibration_functions().calibration_yaml(result_.calibration));
     draw(files.drawings);
     if (rig_) write_synthetic(files.pictures);
   }
 
   void draw(const fs::path& folder) {
-    const CalibrationFunctions& functions = calibration_functions();
+    const runs::CalibrationFunctions& functions = runs::calibration_functions();
     for (const calib::CalibratedPair& pair : result_.pairs) {
-      if (interrupted()) return;
+      if (process::interrupted()) return;
       const calib::PicturePair& pictures = request_.pictures[pair.picture];
       const auto named = [](const std::string& path, const kernels::GrayImage& image) {
         return calib::CaptionedImage{fs::path(path).filename(), image};
@@ -205,9 +207,9 @@ class Calibrator {
   // The pictures that were calibrated from, and a scene with the disparities that the board should find in
   // it.
   void write_synthetic(const fs::path& folder) {
-    const MediaFunctions& media = media_functions();
+    const runs::MediaFunctions& media = runs::media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {
-      if (interrupted()) return;
+      if (process::interrupted()) return;
       output_->add(pictures.left_name, media.encode_png_gray(pictures.left));
       output_->add(pictures.right_name, media.encode_png_gray(pictures.right));
     }
@@ -228,7 +230,7 @@ class Calibrator {
   int truth_scale() const { return 255 / options_.disparities; }
 
   std::string written_text() const {
-    const RigFiles& files = output_->files();
+    const runs::RigFiles& files = output_->files();
     std::string text =
         fmt::format("{:<16} {}, {}, {}, {}/\n", "written", files.calibration.string(),
                     files.left_lut.string(), files.right_lut.string(), files.drawings.string());

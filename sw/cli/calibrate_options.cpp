@@ -6,8 +6,8 @@
 
 #include "models/kernels/limits.h"
 #include "sw/cli/add_command.h"
-#include "sw/cli/rig_files.h"
 #include "sw/cli/text.h"
+#include "sw/runs/sources/rig_files.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -57,7 +57,7 @@ void CalibrateOptions::add_to(CLI::App& command) {
 }
 
 void CalibrateOptions::check_usage() {
-  Problems problems;
+  process::Problems problems;
   print_grid = print_grid_.is_given();
   check_grid(print_grid ? print_grid_ : grid_, problems);
   check_square(problems);
@@ -76,7 +76,7 @@ void CalibrateOptions::check_usage() {
   problems.check();
 }
 
-void CalibrateOptions::check_grid(const Typed& option, Problems& problems) {
+void CalibrateOptions::check_grid(const Typed& option, process::Problems& problems) {
   const std::string name = print_grid ? "--print-grid" : "--grid";
   if (!option.is_given()) {
     problems.add(name + ": missing: columns x rows of inner corners, such as 9x6");
@@ -96,7 +96,7 @@ void CalibrateOptions::check_grid(const Typed& option, Problems& problems) {
   grid.rows = *rows;
 }
 
-void CalibrateOptions::check_square(Problems& problems) {
+void CalibrateOptions::check_square(process::Problems& problems) {
   if (!square_.is_given()) {
     problems.add("--square-mm: missing: a side of the grid's squares in millimetres");
     return;
@@ -106,7 +106,7 @@ void CalibrateOptions::check_square(Problems& problems) {
   grid.square_mm = square.value_or(0);
 }
 
-void CalibrateOptions::check_sources(Problems& problems) {
+void CalibrateOptions::check_sources(process::Problems& problems) {
   if (synthetic_.is_given()) {
     synthetic = number_of<std::uint64_t>(synthetic_.text);
     if (!synthetic) {
@@ -123,7 +123,7 @@ void CalibrateOptions::check_sources(Problems& problems) {
   right = right_.text;
 }
 
-void CalibrateOptions::check_numbers(Problems& problems) {
+void CalibrateOptions::check_numbers(process::Problems& problems) {
   if (disparities_.is_given()) {
     const auto number = number_of<int>(disparities_.text);
     const kernels::IntegerRule& rule = kernels::kDisparitiesRule;
@@ -143,7 +143,7 @@ void CalibrateOptions::check_numbers(Problems& problems) {
   }
 }
 
-void CalibrateOptions::check_out(Problems& problems) {
+void CalibrateOptions::check_out(process::Problems& problems) {
   if (!out_.is_given()) {
     problems.add(print_grid ? "--out: missing: the sheet, F.pdf or F.svg"
                             : "--out: missing: the calibration, F.yaml");
@@ -157,7 +157,7 @@ void CalibrateOptions::check_out(Problems& problems) {
   }
 }
 
-void CalibrateOptions::check_only_with_pictures(Problems& problems) const {
+void CalibrateOptions::check_only_with_pictures(process::Problems& problems) const {
   const auto refuse_if = [&problems](bool is_given, const char* name) {
     if (is_given) problems.add(fmt::format("{}: does not go with --print-grid", name));
   };

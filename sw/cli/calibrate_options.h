@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calib/grid_shape.h"
-#include "sw/cli/problems.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
 
 namespace CLI {
 class App;
@@ -35,12 +35,12 @@ class CalibrateOptions {
   std::string out;
 
  private:
-  void check_grid(const Typed& option, Problems& problems);
-  void check_square(Problems& problems);
-  void check_sources(Problems& problems);
-  void check_numbers(Problems& problems);
-  void check_out(Problems& problems);
-  void check_only_with_pictures(Problems& problems) const;
+  void check_grid(const Typed& option, process::Problems& problems);
+  void check_square(process::Problems& problems);
+  void check_sources(process::Problems& problems);
+  void check_numbers(process::Problems& problems);
+  void check_out(process::Problems& problems);
+  void check_only_with_pictures(process::Problems& problems) const;
 
   Typed print_grid_;
   Typed grid_;

@@ -10,16 +10,16 @@
 
 #include "calib/calibration_reader.h"
 #include "calib/storage_yaml.h"
-#include "sw/report/folder_entries.h"
-#include "sw/report/whole_file.h"
+#include "sw/files/folder_entries.h"
+#include "sw/files/whole_file.h"
 
 namespace stereotlm::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using report::is_file;
-using report::is_folder;
-using report::is_there;
+using files::is_file;
+using files::is_folder;
+using files::is_there;
 
 using Patterns = std::vector<const char*>;  // of fnmatch
 
@@ -28,12 +28,12 @@ const Patterns kDrawings = {"corners_[0-9]*.png", "rectified_[0-9]*.png", "displ
 const Patterns kPictures = {"left_[0-9]*.png", "right_[0-9]*.png", "scene_left.png", "scene_right.png",
                             "scene_truth.png"};
 
-fs::path folder_of(const RigFiles& files) {
+fs::path folder_of(const runs::RigFiles& files) {
   const fs::path folder = files.calibration.parent_path();
   return folder.empty() ? "." : folder;
 }
 
-const RigFiles& in_a_folder(const RigFiles& files) {
+const runs::RigFiles& in_a_folder(const runs::RigFiles& files) {
   std::error_code error;
   const fs::file_status status = fs::status(folder_of(files), error);
   if (fs::is_directory(status)) return files;
@@ -43,7 +43,7 @@ const RigFiles& in_a_folder(const RigFiles& files) {
 
 // What of a folder that is replaced whole is not ours.
 std::optional<fs::path> foreign_file(const fs::path& folder, const Patterns& ours) {
-  for (const fs::path& name : report::entries(folder)) {
+  for (const fs::path& name : files::entries(folder)) {
     const bool is_ours = std::any_of(ours.begin(), ours.end(), [&name](const char* pattern) {
       return fnmatch(pattern, name.c_str(), 0) == 0;
     });
@@ -52,7 +52,7 @@ std::optional<fs::path> foreign_file(const fs::path& folder, const Patterns& our
   return std::nullopt;
 }
 
-std::optional<std::string> foreign_part(const fs::path& entry, const RigFiles& files) {
+std::optional<std::string> foreign_part(const fs::path& entry, const runs::RigFiles& files) {
   const fs::path name = entry.filename();
   const auto in_folder = [&](const Patterns& ours) -> std::optional<std::string> {
     if (!is_folder(entry)) return name;
@@ -78,7 +78,7 @@ void check_folder(const fs::path& folder, const Patterns& ours) {
 }
 
 // `in_commit`: a run was killed while it put its files into place, of which the calibration is the last.
-void check_earlier(const RigFiles& files, bool makes_pictures, bool in_commit) {
+void check_earlier(const runs::RigFiles& files, bool makes_pictures, bool in_commit) {
   std::vector<fs::path> replaced = {files.left_lut, files.right_lut, files.drawings};
   if (makes_pictures) replaced.push_back(files.pictures);
   const bool has_earlier = is_there(files.calibration) || in_commit;
@@ -97,15 +97,15 @@ void check_earlier(const RigFiles& files, bool makes_pictures, bool in_commit) {
   if (makes_pictures) check_folder(files.pictures, kPictures);
   if (!is_there(files.calibration)) return;
   try {
-    calib::parse_calibration(report::read_whole_file(files.calibration, calib::kMostStorageBytes));
+    calib::parse_calibration(files::read_whole_file(files.calibration, calib::kMostStorageBytes));
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("'{}': exists and is no calibration ({}): must be moved away",
                                          files.calibration.string(), error.what()));
   }
 }
 
-report::OutputContent content_of(const RigFiles& files, bool makes_pictures) {
-  report::OutputContent content;
+files::OutputContent content_of(const runs::RigFiles& files, bool makes_pictures) {
+  files::OutputContent content;
   content.called = "folder";
   content.mark = files.calibration.filename();
   content.aside = files.calibration.stem().string() + ".partial";
@@ -114,7 +114,7 @@ report::OutputContent content_of(const RigFiles& files, bool makes_pictures) {
     const bool is_kept = entry.filename() == files.pictures.filename() && !makes_pictures;
     return !is_kept && !foreign_part(entry, files);
   };
-  const fs::path earlier = fs::path(content.aside) / report::kEarlierFolder;
+  const fs::path earlier = fs::path(content.aside) / files::kEarlierFolder;
   content.problem = [=](const fs::path& dir, bool /*was_left*/) -> std::optional<std::string> {
     check_earlier(files, makes_pictures, is_there(dir / earlier));
     return std::nullopt;
@@ -125,7 +125,7 @@ report::OutputContent content_of(const RigFiles& files, bool makes_pictures) {
 }  // namespace
 
 CalibrationOutput::CalibrationOutput(const std::string& calibration, bool makes_pictures)
-    : files_(in_a_folder(rig_files(calibration))),
+    : files_(in_a_folder(runs::rig_files(calibration))),
       folder_(folder_of(files_), content_of(files_, makes_pictures)) {}
 
 void CalibrationOutput::add(const fs::path& file, std::string_view bytes) {

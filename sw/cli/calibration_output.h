@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sw/cli/rig_files.h"
-#include "sw/report/output_folder.h"
+#include "sw/files/output_folder.h"
+#include "sw/runs/sources/rig_files.h"
 
 namespace stereotlm::cli {
 
@@ -22,7 +22,7 @@ class CalibrationOutput {
   // touches it.
   CalibrationOutput(const std::string& calibration, bool makes_pictures);
 
-  const RigFiles& files() const { return files_; }
+  const runs::RigFiles& files() const { return files_; }
 
   // `file`: one of files(), or one in a folder of theirs. Throws std::runtime_error if it cannot be stored.
   void add(const std::filesystem::path& file, std::string_view bytes);
@@ -32,8 +32,8 @@ class CalibrationOutput {
   void commit() { folder_.commit(); }
 
  private:
-  RigFiles files_;
-  report::OutputFolder folder_;
+  runs::RigFiles files_;
+  files::OutputFolder folder_;
 };
 
 }  // namespace stereotlm::cli

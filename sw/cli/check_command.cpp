@@ -6,7 +6,7 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/streams.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -18,11 +18,11 @@ std::string summary(const std::string& name, const platform::BoardConfig& board)
 }
 
 int check(const BoardOptions& options) {
-  Problems problems;
+  process::Problems problems;
   const auto board = options.load(problems);
   options.load_calibration(board ? &*board : nullptr, problems);
   problems.check();
-  print(summary(options.name(), *board));
+  process::print(summary(options.name(), *board));
   return kDone;
 }
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_keys.h"
+#include "platform/config/board_keys.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/problems.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/text.h"
 #include "sw/cli/unbuilt.h"
-#include "sw/cli/version.h"
+#include "sw/process/problems.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -49,10 +49,10 @@ void check_first_argument(const CLI::App& program, int argc, const char* const* 
   }
   const std::string all = platform::listed(commands);
   if (is_known) return;
-  if (first.empty()) refuse("a command is missing: one of " + all);
-  if (first[0] == '-') refuse(fmt::format("'{}': a command comes first: one of {}", first, all));
-  refuse(fmt::format("'{}': unknown command{}; commands: {}", first, platform::nearest_text(first, commands),
-                     all));
+  if (first.empty()) process::refuse("a command is missing: one of " + all);
+  if (first[0] == '-') process::refuse(fmt::format("'{}': a command comes first: one of {}", first, all));
+  process::refuse(fmt::format("'{}': unknown command{}; commands: {}", first,
+                              platform::nearest_text(first, commands), all));
 }
 
 std::string help_of(const CLI::App& program) {
@@ -62,7 +62,7 @@ std::string help_of(const CLI::App& program) {
 
 // Refuses the options that the parsed command does not have, if there are any among what it could not use.
 void check_options(const CLI::App& program) {
-  Problems problems;
+  process::Problems problems;
   for (const CLI::App* command : program.get_subcommands()) {
     std::vector<std::string> known;
     for (const CLI::Option* option : command->get_options()) {
@@ -87,7 +87,7 @@ Action parse_command_line(int argc, const char* const* argv) {
       "stereotlm");
   program.formatter(std::make_shared<HelpFormatter>());
   program.set_help_flag("-h,--help", "Print this help; after a command, the command's");
-  program.set_version_flag("--version", std::string("stereotlm ") + kVersion, "Print the version");
+  program.set_version_flag("--version", std::string("stereotlm ") + process::kVersion, "Print the version");
   program.require_subcommand(1);
   program.footer(
       "Exit status: 0 done; 1 failed after the first simulated cycle; 2 refused before it; 130\n"
@@ -116,12 +116,12 @@ Action parse_command_line(int argc, const char* const* argv) {
     std::ostringstream text;
     program.exit(request, text, text);
     return [text = text.str()] {
-      print(text);
+      process::print(text);
       return kDone;
     };
   } catch (const CLI::ParseError& error) {
     check_options(program);
-    refuse(fmt::format("{} (see {})", error.what(), help_of(program)));
+    process::refuse(fmt::format("{} (see {})", error.what(), help_of(program)));
   }
   return action;
 }

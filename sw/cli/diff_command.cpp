@@ -11,12 +11,12 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/diff_text.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/frame_alignment.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/recorded_run.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/report/rows_csv.h"
+#include "sw/runs/frame_alignment.h"
+#include "sw/runs/recorded_run.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -44,7 +44,7 @@ struct DiffOptions {
   std::optional<std::string> csv;
 
   void check_usage() {
-    Problems problems;
+    process::Problems problems;
     for (const auto& [name, run] : {std::pair("A", &a), std::pair("B", &b)}) {
       if (run->text.empty())
         problems.add(fmt::format("{}: missing: a folder that run --out has written", name));
@@ -57,12 +57,12 @@ struct DiffOptions {
 };
 
 int diff(const DiffOptions& options) {
-  Problems problems;
-  const auto a = load_recorded_run("A", options.a.text, problems);
-  const auto b = load_recorded_run("B", options.b.text, problems);
+  process::Problems problems;
+  const auto a = runs::load_recorded_run("A", options.a.text, problems);
+  const auto b = runs::load_recorded_run("B", options.b.text, problems);
   problems.check();
-  for (const RecordedRun& run : {std::cref(*a), std::cref(*b)}) open_again(run, problems);
-  const DiffLimits limits(*a, *b);
+  for (const runs::RecordedRun& run : {std::cref(*a), std::cref(*b)}) runs::open_again(run, problems);
+  const runs::DiffLimits limits(*a, *b);
   std::unique_ptr<report::RowsCsv> csv;
   if (options.csv) {
     if (!limits.rows.empty()) problems.add(fmt::format("--csv: rows cannot be compared: {}", limits.rows));
@@ -73,14 +73,14 @@ int diff(const DiffOptions& options) {
     }
   }
   problems.check();
-  catch_interrupts();
-  FrameAlignment aligned(*a, *b, limits, csv.get());
+  process::catch_interrupts();
+  runs::FrameAlignment aligned(*a, *b, limits, csv.get());
   if (!aligned.run()) {
-    say("note", "interrupted: nothing is compared");
+    process::say("note", "interrupted: nothing is compared");
     return kInterrupted;
   }
   if (csv) csv->commit();
-  print(diff_text(*a, *b, aligned, limits));
+  process::print(diff_text(*a, *b, aligned, limits));
   return kDone;
 }
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "platform/board_yaml.h"
-#include "sw/explore/figures.h"
+#include "platform/config/board_yaml.h"
+#include "sw/explore/plan/figures.h"
 #include "sw/report/difference_tables.h"
 
 namespace stereotlm::cli {
@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 using report::Values;
 
 // Every value of run.json by its path.
-Values options_of(const RecordedRun& run) {
+Values options_of(const runs::RecordedRun& run) {
   Values values;
   const Json flat = Json::parse(run.run_json).flatten();
   for (const auto& [path, value] : flat.items()) {
@@ -32,7 +32,7 @@ Values options_of(const RecordedRun& run) {
 
 // The figures of one run by their paths in stats.json.
 struct RunFigures {
-  explicit RunFigures(const RecordedRun& run) : document(Json::parse(run.stats_json)) {
+  explicit RunFigures(const runs::RecordedRun& run) : document(Json::parse(run.stats_json)) {
     for (platform::BoardValue& value : explore::figures_of(document).values) {
       // These follow from others, or are compared frame by frame.
       const auto ends_in = [&value](const std::string& key) {
@@ -107,8 +107,8 @@ std::string computer_text(const RunFigures& a, const RunFigures& b) {
 
 }  // namespace
 
-std::string diff_text(const RecordedRun& run_a, const RecordedRun& run_b, const FrameAlignment& aligned,
-                      const DiffLimits& limits) {
+std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
+                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
   const RunFigures a(run_a);
   const RunFigures b(run_b);
   const std::string settings = in_sections(

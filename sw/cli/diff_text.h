@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "sw/cli/frame_alignment.h"
-#include "sw/cli/recorded_run.h"
+#include "sw/runs/frame_alignment.h"
+#include "sw/runs/recorded_run.h"
 
 namespace stereotlm::cli {
 
 // What `diff` prints of two runs, once they are aligned.
-std::string diff_text(const RecordedRun& a, const RecordedRun& b, const FrameAlignment& aligned,
-                      const DiffLimits& limits);
+std::string diff_text(const runs::RecordedRun& a, const runs::RecordedRun& b,
+                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 
 }  // namespace stereotlm::cli

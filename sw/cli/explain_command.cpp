@@ -12,23 +12,23 @@
 #include <utility>
 #include <vector>
 
-#include "platform/board_rules.h"
 #include "platform/bounds.h"
+#include "platform/config/board_rules.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/progress.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/version.h"
-#include "sw/explore/bank_names.h"
-#include "sw/explore/batch.h"
-#include "sw/explore/knobs.h"
-#include "sw/simulation/simulate_point.h"
+#include "sw/explore/plan/knobs.h"
+#include "sw/explore/slurm/batch.h"
+#include "sw/explore/store/bank_names.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -51,7 +51,7 @@ struct ExplainOptions {
   }
 
   void check_usage() {
-    Problems problems;
+    process::Problems problems;
     board.check_given(problems);
     if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
       camera = source.text == "camera";
@@ -83,15 +83,15 @@ class Explanation {
         points_(boards(), run_) {}
 
   // False if it was interrupted.
-  bool simulate(simulation::PointSimulator simulator) {
-    ProgressLine progress;
+  bool simulate(runs::PointSimulator simulator) {
+    runs::ProgressLine progress;
     return batch_.run(
-        points_, [&simulator](const explore::Point& point) { return simulator(point); }, kVersion,
+        points_, [&simulator](const explore::Point& point) { return simulator(point); }, process::kVersion,
         std::max(1U, std::thread::hardware_concurrency()),
         [&](const explore::SweepCounts& done) {
           progress.show(
               [&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
-          return !interrupted();
+          return !process::interrupted();
         });
   }
 
@@ -288,21 +288,20 @@ class Explanation {
 };
 
 int explain(const ExplainOptions& options) {
-  Problems problems;
+  process::Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
   temporary_folder(problems);  // there can be one
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();
-  const platform::Tables tables = tables_of(*board, calibration);
-  catch_interrupts();
+  const platform::Tables tables = runs::tables_of(*board, calibration);
+  process::catch_interrupts();
   Explanation explanation(*board, tables, options.camera);
-  if (!explanation.simulate(calibration ? simulation::PointSimulator(tables)
-                                        : simulation::PointSimulator())) {
+  if (!explanation.simulate(calibration ? runs::PointSimulator(tables) : runs::PointSimulator())) {
     return kInterrupted;
   }
-  print(explanation.text());
+  process::print(explanation.text());
   return kDone;
 }
 

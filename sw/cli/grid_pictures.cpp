@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "models/fpga/core_config.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/media_library.h"
-#include "sw/cli/streams.h"
-#include "sw/report/sha256.h"
+#include "sw/files/sha256.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 // In the order of their names. A file that has the name of a pattern is meant.
-Names files_of(const std::string& option, const Names& patterns, Problems& problems) {
+Names files_of(const std::string& option, const Names& patterns, process::Problems& problems) {
   Names files;
   for (const std::string& pattern : patterns) {
     std::error_code none;
@@ -78,18 +78,19 @@ void compare_names(const Names& left, const Names& right) {
   const auto differ = std::mismatch(left_parts.begin(), left_parts.end(), right_parts.begin());
   if (differ.first == left_parts.end()) return;
   const auto at = static_cast<std::size_t>(differ.first - left_parts.begin());
-  say("note",
+  process::say(
+      "note",
       fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they belong together?",
                   left[at], right[at]));
 }
 
 class Loader {
  public:
-  explicit Loader(Problems& problems) : problems_(problems) {}
+  explicit Loader(process::Problems& problems) : problems_(problems) {}
 
   kernels::GrayImage load(const std::string& option, const std::string& path) {
     try {
-      media::LoadedGray loaded = media_functions().load_gray(path);
+      media::LoadedGray loaded = runs::media_functions().load_gray(path);
       if (loaded.converted_from_colour) ++converted_;
       ++count_;
       check_size(option, path, loaded.image);
@@ -103,7 +104,7 @@ class Loader {
 
   void say_converted() const {
     if (converted_ > 0) {
-      say("note", fmt::format("{} of {} pictures: colour, converted to grey", converted_, count_));
+      process::say("note", fmt::format("{} of {} pictures: colour, converted to grey", converted_, count_));
     }
   }
 
@@ -126,13 +127,13 @@ class Loader {
   // A picture that is there twice would count twice, and says nothing new.
   void check_new(const std::string& option, const std::string& path, const kernels::GrayImage& image) {
     const auto [known, is_new] =
-        paths_.emplace(report::sha256_hex(image.pixels.data(), image.pixels.size()), path);
+        paths_.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), path);
     if (is_new) return;
     problems_.add(
         fmt::format("{} '{}': the same picture as '{}': must be another one", option, path, known->second));
   }
 
-  Problems& problems_;
+  process::Problems& problems_;
   std::map<std::string, std::string> paths_;  // by the sum of their pixels
   std::string first_;
   int width_ = 0;
@@ -144,7 +145,7 @@ class Loader {
 }  // namespace
 
 std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
-                                                   Problems& problems) {
+                                                   process::Problems& problems) {
   const Names left_files = files_of("--left", left, problems);
   const Names right_files = files_of("--right", right, problems);
   if (left_files.empty() || right_files.empty()) return {};
@@ -158,7 +159,7 @@ std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Name
   Loader loader(problems);
   std::vector<calib::PicturePair> pairs;
   for (std::size_t i = 0; i < left_files.size(); ++i) {
-    if (interrupted()) return {};
+    if (process::interrupted()) return {};
     pairs.push_back({left_files[i], right_files[i], loader.load("--left", left_files[i]),
                      loader.load("--right", right_files[i])});
   }

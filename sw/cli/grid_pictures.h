@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/calibrate.h"
-#include "sw/cli/problems.h"
+#include "sw/process/problems.h"
 
 namespace stereotlm::cli {
 
@@ -13,6 +13,7 @@ namespace stereotlm::cli {
 // pictures of different sizes. Says on standard error which pictures were converted to grey, and where the
 // names of a pair differ in more than what all of their side have in common. Ends where it is interrupted().
 std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string>& left,
-                                                   const std::vector<std::string>& right, Problems& problems);
+                                                   const std::vector<std::string>& right,
+                                                   process::Problems& problems);
 
 }  // namespace stereotlm::cli

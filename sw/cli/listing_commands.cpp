@@ -4,15 +4,15 @@
 #include <memory>
 #include <string>
 
-#include "platform/board_keys.h"
-#include "platform/board_yaml.h"
+#include "platform/config/board_keys.h"
+#include "platform/config/board_yaml.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/problems.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -30,17 +30,17 @@ int list_boards() {
   std::string text;
   for (const std::string& name : names)
     text += paragraph(name, width + 2, description(platform::preset_text(name)));
-  print(text);
+  process::print(text);
   return kDone;
 }
 
 int show_board(const std::string& name) {
   const auto names = platform::preset_names();
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    refuse(fmt::format("--show = {}: not a preset{}; presets: {}", name, platform::nearest_text(name, names),
-                       platform::listed(names)));
+    process::refuse(fmt::format("--show = {}: not a preset{}; presets: {}", name,
+                                platform::nearest_text(name, names), platform::listed(names)));
   }
-  print(platform::preset_text(name));
+  process::print(platform::preset_text(name));
   return kDone;
 }
 
@@ -60,7 +60,7 @@ int list_keys() {
   for (const auto& key : keys) {
     text += paragraph(head(key.path, key.unit), indent, key.meaning) + paragraph("", indent, key.range);
   }
-  print(text);
+  process::print(text);
   return kDone;
 }
 

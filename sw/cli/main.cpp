@@ -4,8 +4,8 @@
 
 #include "sw/cli/command_line.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/problems.h"
-#include "sw/cli/streams.h"
+#include "sw/process/problems.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -16,7 +16,7 @@ std::string text_of(const sc_core::sc_report& report) {
 
 // SystemC prints to standard output. An error goes on to where it is caught.
 void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
-  if (report.get_severity() == sc_core::SC_WARNING) say("warning", text_of(report));
+  if (report.get_severity() == sc_core::SC_WARNING) process::say("warning", text_of(report));
   sc_core::sc_report_handler::default_handler(
       report, actions & ~static_cast<sc_core::sc_actions>(sc_core::SC_DISPLAY));
 }
@@ -24,13 +24,13 @@ void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& 
 int run_program(int argc, const char* const* argv) {
   try {
     return parse_command_line(argc, argv)();
-  } catch (const Refused& refused) {
+  } catch (const process::Refused& refused) {
     for (const std::string& line : refused.lines()) std::fprintf(stderr, "%s\n", line.c_str());
     return kRefused;
   } catch (const sc_core::sc_report& report) {
-    say("error", "the model stopped: " + text_of(report));
+    process::say("error", "the model stopped: " + text_of(report));
   } catch (const std::exception& error) {
-    say("error", error.what());
+    process::say("error", error.what());
   }
   return kFailed;
 }
@@ -40,7 +40,7 @@ int run_program(int argc, const char* const* argv) {
 
 int sc_main(int argc, char** argv) {
   sc_core::sc_report_handler::set_handler(stereotlm::cli::handle_report);
-  stereotlm::cli::prepare_streams();
+  stereotlm::process::prepare_streams();
   return stereotlm::cli::run_program(argc, argv);
 }
 

@@ -7,11 +7,11 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/explore/merge_stores.h"
-#include "sw/explore/store.h"
-#include "sw/explore/store_lock.h"
+#include "sw/explore/store/merge_stores.h"
+#include "sw/explore/store/store.h"
+#include "sw/explore/store/store_lock.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -21,7 +21,7 @@ struct MergeOptions {
   TypedList inputs;
 
   void check_usage() const {
-    Problems problems;
+    process::Problems problems;
     if (!out.is_given()) problems.add("OUT: missing: the database to write");
     if (!inputs.is_given()) problems.add("DB: missing: the databases to merge");
     problems.check();
@@ -33,12 +33,12 @@ int merge(const MergeOptions& options) {
     const explore::StoreLock lock(options.out.text);
     explore::merge_stores(options.inputs.text, options.out.text);
   } catch (const explore::DatabaseError& error) {
-    refuse(error.what());
+    process::refuse(error.what());
   }
   explore::Database merged(options.out.text, explore::Database::Access::kRead);
   const std::size_t inputs = options.inputs.text.size();
-  print(fmt::format("{}: {} points of {} database{}\n", options.out.text,
-                    merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
+  process::print(fmt::format("{}: {} points of {} database{}\n", options.out.text,
+                             merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
   return kDone;
 }
 

@@ -11,22 +11,22 @@
 
 #include "platform/bounds.h"
 #include "sw/cli/add_command.h"
-#include "sw/cli/calibration_input.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/problems.h"
-#include "sw/cli/progress.h"
-#include "sw/cli/python_script.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/version.h"
+#include "sw/files/document_folder.h"
+#include "sw/files/whole_file.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
-#include "sw/report/document_folder.h"
-#include "sw/report/whole_file.h"
-#include "sw/simulation/simulate_point.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/problems.h"
+#include "sw/process/python_script.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
+#include "sw/runs/sources/calibration_input.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -49,34 +49,34 @@ struct PaperOptions {
   }
 
   void check_usage() const {
-    if (!out.is_given()) refuse("--out: missing: the folder to write");
+    if (!out.is_given()) process::refuse("--out: missing: the folder to write");
   }
 };
 
 // Nothing if it was interrupted.
 std::optional<paper::Findings> study() {
-  simulation::PointSimulator simulator;
-  ProgressLine progress;
+  runs::PointSimulator simulator;
+  runs::ProgressLine progress;
   paper::Means means;
   means.evaluate = [&simulator](const explore::Point& point) { return simulator(point); };
   means.bound = [](const platform::BoardConfig& board, std::uint64_t frames) {
-    return platform::core_bound(board, tables_of(board, std::nullopt), frames);
+    return platform::core_bound(board, runs::tables_of(board, std::nullopt), frames);
   };
-  means.version = kVersion;
+  means.version = process::kVersion;
   means.jobs = std::max(1U, std::thread::hardware_concurrency());
   means.keep_going = [&progress](std::uint64_t done, std::uint64_t most_left) {
     progress.show(
         [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });
-    return !interrupted();
+    return !process::interrupted();
   };
   return paper::study(paper::claims(), means);
 }
 
 // Adds the pictures of the tables; false if it was interrupted. `folder`: for temporary files.
 bool draw(const std::filesystem::path& folder, std::map<std::string, std::string>& files) {
-  for (const auto& [name, bytes] : files) report::write_whole_file(folder / name, bytes);
-  const auto end = run_script(kScript, {"--out=" + folder.string(), "--", folder.string()});
-  if (interrupted()) return false;
+  for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
+  const auto end = process::run_script(kScript, {"--out=" + folder.string(), "--", folder.string()});
+  if (process::interrupted()) return false;
   if (end.status != 0) {
     throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,
                                          end.status, end.errors));
@@ -84,33 +84,32 @@ bool draw(const std::filesystem::path& folder, std::map<std::string, std::string
   for (const char* figure : paper::kFigures) {
     for (const char* ending : {".png", ".svg"}) {
       const std::string name = std::string(figure) + ending;
-      files[name] = report::read_whole_file(folder / name);
+      files[name] = files::read_whole_file(folder / name);
     }
   }
   return true;
 }
 
 int compare_with_paper(const PaperOptions& options) {
-  Problems problems;
+  process::Problems problems;
   const auto drawings = temporary_folder(problems);
-  std::unique_ptr<report::DocumentFolder> folder;
+  std::unique_ptr<files::DocumentFolder> folder;
   try {
-    folder =
-        std::make_unique<report::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
+    folder = std::make_unique<files::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
   } catch (const std::runtime_error& error) {
     problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
   }
   problems.check();
-  catch_interrupts();
+  process::catch_interrupts();
   const auto findings = study();
   auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
   if (!findings || !draw(drawings->path(), files)) {
-    say("note", "interrupted: nothing was written");
+    process::say("note", "interrupted: nothing was written");
     return kInterrupted;
   }
   files[paper::kDocument] = paper::document(*findings);
   folder->commit(files);
-  print(paper::summary(*findings) + fmt::format("{}: {} files\n", options.out.text, files.size()));
+  process::print(paper::summary(*findings) + fmt::format("{}: {} files\n", options.out.text, files.size()));
   return kDone;
 }
 

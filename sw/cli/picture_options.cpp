@@ -7,20 +7,7 @@ namespace {
 
 constexpr const char* kSources = "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED";
 
-// In the order of VideoLayout.
-const std::vector<std::string>& layout_names() {
-  static const std::vector<std::string> names = {"two", "side_by_side", "top_bottom"};
-  return names;
-}
-
 }  // namespace
-
-std::optional<VideoLayout> video_layout_of(const std::string& name) {
-  const auto& names = layout_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<VideoLayout>(found - names.begin());
-}
 
 void PictureOptions::add_to(CLI::App& command) {
   left_.add_to(command, "--left", "F",
@@ -38,7 +25,7 @@ void PictureOptions::add_to(CLI::App& command) {
                     "A made scene that moves, with known disparities; another one for each SEED, 0 or more");
 }
 
-void PictureOptions::check_given(Problems& problems, bool may_be_missing) const {
+void PictureOptions::check_given(process::Problems& problems, bool may_be_missing) const {
   if (!may_be_missing && sources_given().empty())
     problems.add(fmt::format("pictures: missing: a run needs {}", kSources));
   if (left_.is_given() == right_.is_given()) return;
@@ -46,13 +33,13 @@ void PictureOptions::check_given(Problems& problems, bool may_be_missing) const 
                                 : "--left: missing: goes with --right F");
 }
 
-void PictureOptions::check_usage(Problems& problems) {
+void PictureOptions::check_usage(process::Problems& problems) {
   const std::vector<std::string> given = sources_given();
   if (given.size() > 1) {
     problems.add(fmt::format("{}: a run has one source of pictures: {}", fmt::join(given, ", "), kSources));
   }
-  if (left_.is_given()) pair = {left_.text, right_.text};
-  if (sequence_.is_given()) sequence = sequence_.text;
+  if (left_.is_given()) source.pair = {left_.text, right_.text};
+  if (sequence_.is_given()) source.sequence = sequence_.text;
   check_video(problems);
   check_synthetic(problems);
 }
@@ -66,7 +53,7 @@ std::vector<std::string> PictureOptions::sources_given() const {
   return names;
 }
 
-void PictureOptions::check_video(Problems& problems) {
+void PictureOptions::check_video(process::Problems& problems) {
   const std::string option = "--video-layout";
   if (!video_.is_given()) {
     if (video_layout_.is_given()) problems.add(option + ": goes with --video F [F2]");
@@ -74,11 +61,11 @@ void PictureOptions::check_video(Problems& problems) {
   }
   const std::string& name = video_layout_.text;
   if (!video_layout_.is_given()) {
-    problems.add(
-        fmt::format("{}: missing: goes with --video, one of {}", option, platform::listed(layout_names())));
-  } else if (is_one_of(layout_names(), option, name, problems)) {
-    video = {video_.text, *video_layout_of(name), name};
-    const std::size_t needed = video->layout == VideoLayout::kTwo ? 2 : 1;
+    problems.add(fmt::format("{}: missing: goes with --video, one of {}", option,
+                             platform::listed(runs::video_layout_names())));
+  } else if (is_one_of(runs::video_layout_names(), option, name, problems)) {
+    source.video = {video_.text, *runs::video_layout_of(name), name};
+    const std::size_t needed = source.video->layout == runs::VideoLayout::kTwo ? 2 : 1;
     if (video_.text.size() != needed) {
       problems.add(fmt::format("--video '{}': must name {} with {} {}", fmt::join(video_.text, "' '"),
                                needed == 1 ? "one file" : "two files", option, name));
@@ -86,10 +73,10 @@ void PictureOptions::check_video(Problems& problems) {
   }
 }
 
-void PictureOptions::check_synthetic(Problems& problems) {
+void PictureOptions::check_synthetic(process::Problems& problems) {
   if (!synthetic_.is_given()) return;
-  synthetic = number_of<std::uint64_t>(synthetic_.text);
-  if (!synthetic) {
+  source.synthetic = number_of<std::uint64_t>(synthetic_.text);
+  if (!source.synthetic) {
     problems.add(fmt::format("--synthetic = {}: must be an integer, 0..2^64-1", synthetic_.text));
   }
 }

@@ -5,9 +5,9 @@
 
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
-#include "sw/cli/problems.h"
-#include "sw/cli/python_script.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/problems.h"
+#include "sw/process/python_script.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -58,9 +58,9 @@ struct PlotOptions {
 
 int plot(const PlotOptions& options) {
   try {
-    become_script("plot_all.py", options.arguments());
+    process::become_script("plot_all.py", options.arguments());
   } catch (const std::runtime_error& error) {
-    refuse(error.what());
+    process::refuse(error.what());
   }
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/board_keys.h"
+#include "platform/config/board_keys.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/text.h"
 
@@ -58,7 +58,7 @@ void RunOptions::add_to(CLI::App& command) {
 }
 
 void RunOptions::check_usage() {
-  Problems problems;
+  process::Problems problems;
   unbuilt_.report(problems);
   problems.check();  // what stands in for the pictures may be among them
   board.check_given(problems);
@@ -74,7 +74,7 @@ void RunOptions::check_usage() {
   if (out_.is_given()) out = out_.text;
 }
 
-void RunOptions::check_choices(Problems& problems) {
+void RunOptions::check_choices(process::Problems& problems) {
   if (source_.is_given() && is_one_of(kSources, "--source", source_.text, problems)) {
     camera = source_.text == kSources.front();
   }
@@ -83,7 +83,7 @@ void RunOptions::check_choices(Problems& problems) {
   }
 }
 
-void RunOptions::check_numbers(Problems& problems) {
+void RunOptions::check_numbers(process::Problems& problems) {
   if (frames_.is_given()) {
     const auto number = number_of<std::uint64_t>(frames_.text);
     if (!number || *number == 0) {
@@ -100,9 +100,9 @@ void RunOptions::check_numbers(Problems& problems) {
   }
 }
 
-void RunOptions::check_combinations(Problems& problems) const {
+void RunOptions::check_combinations(process::Problems& problems) const {
   if (truth_scale_.is_given() && !truth_.is_given()) problems.add("--truth-scale: goes with --truth F");
-  if (truth_.is_given() && pictures.synthetic) {
+  if (truth_.is_given() && pictures.source.synthetic) {
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
   }
   for (const auto& [name, given] :

@@ -38,9 +38,9 @@ class RunOptions {
   std::optional<std::string> out;
 
  private:
-  void check_choices(Problems& problems);
-  void check_numbers(Problems& problems);
-  void check_combinations(Problems& problems) const;
+  void check_choices(process::Problems& problems);
+  void check_numbers(process::Problems& problems);
+  void check_combinations(process::Problems& problems) const;
 
   Typed frames_;
   Typed source_;

@@ -13,26 +13,26 @@
 #include <vector>
 
 #include "calib/calibration.h"
-#include "platform/board_draft.h"
+#include "platform/config/board_draft.h"
 #include "sw/cli/add_command.h"
-#include "sw/cli/calibration_input.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/interrupt.h"
-#include "sw/cli/progress.h"
-#include "sw/cli/streams.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/version.h"
-#include "sw/explore/conditions.h"
-#include "sw/explore/plan.h"
-#include "sw/explore/shard_folder.h"
-#include "sw/explore/slurm_sweep.h"
-#include "sw/explore/store.h"
-#include "sw/explore/store_lock.h"
-#include "sw/explore/sweep.h"
-#include "sw/report/replaced_file.h"
-#include "sw/report/whole_file.h"
-#include "sw/simulation/simulate_point.h"
+#include "sw/explore/plan/conditions.h"
+#include "sw/explore/plan/plan.h"
+#include "sw/explore/slurm/shard_folder.h"
+#include "sw/explore/slurm/slurm_sweep.h"
+#include "sw/explore/store/store.h"
+#include "sw/explore/store/store_lock.h"
+#include "sw/explore/sweep/sweep.h"
+#include "sw/files/replaced_file.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/simulate_point.h"
+#include "sw/runs/sources/calibration_input.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -86,7 +86,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 // Whether it is one of --progress, or empty.
 bool is_counts_file(const std::string& path) {
   try {
-    const std::string text = report::read_whole_file(path);
+    const std::string text = files::read_whole_file(path);
     return text.empty() || text == explore::counts_text(explore::read_counts(text));
   } catch (const std::runtime_error&) {
     return false;
@@ -133,11 +133,11 @@ struct SweepCommandOptions {
   std::vector<std::string> sbatch_options;
 
   void check_usage() {
-    Problems problems;
+    process::Problems problems;
     if (!plan.is_given()) problems.add("PLAN: missing: the path of a plan");
     if (!out.is_given()) problems.add("--out: missing: the database to write, or to continue");
     sweep.store = out.text;
-    sweep.version = kVersion;
+    sweep.version = process::kVersion;
     sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
     if (jobs.is_given()) {
       const auto number = number_of<unsigned>(jobs.text);
@@ -164,7 +164,7 @@ struct SweepCommandOptions {
 
  private:
   // It replaces the file: that must be none of a user's.
-  void check_progress(Problems& problems) {
+  void check_progress(process::Problems& problems) {
     for (const auto& [file, name] : {std::pair{&out, "--out"}, {&plan, "PLAN"}, {&known, "--known"}}) {
       if (file->text.empty() || !is_same_file(progress.text, file->text)) continue;
       problems.add(fmt::format("--progress = {}: is the file of {}", progress.text, name));
@@ -180,7 +180,7 @@ struct SweepCommandOptions {
     }
   }
 
-  void check_launcher(Problems& problems) {
+  void check_launcher(process::Problems& problems) {
     const auto refuse_given = [&problems](bool is_given, const char* name, const char* rule) {
       if (is_given) problems.add(fmt::format("{}: {}", name, rule));
     };
@@ -208,7 +208,7 @@ struct SweepCommandOptions {
   }
 
   // What the launcher gives sbatch itself cannot be given.
-  static void check_sbatch(const std::string& option, Problems& problems) {
+  static void check_sbatch(const std::string& option, process::Problems& problems) {
     const std::vector<std::string> own = {"array",  "dependency", "error", "job-name",
                                           "output", "wait",       "wrap"};
     const std::string name = option.substr(0, option.find('='));
@@ -222,7 +222,7 @@ struct SweepCommandOptions {
     }
   }
 
-  void check_shard(Problems& problems) {
+  void check_shard(process::Problems& problems) {
     const std::size_t slash = shard.text.find('/');
     const auto index = number_of<std::uint64_t>(shard.text.substr(0, slash));
     const auto count = slash == std::string::npos
@@ -243,14 +243,14 @@ std::string progress_text(const explore::SweepCounts& counts, std::uint64_t befo
   const double rate = (done - static_cast<double>(before)) / seconds;
   return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
                      100 * done / static_cast<double>(counts.total), rate,
-                     time_text((static_cast<double>(counts.total) - done) / rate));
+                     runs::time_text((static_cast<double>(counts.total) - done) / rate));
 }
 
 explore::Plan load_plan(const SweepCommandOptions& options) {
   try {
     return explore::Plan::load(options.plan.text, options.board.text);
   } catch (const platform::BoardError& error) {
-    Problems problems;
+    process::Problems problems;
     problems.add(error);
     problems.check();
     throw;
@@ -259,18 +259,19 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
 
 // The calibration of all points, if they have one; the plan is given its tables. Refused if no point can have
 // them.
-std::optional<CalibrationInput> load_calibration(const SweepCommandOptions& options, explore::Plan& plan) {
+std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& options,
+                                                     explore::Plan& plan) {
   const bool is_option = !options.calibration.text.empty();
   const std::string path = is_option ? options.calibration.text : plan.calibration();
   if (path.empty()) return std::nullopt;
   const std::string named = is_option
                                 ? "--calibration"
                                 : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
-  Problems problems;
-  auto calibration = load_calibration(path, nullptr, problems, named);
+  process::Problems problems;
+  auto calibration = runs::load_calibration(path, nullptr, problems, named);
   if (calibration) {
     const calib::Rig& rig = calibration->calibration->rig;
-    const auto problem = plan.use_calibration(sha256_of(calibration->tables), rig.width, rig.height);
+    const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height);
     if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
   }
   problems.check();
@@ -309,9 +310,9 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
     text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
     text += reasons(store, "failed") + reasons(store, "impossible");
   }
-  print(text);
+  process::print(text);
   if (counts.done() == counts.total) return kDone;
-  say("note", "interrupted: the same command goes on where this one has ended");
+  process::say("note", "interrupted: the same command goes on where this one has ended");
   return kInterrupted;
 }
 
@@ -330,7 +331,7 @@ std::string kept_text(const std::string& store, const std::string& advice) {
 class ProgressFile {
  public:
   explicit ProgressFile(const std::string& path) : path_(path) {
-    if (!path.empty()) report::remove_left_aside(path);
+    if (!path.empty()) files::remove_left_aside(path);
   }
   void show(const explore::SweepCounts& counts) {
     const auto now = std::chrono::steady_clock::now();
@@ -338,7 +339,7 @@ class ProgressFile {
   }
   void write(const explore::SweepCounts& counts) {
     if (path_.empty()) return;
-    report::replace_file(path_, explore::counts_text(counts));
+    files::replace_file(path_, explore::counts_text(counts));
     next_ = std::chrono::steady_clock::now() + kBetweenCounts;
   }
 
@@ -353,11 +354,12 @@ void check_open_files(std::uint64_t jobs, std::uint64_t points) {
   if (most == workers) return;
   const std::string rule =
       fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): ", jobs);
-  refuse(rule + (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+  process::refuse(rule +
+                  (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
 }
 
 int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
-               const std::optional<CalibrationInput>& calibration) {
+               const std::optional<runs::CalibrationInput>& calibration) {
   check_open_files(options.sweep.jobs, plan.size());
   ProgressFile file(options.progress.text);
   try {
@@ -365,7 +367,7 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
       const explore::FinishedStore known(options.sweep.known, options.sweep.version);
     }
   } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--known {}", error.what()));
+    process::refuse(fmt::format("--known {}", error.what()));
   }
   try {
     const explore::StoreLock lock(options.sweep.store);
@@ -376,14 +378,14 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
     file.write({});
     open_store();  // a new one is made when nothing else is wrong
   } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--out {}", error.what()));
+    process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::system_error& error) {
-    refuse(fmt::format("--progress {}: {}", options.progress.text, error.code().message()));
+    process::refuse(fmt::format("--progress {}: {}", options.progress.text, error.code().message()));
   }
-  catch_interrupts();
-  simulation::PointSimulator simulator =
-      calibration ? simulation::PointSimulator(calibration->tables) : simulation::PointSimulator();
-  ProgressLine progress;
+  process::catch_interrupts();
+  runs::PointSimulator simulator =
+      calibration ? runs::PointSimulator(calibration->tables) : runs::PointSimulator();
+  runs::ProgressLine progress;
   explore::SweepCounts counts;
   try {
     counts = explore::sweep(
@@ -391,7 +393,7 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
         [&progress, &file](const explore::SweepCounts& done) {
           progress.show([&done](double seconds) { return progress_text(done, 0, seconds); });
           file.show(done);
-          return !interrupted();
+          return !process::interrupted();
         });
     progress.erase();
     file.write(counts);
@@ -411,15 +413,14 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
 
 // What tasks on other machines need of the files that the plan is made of.
 explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
-                              const std::optional<CalibrationInput>& calibration) {
+                              const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
-  sweep.plan = report::read_whole_file(plan.path());
-  if (platform::is_board_file(plan.board())) sweep.board = report::read_whole_file(plan.board());
+  sweep.plan = files::read_whole_file(plan.path());
+  if (platform::is_board_file(plan.board())) sweep.board = files::read_whole_file(plan.board());
   if (calibration) {
-    const report::InputCalibration& files = calibration->described;
-    sweep.calibration = {report::read_whole_file(files.file.path),
-                         report::read_whole_file(files.left_lut.path),
-                         report::read_whole_file(files.right_lut.path)};
+    const runs::InputCalibration& files = calibration->described;
+    sweep.calibration = {files::read_whole_file(files.file.path), files::read_whole_file(files.left_lut.path),
+                         files::read_whole_file(files.right_lut.path)};
   }
   sweep.banks = plan.banks();
   sweep.version = options.sweep.version;
@@ -437,36 +438,36 @@ std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t 
 }
 
 int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
-                   const std::optional<CalibrationInput>& calibration) {
-  ProgressLine progress;
+                   const std::optional<runs::CalibrationInput>& calibration) {
+  runs::ProgressLine progress;
   const auto say_note = [&progress](const std::string& note) {
     progress.erase();
-    say("note", note);
+    process::say("note", note);
   };
   const auto opened = [&] {
     try {
       return explore::SlurmSweep(sharded(options, plan, calibration), options.sweep.store,
                                  options.sbatch_options, say_note);
     } catch (const explore::DatabaseError& error) {
-      refuse(fmt::format("--out {}", error.what()));
+      process::refuse(fmt::format("--out {}", error.what()));
     } catch (const std::system_error& error) {
-      refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
+      process::refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
     }
   };
   explore::SlurmSweep sweep = opened();
-  catch_interrupts();
+  process::catch_interrupts();
   try {
     sweep.begin();
   } catch (const explore::DatabaseError& error) {
-    refuse(fmt::format("--out {}", error.what()));
+    process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::exception& error) {
-    refuse(fmt::format("--launcher slurm: {}", error.what()));
+    process::refuse(fmt::format("--launcher slurm: {}", error.what()));
   }
   std::optional<std::uint64_t> before;
   const auto counts = sweep.wait([&](const explore::SlurmProgress& now) {
     if (!before) before = now.counts.done();
     progress.show([&](double seconds) { return progress_text(now, *before, seconds); });
-    return !interrupted();
+    return !process::interrupted();
   });
   progress.erase();
   return report(counts, options);
@@ -474,7 +475,7 @@ int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan
 
 int sweep(const SweepCommandOptions& options) {
   explore::Plan plan = load_plan(options);
-  const auto calibration = load_calibration(options, plan);
+  const auto calibration = calibration_of(options, plan);
   return options.is_slurm ? sweep_on_slurm(options, plan, calibration)
                           : sweep_here(options, plan, calibration);
 }

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <vector>
 
-#include "platform/board_keys.h"
-#include "sw/cli/problems.h"
+#include "platform/config/board_keys.h"
+#include "sw/process/problems.h"
 
 namespace CLI {
 class App;
@@ -54,7 +54,7 @@ std::optional<Number> number_of(std::string_view text) {
 
 // False, and reported, if the text is none of the values.
 inline bool is_one_of(const std::vector<std::string>& values, const std::string& name,
-                      const std::string& text, Problems& problems) {
+                      const std::string& text, process::Problems& problems) {
   if (std::find(values.begin(), values.end(), text) != values.end()) return true;
   problems.add(fmt::format("{} = {}: must be {}", name, text, platform::listed(values)));
   return false;

@@ -22,7 +22,7 @@ std::string UnbuiltOptions::names() const {
   return names;
 }
 
-void UnbuiltOptions::report(Problems& problems) const {
+void UnbuiltOptions::report(process::Problems& problems) const {
   for (const auto& [name, option] : options_) {
     if (option->count() > 0) problems.add(name + ": " + kNotInThisVersion);
   }
@@ -43,7 +43,7 @@ void add_unbuilt_commands(CLI::App& program) {
     CLI::App* command = program.add_subcommand(name)->group("")->prefix_command();
     command->set_help_flag();
     command->preparse_callback(
-        [name](std::size_t /*arguments*/) { refuse(std::string(name) + ": " + kNotInThisVersion); });
+        [name](std::size_t /*arguments*/) { process::refuse(std::string(name) + ": " + kNotInThisVersion); });
   }
 }
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "sw/cli/problems.h"
+#include "sw/process/problems.h"
 
 namespace CLI {
 class App;
@@ -24,7 +24,7 @@ class UnbuiltOptions {
   std::string names() const;
 
   // Names each one that was given.
-  void report(Problems& problems) const;
+  void report(process::Problems& problems) const;
 
  private:
   std::vector<std::pair<std::string, const CLI::Option*>> options_;

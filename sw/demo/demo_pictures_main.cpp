@@ -18,10 +18,10 @@
 #include "calib/lut_file.h"
 #include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
+#include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
 #include "sw/media/panels.h"
-#include "sw/report/whole_file.h"
 
 namespace stereotlm::demo {
 namespace {
@@ -42,7 +42,7 @@ constexpr const char* kUsage =
     "side\n";
 
 void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
-  report::replace_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  files::replace_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 void prepare(const fs::path& source, const fs::path& out) {
@@ -133,9 +133,9 @@ media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int widt
 void depth_montage(const std::vector<std::string>& arguments) {
   const auto picture = media::load_gray(arguments[1]).image;
   const fs::path rig = arguments[2];
-  const calib::Calibration calibration = calib::parse_calibration(report::read_whole_file(rig));
+  const calib::Calibration calibration = calib::parse_calibration(files::read_whole_file(rig));
   const fs::path lut = rig.parent_path() / (rig.stem().string() + "_left.lut");
-  const auto table = calib::parse_lut(report::read_whole_file(lut), picture.width, picture.height);
+  const auto table = calib::parse_lut(files::read_whole_file(lut), picture.width, picture.height);
   const auto disparity = media::load_gray((fs::path(arguments[3]) / "disparity.png").string()).image;
   const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
   const auto depths = calib::depth_millimetres(geometry, disparity);

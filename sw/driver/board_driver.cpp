@@ -1,6 +1,6 @@
 #include "sw/driver/board_driver.h"
 
-#include "platform/frame_buffers.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::driver {
 

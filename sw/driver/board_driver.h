@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
 #include "sw/driver/stereo_driver.h"
 
 namespace stereotlm::driver {

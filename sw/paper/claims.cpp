@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "sw/explore/area_fit.h"
+#include "sw/paper/area_fit.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -78,7 +78,7 @@ Claim table2_size() {
                  {Relation::kWithin, kSizePoints, "percentage point"},
                  kSizeHalfDigit,
                  {}};
-  for (const explore::PrintedArea& row : explore::table_2()) {
+  for (const PrintedArea& row : table_2()) {
     claim.cases.push_back({fmt::format("{} disparities", row.core.disparities),
                            row.slices_percent,
                            {{kBoard, {disparities_key(row.core.disparities)}, false}}});
@@ -94,7 +94,7 @@ Claim table2_rate() {
                  {Relation::kWithinPercent, kRatePercent, ""},
                  kTable1HalfDigit,
                  {}};
-  for (const explore::PrintedArea& row : explore::table_2()) {
+  for (const PrintedArea& row : table_2()) {
     claim.cases.push_back(
         {fmt::format("{} disparities", row.core.disparities),
          kTable2Rate,

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "models/area/area.h"
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 
 namespace stereotlm::paper {
 namespace {

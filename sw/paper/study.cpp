@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "platform/board_rules.h"
-#include "platform/board_yaml.h"
-#include "sw/explore/allocation_run.h"
-#include "sw/explore/allocation_search.h"
-#include "sw/explore/knobs.h"
-#include "sw/report/temporary_folder.h"
+#include "platform/config/board_rules.h"
+#include "platform/config/board_yaml.h"
+#include "sw/explore/plan/knobs.h"
+#include "sw/explore/search/allocation_run.h"
+#include "sw/explore/search/allocation_search.h"
+#include "sw/files/temporary_folder.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -125,7 +125,7 @@ class BankSearch {
 
   // False if it was ended.
   bool simulate(Count& count) {
-    const report::TemporaryFolder folder;
+    const files::TemporaryFolder folder;
     explore::SweepOptions sweep;
     sweep.store = (folder.path() / "allocations.db").string();
     sweep.version = means_.version;

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
 #include "platform/statistics.h"
-#include "sw/explore/batch.h"
+#include "sw/explore/slurm/batch.h"
 #include "sw/paper/claims.h"
 
 namespace stereotlm::paper {

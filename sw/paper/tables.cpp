@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "sw/paper/document.h"
 
 namespace stereotlm::paper {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
 #include "sw/report/pixel_comparison.h"
 #include "sw/report/row_comparison.h"

@@ -27,9 +27,9 @@ RowsCsv::RowsCsv(const std::filesystem::path& path) : path_(path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (std::filesystem::is_directory(status)) refuse("is a folder");
   if (!std::filesystem::status_known(status)) refuse("cannot be written: " + error.message());
-  remove_left_aside(path);
+  files::remove_left_aside(path);
   try {
-    file_ = std::make_unique<ReplacedFile>(path);
+    file_ = std::make_unique<files::ReplacedFile>(path);
     file_->write(head());
   } catch (const std::system_error& failure) {
     refuse("cannot be written: " + failure.code().message());

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "models/fpga/row_profile.h"
-#include "sw/report/replaced_file.h"
+#include "sw/files/replaced_file.h"
 
 namespace stereotlm::report {
 
@@ -25,7 +25,7 @@ class RowsCsv {
   [[noreturn]] void refuse(const std::string& cause) const;
 
   std::filesystem::path path_;
-  std::unique_ptr<ReplacedFile> file_;
+  std::unique_ptr<files::ReplacedFile> file_;
   std::uint64_t frame_ = 0;
 };
 

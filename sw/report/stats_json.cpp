@@ -1,6 +1,6 @@
 #include "sw/report/stats_json.h"
 
-#include "sw/report/json_text.h"
+#include "sw/files/json_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -129,7 +129,7 @@ Json stats_document(const platform::Statistics& statistics, const std::optional<
 }
 
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
-  return json_text(stats_document(statistics, accuracy));
+  return files::json_text(stats_document(statistics, accuracy));
 }
 
 }  // namespace stereotlm::report

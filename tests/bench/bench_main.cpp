@@ -20,10 +20,10 @@
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
 #include "models/kernels/stereo_pipeline.h"
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
+#include "sw/process/child.h"
 #include "sw/report/stats_json.h"
-#include "sw/simulation/child.h"
-#include "sw/simulation/make_simulation.h"
+#include "sw/runs/simulation/make_simulation.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
 
@@ -144,13 +144,12 @@ void start(benchmark::State& state, const host::StereoPair& pair) {
 // A point of a sweep: a child of this process simulates a frame without pixels, and tells its statistics.
 void run_point(benchmark::State& state, const std::vector<std::string>& sets, bool camera) {
   for (auto _ : state) {
-    simulation::Child child([&](const simulation::Child::Tell& tell) {
+    process::Child child([&](const process::Child::Tell& tell) {
       const platform::BoardConfig board = platform::load_board("fpl2003", sets);
       const platform::Tables tables = platform::identity_tables(board);
-      simulation::BlankPairs pairs(board);
+      runs::BlankPairs pairs(board);
       Binder binder;
-      const auto run =
-          simulation::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
+      const auto run = runs::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
       while (!run->finished()) run->advance();
       tell(report::stats_json(run->statistics(), std::nullopt));
     });

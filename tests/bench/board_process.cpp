@@ -14,9 +14,9 @@
 #include <system_error>
 #include <systemc>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
-#include "sw/simulation/make_simulation.h"
+#include "sw/runs/simulation/make_simulation.h"
 
 namespace stereotlm::bench {
 namespace {
@@ -41,7 +41,7 @@ class SteppedBoard {
       : config_(platform::load_board(setting.board, setting.sets)),
         tables_(setting.tables != nullptr ? *setting.tables : platform::identity_tables(config_)),
         pair_(pair),
-        simulation_(simulation::make_simulation(
+        simulation_(runs::make_simulation(
             config_, tables_, pair_,
             {setting.camera, setting.fidelity, std::numeric_limits<std::uint64_t>::max()}, binder_)) {
     if (setting.fidelity == fpga::Fidelity::kCycle) sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -69,7 +69,7 @@ class SteppedBoard {
   platform::Tables tables_;
   OnePair pair_;
   Binder binder_;
-  std::unique_ptr<simulation::Simulation> simulation_;
+  std::unique_ptr<runs::Simulation> simulation_;
 };
 
 // Until the parent wants no more frames.

@@ -7,7 +7,7 @@
 
 #include "models/fpga/stereo_core.h"
 #include "models/host/frame_source.h"
-#include "platform/tables.h"
+#include "platform/config/tables.h"
 
 namespace stereotlm::bench {
 

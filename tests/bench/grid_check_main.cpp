@@ -10,9 +10,9 @@
 #include "calib/calibration_reader.h"
 #include "calib/grid.h"
 #include "calib/grid_assessment.h"
+#include "sw/files/whole_file.h"
 #include "sw/media/load.h"
-#include "sw/report/result_folder.h"
-#include "sw/report/whole_file.h"
+#include "sw/runs/result_folder.h"
 
 namespace stereotlm::bench {
 namespace {
@@ -57,7 +57,7 @@ void add(calib::Deviations& all, const calib::Deviations& more) {
 }
 
 void run(const std::string& rig, const std::filesystem::path& result) {
-  const calib::Calibration calibration = calib::parse_calibration(report::read_whole_file(rig));
+  const calib::Calibration calibration = calib::parse_calibration(files::read_whole_file(rig));
   calib::GridAssessment all;
   Json pairs = Json::array();
   for (std::size_t i = 0; i < calibration.sources.size(); ++i) {
@@ -65,7 +65,7 @@ void run(const std::string& rig, const std::filesystem::path& result) {
     calib::GridPair corners = {corners_in(source.left, calibration.grid),
                                corners_in(source.right, calibration.grid)};
     corners.right = calib::ordered_like(corners.left, calibration.grid, corners.right);
-    const auto disparity = media::load_gray((result / report::frame_file_name(i)).string()).image;
+    const auto disparity = media::load_gray((result / runs::frame_file_name(i)).string()).image;
     const calib::GridAssessment found = calib::assess(calibration, corners, disparity);
     pairs.push_back(to_json(std::filesystem::path(source.left).filename(), found));
     all.corners += found.corners;

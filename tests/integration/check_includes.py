@@ -18,6 +18,26 @@ MAY_INCLUDE = {
     "sw": ["sw", "platform", "models", "calib"],
     "tests": ["tests", "sw", "platform", "models", "calib"],
 }
+# The same within a folder: room -> rooms below it in the same folder. A file belongs to the longest room that its
+# path begins with.
+ROOMS = {
+    "platform/config": ["platform/boards"],
+    "platform": ["platform/config"],
+    "sw/files": [],
+    "sw/driver": [],
+    "sw/media": [],
+    "sw/process": [],
+    "sw/report": ["sw/files", "sw/media"],
+    "sw/explore/store": ["sw/files"],
+    "sw/explore/plan": ["sw/explore/store", "sw/files"],
+    "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/process"],
+    "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep"],
+    "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
+    "sw/paper": ["sw/explore", "sw/files"],
+    "sw/runs": ["sw/driver", "sw/explore", "sw/files", "sw/media", "sw/process", "sw/report"],
+    "sw/demo": ["sw/files", "sw/media"],
+    "sw/cli": ["sw"],
+}
 SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
 HEADER_SUFFIXES = {".h", ".hpp"}
 
@@ -30,7 +50,7 @@ FILES_OR_YAML = re.compile(r"(fstream|filesystem|(yaml-cpp|nlohmann)/.*)$")
 FREE_OF = [
     (re.compile(r"models/(kernels|area)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/.*(_config|register_map|registers)\.h$"), SYSTEMC, "SystemC"),
-    (re.compile(r"(sw/explore|sw/driver|calib)/"), SYSTEMC, "SystemC"),
+    (re.compile(r"(sw/(driver|explore|files|media|paper|process|report)|calib)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
     (re.compile(r"(models|platform)/"), EIGEN, "Eigen"),
     (re.compile(r"models/"), FILES_OR_YAML, "YAML or files"),
@@ -75,8 +95,21 @@ def folder_of(path):
     return path.split("/", 1)[0]
 
 
+def is_in(path, folder):
+    return path.startswith(folder + "/")
+
+
+def room_of(path):
+    return max((room for room in ROOMS if is_in(path, room)), key=len, default=None)
+
+
 def allowed(includer, included):
-    return any(included.startswith(folder + "/") for folder in MAY_INCLUDE[folder_of(includer)])
+    if not any(is_in(included, folder) for folder in MAY_INCLUDE[folder_of(includer)]):
+        return False
+    room = room_of(includer)
+    if room is None or folder_of(included) != folder_of(includer) or room_of(included) == room:
+        return True
+    return any(is_in(included, below) for below in ROOMS[room])
 
 
 def check_includes(file, files):
@@ -85,7 +118,7 @@ def check_includes(file, files):
             if not quoted:
                 yield line, f"<{path}>: a header of the project is included with quotes"
             if not allowed(file.path, path):
-                yield line, f'"{path}": {folder_of(file.path)} may not include it'
+                yield line, f'"{path}": {room_of(file.path) or folder_of(file.path)} may not include it'
         elif quoted:
             yield line, f'"{path}": no such file below the repository root'
         elif folder_of(path) in MAY_INCLUDE:

@@ -58,6 +58,23 @@ class CheckIncludes(unittest.TestCase):
             "models/a.cpp", '\n#include "platform/board_config.h"\n', "models/a.cpp:2: \"platform/board"
         )
 
+    def test_finds_a_room_that_includes_one_above_it(self):
+        for includer, included, finding in (
+            ("platform/config/a.h", "platform/board.h", "platform/config may not include it"),
+            ("sw/explore/store/a.h", "sw/explore/plan.h", "sw/explore/store may not include it"),
+            ("sw/driver/a.h", "sw/explore/plan.h", "sw/driver may not include it"),
+        ):
+            with self.subTest(includer):
+                self.expect_only(includer, f'#pragma once\n#include "{included}"\n', finding)
+                (self.root / includer).unlink()
+
+    def test_lets_a_room_include_those_below_it(self):
+        self.write("sw/files/a.h", "#pragma once\n")
+        self.write("sw/explore/store/b.h", '#pragma once\n#include "sw/files/a.h"\n')
+        self.write("sw/runs/sources/c.h", '#pragma once\n#include "sw/explore/store/b.h"\n')
+        self.write("sw/cli/d.h", '#pragma once\n#include "sw/runs/sources/c.h"\n')
+        self.assertEqual(self.findings(), [])
+
     def test_finds_models_that_include_sw(self):
         self.expect_only("models/a.cpp", '#include "sw/explore/plan.h"\n', "models may not include it")
 

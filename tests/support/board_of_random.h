@@ -1,8 +1,8 @@
 #pragma once
 
 #include "models/host/frame_source.h"
-#include "platform/board_config.h"
-#include "platform/tables.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "tests/support/plain_cycle_loop.h"
 #include "tests/support/random_board.h"
 #include "tests/support/random_computer.h"

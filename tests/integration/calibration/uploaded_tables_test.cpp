@@ -10,9 +10,9 @@
 #include "calib/tables.h"
 #include "models/kernels/stereo.h"
 #include "models/pci/bridge_registers.h"
-#include "platform/board_yaml.h"
 #include "platform/computer.h"
-#include "platform/frame_buffers.h"
+#include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/driver/board_driver.h"
 #include "tests/support/monitoring_binder.h"
 

@@ -16,7 +16,7 @@
 
 #include "calib/calibration_yaml.h"
 #include "calib/synthetic_rig.h"
-#include "sw/report/folder_entries.h"
+#include "sw/files/folder_entries.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
@@ -128,7 +128,7 @@ class CalibrationOutputTest : public ::testing::Test {
   Files files() const {
     Files files;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-      if (report::is_file(entry.path()))
+      if (files::is_file(entry.path()))
         files[entry.path().lexically_relative(folder_)] = test::read_file(entry.path());
     }
     EXPECT_EQ(files["other_left.lut"], "precious");

@@ -10,7 +10,7 @@
 
 #include "models/fpga/core_control.h"
 #include "models/kernels/stereo.h"
-#include "platform/tables.h"
+#include "platform/config/tables.h"
 #include "sw/driver/board_driver.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/noise_picture.h"

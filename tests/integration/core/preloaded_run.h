@@ -7,9 +7,9 @@
 
 #include "models/fpga/stereo_core.h"
 #include "models/host/frame_source.h"
-#include "platform/board_config.h"
+#include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "platform/tables.h"
 #include "tests/support/plain_cycle_loop.h"
 
 namespace stereotlm::test {

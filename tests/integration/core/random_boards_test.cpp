@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "platform/core_run.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"

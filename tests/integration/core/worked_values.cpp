@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "models/kernels/stereo.h"
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/random_board.h"
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <tuple>
 
-#include "platform/area.h"
 #include "platform/bounds.h"
+#include "platform/config/board_area.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/unit/platform/preloaded_run.h"
 

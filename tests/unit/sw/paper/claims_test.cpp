@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "platform/board_yaml.h"
+#include "platform/config/board_yaml.h"
 
 namespace stereotlm::paper {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "platform/board_rules.h"
+#include "platform/config/board_rules.h"
 
 namespace stereotlm::paper {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "sw/report/whole_file.h"
+#include "sw/files/whole_file.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/scratch_folder.h"
 
@@ -30,11 +30,11 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
   csv.add({{9, {}}, {18, {}}}, {{9, {}}, {18, {}}});
   EXPECT_FALSE(std::filesystem::exists(path));
   csv.commit();
-  EXPECT_EQ(read_whole_file(path), std::string(kHead) +
-                                       "0,0,10,11,1,2,3,4,5,0,0,0,0,0\n"
-                                       "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
-                                       "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
-                                       "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(files::read_whole_file(path), std::string(kHead) +
+                                              "0,0,10,11,1,2,3,4,5,0,0,0,0,0\n"
+                                              "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
+                                              "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
+                                              "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
   EXPECT_EQ(files_in(folder), 1);
 }
 
@@ -43,7 +43,7 @@ TEST(RowsCsv, LeavesTheFileAsItWasWithoutCommit) {
   const auto path = folder.path() / "rows.csv";
   test::write_file(path, "before");
   { const RowsCsv csv(path); }
-  EXPECT_EQ(read_whole_file(path), "before");
+  EXPECT_EQ(files::read_whole_file(path), "before");
   EXPECT_EQ(files_in(folder), 1);
 }
 
@@ -51,9 +51,9 @@ TEST(RowsCsv, LeavesFilesOfOtherNamesAlone) {
   const test::ScratchFolder folder;
   const auto other = test::write_file(folder.path() / "rows.csv.part", "precious");
   RowsCsv csv(folder.path() / "rows.csv");
-  EXPECT_EQ(read_whole_file(other), "precious");
+  EXPECT_EQ(files::read_whole_file(other), "precious");
   csv.commit();
-  EXPECT_EQ(read_whole_file(other), "precious");
+  EXPECT_EQ(files::read_whole_file(other), "precious");
   EXPECT_EQ(files_in(folder), 2);
 }
 

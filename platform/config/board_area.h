@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "models/area/area.h"
+#include "platform/config/board_config.h"
+
+namespace stereotlm::platform {
+
+// The FPGA of this board. Throws std::invalid_argument if it is not a known one.
+const area::Device& device_of(const BoardConfig& board);
+
+// What the core of this board takes of its FPGA, kind by kind and all in all. No simulation is needed. Throws
+// std::invalid_argument if the board has problems.
+std::vector<area::Item> area_items(const BoardConfig& board);
+area::Area area_of(const BoardConfig& board);
+
+}  // namespace stereotlm::platform

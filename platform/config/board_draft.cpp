@@ -1,0 +1,299 @@
+#include "platform/config/board_draft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "platform/config/board_keys.h"
+#include "platform/config/board_reader.h"
+#include "platform/config/text_file.h"
+
+namespace stereotlm::platform {
+namespace {
+
+[[noreturn]] void fail(std::string place, std::string text) {
+  throw BoardError({{std::move(place), std::move(text)}});
+}
+
+// Puts what `base` has and `own` leaves out into `own`, map by map.
+void merge_into(YamlNode& own, const YamlNode& base, const std::string& path) {
+  constexpr std::array<std::string_view, 2> kTakenWhole = {"ssram.banks", "matcher.filter"};
+  const bool is_whole = std::find(kTakenWhole.begin(), kTakenWhole.end(), path) != kTakenWhole.end();
+  if (!own.is_map() || !base.is_map() || is_whole) return;
+  for (const YamlNode::Entry& entry : base.entries) {
+    if (YamlNode::Entry* mine = own.find(entry.key.text)) {
+      merge_into(mine->value, entry.value, path.empty() ? entry.key.text : path + '.' + entry.key.text);
+    } else {
+      own.entries.push_back(entry);
+    }
+  }
+}
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+    parts.push_back(path.substr(begin, dot - begin));
+    begin = dot + 1;
+  }
+  parts.push_back(path.substr(begin));
+  return parts;
+}
+
+// Why nothing can be put at the path of the tree; empty if it can.
+std::string way_problem(const YamlNode& tree, const std::string& path) {
+  const YamlNode* at = &tree;
+  std::string passed;
+  for (const std::string& part : parts_of(path)) {
+    if (!at->is_map()) return fmt::format("{} is not a map here; set it as a whole", passed);
+    const YamlNode::Entry* const entry = at->find(part);
+    if (entry == nullptr) break;
+    at = &entry->value;
+    passed += (passed.empty() ? "" : ".") + part;
+  }
+  return "";
+}
+
+// Puts the value at the path into the tree. If that cannot be, returns way_problem().
+std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
+  YamlNode* at = &tree;
+  YamlNode::Entry* entry = nullptr;
+  for (const std::string& part : parts_of(path)) {
+    if (!at->is_map()) return way_problem(tree, path);
+    entry = at->find(part);
+    if (entry == nullptr) {
+      YamlNode key;
+      key.kind = YamlNode::Kind::kScalar;
+      key.text = part;
+      key.place = place;
+      YamlNode map;
+      map.kind = YamlNode::Kind::kMap;
+      map.place = place;
+      at->entries.push_back({std::move(key), std::move(map)});
+      entry = &at->entries.back();
+    }
+    at = &entry->value;
+  }
+  entry->key.place = place;
+  entry->value = std::move(value);
+  return "";
+}
+
+// Replaces the findings of missing keys by a single one if most keys are missing: the writer meant to extend
+// a preset.
+void say_what_to_extend(std::vector<Finding>& findings) {
+  const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
+  std::size_t missing = 0;
+  for (const Finding& finding : findings) {
+    if (is_missing(finding)) missing += required_count(finding.missing);
+  }
+  const std::size_t all = required_count("");
+  if (2 * missing <= all) return;
+  findings.erase(std::remove_if(findings.begin(), findings.end(), is_missing), findings.end());
+  const std::string text = fmt::format(
+      "{} of the {} keys of a board are missing: begin the file with `extends: {}`, which supplies them",
+      missing, all, preset_names().front());
+  findings.insert(findings.begin(), Finding({Place::kBoard, 1, 1}, text));
+}
+
+void set_source(YamlNode& node, int source) {
+  node.place.source = source;
+  for (YamlNode& item : node.items) set_source(item, source);
+  for (YamlNode::Entry& entry : node.entries) {
+    set_source(entry.key, source);
+    set_source(entry.value, source);
+  }
+}
+
+}  // namespace
+
+std::string path_problem(const std::string& path) {
+  if (path == "extends") return "extends stands in the board file";
+  std::string schema;
+  for (const std::string& part : parts_of(path)) {
+    const std::vector<std::string> known = child_keys(schema);
+    if (known.empty()) return fmt::format("{} has no keys below it", schema);
+    const bool is_bank = schema == "ssram.banks" && !part.empty();
+    if (!is_bank && std::find(known.begin(), known.end(), part) == known.end()) {
+      return unknown_key_text(path);
+    }
+    schema += (schema.empty() ? "" : ".") + (is_bank ? "NAME" : part);
+  }
+  return "";
+}
+
+bool is_board_file(const std::string& board) {
+  const std::string ending = ".yaml";
+  return board.find('/') != std::string::npos ||
+         (board.size() >= ending.size() &&
+          board.compare(board.size() - ending.size(), ending.size(), ending) == 0);
+}
+
+BoardDraft::BoardDraft(const std::string& board) {
+  std::string text;
+  if (is_board_file(board)) {
+    board_name_ = board;
+    text = read_text_file(board, "board file");
+  } else {
+    const std::vector<std::string> names = preset_names();
+    if (std::find(names.begin(), names.end(), board) == names.end()) {
+      fail(board.empty() ? "(empty)" : board,
+           fmt::format("not a preset, and not a path, which has a / or ends in .yaml{}; presets: {}",
+                       nearest_text(board, names), listed(names)));
+    }
+    board_name_ = "preset " + board;
+    text = preset_text(board);
+  }
+  try {
+    tree_ = parse_yaml(text, Place::kBoard);
+  } catch (const YamlError& error) {
+    fail(text_of(error.place), error.what());
+  }
+  resolve_extends();
+}
+
+// The presets are files of this project, without errors.
+BoardDraft BoardDraft::of_preset(std::string_view name) {
+  BoardDraft draft;
+  draft.tree_ = parse_yaml(std::string(preset_text(name)), Place::kPreset);
+  draft.resolve_extends();
+  return draft;
+}
+
+// Takes `extends` out of the tree and puts in what the preset supplies.
+void BoardDraft::resolve_extends() {
+  const auto is_extends = [](const YamlNode::Entry& entry) {
+    return entry.key.is_scalar() && entry.key.text == "extends";
+  };
+  const auto report = [this](const Place& place, const YamlNode& value, const std::string& rule) {
+    findings_.emplace_back(place, fmt::format("extends = {}: {}", short_text(value), rule));
+  };
+  std::optional<YamlNode> base;
+  for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
+    const YamlNode::Entry& entry = tree_.entries[i];
+    if (!is_extends(entry)) continue;
+    has_extends_ = true;
+    if (base || !is_whole_) {
+      report(entry.key.place, entry.value, "repeated key");
+      continue;
+    }
+    if (i > 0) report(entry.key.place, entry.value, "extends must be the first key");
+    const YamlNode& value = entry.value;
+    const std::vector<std::string> names = preset_names();
+    const bool is_known =
+        value.is_scalar() && std::find(names.begin(), names.end(), value.text) != names.end();
+    const std::string& misuse = entry.key.misuse.empty() ? value.misuse : entry.key.misuse;
+    if (!misuse.empty()) {
+      report(value.place, value, misuse);
+    } else if (!is_known) {
+      report(value.place, value,
+             fmt::format("not a preset{}; presets: {}", nearest_text(value.text, names), listed(names)));
+    }
+    if (is_known) base = of_preset(value.text).tree_;
+    is_whole_ = is_known;
+  }
+  tree_.entries.erase(std::remove_if(tree_.entries.begin(), tree_.entries.end(), is_extends),
+                      tree_.entries.end());
+  if (base) merge_into(tree_, *base, "");
+}
+
+void BoardDraft::set(const std::string& assignment) {
+  if (!tree_.is_map()) return;  // as read() says
+  const std::size_t equals = assignment.find('=');
+  const std::string path = assignment.substr(0, equals);
+  const std::string name = "--set " + path;
+  const Place place = next_place();
+  const bool is_repeated = std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) {
+    return !source.has_lines && source.name == name;
+  });
+  sources_.push_back({name, false});
+  const auto report = [&](const std::string& rule) {
+    YamlNode value;
+    value.kind = YamlNode::Kind::kScalar;
+    value.text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
+    findings_.emplace_back(place, fmt::format("{} = {}: {}", path, short_text(value), rule));
+  };
+  if (equals == std::string::npos) return report("--set needs path=value");
+  if (const std::string problem = path_problem(path); !problem.empty()) return report(problem);
+  if (is_repeated) return report("the same path was set before");
+  try {
+    const std::string problem =
+        put(tree_, path, parse_flow_value(assignment.substr(equals + 1), place.source), place);
+    if (!problem.empty()) report(problem);
+  } catch (const YamlError& error) {
+    report(error.what());
+  }
+}
+
+void BoardDraft::replace(const std::string& path, YamlNode value, const std::string& file) {
+  if (!tree_.is_map()) return;  // as read() says
+  set_source(value, next_place().source);
+  const Place place = value.place;
+  sources_.push_back({file, true});
+  const std::string text = short_text(value);
+  std::string problem = path_problem(path);
+  if (problem.empty()) problem = put(tree_, path, std::move(value), place);
+  if (!problem.empty()) findings_.emplace_back(place, fmt::format("{} = {}: {}", path, text, problem));
+}
+
+// Reads a tree that holds this value alone. A missing key is a problem of the value only if it belongs inside
+// it.
+std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const YamlNode& value,
+                                                const std::string& file) const {
+  std::vector<Finding> findings;
+  std::string problem = path_problem(path);
+  if (problem.empty()) problem = way_problem(tree_, path);
+  if (problem.empty()) {
+    YamlNode alone;
+    alone.kind = YamlNode::Kind::kMap;
+    put(alone, path, value, value.place);
+    read_board(alone, value.is_map(), findings);
+  } else {
+    findings.emplace_back(value.place, fmt::format("{} = {}: {}", path, short_text(value), problem));
+  }
+  std::vector<Diagnostic> problems;
+  for (Finding& finding : findings) {
+    const bool is_outside = finding.missing.compare(0, path.size() + 1, path + '.') != 0;
+    if (!finding.missing.empty() && (is_outside || finding.is_between_keys)) continue;
+    problems.push_back({fmt::format("{}:{}:{}", file, finding.place.line, finding.place.column),
+                        std::move(finding.text), false});
+  }
+  return problems;
+}
+
+BoardConfig BoardDraft::read() const {
+  Reading reading = read_with_problems();
+  if (!reading.problems.empty()) throw BoardError(std::move(reading.problems));
+  return std::move(reading.board);
+}
+
+BoardDraft::Reading BoardDraft::read_with_problems() const {
+  std::vector<Finding> findings = findings_;
+  Reading reading{read_board(tree_, is_whole_, findings), {}};
+  if (!has_extends_) say_what_to_extend(findings);
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.place.source, a.place.line, a.place.column) <
+           std::tie(b.place.source, b.place.line, b.place.column);
+  });
+  reading.problems.reserve(findings.size());
+  for (Finding& finding : findings) {
+    reading.problems.push_back({text_of(finding.place), std::move(finding.text), finding.is_between_keys});
+  }
+  return reading;
+}
+
+std::string BoardDraft::text_of(const Place& place) const {
+  std::string name = place.source == Place::kBoard ? board_name_ : "preset";
+  if (place.source >= Place::kFirstSet) {
+    const Source& source = sources_[static_cast<std::size_t>(place.source - Place::kFirstSet)];
+    if (!source.has_lines) return source.name;
+    name = source.name;
+  }
+  return fmt::format("{}:{}:{}", name, place.line, place.column);
+}
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "models/kernels/integer_rule.h"
+#include "platform/config/board_config.h"
+
+namespace stereotlm::platform {
+
+using kernels::IntegerRule;
+
+// What a board file may hold: every key with its rule, once. The reader, the writer, the checks of a
+// BoardConfig and the `keys` command all work from this table. The fields of the keys below `pci.load` are
+// those of a load: on a board without one they throw std::bad_optional_access.
+struct IntegerKey {
+  IntegerRule rule;
+  int& (*field)(BoardConfig&);
+};
+
+struct DecimalKey {
+  double min;
+  double max;
+  double& (*field)(BoardConfig&);
+
+  bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
+};
+
+// One of a few words, by its index. `get` returns a value outside the list if the board's is none of them;
+// `text` is the board's value for messages.
+struct WordKey {
+  std::vector<std::string> words;
+  int (*get)(const BoardConfig&);
+  void (*set)(BoardConfig&, int);
+  std::string (*text)(const BoardConfig&);
+};
+
+// A key with code of its own in the reader and the writer.
+struct OtherKey {
+  std::optional<IntegerRule> numbers;  // those that it takes, if it takes any
+};
+
+struct Key {
+  std::string path;     // dotted; NAME stands for the name of a bank
+  std::string meaning;  // one line
+  std::string unit;     // empty: none
+  std::variant<IntegerKey, DecimalKey, WordKey, OtherKey> rule;
+  std::string rule_text;     // the range or the allowed values
+  bool is_optional = false;  // its map may lack it
+};
+
+// In the order in which boards are written.
+const std::vector<Key>& board_keys();
+const Key& board_key(std::string_view path);  // throws std::out_of_range
+
+// The names of the keys directly below a path ("" is the top), in order; empty below a single value.
+const std::vector<std::string>& child_keys(std::string_view path);
+
+// Those of child_keys() that are not optional.
+const std::vector<std::string>& required_keys(std::string_view path);
+
+// How many keys a board needs at the path or below it; 1 for the banks. "" is all of them.
+std::size_t required_count(std::string_view path);
+
+// The rule of a key, or for a map what it holds: "a map of width, height".
+std::string rule_text(std::string_view path);
+
+// What a message says of a path that is not known: "unknown key; nearest known key: PATH", or that none is
+// near.
+std::string unknown_key_text(const std::string& path);
+
+// "; nearest: WORD" with the nearest of `words` by edit distance, the first of equals; empty if none is near.
+std::string nearest_text(std::string_view word, const std::vector<std::string>& words);
+
+// `path` with NAME for the name of a bank: `ssram.banks.bank0.words` is `ssram.banks.NAME.words`.
+std::string schema_path(const std::string& path);
+
+// "a, b or c".
+std::string listed(const std::vector<std::string>& words);
+
+inline constexpr std::size_t kMaximumBuffers = 3;  // of an image or disparity list
+inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
+
+// The names of the kinds of banks in board files, in the order of memory::BankKind.
+const std::vector<std::string>& bank_kind_names();
+// "sync_burst": the kinds of banks that have turnaround.
+std::string turnaround_kinds();
+
+bool is_bank_name(std::string_view name);
+bool is_board_name(std::string_view name);  // UTF-8, not empty, without control characters
+
+}  // namespace stereotlm::platform

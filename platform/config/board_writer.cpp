@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "platform/config/board_keys.h"
+#include "platform/config/board_rules.h"
+#include "platform/config/board_yaml.h"
+#include "platform/config/value_reader.h"
+#include "platform/config/yaml_values.h"
+
+namespace stereotlm::platform {
+namespace {
+
+std::string banks_text(std::vector<std::string> banks) {
+  for (std::string& bank : banks) bank = scalar_text(bank);
+  return list_text(banks);
+}
+
+std::vector<std::string> filter_rows(const kernels::FilterKernel& filter) {
+  std::vector<std::string> rows;
+  for (int row = 0; row < filter.size; ++row) {
+    std::vector<std::string> weights;
+    weights.reserve(static_cast<std::size_t>(filter.size));
+    for (int column = 0; column < filter.size; ++column) {
+      weights.push_back(std::to_string(filter.weight(column, row)));
+    }
+    rows.push_back(list_text(weights));
+  }
+  return rows;
+}
+
+std::string filter_text(const kernels::FilterKernel& filter) {
+  if (filter == kernels::log7()) return "log7";
+  const std::vector<std::string> rows = filter_rows(filter);
+  return fmt::format("\n    kernel:\n      - {}\n    shift: {}", fmt::join(rows, "\n      - "), filter.shift);
+}
+
+std::string filter_flow_text(const kernels::FilterKernel& filter) {
+  if (filter == kernels::log7()) return "log7";
+  return fmt::format("{{kernel: {}, shift: {}}}", list_text(filter_rows(filter)), filter.shift);
+}
+
+class BoardWriter {
+ public:
+  explicit BoardWriter(const BoardConfig& board) : board_(board), writable_(board) {}
+
+  std::string write() {
+    write_children("", "");
+    return std::move(out_);
+  }
+
+  std::vector<BoardValue> values() {
+    for (const Key& key : board_keys()) {
+      if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0) continue;  // told by others
+      if (key.path.find("pci.load.") == 0 && !board_.pci.load) continue;
+      if (key.path.find("ssram.") == 0) continue;
+      values_.push_back({key.path, std::visit([&](const auto& rule) { return value(key, rule); }, key.rule)});
+    }
+    for (const BankConfig& bank : board_.banks) {
+      const std::string path = below("ssram.banks", bank.name);
+      values_.push_back({path + ".words", std::int64_t{bank.words}});
+      values_.push_back({path + ".kind", memory::traits_of(bank.kind).name});
+      values_.push_back({path + ".turnaround_cycles", std::int64_t{bank.turnaround_cycles}});
+    }
+    return std::move(values_);
+  }
+
+ private:
+  using Value = decltype(BoardValue::value);
+
+  Value value(const Key&, const IntegerKey& integer) { return std::int64_t{integer.field(writable_)}; }
+  Value value(const Key&, const DecimalKey& decimal) { return decimal.field(writable_); }
+  Value value(const Key& key, const WordKey& word) { return value_text(key, word); }
+  Value value(const Key& key, const OtherKey& other) {
+    if (key.path == "name") return board_.name;
+    if (key.path == "allocation.left_lut") return board_.allocation.left_lut.value_or("none");
+    if (key.path == "allocation.right_lut") return board_.allocation.right_lut.value_or("none");
+    if (key.path == "matcher.filter")
+      return board_.matcher.filter ? filter_flow_text(*board_.matcher.filter) : "none";
+    if (key.path == "matcher.lr_tolerance") {
+      if (const auto& tolerance = board_.matcher.lr_tolerance) return std::int64_t{*tolerance};
+      return "off";
+    }
+    return value_text(key, other);
+  }
+
+  void write_children(const std::string& path, const std::string& indent) {
+    for (const std::string& name : child_keys(path)) {
+      const std::string full = below(path, name);
+      if (full == "pci.load" && !board_.pci.load) continue;
+      out_ += fmt::format("{}{}:", indent, name);
+      if (full == "matcher.filter") {
+        write_line(board_.matcher.filter ? filter_text(*board_.matcher.filter) : "\"none\"");
+      } else if (full == "ssram.default") {
+        write_line(default_text());
+      } else if (full == "ssram.banks") {
+        out_ += '\n';
+        for (const BankConfig& bank : board_.banks) {
+          out_ += fmt::format("{}  {}: {}\n", indent, scalar_text(bank.name), bank_text(bank));
+        }
+      } else if (!child_keys(full).empty()) {
+        out_ += '\n';
+        write_children(full, indent + "  ");
+      } else {
+        const Key& key = board_key(full);
+        write_line(std::visit([&](const auto& rule) { return value_text(key, rule); }, key.rule));
+      }
+    }
+  }
+
+  void write_line(const std::string& value) {
+    if (value.front() != '\n') out_ += ' ';
+    out_ += value + '\n';
+  }
+
+  std::string value_text(const Key&, const IntegerKey& integer) {
+    return std::to_string(integer.field(writable_));
+  }
+  std::string value_text(const Key&, const DecimalKey& decimal) {
+    return decimal_text(decimal.field(writable_));
+  }
+  std::string value_text(const Key&, const WordKey& word) {
+    return word.words[static_cast<std::size_t>(word.get(board_))];
+  }
+  std::string value_text(const Key& key, const OtherKey&) {
+    const AllocationConfig& allocation = board_.allocation;
+    if (key.path == "name") return scalar_text(board_.name);
+    if (key.path == "fpga.priority") {
+      std::vector<std::string> ports;
+      for (const memory::Port port : board_.fpga.arbiter.priority) ports.emplace_back(memory::name_of(port));
+      return list_text(ports);
+    }
+    if (key.path == "allocation.left_image") return banks_text(allocation.left_image);
+    if (key.path == "allocation.right_image") return banks_text(allocation.right_image);
+    if (key.path == "allocation.disparity") return banks_text(allocation.disparity);
+    if (key.path == "allocation.left_lut") return scalar_text(allocation.left_lut.value_or("none"));
+    if (key.path == "allocation.right_lut") return scalar_text(allocation.right_lut.value_or("none"));
+    if (key.path == "matcher.lr_tolerance") {
+      const auto& tolerance = board_.matcher.lr_tolerance;
+      return tolerance ? std::to_string(*tolerance) : "\"off\"";
+    }
+    throw std::logic_error(key.path + ": a key that the writer does not know");
+  }
+
+  static std::string kind_text(const BankConfig& bank) {
+    const memory::BankTraits& traits = memory::traits_of(bank.kind);
+    if (!traits.has_turnaround) return fmt::format("kind: {}", traits.name);
+    return fmt::format("kind: {}, turnaround_cycles: {}", traits.name, bank.turnaround_cycles);
+  }
+  std::string default_text() const {
+    const BankConfig& bank = board_.banks.front();
+    return fmt::format("{{words: {}, {}}}", bank.words, kind_text(bank));
+  }
+  std::string bank_text(const BankConfig& bank) const {
+    const BankConfig& first = board_.banks.front();
+    std::vector<std::string> parts;
+    if (bank.words != first.words) parts.push_back(fmt::format("words: {}", bank.words));
+    if (bank.kind != first.kind || bank.turnaround_cycles != first.turnaround_cycles) {
+      parts.push_back(kind_text(bank));
+    }
+    return fmt::format("{{{}}}", fmt::join(parts, ", "));
+  }
+
+  const BoardConfig& board_;
+  BoardConfig writable_;  // what the accessors of the keys work on
+  std::string out_;
+  std::vector<BoardValue> values_;
+};
+
+}  // namespace
+
+std::string to_yaml(const BoardConfig& board) {
+  const std::vector<std::string> found = problems(board);
+  if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
+  return BoardWriter(board).write();
+}
+
+std::vector<BoardValue> values_of(const BoardConfig& board) { return BoardWriter(board).values(); }
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,33 @@
+#include "platform/config/tables.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace stereotlm::platform {
+namespace {
+
+void check(const std::optional<kernels::RectificationTable>& table, const BoardConfig& board, bool is_placed,
+           const char* side) {
+  if (table.has_value() != is_placed) {
+    throw std::invalid_argument(
+        fmt::format("{} table{}", side, is_placed ? " missing" : " given, but no buffer"));
+  }
+  if (!table) return;
+  if (table->width != board.image.width || table->height != board.image.height) {
+    throw std::invalid_argument(fmt::format("{} table: {} x {}: must be of the size of the images, {} x {}",
+                                            side, table->width, table->height, board.image.width,
+                                            board.image.height));
+  }
+  if (const auto found = kernels::problems(*table); !found.empty())
+    throw std::invalid_argument(fmt::format("{} table: {}", side, found.front()));
+}
+
+}  // namespace
+
+void check_tables(const BoardConfig& board, const Tables& tables) {
+  check(tables.left, board, board.allocation.left_lut.has_value(), "left");
+  check(tables.right, board, board.allocation.right_lut.has_value(), "right");
+}
+
+}  // namespace stereotlm::platform

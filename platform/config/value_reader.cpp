@@ -1,0 +1,121 @@
+#include "platform/config/value_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/config/yaml_values.h"
+
+namespace stereotlm::platform {
+
+std::string below(const std::string& path, const std::string& name) {
+  return path.empty() ? name : path + '.' + name;
+}
+
+void ValueReader::report_between_keys(const Place& place, std::string text) {
+  findings_.emplace_back(place, std::move(text));
+  findings_.back().is_between_keys = true;
+}
+
+void ValueReader::report(const Place& place, const std::string& path, const std::string& value,
+                         const std::string& rule) {
+  findings_.emplace_back(place, fmt::format("{} = {}: {}", path.empty() ? "the board" : path, value, rule));
+}
+
+void ValueReader::report(const std::string& path, const YamlNode& node, const std::string& rule) {
+  report(node.place, path, short_text(node), rule);
+}
+
+void ValueReader::report_missing(const Place& place, const std::string& path, const std::string& rule) {
+  if (!report_missing_) return;
+  findings_.emplace_back(place, fmt::format("{}: missing: {}", path, rule));
+  findings_.back().missing = path;
+}
+
+void ValueReader::report_missing_beside(const Place& place, const std::string& path,
+                                        const std::string& rule) {
+  report_missing(place, path, rule);
+  if (report_missing_) findings_.back().is_between_keys = true;
+}
+
+void ValueReader::accept(const std::string& path, const Place& place) {
+  sound_.insert_or_assign(path, place);
+}
+
+const Place* ValueReader::find(const std::string& path) const {
+  const auto found = sound_.find(path);
+  return found == sound_.end() ? nullptr : &found->second;
+}
+
+bool ValueReader::check_use(const std::string& path, const YamlNode& node) {
+  if (!node.misuse.empty()) report(path, node, node.misuse);
+  return node.misuse.empty();
+}
+
+std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string& path, const YamlNode& node,
+                                                              const Place& key,
+                                                              const std::vector<std::string>& known,
+                                                              const std::vector<std::string>& required) {
+  if (!node.misuse.empty()) {  // what a preset put into the map is not shown
+    report(node.place, path, node.is_map() ? "{..}" : short_text(node), node.misuse);
+  }
+  if (!node.is_map()) {
+    if (node.misuse.empty()) report(path, node, rule_text(schema_path(path)));
+    return std::nullopt;
+  }
+  Entries entries;
+  for (const YamlNode::Entry& entry : node.entries) {
+    const std::string full = below(path, entry.key.is_scalar() ? entry.key.text : short_text(entry.key));
+    if (!entry.key.misuse.empty()) report(entry.key.place, full, short_text(entry.value), entry.key.misuse);
+    if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
+      const bool is_bank = path == "ssram.banks";
+      report(entry.key.place, full, short_text(entry.value),
+             is_bank ? kBankNameRule : unknown_key_text(full));
+    } else if (const auto [first, is_new] = entries.emplace(entry.key.text, &entry); !is_new) {
+      report_repeated(entry, *first->second, full);
+    }
+  }
+  for (const std::string& name : required) {
+    const std::string full = below(path, name);
+    if (entries.count(name) == 0) report_missing(key, full, rule_text(full));
+  }
+  return entries;
+}
+
+void ValueReader::report_repeated(const YamlNode::Entry& entry, const YamlNode::Entry& first,
+                                  const std::string& path) {
+  const Place& place = first.key.place;
+  const bool is_beside = place.source == Place::kBoard && entry.key.place.source == Place::kBoard;
+  report(entry.key.place, path, short_text(entry.value),
+         is_beside ? fmt::format("repeated key, first at {}:{}", place.line, place.column) : "repeated key");
+}
+
+std::optional<int> ValueReader::read_integer(const std::string& path, const YamlNode& node,
+                                             const IntegerRule& rule, const std::string& rule_text) {
+  if (!check_use(path, node)) return std::nullopt;
+  const auto value = integer_of(node);
+  if (!value) {
+    report(path, node, fmt::format("not an integer (decimal digits, not in quotes); {}", rule_text));
+  } else if (!rule.allows(*value)) {
+    report(path, node, rule_text);
+  } else {
+    accept(path, node.place);
+    return static_cast<int>(*value);
+  }
+  return std::nullopt;
+}
+
+std::optional<int> ValueReader::read_word(const std::string& path, const YamlNode& node,
+                                          const std::vector<std::string>& words) {
+  if (!check_use(path, node)) return std::nullopt;
+  const auto found = std::find(words.begin(), words.end(), node.text);
+  if (!node.is_scalar() || found == words.end()) {
+    report(path, node, listed(words));
+    return std::nullopt;
+  }
+  accept(path, node.place);
+  return static_cast<int>(found - words.begin());
+}
+
+}  // namespace stereotlm::platform

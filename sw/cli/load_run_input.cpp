@@ -1,0 +1,191 @@
+#include "sw/cli/load_run_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "calib/calibration.h"
+#include "platform/config/board_yaml.h"
+#include "sw/files/sha256.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/process/version.h"
+#include "sw/runs/run_json.h"
+#include "sw/runs/sources/calibration_library.h"
+#include "sw/runs/sources/media_library.h"
+#include "sw/runs/sources/open_source.h"
+#include "sw/runs/sources/picture_size.h"
+
+namespace stereotlm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether the file lies in the folder or below it, whatever links and dots the two paths have. What does not
+// exist lies nowhere.
+bool lies_in(const std::string& file, const std::string& folder) {
+  std::error_code no_file;
+  std::error_code no_folder;
+  const fs::path inner = fs::canonical(file, no_file);
+  const fs::path outer = fs::canonical(folder, no_folder);
+  if (no_file || no_folder || inner == outer) return false;
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+class InputLoader {
+ public:
+  explicit InputLoader(const RunOptions& options) : options_(options) {}
+
+  runs::RunInput load() {
+    const auto board = options_.board.load(problems_);
+    attempt("", [&] { load_pictures(board ? &*board : nullptr); });
+    auto calibration = options_.board.load_calibration(board ? &*board : nullptr, problems_);
+    if (calibration)
+      source_.files.insert(source_.files.end(), calibration->files.begin(), calibration->files.end());
+    check_truth();
+    process::catch_interrupts();
+    if (options_.out && pictures_survive()) {
+      attempt("", [&] { input_.folder = std::make_unique<runs::ResultFolder>(*options_.out); });
+    }
+    problems_.check();
+    input_.board = *board;
+    attempt("", [&] {
+      input_.tables = runs::tables_of(input_.board, calibration);
+      if (calibration) {
+        input_.calibration = calibration->calibration;
+        input_.described.calibration = calibration->described;
+      }
+      input_.config_yaml = platform::to_yaml(input_.board);
+      describe();
+    });
+    problems_.check();
+    for (const std::string& note : source_.notes) process::say("note", note);
+    if (input_.calibration && !options_.timing_only) {
+      say_what_is_not_seen();
+      attempt("", [&] { say_how_rows_agree(); });
+    }
+    problems_.check();
+    input_.pairs = std::move(source_.pairs);
+    return std::move(input_);
+  }
+
+ private:
+  // `option`: what an error of this step is about, or nothing.
+  void attempt(const std::string& option, const std::function<void()>& step) {
+    try {
+      step();
+    } catch (const std::exception& error) {
+      problems_.add(option + (option.empty() ? "" : " ") + error.what());
+    }
+  }
+
+  void load_pictures(const platform::BoardConfig* board) {
+    source_ = runs::open_source(options_.pictures.source, board, input_.described, problems_);
+    if (!options_.truth) return;
+    const runs::NamedFile file = {"--truth", *options_.truth};
+    source_.files.push_back(file);
+    attempt(file.option, [&] {
+      media::Truth truth = runs::media_functions().load_truth(file.path, options_.truth_scale);
+      const auto problem =
+          board != nullptr ? runs::size_problem(truth.grey.width, truth.grey.height, *board) : std::nullopt;
+      if (problem) problems_.add(file.text() + *problem);
+      input_.truth = std::move(truth);
+      input_.described.truth = {fs::absolute(file.path).string(), files::sha256_file(file.path)};
+    });
+  }
+
+  void check_truth() {
+    if (!options_.truth || !options_.camera || !source_.pairs || source_.pairs->length() == 1) return;
+    problems_.add(fmt::format(
+        "--truth: goes with one pair if it comes from cameras, which drop frames: of {} pairs nobody knows "
+        "which the last frame will show (or --source preloaded)",
+        source_.pairs->length()));
+  }
+
+  // False, and reported, if an input lies in the result folder, which is replaced whole.
+  bool pictures_survive() {
+    std::set<std::string> reported;
+    for (const runs::NamedFile& file : source_.files) {
+      if (!lies_in(file.path, *options_.out)) continue;
+      // Of a sequence, one is enough.
+      if (file.option == "--sequence" && reported.count(file.option) > 0) continue;
+      reported.insert(file.option);
+      problems_.add(
+          fmt::format("{}: inside the result folder '{}', which is replaced whole: "
+                      "an input must lie outside the folder of --out",
+                      file.text(), *options_.out));
+    }
+    return reported.empty();
+  }
+
+  // Nothing in a file says that it is of another rig; the pictures do.
+  void say_how_rows_agree() {
+    constexpr double kDoubtful = 1.5;  // pixels
+    constexpr std::size_t kFew = 10;
+    constexpr std::size_t kMany = 50;
+    const host::StereoPair& pair = source_.pairs->pair(0);
+    const calib::MatchedRows rows = runs::calibration_functions().matched_rows(
+        kernels::rectify(pair.left, *input_.tables.left), kernels::rectify(pair.right, *input_.tables.right),
+        input_.board.matcher.disparities);
+    const std::string what = fmt::format(
+        "--calibration: of {} conspicuous points of the first left picture {} are found "
+        "in the right one",
+        rows.points, rows.error.corners);
+    if (rows.error.corners < kFew) {
+      const bool is_doubtful = rows.points >= kMany;
+      process::say(is_doubtful ? "warning" : "note",
+                   what + (is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
+                                       : ": too few to see whether it is of this rig"));
+      return;
+    }
+    const bool is_doubtful = rows.error.mean_px > kDoubtful;
+    process::say(is_doubtful ? "warning" : "note",
+                 fmt::format("{}; their rows differ by {:.2f} pixels on average{}", what, rows.error.mean_px,
+                             is_doubtful ? ": is it of this rig?" : ""));
+  }
+
+  void say_what_is_not_seen() const {
+    const int made_for = input_.calibration->disparities;
+    const int has = input_.board.matcher.disparities;
+    if (has >= made_for) return;
+    process::say(
+        "note",
+        fmt::format(
+            "--calibration: was made for {} disparities: of this board's {} the nearest things need more",
+            made_for, has));
+  }
+
+  void describe() {
+    const bool has_end = options_.pictures.source.sequence || options_.pictures.source.video;
+    input_.camera = options_.camera;
+    input_.fast = options_.fast;
+    input_.timing_only = options_.timing_only;
+    input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
+    runs::RecordedOptions& run = input_.described;
+    run.program_version = process::kVersion;
+    run.source = options_.camera ? "camera" : "preloaded";
+    run.fidelity = options_.fast ? "fast" : "cycle";
+    run.timing_only = options_.timing_only;
+    run.verify = options_.verify;
+    run.frames = input_.frames;
+    run.truth_scale = options_.truth_scale;
+    run.save_frames = options_.save_frames;
+    run_json(run);  // refuses now what it would refuse after the run
+  }
+
+  const RunOptions& options_;
+  process::Problems problems_;
+  runs::OpenedSource source_;
+  runs::RunInput input_;
+};
+
+}  // namespace
+
+runs::RunInput load_run_input(const RunOptions& options) { return InputLoader(options).load(); }
+
+}  // namespace stereotlm::cli

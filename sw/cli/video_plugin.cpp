@@ -1,7 +1,0 @@
-#include "sw/cli/media_library.h"
-
-// The one symbol of the library that media_library.h loads.
-extern "C" {
-extern const stereotlm::cli::VideoFunctions stereotlm_video_functions;
-const stereotlm::cli::VideoFunctions stereotlm_video_functions = {stereotlm::media::open_video};
-}

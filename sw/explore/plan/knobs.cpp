@@ -1,0 +1,253 @@
+#include "sw/explore/plan/knobs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "models/kernels/filter_kernel.h"
+#include "platform/config/board_keys.h"
+#include "platform/config/board_rules.h"
+#include "sw/explore/store/bank_names.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using platform::BankConfig;
+using platform::BoardConfig;
+using platform::Buffer;
+using platform::Key;
+
+constexpr int kTurnaroundCycles = 2;  // typical, contract section 2
+
+bool begins_with(const std::string& text, const char* beginning) { return text.rfind(beginning, 0) == 0; }
+
+std::string counted(std::size_t buffers) {
+  return fmt::format("{} buffer{}", buffers, buffers == 1 ? "" : "s");
+}
+
+bool is_of_computer(const std::string& path) {
+  return begins_with(path, "cameras.") || begins_with(path, "capture.") || begins_with(path, "pci.") ||
+         begins_with(path, "bridge.");
+}
+
+class Steps {
+ public:
+  explicit Steps(const BoardConfig& board) : board_(board) {}
+
+  void add_keys(bool camera) {
+    for (const Key& key : platform::board_keys()) {
+      const bool stays = begins_with(key.path, "image.") || key.path == "fpga.device" ||
+                         (begins_with(key.path, "pci.load") && !board_.pci.load);
+      if (stays || (is_of_computer(key.path) && !camera)) continue;
+      std::visit([&](const auto& rule) { add_key(key, rule); }, key.rule);
+    }
+  }
+
+  void add_filters() {
+    if (board_.matcher.filter) add_filter(std::nullopt, "none");
+    if (!(board_.matcher.filter == kernels::log7())) add_filter(kernels::log7(), "log7");
+  }
+
+  void add_priorities() {
+    const auto& list = board_.fpga.arbiter.priority;
+    for (std::size_t first = 0; first + 1 < list.size(); ++first) {
+      const std::string a = memory::kPortNames[memory::index_of(list[first])];
+      const std::string b = memory::kPortNames[memory::index_of(list[first + 1])];
+      BoardConfig changed = board_;
+      std::swap(changed.fpga.arbiter.priority[first], changed.fpga.arbiter.priority[first + 1]);
+      add({"fpga.priority", a + ", " + b, b + ", " + a, std::move(changed)});
+    }
+  }
+
+  void add_kinds() {
+    std::set<memory::BankKind> kinds;
+    for (const BankConfig& bank : board_.banks) kinds.insert(bank.kind);
+    const std::string from = kinds.size() > 1 ? "different" : memory::traits_of(*kinds.begin()).name;
+    for (const memory::BankTraits& traits : memory::kBankTraits) {
+      BoardConfig changed = board_;
+      for (BankConfig& bank : changed.banks) {
+        bank.kind = traits.kind;
+        if (!traits.has_turnaround) {
+          bank.turnaround_cycles = 0;
+        } else if (bank.turnaround_cycles == 0) {
+          bank.turnaround_cycles = kTurnaroundCycles;
+        }
+      }
+      if (!(changed == board_)) add({"ssram.banks.*.kind", from, traits.name, std::move(changed)});
+    }
+  }
+
+  // Of all banks that have turnaround, together.
+  void add_turnarounds() {
+    std::set<int> cycles;
+    for (const BankConfig& bank : board_.banks) {
+      if (memory::traits_of(bank.kind).has_turnaround) cycles.insert(bank.turnaround_cycles);
+    }
+    if (cycles.empty()) return;
+    const bool is_one = cycles.size() == 1;
+    for (const int change : {1, -1}) {
+      BoardConfig changed = board_;
+      for (BankConfig& bank : changed.banks) {
+        if (memory::traits_of(bank.kind).has_turnaround) bank.turnaround_cycles += change;
+      }
+      add({"ssram.banks.*.turnaround_cycles", is_one ? std::to_string(*cycles.begin()) : "different",
+           is_one ? std::to_string(*cycles.begin() + change)
+                  : std::string("one ") + (change > 0 ? "more" : "less") + " each",
+           std::move(changed)});
+    }
+  }
+
+  void add_buffers() {
+    using List = std::vector<std::string>;
+    const auto add_lists = [this](const char* knob,
+                                  const std::vector<List platform::AllocationConfig::*>& lists) {
+      const std::size_t size = (board_.allocation.*lists.front()).size();
+      for (const bool more : {true, false}) {
+        BoardConfig changed = board_;
+        for (const auto member : lists) {
+          List& list = changed.allocation.*member;
+          if (more) {
+            list.push_back(list.front());
+          } else {
+            list.pop_back();
+          }
+        }
+        add({knob, counted(size), counted(more ? size + 1 : size - 1), std::move(changed)});
+      }
+    };
+    add_lists("allocation.left_image, right_image",
+              {&platform::AllocationConfig::left_image, &platform::AllocationConfig::right_image});
+    add_lists("allocation.disparity", {&platform::AllocationConfig::disparity});
+  }
+
+  // A new bank is like the one that its buffer comes from.
+  void add_banks_more() {
+    std::string name = "new_bank";
+    const auto is_name = [&](const BankConfig& bank) {
+      return bank.name == name || differ_in_case(bank.name, name);
+    };
+    while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
+    for (const Buffer& buffer : platform::buffers(board_.allocation)) {
+      if (buffers_in(buffer.bank) < 2) continue;
+      BoardConfig changed = board_;
+      changed.banks.push_back(bank_of(buffer.bank));
+      changed.banks.back().name = name;
+      move(buffer, name, changed);
+      KnobStep step{"a bank more", fmt::format("{} in {}", label(buffer), buffer.bank), "in one of its own",
+                    std::move(changed)};
+      step.only_best = true;
+      add(std::move(step));
+    }
+  }
+
+  void add_banks_less() {
+    for (const BankConfig& left : board_.banks) {
+      for (const BankConfig& taking : board_.banks) {
+        if (left.name == taking.name || buffers_in(left.name) == 0 || buffers_in(taking.name) == 0) continue;
+        BoardConfig changed = board_;
+        for (const Buffer& buffer : platform::buffers(board_.allocation)) {
+          if (buffer.bank == left.name) move(buffer, taking.name, changed);
+        }
+        KnobStep step{"a bank less", left.name, "into " + taking.name, std::move(changed)};
+        step.only_best = true;
+        add(std::move(step));
+      }
+    }
+  }
+
+  std::vector<KnobStep> take() { return std::move(steps_); }
+
+ private:
+  void add(KnobStep step) {
+    if (platform::problems(step.board).empty()) steps_.push_back(std::move(step));
+  }
+
+  void add_key(const Key& key, const platform::IntegerKey& integer) {
+    const int step = key.path == "matcher.window" ? 2 : 1;
+    for (const int change : {step, -step}) {
+      BoardConfig changed = board_;
+      int& value = integer.field(changed);
+      const int from = value;
+      value += change;
+      add({key.path, std::to_string(from), std::to_string(value), changed,
+           begins_with(key.path, "matcher.")});
+    }
+  }
+  void add_key(const Key& key, const platform::DecimalKey& decimal) {
+    for (const double change : {1.0, -1.0}) {
+      BoardConfig changed = board_;
+      double& value = decimal.field(changed);
+      const double from = value;
+      value += change;
+      add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", value), changed});
+    }
+  }
+  void add_key(const Key& key, const platform::WordKey& word) {
+    const int now = word.get(board_);
+    for (int other = 0; other < static_cast<int>(word.words.size()); ++other) {
+      if (other == now) continue;
+      BoardConfig changed = board_;
+      word.set(changed, other);
+      add({key.path, word.words[static_cast<std::size_t>(now)], word.words[static_cast<std::size_t>(other)],
+           changed});
+    }
+  }
+  void add_key(const Key&, const platform::OtherKey&) {}
+
+  void add_filter(const std::optional<kernels::FilterKernel>& filter, const char* name) {
+    const auto& now = board_.matcher.filter;
+    BoardConfig changed = board_;
+    changed.matcher.filter = filter;
+    add({"matcher.filter",
+         !now                     ? "none"
+         : now == kernels::log7() ? "log7"
+                                  : "its own",
+         name, std::move(changed), true});
+  }
+
+  std::size_t buffers_in(const std::string& bank) const {
+    std::size_t count = 0;
+    for (const Buffer& buffer : platform::buffers(board_.allocation)) count += buffer.bank == bank ? 1 : 0;
+    return count;
+  }
+  const BankConfig& bank_of(const std::string& name) const {
+    return *std::find_if(board_.banks.begin(), board_.banks.end(),
+                         [&](const BankConfig& bank) { return bank.name == name; });
+  }
+  static std::string label(const Buffer& buffer) {
+    const std::string name = buffer.key.substr(buffer.key.find('.') + 1);
+    return buffer.index < 0 ? name : fmt::format("{}[{}]", name, buffer.index);
+  }
+  static void move(const Buffer& buffer, const std::string& bank, BoardConfig& board) {
+    platform::AllocationConfig& allocation = board.allocation;
+    const auto index = static_cast<std::size_t>(buffer.index);
+    if (buffer.key == "allocation.left_image") allocation.left_image[index] = bank;
+    if (buffer.key == "allocation.right_image") allocation.right_image[index] = bank;
+    if (buffer.key == "allocation.disparity") allocation.disparity[index] = bank;
+    if (buffer.key == "allocation.left_lut") allocation.left_lut = bank;
+    if (buffer.key == "allocation.right_lut") allocation.right_lut = bank;
+  }
+
+  const BoardConfig& board_;
+  std::vector<KnobStep> steps_;
+};
+
+}  // namespace
+
+std::vector<KnobStep> knob_steps(const BoardConfig& board, bool camera) {
+  Steps steps(board);
+  steps.add_keys(camera);
+  steps.add_filters();
+  steps.add_priorities();
+  steps.add_kinds();
+  steps.add_turnarounds();
+  steps.add_buffers();
+  steps.add_banks_more();
+  steps.add_banks_less();
+  return steps.take();
+}
+
+}  // namespace stereotlm::explore

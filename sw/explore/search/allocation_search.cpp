@@ -1,0 +1,170 @@
+#include "sw/explore/search/allocation_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "platform/config/board_rules.h"
+#include "sw/explore/search/allocations.h"
+
+namespace stereotlm::explore {
+namespace {
+
+// Of each number of banks at a time: enough to keep processors busy, few enough not to run many that the
+// others would have left out.
+constexpr std::uint64_t kBoardsAtOnce = 8;
+
+// A bound and a rate are quotients, each rounded; what they differ by then is not a difference.
+constexpr double kRounding = 1e-9;
+
+std::string key_of(const platform::BoardConfig& board) {
+  std::string key;
+  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) key += buffer.bank + ' ';
+  return key;
+}
+
+}  // namespace
+
+AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
+                                   const BoundOf& bound)
+    : board_(board),
+      run_(run),
+      by_frames_(!run.camera && frames_are_independent(board)),
+      turn_frames_(platform::allocation_period_frames(board)) {
+  for_each_placement(board, most_banks, [this](const Placement& placement) {
+    if (++placements_ > kMostPlacements) {
+      throw std::length_error(fmt::format("more than {} different allocations", kMostPlacements));
+    }
+    if (!fits(board_, placement)) return;
+    fitting_.push_back(placement);
+    for (std::uint64_t frame = 0; by_frames_ && frame < turn_frames_; ++frame) {
+      platform::BoardConfig one = board_of_frame(board_, placement, frame);
+      if (frame_numbers_.emplace(key_of(one), frame_boards_.size()).second)
+        frame_boards_.push_back(std::move(one));
+    }
+  });
+  outcomes_.resize(by_frames_ ? frame_boards_.size() : fitting_.size());
+  given_up_.resize(outcomes_.size());
+  if (by_frames_) return;
+  for (const Placement& placement : fitting_) bounds_.push_back(bound(placed(board_, placement)));
+  by_bound_.resize(fitting_.size());
+  std::iota(by_bound_.begin(), by_bound_.end(), std::size_t{0});
+  std::stable_sort(by_bound_.begin(), by_bound_.end(),
+                   [this](std::size_t a, std::size_t b) { return bounds_[a] > bounds_[b]; });
+}
+
+Point AllocationSearch::point(std::size_t number) const {
+  return make_point(number, by_frames_ ? frame_boards_.at(number) : placed(board_, fitting_.at(number)),
+                    run_);
+}
+
+void AllocationSearch::record(std::size_t number, const AllocationOutcome& outcome) {
+  if (!by_frames_ && !outcome.loses_pixels && outcome.frames_per_second > bounds_[number] * (1 + kRounding)) {
+    throw std::logic_error(fmt::format("{}: {} frames/s, above its bound of {}",
+                                       allocation_text(*point(number).board), outcome.frames_per_second,
+                                       bounds_[number]));
+  }
+  outcomes_.at(number) = outcome;
+}
+
+std::vector<std::size_t> AllocationSearch::next() const {
+  std::vector<std::size_t> numbers;
+  if (by_frames_) {
+    for (std::size_t number = 0; number < outcomes_.size(); ++number) {
+      if (!outcomes_[number]) numbers.push_back(number);
+    }
+    return numbers;
+  }
+  const std::map<int, double> best = best_rates();
+  std::map<int, std::uint64_t> taken;
+  for (const std::size_t place : by_bound_) {
+    if (is_done(place) || !can_win(place, best)) continue;
+    if (taken[banks_used(fitting_[place])]++ < kBoardsAtOnce) numbers.push_back(place);
+  }
+  return numbers;
+}
+
+std::uint64_t AllocationSearch::most_left() const {
+  const std::map<int, double> best = best_rates();
+  std::uint64_t left = 0;
+  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
+    if (!is_done(number) && (by_frames_ || can_win(number, best))) ++left;
+  }
+  return left;
+}
+
+double AllocationSearch::rate_to_reach(std::size_t number) const {
+  if (by_frames_) return 0;
+  const std::map<int, double> best = best_rates();
+  const auto rate = best.find(banks_used(fitting_.at(number)));
+  return rate == best.end() ? 0 : rate->second * (1 - kRounding);
+}
+
+// Of those that are known, where boards are placements.
+std::map<int, double> AllocationSearch::best_rates() const {
+  std::map<int, double> best;
+  for (std::size_t place = 0; place < fitting_.size() && !by_frames_; ++place) {
+    if (!outcomes_[place] || outcomes_[place]->loses_pixels || !outcomes_[place]->failure.empty()) continue;
+    double& rate = best[banks_used(fitting_[place])];
+    rate = std::max(rate, outcomes_[place]->frames_per_second);
+  }
+  return best;
+}
+
+bool AllocationSearch::can_win(std::size_t placement, const std::map<int, double>& best) const {
+  const auto rate = best.find(banks_used(fitting_[placement]));
+  return rate == best.end() || bounds_[placement] >= rate->second * (1 - kRounding);
+}
+
+AllocationOutcome AllocationSearch::outcome_of(std::size_t placement) const {
+  if (!by_frames_) return *outcomes_[placement];
+  AllocationOutcome sum;
+  for (std::uint64_t frame = 0; frame < turn_frames_; ++frame) {
+    const std::string key = key_of(board_of_frame(board_, fitting_[placement], frame));
+    const AllocationOutcome& one = outcomes_.at(frame_numbers_.at(key)).value();
+    if (!one.failure.empty()) return one;
+    sum.cycles += one.cycles;
+  }
+  sum.frames_per_second =
+      board_.fpga.clock_mhz * 1e6 * static_cast<double>(turn_frames_) / static_cast<double>(sum.cycles);
+  return sum;
+}
+
+std::vector<BestPlacement> AllocationSearch::best() const {
+  std::map<int, BestPlacement> found;
+  for (std::size_t place = 0; place < fitting_.size(); ++place) {
+    BestPlacement& best = found[banks_used(fitting_[place])];
+    best.banks = banks_used(fitting_[place]);
+    ++best.placements;
+    if (!by_frames_ && given_up_[place]) ++best.given_up;
+    if (!is_known(place)) continue;
+    ++best.known;
+    const AllocationOutcome outcome = outcome_of(place);
+    if (outcome.loses_pixels || !outcome.failure.empty()) {
+      ++(outcome.failure.empty() ? best.losing : best.failed);
+      continue;
+    }
+    if (best.reached_by == 0 || outcome.frames_per_second > best.frames_per_second) {
+      best.reached_by = 0;
+      best.frames_per_second = outcome.frames_per_second;
+      best.outcome = outcome;
+      best.witness = fitting_[place];
+    }
+    if (outcome.frames_per_second == best.frames_per_second) ++best.reached_by;
+  }
+  std::vector<BestPlacement> all;
+  for (const auto& [banks, best] : found) all.push_back(best);
+  return all;
+}
+
+std::string AllocationSearch::first_failure() const {
+  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
+    if (!outcomes_[number] || outcomes_[number]->failure.empty()) continue;
+    return fmt::format("{}: {}", allocation_text(*point(number).board), outcomes_[number]->failure);
+  }
+  return "";
+}
+
+}  // namespace stereotlm::explore

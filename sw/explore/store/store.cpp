@@ -1,0 +1,164 @@
+#include "sw/explore/store/store.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store_layout.h"
+
+namespace stereotlm::explore {
+namespace {
+
+void check_version(Database& database, const std::string& version) {
+  Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
+  other.bind(1, version);
+  if (!other.step()) return;
+  throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
+                                  database.path(), other.text(0), version));
+}
+
+// SQLite does not wait when it is to change the kind of its journal.
+void wait_for_writers(Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
+
+std::string journal_of(const Database& database) {
+  Statement statement(database, "PRAGMA journal_mode");
+  return statement.step() ? statement.text(0) : "";
+}
+
+constexpr const char* kFind = "SELECT 1 FROM points WHERE hash = ?";
+
+bool finds(Statement& find, const std::string& hash) {
+  find.bind(1, hash);
+  const bool found = find.step();
+  find.reset();
+  return found;
+}
+
+// What a point has in further columns.
+std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
+  std::vector<const platform::BoardValue*> values;
+  for (const auto* part : {&point.keys, &point.figures}) {
+    for (const platform::BoardValue& value : *part) values.push_back(&value);
+  }
+  return values;
+}
+
+}  // namespace
+
+Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds busy_timeout)
+    : database_(path, Database::Access::kCreate, busy_timeout), version_(version) {
+  create();
+  check_version(database_, version);
+  read_columns();
+  find_ = std::make_unique<Statement>(database_, kFind);
+  insert_blame_ = std::make_unique<Statement>(database_, insert_blame_sql());
+}
+
+// Once, by whoever comes first.
+void Store::create() {
+  if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
+    // The journal gets whole pages, and each point changes some.
+    database_.execute("PRAGMA page_size = 1024");
+    wait_for_writers(database_);
+    // Readers do not wait for the one who writes; nothing is lost when the process ends, however it does.
+    database_.execute("PRAGMA journal_mode = WAL");
+    database_.execute("BEGIN IMMEDIATE");
+    if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) create_tables(database_, {});
+    database_.execute("COMMIT");
+  }
+  check_layout(database_);
+  if (journal_of(database_) != "wal") wait_for_writers(database_);
+  database_.execute(
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA wal_autocheckpoint = 16384");
+}
+
+void Store::read_columns() {
+  const std::vector<std::string> names = columns_of(database_);
+  columns_ = {names.begin(), names.end()};
+}
+
+void Store::check_banks(const std::vector<std::string>& banks) const {
+  for (const std::string& bank : banks) {
+    const std::string words = fmt::format("ssram.banks.{}.words", bank);
+    for (const std::string& column : columns_) {
+      if (!differ_in_case(column, words)) continue;
+      throw DatabaseError(fmt::format("{}: its column {} differs from {} only in case: give another file",
+                                      database_.path(), column, words));
+    }
+  }
+}
+
+bool Store::has(const std::string& hash) { return finds(*find_, hash); }
+
+bool Store::add(const StoredPoint& point) {
+  const std::vector<const platform::BoardValue*> values = further_values(point);
+  database_.execute("BEGIN IMMEDIATE");
+  try {
+    Statement& insert = insertion(point, values);
+    int place = 0;
+    for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
+      insert.bind(++place, text);
+    for (const platform::BoardValue* value : values) insert.bind(++place, *value);
+    insert.run();
+    const bool is_new = sqlite3_changes(database_.handle()) > 0;
+    for (const StoredBlame& row : point.blame) {
+      if (!is_new) break;
+      place = 0;
+      for (const std::string& text : {point.hash, row.port, row.bank, row.by})
+        insert_blame_->bind(++place, text);
+      insert_blame_->bind(++place, row.cycles);
+      insert_blame_->run();
+    }
+    database_.execute("COMMIT");
+    return is_new;
+  } catch (const DatabaseError&) {
+    sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr,
+                 nullptr);  // SQLite may have done it already
+    insertions_.clear();    // the columns that it has added are gone
+    throw;
+  }
+}
+
+Statement& Store::insertion(const StoredPoint& point,
+                            const std::vector<const platform::BoardValue*>& values) {
+  const auto known =
+      std::find_if(insertions_.begin(), insertions_.end(), [&values](const Insertion& insertion) {
+        return std::equal(
+            values.begin(), values.end(), insertion.paths.begin(), insertion.paths.end(),
+            [](const platform::BoardValue* value, const std::string& path) { return value->path == path; });
+      });
+  if (known != insertions_.end()) return *known->statement;
+  add_columns(point);
+  Insertion made;
+  for (const platform::BoardValue* value : values) made.paths.push_back(value->path);
+  std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
+  columns.insert(columns.end(), made.paths.begin(), made.paths.end());
+  made.statement = std::make_unique<Statement>(database_, insert_point_sql(columns));
+  insertions_.push_back(std::move(made));
+  return *insertions_.back().statement;
+}
+
+void Store::add_columns(const StoredPoint& point) {
+  read_columns();  // another process may have added some
+  for (const auto* values : {&point.keys, &point.figures}) {
+    for (const platform::BoardValue& value : *values) {
+      if (!columns_.insert(value.path).second) continue;
+      database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
+      if (values == &point.keys) insert_key(database_, value.path);
+    }
+  }
+}
+
+FinishedStore::FinishedStore(const std::string& path, const std::string& version)
+    : database_(path, Database::Access::kRead) {
+  check_layout(database_);
+  check_version(database_, version);
+  find_.emplace(database_, kFind);
+}
+
+bool FinishedStore::has(const std::string& hash) { return finds(*find_, hash); }
+
+}  // namespace stereotlm::explore

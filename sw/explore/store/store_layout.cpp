@@ -1,0 +1,72 @@
+#include "sw/explore/store/store_layout.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+namespace stereotlm::explore {
+namespace {
+
+constexpr int kApplicationId = 0x53544C4D;  // "STLM"
+constexpr int kLayout = 2;
+
+}  // namespace
+
+void create_tables(Database& database, const std::vector<std::string>& further_columns) {
+  std::string columns =
+      "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
+      "version TEXT NOT NULL, config TEXT NOT NULL";
+  for (const std::string& name : further_columns) columns += ", " + quoted_name(name);
+  database.execute(
+      fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kLayout));
+  database.execute(fmt::format("CREATE TABLE points({})", columns));
+  database.execute(
+      "CREATE TABLE blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
+      "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID");
+  database.execute("CREATE TABLE keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID");
+}
+
+void check_layout(Database& database) {
+  if (database.number("PRAGMA application_id") != kApplicationId) {
+    throw DatabaseError(database.path() + ": not a database of stereotlm sweep");
+  }
+  const std::int64_t layout = database.number("PRAGMA user_version");
+  if (layout != kLayout) {
+    throw DatabaseError(fmt::format("{}: its layout is {}, of another version; this version writes {}",
+                                    database.path(), layout, kLayout));
+  }
+}
+
+// The first column of what a query gives.
+std::vector<std::string> names_of(const Database& database, const std::string& sql) {
+  std::vector<std::string> names;
+  Statement statement(database, sql);
+  while (statement.step()) names.push_back(statement.text(0));
+  return names;
+}
+
+std::vector<std::string> columns_of(const Database& database) {
+  return names_of(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
+}
+
+void insert_key(const Database& database, const std::string& name) {
+  Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
+  insert.bind(1, name);
+  insert.run();
+}
+
+std::string insert_point_sql(const std::vector<std::string>& columns) {
+  std::string names;
+  std::string places;
+  for (const std::string& name : columns) {
+    names += (names.empty() ? "" : ", ") + quoted_name(name);
+    places += places.empty() ? "?" : ", ?";
+  }
+  return fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", names, places);
+}
+
+std::string insert_blame_sql() {
+  return fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns);
+}
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,31 @@
+#include "sw/explore/store/stored_row.h"
+
+namespace stereotlm::explore {
+
+StoredRow::StoredRow(const std::string& path)
+    : database_(path, Database::Access::kRead), find_(database_, "SELECT * FROM points WHERE hash = ?") {
+  for (int column = 0; column < find_.columns(); ++column) columns_[find_.name(column)] = column;
+}
+
+bool StoredRow::find(const std::string& hash) {
+  find_.reset();
+  find_.bind(1, hash);
+  return find_.step();
+}
+
+std::string StoredRow::text(const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? "" : find_.text(found->second);
+}
+
+std::int64_t StoredRow::integer(const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? 0 : find_.integer(found->second);
+}
+
+double StoredRow::real(const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? 0 : find_.real(found->second);
+}
+
+}  // namespace stereotlm::explore

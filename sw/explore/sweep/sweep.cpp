@@ -1,0 +1,209 @@
+#include "sw/explore/sweep/sweep.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <deque>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "sw/explore/store/merge_stores.h"
+#include "sw/explore/store/store.h"
+#include "sw/explore/store/store_lock.h"
+#include "sw/explore/sweep/worker.h"
+#include "sw/process/shared_state.h"
+
+namespace stereotlm::explore {
+namespace {
+
+constexpr std::uint64_t kMostOfAnOrder = 16;  // points
+constexpr int kLookMs = 100;
+
+// A worker that dies while it is written to is seen by what it does not say.
+class IgnoredSigpipe {
+ public:
+  IgnoredSigpipe() : before_(signal(SIGPIPE, SIG_IGN)) {}
+  ~IgnoredSigpipe() { signal(SIGPIPE, before_); }
+  IgnoredSigpipe(const IgnoredSigpipe&) = delete;
+  IgnoredSigpipe& operator=(const IgnoredSigpipe&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+class Sweep {
+ public:
+  Sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options)
+      : points_(points), evaluate_(evaluate), options_(options) {
+    const std::uint64_t size = points.size();
+    counts_.total = size > options.shard ? (size - options.shard - 1) / options.shards + 1 : 0;
+  }
+
+  SweepCounts run(const std::function<bool(const SweepCounts&)>& keep_going) {
+    const std::uint64_t workers = std::min<std::uint64_t>(options_.jobs, counts_.total);
+    if (const std::uint64_t most = workers_with_files(workers); most < workers) {
+      throw std::runtime_error(fmt::format(
+          "{} worker processes: the limit on open files (ulimit -n) is enough for {}", workers, most));
+    }
+    workers_.resize(workers);
+    const StoreLock lock(options_.store);
+    {  // What is wrong with the file is said once.
+      const Store made(options_.store, options_.version, options_.busy_timeout);
+    }
+    try {
+      run_points(lock, keep_going);
+      merge_stores({options_.store}, options_.store);
+    } catch (const std::exception&) {
+      lock.check();  // without the file everything fails: that is the reason to give
+      throw;
+    }
+    return counts_;
+  }
+
+ private:
+  void run_points(const StoreLock& lock, const std::function<bool(const SweepCounts&)>& keep_going) {
+    for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
+    while (is_busy()) {
+      if (!keep_going(counts_)) shared_.stop() = true;
+      wait();
+      lock.check();
+    }
+    workers_.clear();
+    keep_going(counts_);
+    lock.check();
+  }
+
+  bool is_busy() const {
+    return std::any_of(workers_.begin(), workers_.end(),
+                       [](const auto& worker) { return worker->order().count > 0; });
+  }
+
+  void start_worker(std::size_t place) {
+    workers_[place] = std::make_unique<Worker>(points_, evaluate_, options_, shared_);
+    give_order(*workers_[place]);
+  }
+
+  // The next points, if there are any: what a dead worker has left first.
+  void give_order(Worker& worker) {
+    if (shared_.stop()) return;
+    if (!left_.empty()) {
+      worker.send(left_.front());
+      left_.pop_front();
+      return;
+    }
+    const std::uint64_t rest = counts_.total - next_;
+    // Near the end in small pieces, so that all workers end at the same time.
+    const std::uint64_t count =
+        std::min(rest, std::clamp<std::uint64_t>(rest / (4 * workers_.size()), 1, kMostOfAnOrder));
+    if (count == 0) return;
+    worker.send({options_.shard + next_ * options_.shards, options_.shards, count});
+    next_ += count;
+  }
+
+  void wait() {
+    std::vector<pollfd> watched;
+    for (const auto& worker : workers_) watched.push_back({worker->descriptor(), POLLIN, 0});
+    const int ready = poll(watched.data(), watched.size(), kLookMs);
+    if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
+    if (ready <= 0) return;
+    for (std::size_t i = 0; i < watched.size(); ++i) {
+      if (watched[i].revents != 0) receive(i);
+    }
+  }
+
+  void receive(std::size_t place) {
+    Worker& worker = *workers_[place];
+    if (worker.order().count == 0) return;
+    const auto end = worker.receive();
+    if (end) {
+      count(*end);
+      if (worker.order().count == 0) give_order(worker);
+      return;
+    }
+    WorkOrder order = worker.order();
+    if (++deaths_[order.first] == kMostDeaths) {
+      fail(order.first,
+           fmt::format("its process has {}, {} times: to try again, delete this row and give the "
+                       "same command",
+                       worker.death(), kMostDeaths));
+      order.first += order.step;
+      --order.count;
+    }
+    if (order.count > 0) left_.push_back(order);
+    start_worker(place);
+  }
+
+  // A point whose worker could not say so itself.
+  void fail(std::uint64_t number, const std::string& reason) {
+    Store store(options_.store, options_.version, options_.busy_timeout);
+    count(store.add(failed_point(points_.point(number), reason)) ? PointEnd::kFailed : PointEnd::kKnown);
+  }
+
+  void count(PointEnd end) {
+    switch (end) {
+      case PointEnd::kExcluded:
+        ++counts_.excluded;
+        break;
+      case PointEnd::kKnown:
+        ++counts_.known;
+        break;
+      case PointEnd::kOk:
+        ++counts_.ok;
+        break;
+      case PointEnd::kImpossible:
+        ++counts_.impossible;
+        break;
+      case PointEnd::kFailed:
+        ++counts_.failed;
+        break;
+      case PointEnd::kGivenUp:
+        ++counts_.given_up;
+        break;
+      case PointEnd::kNotBegun:
+        break;
+    }
+  }
+
+  const Points& points_;
+  const Evaluate& evaluate_;
+  const SweepOptions& options_;
+  IgnoredSigpipe ignored_sigpipe_;
+  process::SharedState shared_;
+  SweepCounts counts_;
+  std::uint64_t next_ = 0;                        // of this shard's points, not handed out yet
+  std::deque<WorkOrder> left_;                    // of dead workers
+  std::map<std::uint64_t, int> deaths_;           // of workers, by the point
+  std::vector<std::unique_ptr<Worker>> workers_;  // end before what they share
+};
+
+}  // namespace
+
+SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
+                  const std::function<bool(const SweepCounts& counts)>& keep_going) {
+  return Sweep(points, evaluate, options).run(keep_going);
+}
+
+// Opens for a moment as many files as the last worker will have open. It inherits two ends of pipes for each
+// worker, and opens its stores with their journals and a pipe to the process that simulates.
+std::uint64_t workers_with_files(std::uint64_t workers) {
+  constexpr std::uint64_t kOfAWorker = 16;
+  std::vector<int> files;
+  while (files.size() < 2 * workers + kOfAWorker) {
+    const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (file < 0) break;
+    files.push_back(file);
+  }
+  for (const int file : files) close(file);
+  return files.size() < kOfAWorker ? 0 : (files.size() - kOfAWorker) / 2;
+}
+
+}  // namespace stereotlm::explore

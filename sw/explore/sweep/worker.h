@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sw/explore/plan/points.h"
+#include "sw/explore/store/store.h"
+#include "sw/explore/sweep/sweep.h"
+#include "sw/process/child_process.h"
+#include "sw/process/shared_state.h"
+
+namespace stereotlm::explore {
+
+// Points to do: number first, first + step, ..
+struct WorkOrder {
+  std::uint64_t first = 0;
+  std::uint64_t step = 1;
+  std::uint64_t count = 0;
+};
+
+// How a point has ended.
+enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kGivenUp, kNotBegun };
+
+// The row of a point that has failed.
+StoredPoint failed_point(const Point& point, const std::string& reason);
+
+// A process that does points one after another, and tells how each has ended. It ends with this process.
+class Worker {
+ public:
+  // Forks. Throws std::system_error.
+  Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
+         const process::SharedState& shared);
+
+  void send(const WorkOrder& order);
+  // That has not been told of yet; count 0: idle.
+  const WorkOrder& order() const { return order_; }
+
+  int descriptor() const { return reports_.read_end(); }  // readable when there is something to receive()
+  // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with
+  // what it could not go on for, ConditionError (conditions.h) if that was a condition.
+  std::optional<PointEnd> receive();
+  std::string death() const { return death_; }  // "ended with signal 9 (Killed)"
+
+ private:
+  process::Pipe orders_;
+  process::Pipe reports_;
+  process::ChildProcess process_;
+  WorkOrder order_;
+  std::string death_;
+};
+
+}  // namespace stereotlm::explore

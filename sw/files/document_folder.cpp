@@ -1,0 +1,65 @@
+#include "sw/files/document_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "sw/files/folder_entries.h"
+
+namespace stereotlm::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> with(std::vector<std::string> names, const std::string& name) {
+  names.push_back(name);
+  return names;
+}
+
+std::optional<std::string> problem_of(const fs::path& dir, const std::vector<std::string>& names,
+                                      bool was_left) {
+  const std::string& document = names.back();
+  const bool is_ours = was_left || is_file(dir / document);
+  for (const std::string& name : names) {
+    if (!is_there(dir / name)) continue;
+    if (!is_file(dir / name)) return fmt::format("holds '{}', which is no file", name);
+    if (!is_ours) {
+      return fmt::format("holds '{}' but no {}: only what an earlier one has written is replaced", name,
+                         document);
+    }
+  }
+  return std::nullopt;
+}
+
+OutputContent content_of(const std::vector<std::string>& names) {
+  OutputContent content;
+  content.called = "folder";
+  content.mark = names.back();
+  content.foreign = [names](const fs::path& entry) -> std::optional<std::string> {
+    const std::string name = entry.filename();
+    const bool is_known = std::find(names.begin(), names.end(), name) != names.end();
+    return is_known && is_file(entry) ? std::nullopt : std::optional(name);
+  };
+  content.problem = [names](const fs::path& dir, bool was_left) { return problem_of(dir, names, was_left); };
+  return content;
+}
+
+}  // namespace
+
+DocumentFolder::DocumentFolder(const fs::path& dir, const std::string& document,
+                               const std::vector<std::string>& files)
+    : names_(with(files, document)), folder_(dir, content_of(names_)) {}
+
+void DocumentFolder::commit(const std::map<std::string, std::string>& contents) {
+  for (const std::string& name : names_) {
+    if (contents.count(name) == 0) throw std::invalid_argument(fmt::format("file = '{}': missing", name));
+  }
+  if (contents.size() != names_.size()) throw std::invalid_argument("files: there are some of other names");
+  if (const auto problem = folder_.problem()) folder_.refuse(*problem);
+  for (const auto& [name, bytes] : contents) folder_.add(name, bytes);
+  folder_.commit();
+}
+
+}  // namespace stereotlm::files

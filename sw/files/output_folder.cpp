@@ -1,0 +1,202 @@
+#include "sw/files/output_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "sw/files/folder_entries.h"
+#include "sw/files/whole_file.h"
+
+namespace stereotlm::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNew = "new";
+constexpr const char* kNames = "names";  // of what is new, during a commit
+constexpr const char* kProbe = "probe";
+
+bool is_same(int file, const fs::path& path) {
+  struct stat opened = {};
+  struct stat there = {};
+  const bool is_known = fstat(file, &opened) == 0 && lstat(path.c_str(), &there) == 0;
+  return is_known && opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
+    : dir_(dir.empty() ? dir : fs::absolute(dir)), content_(std::move(content)) {
+  if (dir_.empty()) refuse("must be named");
+  if (!dir_.has_filename()) dir_ = dir_.parent_path();
+  try {
+    created_.create(dir_);
+    if (!fs::is_directory(dir_)) refuse("not a folder");
+    lock();
+    check_aside();
+    if (const auto found = problem()) refuse(*found);
+    put_back();
+    start_aside();
+  } catch (const std::system_error& error) {
+    discard();
+    refuse("cannot be written to: " + error.code().message());
+  } catch (...) {
+    discard();
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() { discard(); }
+
+fs::path OutputFolder::made() const { return aside() / kNew; }
+fs::path OutputFolder::earlier() const { return aside() / kEarlierFolder; }
+
+void OutputFolder::lock() {
+  while (!try_lock()) {
+  }
+}
+
+// False if a run that has ended meanwhile has removed the folder aside.
+bool OutputFolder::try_lock() {
+  if (is_there(aside()) && !is_folder(aside()))
+    refuse(fmt::format("holds '{}', which is no folder", content_.aside));
+  fs::create_directory(aside());
+  lock_ = open(aside().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (lock_ < 0 && errno == ENOENT) return false;
+  if (lock_ < 0) throw std::system_error(errno, std::generic_category());
+  // A file system without locks has no second run refused.
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse("in use by another run");
+  if (is_same(lock_, aside())) return true;
+  close(lock_);
+  lock_ = -1;
+  return false;
+}
+
+void OutputFolder::check_aside() {
+  const std::vector<fs::path> left = entries(aside());
+  was_left_ = !left.empty();
+  owns_aside_ = !was_left_;
+  const auto refuse_foreign = [this](const fs::path& found) {
+    refuse(fmt::format("holds '{}': no killed run has left that there", (content_.aside / found).string()));
+  };
+  for (const fs::path& name : left) {
+    if ((name == kProbe || name == kNames) && is_file(aside() / name)) continue;
+    if ((name != kNew && name != kEarlierFolder) || !is_folder(aside() / name)) refuse_foreign(name);
+    for (const fs::path& entry : entries(aside() / name)) {
+      if (const auto foreign = content_.foreign(aside() / name / entry)) refuse_foreign(name / *foreign);
+    }
+  }
+}
+
+void OutputFolder::start_aside() {
+  for (const fs::path& name : entries(aside())) fs::remove_all(aside() / name);
+  owns_aside_ = true;
+  fs::create_directory(made());
+  write_whole_file(aside() / kProbe, "can this folder be written to?");
+  fs::remove(aside() / kProbe);
+}
+
+void OutputFolder::add(const std::string& name, std::string_view bytes) {
+  const fs::path path = made() / name;
+  try {
+    fs::create_directory(path.parent_path());
+    write_whole_file(path, bytes);
+  } catch (const std::system_error& error) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    refuse(fmt::format("'{}' cannot be written: {}", name, error.code().message()));
+  }
+}
+
+void OutputFolder::commit() {
+  if (committed_ || !is_file(made() / content_.mark))
+    throw std::logic_error(fmt::format("committed once, with {}", content_.mark));
+  try {
+    move_into_place();
+  } catch (const std::system_error& error) {
+    try {
+      // Had it come to its end, it would be taken for done.
+      if (!is_there(made() / content_.mark)) fs::rename(dir_ / content_.mark, made() / content_.mark);
+      put_back();
+    } catch (const std::exception& /*again*/) {
+      owns_aside_ = false;  // the next run puts back what is left there
+    }
+    refuse("the new files cannot be moved into place: " + error.code().message());
+  }
+  committed_ = true;
+  discard();
+}
+
+// put_back() relies on the order. The earlier mark goes last: while it is there, all else in place is earlier
+// too. The new mark comes last: once it is there, all is new.
+void OutputFolder::move_into_place() const {
+  std::vector<fs::path> replaced;
+  for (const fs::path& name : entries(dir_)) {
+    if (is_replaced(dir_ / name)) replaced.push_back(name);
+  }
+  const std::vector<fs::path> names = entries(made());
+  const auto move_all = [this](const std::vector<fs::path>& all, const fs::path& from, const fs::path& to) {
+    for (const fs::path& name : all) {
+      if (name != content_.mark) fs::rename(from / name, to / name);
+    }
+    if (is_file(from / content_.mark)) fs::rename(from / content_.mark, to / content_.mark);
+  };
+  std::string text;
+  for (const fs::path& name : names) {
+    if (is_folder(made() / name)) sync_folder(made() / name);
+    text += name.string() + '\0';
+  }
+  write_whole_file(aside() / kNames, text);
+  fs::create_directory(earlier());
+  move_all(replaced, dir_, earlier());
+  move_all(names, made(), dir_);
+  sync_folder(dir_);
+}
+
+// What a commit puts into place; it may have been that of another run. Nothing where that has been undone and
+// was being cleaned away.
+std::vector<fs::path> OutputFolder::moved_names() const {
+  std::vector<fs::path> names;
+  if (!is_file(aside() / kNames)) return names;
+  std::istringstream text(read_whole_file(aside() / kNames));
+  for (std::string name; std::getline(text, name, '\0');) {
+    if (fs::path(name).filename() == name && !content_.foreign(dir_ / name)) names.emplace_back(name);
+  }
+  return names;
+}
+
+// Undoes what a commit has done that did not come to its end, from wherever it ended, and this as well.
+void OutputFolder::put_back() const {
+  if (!is_folder(earlier()) || !is_file(made() / content_.mark)) return;
+  if (!is_file(dir_ / content_.mark)) {
+    for (const fs::path& name : moved_names()) {
+      if (is_there(dir_ / name) && !is_there(made() / name)) fs::rename(dir_ / name, made() / name);
+    }
+    if (is_file(earlier() / content_.mark)) fs::rename(earlier() / content_.mark, dir_ / content_.mark);
+  }
+  for (const fs::path& name : entries(earlier())) fs::rename(earlier() / name, dir_ / name);
+}
+
+void OutputFolder::discard() noexcept {
+  std::error_code ignored;
+  if (owns_aside_) fs::remove_all(aside(), ignored);
+  owns_aside_ = false;
+  if (committed_) created_.keep();
+  created_.remove();
+  if (lock_ >= 0) close(lock_);
+  lock_ = -1;
+}
+
+void OutputFolder::refuse(const std::string& found) const {
+  throw std::runtime_error(fmt::format("{} '{}': {}", content_.called, dir_.string(), found));
+}
+
+}  // namespace stereotlm::files

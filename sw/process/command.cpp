@@ -1,0 +1,109 @@
+#include "sw/process/command.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+namespace stereotlm::process {
+namespace {
+
+[[noreturn]] void fail(int error, const char* what) {
+  throw std::system_error(error, std::generic_category(), what);
+}
+
+// A file without a name.
+class Aside {
+ public:
+  Aside() : descriptor_(memfd_create("said", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) fail(errno, "memfd_create");
+  }
+  ~Aside() { close(descriptor_); }
+  Aside(const Aside&) = delete;
+  Aside& operator=(const Aside&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  std::string text() const {
+    std::string text(static_cast<std::size_t>(std::max<off_t>(lseek(descriptor_, 0, SEEK_END), 0)), '\0');
+    const ssize_t count = pread(descriptor_, text.data(), text.size(), 0);
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    return text;
+  }
+
+ private:
+  int descriptor_;
+};
+
+// How the process begins.
+class Beginning {
+ public:
+  Beginning(int out, int errors) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions_, out, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    sigset_t ignored_here;  // a program expects them to end it
+    sigemptyset(&ignored_here);
+    sigaddset(&ignored_here, SIGPIPE);
+    sigaddset(&ignored_here, SIGXFSZ);
+    posix_spawnattr_setsigdefault(&attributes_, &ignored_here);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~Beginning() {
+    posix_spawn_file_actions_destroy(&actions_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  Beginning(const Beginning&) = delete;
+  Beginning& operator=(const Beginning&) = delete;
+
+  const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
+};
+
+std::vector<char*> shown_variables(const std::vector<std::string>& hidden) {
+  std::vector<char*> shown;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    const auto begins = [&text](const std::string& name) { return text.compare(0, name.size(), name) == 0; };
+    if (std::none_of(hidden.begin(), hidden.end(), begins)) shown.push_back(*variable);
+  }
+  shown.push_back(nullptr);
+  return shown;
+}
+
+}  // namespace
+
+CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden) {
+  const Aside out;
+  const Aside errors;
+  const Beginning beginning(out.descriptor(), errors.descriptor());
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t pid = -1;
+  const int error = posix_spawnp(&pid, arguments[0], beginning.actions(), beginning.attributes(),
+                                 arguments.data(), shown_variables(hidden).data());
+  if (error == ENOENT) throw CommandMissing(words[0] + ": not found in PATH");
+  if (error != 0) fail(error, words[0].c_str());
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0) {
+    if (errno != EINTR) fail(errno, "waitpid");
+  }
+  constexpr int kSignalled = 128;
+  return {WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status), out.text(),
+          errors.text()};
+}
+
+}  // namespace stereotlm::process

@@ -1,0 +1,11 @@
+#pragma once
+
+namespace stereotlm::process {
+
+// From now on the first Ctrl-C (SIGINT) and the first SIGTERM are remembered instead of ending the process;
+// a second one ends it. A signal that the caller has ignored stays ignored.
+void catch_interrupts();
+
+bool interrupted();
+
+}  // namespace stereotlm::process

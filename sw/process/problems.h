@@ -1,0 +1,57 @@
+#pragma once
+
+#include <exception>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+
+namespace stereotlm::process {
+
+// A command is refused before it has done anything: exit status 2. Lines for standard error.
+class Refused : public std::exception {
+ public:
+  explicit Refused(std::vector<std::string> lines) : lines_(std::move(lines)) {}
+  const std::vector<std::string>& lines() const { return lines_; }
+  const char* what() const noexcept override { return "the command is refused"; }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+// Everything wrong with a command, collected so that it can be said at once.
+class Problems {
+ public:
+  void add(const std::string& text) { lines_.push_back("stereotlm: error: " + text); }
+  // The diagnostics of a board name file and position themselves.
+  void add(const platform::BoardError& error) { lines_.emplace_back(error.what()); }
+
+  // Not a problem, but of use to whoever has it.
+  void add_note(const std::string& text) { lines_.push_back("stereotlm: note: " + text); }
+  bool empty() const { return lines_.empty(); }
+  // Without the name of the program, separated by semicolons.
+  std::string in_one_line() const {
+    constexpr std::string_view kPrefix = "stereotlm: error: ";
+    std::string text;
+    for (const std::string& line : lines_) {
+      if (!text.empty()) text += "; ";
+      text += line.compare(0, kPrefix.size(), kPrefix) == 0 ? line.substr(kPrefix.size()) : line;
+    }
+    return text;
+  }
+
+  // Throws Refused if there is any.
+  void check() const {
+    if (!lines_.empty()) throw Refused(lines_);
+  }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+// One problem alone.
+[[noreturn]] inline void refuse(const std::string& text) { throw Refused({"stereotlm: error: " + text}); }
+
+}  // namespace stereotlm::process

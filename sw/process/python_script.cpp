@@ -1,0 +1,61 @@
+#include "sw/process/python_script.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "sw/process/installed_path.h"
+
+namespace stereotlm::process {
+namespace {
+
+// The words of a command that runs a script. Throws std::runtime_error if there is no such script.
+std::vector<std::string> words_of(const std::string& script, const std::vector<std::string>& arguments,
+                                  const std::string& python) {
+  const std::string path = installed_path(STEREOTLM_SCRIPT_FOLDER) / script;
+  if (!std::filesystem::is_regular_file(path)) {
+    throw std::runtime_error(fmt::format("'{}': not found: it is installed with the program", path));
+  }
+  // -E, -s: neither variables of the environment (PYTHON..) nor packages of the user have an effect.
+  // -B: writes nothing beside the script.
+  std::vector<std::string> words = {python, "-E", "-s", "-B", path};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+
+[[noreturn]] void fail_to_start(const std::string& python, const std::string& cause) {
+  throw std::runtime_error(
+      fmt::format("'{}', which draws the figures: cannot be started: {}", python, cause));
+}
+
+}  // namespace
+
+void become_script(const std::string& script, const std::vector<std::string>& arguments,
+                   const std::string& python) {
+  std::vector<std::string> words = words_of(script, arguments, python);
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  execv(python.c_str(), pointers.data());
+  fail_to_start(python, std::strerror(errno));
+}
+
+CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
+                      const std::string& python) {
+  const std::vector<std::string> words = words_of(script, arguments, python);
+  try {
+    return run_command(words);
+  } catch (const CommandMissing& /*error*/) {
+    fail_to_start(python, std::strerror(ENOENT));
+  } catch (const std::system_error& error) {
+    fail_to_start(python, error.code().message());
+  }
+}
+
+}  // namespace stereotlm::process

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace stereotlm::process {
+
+inline constexpr const char* kVersion = STEREOTLM_VERSION;  // the project's, from CMake
+
+}  // namespace stereotlm::process

@@ -1,0 +1,80 @@
+#include "sw/runs/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace stereotlm::runs {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenDrawings{200};
+
+std::size_t terminal_columns() {
+  constexpr std::size_t kUsual = 80;
+  winsize size = {};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+}
+
+}  // namespace
+
+std::string time_text(double seconds) {
+  constexpr double kLongest = 1e9;
+  if (!(seconds < kLongest)) return "years";
+  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string progress_text(const RunState& state, double seconds) {
+  const auto frames = static_cast<double>(state.frames);
+  const auto done = static_cast<double>(state.frames_done);
+  const double frame_cycles = state.frames_done > 0 ? static_cast<double>(state.cycles_of_done) / done
+                                                    : static_cast<double>(state.least_frame_cycles);
+  // The frame may be longer than the ones before it.
+  const double part =
+      std::min(0.999, static_cast<double>(state.cycles - state.cycles_of_done) / frame_cycles);
+  const double position = state.frames_done == state.frames ? frames : done + part;
+  const double rate = static_cast<double>(state.cycles) / seconds;
+  return fmt::format("{:.2f}/{} frames   {:.1f} %   {:.2f} M cycles/s   {:.2f} frames/s   {} left", position,
+                     state.frames, 100 * position / frames, rate / 1e6, rate / frame_cycles,
+                     time_text((frames - position) * frame_cycles / rate));
+}
+
+std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
+  return fmt::format("verifying: {}/{} frames", frames_compared, frames);
+}
+
+ProgressLine::ProgressLine()
+    : is_terminal_(isatty(STDERR_FILENO) != 0),
+      start_(std::chrono::steady_clock::now()),
+      next_(start_ + kBetweenDrawings) {}
+
+void ProgressLine::show(const RunState& state) {
+  show([&state](double seconds) { return progress_text(state, seconds); });
+}
+
+void ProgressLine::show(const std::function<std::string(double seconds)>& line) {
+  if (!is_terminal_) return;
+  const Time now = std::chrono::steady_clock::now();
+  if (now < next_) return;
+  next_ = now + kBetweenDrawings;
+  std::string text = line(std::chrono::duration<double>(now - start_).count());
+  text.resize(std::min(text.size(), terminal_columns() - 1));  // a line that wraps cannot be drawn over
+  const std::size_t columns = text.size();
+  if (columns < columns_drawn_) text.append(columns_drawn_ - columns, ' ');
+  columns_drawn_ = columns;
+  std::fprintf(stderr, "\r%s", text.c_str());
+  std::fflush(stderr);
+}
+
+void ProgressLine::erase() {
+  if (columns_drawn_ == 0) return;
+  std::fprintf(stderr, "\r%*s\r", static_cast<int>(columns_drawn_), "");
+  columns_drawn_ = 0;
+  std::fflush(stderr);
+}
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,187 @@
+#include "sw/runs/recorded_run.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "sw/files/sha256.h"
+#include "sw/files/whole_file.h"
+#include "sw/runs/run_json_reader.h"
+#include "sw/runs/sources/calibration_input.h"
+#include "sw/runs/sources/media_library.h"
+#include "sw/runs/sources/open_source.h"
+#include "sw/runs/sources/picture_size.h"
+
+namespace stereotlm::runs {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RecordedFile {
+  std::string option;
+  InputFile file;  // its path in full
+};
+
+std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
+  std::vector<RecordedFile> files;
+  const auto add = [&files](const char* option, const InputFile& file) { files.push_back({option, file}); };
+  if (options.left) add("--left", *options.left);
+  if (options.right) add("--right", *options.right);
+  if (options.sequence) {
+    for (const InputFile& file : options.sequence->files)
+      add("--sequence", {(fs::path(options.sequence->path) / file.path).string(), file.sha256});
+  }
+  for (const InputFile& file : options.video) add("--video", file);
+  if (options.calibration) {
+    for (const auto& file :
+         {options.calibration->file, options.calibration->left_lut, options.calibration->right_lut})
+      add("--calibration", file);
+  }
+  if (options.truth) add("--truth", *options.truth);
+  return files;
+}
+
+// Throws std::runtime_error for a file that is not the one that the run had.
+void check_input(const RecordedFile& input) {
+  const std::string sha256 = files::sha256_file(input.file.path);
+  if (sha256 == input.file.sha256) return;
+  throw std::runtime_error(fmt::format("'{}': SHA-256 {}: must be that of the file of the run, {}",
+                                       input.file.path, sha256, input.file.sha256));
+}
+
+// Throws std::runtime_error for figures that nothing should be compared with.
+void check_figures(const std::string& text) {
+  nlohmann::ordered_json document;
+  try {
+    document = nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(fmt::format("must be as run writes it: {}", error.what()));
+  }
+  if (!document.is_object()) throw std::runtime_error("must be as run writes it: a JSON object");
+  const auto failed = document.find("failed");
+  if (failed == document.end()) return;
+  throw std::runtime_error(fmt::format("failed = {}: must be a run in which nothing failed", failed->dump()));
+}
+
+// Throws std::runtime_error if the layout of videos is none, or not for so many.
+PictureSource pictures_of(const RecordedOptions& options) {
+  PictureSource pictures;
+  if (options.left && options.right)
+    pictures.pair = PictureSource::Pair{options.left->path, options.right->path};
+  if (options.sequence) pictures.sequence = options.sequence->path;
+  if (!options.video.empty()) {
+    const auto layout = video_layout_of(options.video_layout);
+    if (!layout || options.video.size() != (layout == VideoLayout::kTwo ? 2U : 1U)) {
+      throw std::runtime_error(fmt::format("video_layout = {}: must be that of {} file{}",
+                                           options.video_layout, options.video.size(),
+                                           options.video.size() == 1 ? "" : "s"));
+    }
+    std::vector<std::string> files;
+    for (const InputFile& file : options.video) files.push_back(file.path);
+    pictures.video = PictureSource::Video{files, *layout, options.video_layout};
+  }
+  pictures.synthetic = options.synthetic;
+  return pictures;
+}
+
+// Throws std::runtime_error if the folder has pairs now that the run did not have.
+void check_sequence(const InputFolder& found, const InputFolder& recorded) {
+  if (found.files.size() == recorded.files.size()) return;
+  throw std::runtime_error(fmt::format("'{}': {} pairs: must be those of the run, {}", found.path,
+                                       found.files.size() / 2, recorded.files.size() / 2));
+}
+
+media::Truth truth_of(const RecordedOptions& options, const platform::BoardConfig& board) {
+  media::Truth truth = media_functions().load_truth(options.truth->path, options.truth_scale);
+  if (const auto problem = size_problem(truth.grey.width, truth.grey.height, board))
+    throw std::runtime_error(fmt::format("'{}'{}", options.truth->path, *problem));
+  return truth;
+}
+
+}  // namespace
+
+std::string name_of(const RecordedRun& run) { return fmt::format("{} '{}'", run.argument, run.folder); }
+
+std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
+                                             process::Problems& problems) {
+  RecordedRun run;
+  run.argument = argument;
+  run.folder = folder;
+  bool is_right = true;
+  const auto attempt = [&](const std::string& what, const std::function<void()>& step) {
+    try {
+      step();
+    } catch (const platform::BoardError& error) {
+      problems.add(error);
+      is_right = false;
+    } catch (const std::exception& error) {
+      problems.add(what + error.what());
+      is_right = false;
+    }
+  };
+  const std::string rule = "A and B must be folders that run --out has written: ";
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (!fs::is_directory(status)) {
+    const bool is_missing = status.type() == fs::file_type::not_found;
+    const std::string found = is_missing ? "no such folder" : error ? error.message() : "not a folder";
+    problems.add(fmt::format("{}'{}': {}", rule, folder, found));
+    return std::nullopt;
+  }
+  const auto read = [&](const char* name, std::string& text, const std::function<void()>& use) {
+    const std::string path = (fs::path(folder) / name).string();
+    attempt(rule, [&] {
+      text = files::read_whole_file(path);
+      attempt(fmt::format("'{}': ", path), use);
+    });
+  };
+  read("run.json", run.run_json, [&] {
+    run.options = parse_run_json(run.run_json);
+    pictures_of(run.options);
+  });
+  std::string board;
+  read("config.yaml", board,
+       [&] { run.board = platform::load_board((fs::path(folder) / "config.yaml").string()); });
+  read("stats.json", run.stats_json, [&] { check_figures(run.stats_json); });
+  if (!is_right) return std::nullopt;
+  for (const RecordedFile& input : inputs_of(run.options))
+    attempt(fmt::format("{}: {} ", name_of(run), input.option), [&] { check_input(input); });
+  if (!is_right) return std::nullopt;
+  return run;
+}
+
+RunInput open_again(const RecordedRun& run, process::Problems& problems) {
+  process::Problems found;
+  const auto attempt = [&found](const std::string& option, const auto& step) {
+    try {
+      step();
+    } catch (const std::exception& error) {
+      found.add(option + error.what());
+    }
+  };
+  RunInput input;
+  input.board = run.board;
+  input.described = run.options;
+  input.camera = run.options.source == "camera";
+  input.fast = run.options.fidelity == "fast";
+  input.timing_only = run.options.timing_only;
+  input.frames = run.options.frames;
+  RecordedOptions described;
+  input.pairs = open_source(pictures_of(run.options), &run.board, described, found).pairs;
+  if (described.sequence)
+    attempt("--sequence ", [&] { check_sequence(*described.sequence, *run.options.sequence); });
+  std::optional<CalibrationInput> calibration;
+  if (run.options.calibration)
+    calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
+  attempt("", [&] { input.tables = tables_of(run.board, calibration); });
+  if (run.options.truth) attempt("--truth ", [&] { input.truth = truth_of(run.options, run.board); });
+  if (!found.empty()) problems.add(fmt::format("{}: {}", name_of(run), found.in_one_line()));
+  return input;
+}
+
+}  // namespace stereotlm::runs

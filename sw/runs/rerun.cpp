@@ -1,0 +1,115 @@
+#include "sw/runs/rerun.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <deque>
+#include <stdexcept>
+#include <vector>
+
+#include "models/binder.h"
+#include "sw/process/version.h"
+#include "sw/report/accuracy.h"
+#include "sw/report/stats_differences.h"
+#include "sw/report/stats_json.h"
+#include "sw/runs/run_mode.h"
+
+namespace stereotlm::runs {
+namespace {
+
+constexpr char kFrame = 'f';
+constexpr char kFigures = 's';
+
+// A message of a frame: its kind, the number, the rows, the pixels; between processes of one program.
+template <typename Value>
+void put(std::string& message, const Value& value) {
+  message.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <typename Value>
+void take(const char*& bytes, Value& value) {
+  std::memcpy(&value, bytes, sizeof value);
+  bytes += sizeof value;
+}
+
+std::string message_of(const Result& result, const fpga::RowProfile& rows) {
+  std::string message(1, kFrame);
+  put(message, result.number);
+  for (const fpga::RowEnd& row : rows) put(message, row);
+  const auto& pixels = result.disparity.pixels;
+  return message.append(pixels.begin(), pixels.end());
+}
+
+Rerun::Frame frame_of(const std::string& message, const RecordedRun& run) {
+  Rerun::Frame frame;
+  const char* bytes = message.data() + 1;
+  take(bytes, frame.number);
+  frame.rows.resize(static_cast<std::size_t>(run.board.image.height));
+  for (fpga::RowEnd& row : frame.rows) take(bytes, row);
+  if (run.options.timing_only) return frame;
+  frame.disparity = kernels::GrayImage(run.board.image.width, run.board.image.height);
+  std::memcpy(frame.disparity.pixels.data(), bytes, frame.disparity.pixels.size());
+  return frame;
+}
+
+std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input) {
+  statistics.fidelity = input.described.fidelity;
+  std::optional<report::Accuracy> accuracy;
+  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
+  return report::stats_json(statistics, accuracy);
+}
+
+void run_again(const RecordedRun& run, const process::Child::Tell& tell) {
+  process::Problems problems;
+  RunInput input = open_again(run, problems);
+  if (!problems.empty()) throw std::runtime_error("cannot be run any more: " + problems.in_one_line());
+  input.fast = true;
+  BlankPairs blank(input.board);
+  host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
+  Binder binder;
+  const auto simulation = make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
+  simulation->record_rows();
+  std::deque<fpga::RowProfile> rows;  // of frames whose results are under way
+  while (!simulation->finished()) {
+    const std::vector<Result> results = simulation->advance();
+    for (fpga::RowProfile& frame : simulation->take_rows()) rows.push_back(std::move(frame));
+    for (const Result& result : results) {
+      tell(message_of(result, rows.front()));
+      rows.pop_front();
+    }
+  }
+  tell(kFigures + figures_of(simulation->statistics(), simulation->last(), input));
+}
+
+}  // namespace
+
+Rerun::Rerun(const RecordedRun& run)
+    : run_(run), child_(std::make_unique<process::Child>([&run](const process::Child::Tell& tell) {
+        run_again(run, tell);
+      })) {}
+
+std::optional<Rerun::Frame> Rerun::next() {
+  try {
+    const std::optional<std::string> message = child_->next();
+    if (!message) throw std::runtime_error("has ended without figures");
+    if (message->front() == kFrame) return frame_of(*message, run_);
+    check_figures(message->substr(1));
+    return std::nullopt;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: {}", name_of(run_), error.what()));
+  }
+}
+
+void Rerun::check_figures(const std::string& stats_json) const {
+  if (stats_json == run_.stats_json) return;
+  const auto differences = report::stats_differences(run_.stats_json, stats_json, "recorded", "again");
+  std::string text = differences.empty() ? "its stats.json is not as run has written it"
+                                         : "run again it has other figures: " + differences.front();
+  if (differences.size() > 1) text += fmt::format(", and {} more", differences.size() - 1);
+  if (run_.options.program_version != process::kVersion) {
+    text += fmt::format("; it is of version {}, this is {}", run_.options.program_version, process::kVersion);
+  }
+  throw std::runtime_error(text);
+}
+
+}  // namespace stereotlm::runs

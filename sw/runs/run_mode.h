@@ -1,0 +1,14 @@
+#pragma once
+
+#include "sw/runs/run_input.h"
+#include "sw/runs/simulation/make_simulation.h"
+
+namespace stereotlm::runs {
+
+// How the simulation of a run works.
+inline RunMode run_mode(const RunInput& input) {
+  const fpga::Fidelity fast = input.timing_only ? fpga::Fidelity::kTiming : fpga::Fidelity::kFast;
+  return {input.camera, input.fast ? fast : fpga::Fidelity::kCycle, input.frames};
+}
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,93 @@
+#include "sw/runs/run_results.h"
+
+#include <fmt/format.h>
+
+#include "calib/calibration.h"
+#include "calib/depth.h"
+#include "sw/process/streams.h"
+#include "sw/report/accuracy.h"
+#include "sw/report/console_table.h"
+#include "sw/report/stats_json.h"
+#include "sw/runs/sources/media_library.h"
+
+namespace stereotlm::runs {
+namespace {
+
+void add_pictures(const RunInput& input, const Result& last, ResultFolder& folder) {
+  const kernels::GrayImage& disparity = last.disparity;
+  const MediaFunctions& media = media_functions();
+  folder.add("disparity.png", media.encode_png_gray(disparity));
+  folder.add("disparity.pfm", media.encode_pfm(disparity));
+  folder.add("disparity_color.png",
+             media.encode_disparity_color_png(disparity, input.board.matcher.disparities));
+  if (!input.calibration) return;
+  const calib::DepthGeometry geometry = {input.calibration->rectification.q,
+                                         input.calibration->disparity_offset};
+  const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
+  folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height,
+                                              calib::depth_millimetres(geometry, disparity)));
+  folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
+}
+
+void write_files(RunInput& input, platform::Statistics statistics, const Result& last,
+                 const std::optional<report::Accuracy>& accuracy,
+                 const std::vector<std::string>& differences) {
+  statistics.failed.insert(statistics.failed.end(), differences.begin(), differences.end());
+  ResultFolder& folder = *input.folder;
+  if (!input.timing_only) add_pictures(input, last, folder);
+  folder.add("stats.json", report::stats_json(statistics, accuracy));
+  folder.add("config.yaml", input.config_yaml);
+  // An interrupted run is the same as a whole one of the frames that it finished.
+  input.described.frames = statistics.frames;
+  folder.add("run.json", run_json(input.described));
+  folder.commit();
+}
+
+// A made scene's own truth, which is without calibration, is shown to the user only: stats.json has the
+// accuracy against --truth.
+std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Result& last,
+                                                 const std::optional<report::Accuracy>& accuracy) {
+  if (accuracy || !input.pairs || input.calibration || input.timing_only) return accuracy;
+  const std::optional<media::Truth> truth = input.pairs->truth(last.number);
+  if (!truth) return std::nullopt;
+  return report::accuracy(last.disparity, *truth);
+}
+
+}  // namespace
+
+void save_frame(const RunInput& input, const Result& result) {
+  if (!input.described.save_frames) return;
+  input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
+}
+
+void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
+  if (!input.truth) return;
+  const std::uint64_t length = input.pairs->length();
+  if ((frames_done - 1) % length == (input.frames - 1) % length) return;
+  process::say("note", fmt::format("--truth is of the pair of frame {}, which was not reached: no accuracy",
+                                   input.frames - 1));
+  input.truth.reset();
+  input.described.truth.reset();
+}
+
+void leave_out_verify(RunInput& input) {
+  process::say("note", "--verify: interrupted: nothing is compared");
+  input.described.verify = false;
+}
+
+bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
+             const std::vector<std::string>& differences) {
+  std::optional<report::Accuracy> accuracy;
+  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
+  if (input.folder) write_files(input, statistics, last, accuracy, differences);
+  for (const std::string& identity : statistics.failed)
+    process::say("error", "identity does not hold: " + identity);
+  const platform::BoardConfig& board = input.board;
+  process::print(report::console_table(
+      statistics, {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
+      accuracy_to_show(input, last, accuracy)));
+  for (const std::string& difference : differences) process::say("error", difference);
+  return statistics.failed.empty() && differences.empty();
+}
+
+}  // namespace stereotlm::runs

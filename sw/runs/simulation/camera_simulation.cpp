@@ -1,0 +1,104 @@
+#include "sw/runs/simulation/camera_simulation.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "models/clock.h"
+#include "sw/driver/board_driver.h"
+
+namespace stereotlm::runs {
+namespace {
+
+std::vector<std::uint32_t> entries_of(const std::optional<kernels::RectificationTable>& table) {
+  return table ? table->entries : std::vector<std::uint32_t>{};
+}
+
+// Longer than anything waits that will come: for the next frame of the cameras while another one ends, and
+// for the bus behind a third party.
+double stall_timeout_seconds(const platform::BoardConfig& board) {
+  constexpr double kRest = 0.1;  // clocks of 1 MHz included
+  constexpr double kTurns = 4;
+  double turn = 1 / board.cameras.frame_rate_hz;
+  if (board.pci.load) turn += board.pci.load->access_us / 1e6 + board.pci.load->burst_words / 1e6;
+  return kTurns * turn + kRest;
+}
+
+}  // namespace
+
+CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                                   fpga::Fidelity fidelity)
+    : Simulation(board, pairs, frames, fidelity),
+      board_(board),
+      tables_(tables),
+      driver_(driver::driver_config(board, frames), entries_of(tables.left), entries_of(tables.right), *this),
+      computer_("computer", board, driver::host_memory_bytes(driver::driver_config(board, frames)), driver_,
+                left_, right_, binder, fidelity),
+      stall_timeout_seconds_(stall_timeout_seconds(board)) {}
+
+const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
+  return simulation_.captured_pair(number, begin_ps).*side_;
+}
+
+// Both cameras take the same frames: a pair is loaded for the first, and used until the next.
+const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, std::uint64_t begin_ps) {
+  if (begins_ps_.emplace(number, begin_ps).second) pair_ = &load_pair(number);
+  return *pair_;
+}
+
+void CameraSimulation::end_early() {
+  driver_.start_no_more();
+  set_frames(driver_.frames_started());
+}
+
+platform::Statistics CameraSimulation::statistics() const {
+  if (deliveries_.empty() || counters_.board.frames != deliveries_.size()) {
+    throw std::logic_error(
+        fmt::format("figures of {} frames asked for, while the core is busy", deliveries_.size()));
+  }
+  return platform::collect_statistics(board_, tables_, computer_, counters_, deliveries_);
+}
+
+void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
+  const auto begin = begins_ps_.find(frame.camera_frame);
+  deliveries_.push_back({begin->second, Clock::to_ps(sc_core::sc_time_stamp())});
+  begins_ps_.erase(begins_ps_.begin(), std::next(begin));
+  if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
+  kernels::GrayImage disparity;
+  if (computer_.board.core.fidelity() != fpga::Fidelity::kTiming) {
+    disparity.width = board_.image.width;
+    disparity.height = board_.image.height;
+    const std::ptrdiff_t pixels = std::ptrdiff_t{disparity.width} * disparity.height;
+    disparity.pixels.assign(frame.disparity, frame.disparity + pixels);
+  }
+  add_result({frame.camera_frame, std::move(disparity)});
+}
+
+// Grows with whatever brings a result nearer; what a third party does on the bus does not.
+std::uint64_t CameraSimulation::work_done() {
+  computer_.board.core.catch_up();
+  const fpga::CoreControl& core = computer_.board.core.control();
+  std::uint64_t work = core.left().consumed() + core.result().cycles().granted();
+  const pci::PciBus::Stats bus = computer_.pci_bus.stats();
+  for (std::size_t master = 0; master < platform::Computer::kLoad; ++master)
+    work += bus.masters[master].words;
+  return work;
+}
+
+void CameraSimulation::check_progress() {
+  if (const std::uint64_t work = work_done(); work != last_work_) {
+    last_work_ = work;
+    last_work_at_ = sc_core::sc_time_stamp();
+    return;
+  }
+  const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
+  if (idle < stall_timeout_seconds_) return;
+  throw std::runtime_error(fmt::format(
+      "nothing has gone on for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
+      "for: {}; {}",
+      idle, frames_done(), frames(), driver_.under_way(), computer_.board.core.waits()));
+}
+
+}  // namespace stereotlm::runs

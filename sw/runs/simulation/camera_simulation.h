@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "models/binder.h"
+#include "models/capture/camera.h"
+#include "platform/collect_computer.h"
+#include "platform/computer.h"
+#include "sw/driver/stereo_driver.h"
+#include "sw/runs/simulation/simulation.h"
+
+namespace stereotlm::runs {
+
+// `--source camera`: the whole computer with the driver on its processor. Camera frame k shows pair k. What
+// the core has begun when it ends early is finished and delivered.
+class CameraSimulation : public Simulation, private driver::FrameListener {
+ public:
+  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the
+  // computer cannot be built.
+  CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
+
+  void end_early() override;
+  platform::Statistics statistics() const override;
+  const platform::Computer& computer() const { return computer_; }
+  std::uint64_t frames_started() const { return driver_.frames_started(); }  // by the core
+
+ private:
+  // What the camera of one side sees.
+  class View : public capture::CameraSource {
+   public:
+    View(CameraSimulation& simulation, kernels::GrayImage host::StereoPair::*side)
+        : simulation_(simulation), side_(side) {}
+    const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) override;
+
+   private:
+    CameraSimulation& simulation_;
+    kernels::GrayImage host::StereoPair::*side_;
+  };
+
+  const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
+  void frame_delivered(const driver::DeliveredFrame& frame) override;
+  void check_progress() override;
+  fpga::StereoCore& core() override { return computer_.board.core; }
+  std::uint64_t work_done();
+
+  const platform::BoardConfig& board_;
+  const platform::Tables& tables_;
+  View left_{*this, &host::StereoPair::left};
+  View right_{*this, &host::StereoPair::right};
+  driver::StereoDriver driver_;
+  platform::Computer computer_;
+  const host::StereoPair* pair_ = nullptr;            // of the last frame that was captured
+  std::map<std::uint64_t, std::uint64_t> begins_ps_;  // of captured camera frames, until they are delivered
+  std::vector<platform::Delivery> deliveries_;
+  platform::ComputerCounters counters_;  // at the last delivery that left nothing to the core
+  double stall_timeout_seconds_;
+  std::uint64_t last_work_ = 0;
+  sc_core::sc_time last_work_at_;
+};
+
+}  // namespace stereotlm::runs

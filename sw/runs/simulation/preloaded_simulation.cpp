@@ -1,0 +1,25 @@
+#include "sw/runs/simulation/preloaded_simulation.h"
+
+namespace stereotlm::runs {
+
+PreloadedSimulation::PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                                         host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                                         fpga::Fidelity fidelity)
+    : Simulation(board, pairs, frames, fidelity),
+      board_(board),
+      tables_(tables),
+      system_("system", board, tables, frames, *this, *this, binder, fidelity),
+      counters_(platform::counters_of(system_.board)) {}
+
+platform::Statistics PreloadedSimulation::statistics() const {
+  return platform::collect_statistics(board_, tables_, system_.board, counters_);
+}
+
+// Counters are taken at each frame's end, because those of a frame under way would be mixed into them when
+// the run is interrupted.
+void PreloadedSimulation::take(std::uint64_t frame, const kernels::GrayImage& disparity) {
+  counters_ = platform::counters_of(system_.board);
+  add_result({frame, disparity});
+}
+
+}  // namespace stereotlm::runs

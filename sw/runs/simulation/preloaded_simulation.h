@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/binder.h"
+#include "models/host/frame_source.h"
+#include "platform/collect.h"
+#include "platform/preloaded_system.h"
+#include "sw/runs/simulation/simulation.h"
+
+namespace stereotlm::runs {
+
+// `--source preloaded`: the board alone, fed by an ideal host. Frame f shows pair f. The frame under way when
+// it ends early is given up.
+class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
+ public:
+  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the board
+  // cannot be built.
+  PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                      host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                      fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
+
+  void end_early() override { set_frames(frames_done()); }
+  platform::Statistics statistics() const override;
+
+ private:
+  const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
+  void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
+  fpga::StereoCore& core() override { return system_.board.core; }
+
+  const platform::BoardConfig& board_;
+  const platform::Tables& tables_;
+  platform::PreloadedSystem system_;
+  platform::BoardCounters counters_;  // at the end of the last finished frame
+};
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,119 @@
+#include "sw/runs/simulation/simulate_point.h"
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "models/binder.h"
+#include "models/clock.h"
+#include "platform/core_run.h"
+#include "sw/explore/sweep/sweep.h"
+#include "sw/files/sha256.h"
+#include "sw/process/child.h"
+#include "sw/report/stats_json.h"
+#include "sw/runs/simulation/camera_simulation.h"
+#include "sw/runs/simulation/make_simulation.h"
+
+namespace stereotlm::runs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds(const platform::BoardConfig& board, std::uint64_t cycle) {
+  return static_cast<double>(Clock(board.fpga.clock_mhz).edge_ps(cycle)) / 1e12;
+}
+
+bool is_table_of(const std::optional<kernels::RectificationTable>& table, const platform::BoardConfig& board,
+                 bool is_used) {
+  if (!table || !is_used) return table.has_value() == is_used;
+  return table->width == board.image.width && table->height == board.image.height;
+}
+
+Json document_of(const platform::Statistics& statistics) {
+  if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
+  return report::stats_document(statistics, std::nullopt);
+}
+
+// The whole computer, in a process that does nothing else: what has been built is left to its end. Nothing if
+// it is hopeless.
+std::optional<Json> simulate_computer(const explore::Point& point, const platform::Tables& tables,
+                                      const PointSimulator::Hopeless& hopeless) {
+  const platform::BoardConfig& board = *point.board;
+  auto* const binder = new Binder;
+  auto* const blank = new BlankPairs(board);
+  auto* const simulation =
+      new CameraSimulation(board, tables, *blank, point.run.frames, *binder, fpga::Fidelity::kTiming);
+  while (!simulation->finished()) {
+    simulation->advance();
+    if (!hopeless || simulation->frames_started() == 0) continue;
+    const fpga::StereoCore& core = simulation->computer().board.core;
+    if (hopeless({simulation->frames_started() - 1, seconds(board, core.first_cycle())})) return std::nullopt;
+  }
+  return document_of(simulation->statistics());
+}
+
+}  // namespace
+
+explore::Figures PointSimulator::operator()(const explore::Point& point, const Hopeless& hopeless) {
+  const platform::BoardConfig& board = *point.board;
+  const bool is_usable = is_table_of(tables_.left, board, board.allocation.left_lut.has_value()) &&
+                         is_table_of(tables_.right, board, board.allocation.right_lut.has_value());
+  if (!is_usable && is_calibrated_)
+    throw std::runtime_error("the tables of the calibration are of another board");
+  if (!is_usable) tables_ = platform::identity_tables(board);
+  if (!point.run.camera) {
+    return explore::figures_of(document_of(platform::run_core(board, tables_, point.run.frames)));
+  }
+  process::Child child([&](const process::Child::Tell& tell) {
+    const std::optional<Json> document = simulate_computer(point, tables_, hopeless);
+    if (!document) return;
+    const auto bytes = Json::to_cbor(*document);
+    tell(std::string(bytes.begin(), bytes.end()));
+  });
+  const std::optional<std::string> document = child.next();
+  if (!document) throw explore::GivenUp();
+  child.next();
+  return explore::figures_of(Json::from_cbor(*document));
+}
+
+double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables) {
+  process::Child child([&](const process::Child::Tell& tell) {
+    Binder binder;
+    BlankPairs blank(board);
+    CameraSimulation simulation(board, tables, blank, 1, binder, fpga::Fidelity::kTiming);
+    while (!simulation.finished()) simulation.advance();
+    tell(std::to_string(simulation.computer().board.core.first_cycle()));
+  });
+  const std::uint64_t cycle = std::stoull(child.next().value());
+  child.next();
+  return seconds(board, cycle);
+}
+
+PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
+                         host::FrameSource& pairs, std::uint64_t frames) {
+  process::Child child([&](const process::Child::Tell& tell) {
+    Binder binder;
+    const auto simulation =
+        make_simulation(board, tables, pairs, {false, fpga::Fidelity::kFast, frames}, binder);
+    std::string pixels;
+    while (!simulation->finished()) {
+      for (const Result& result : simulation->advance()) {
+        pixels.append(result.disparity.pixels.begin(), result.disparity.pixels.end());
+      }
+    }
+    const platform::Statistics statistics = simulation->statistics();
+    if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
+    tell(files::sha256_hex(pixels.data(), pixels.size()));
+    const auto& cycles = statistics.frame_cycles;
+    tell(std::to_string(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})));
+  });
+  PixelRun run;
+  run.disparities_sha256 = child.next().value();
+  run.cycles = std::stoull(child.next().value());
+  child.next();
+  return run;
+}
+
+}  // namespace stereotlm::runs

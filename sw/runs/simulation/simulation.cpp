@@ -1,0 +1,73 @@
+#include "sw/runs/simulation/simulation.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <systemc>
+#include <utility>
+
+#include "models/clock.h"
+#include "models/fpga/stereo_core.h"
+
+namespace stereotlm::runs {
+namespace {
+
+// FPGA cycles of one advance(): some ms of wall time, and at fast what the pixels of a frame take that begins
+// in them.
+constexpr double kSliceCycles = 40'000;
+constexpr double kFastSliceCycles = 2'000'000;
+
+}  // namespace
+
+Simulation::Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames,
+                       fpga::Fidelity fidelity)
+    : board_(board),
+      pairs_(pairs),
+      slice_cycles_(fidelity == fpga::Fidelity::kCycle ? kSliceCycles : kFastSliceCycles),
+      frames_(frames) {}
+
+std::vector<Result> Simulation::advance() {
+  new_.clear();
+  try {
+    sc_core::sc_start(slice_cycles_ / board_.fpga.clock_mhz, sc_core::SC_US);
+  } catch (const sc_core::sc_report&) {
+    if (failure_) std::rethrow_exception(failure_);  // SystemC has put a report in its place
+    throw;
+  }
+  if (!finished() && !sc_core::sc_pending_activity()) {
+    throw std::runtime_error(
+        fmt::format("the simulation has ended after {} frames: nothing is left that could finish the next",
+                    frames_done()));
+  }
+  if (!finished()) check_progress();
+  return std::move(new_);
+}
+
+std::uint64_t Simulation::cycles() const {
+  return static_cast<std::uint64_t>(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6 +
+                                    0.5);
+}
+
+void Simulation::record_rows() { core().record_rows(); }
+
+std::vector<fpga::RowProfile> Simulation::take_rows() { return core().take_rows(); }
+
+const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
+  try {
+    return pairs_.pair(number);
+  } catch (...) {
+    failure_ = std::current_exception();
+    throw;
+  }
+}
+
+void Simulation::add_result(Result result) {
+  ++frames_done_;
+  result.time_ps = Clock::to_ps(sc_core::sc_time_stamp());
+  cycles_of_done_ = cycles();
+  last_ = result;
+  new_.push_back(std::move(result));
+  if (finished()) sc_core::sc_pause();  // what would happen afterwards is nobody's business
+}
+
+}  // namespace stereotlm::runs

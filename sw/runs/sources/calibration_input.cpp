@@ -1,0 +1,118 @@
+#include "sw/runs/sources/calibration_input.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "calib/calibration_reader.h"
+#include "calib/lut_file.h"
+#include "calib/storage_yaml.h"
+#include "calib/tables.h"
+#include "sw/files/sha256.h"
+#include "sw/files/whole_file.h"
+#include "sw/runs/sources/rig_files.h"
+
+namespace stereotlm::runs {
+namespace {
+
+namespace fs = std::filesystem;
+
+InputFile described(const fs::path& path, const std::string& content) {
+  return {fs::absolute(path).string(), files::sha256_hex(content.data(), content.size())};
+}
+
+void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
+  if (rig.width != board.image.width || rig.height != board.image.height) {
+    throw std::runtime_error(fmt::format("image size = {}x{}: must be that of the board's images, {}x{}",
+                                         rig.width, rig.height, board.image.width, board.image.height));
+  }
+  const platform::AllocationConfig& allocation = board.allocation;
+  if (allocation.left_lut && allocation.right_lut) return;
+  throw std::runtime_error(fmt::format("goes with a board that has both tables; allocation.{} = none",
+                                       allocation.left_lut ? "right_lut" : "left_lut"));
+}
+
+kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
+                                       InputFile& file) {
+  const std::string content = files::read_whole_file(path, calib::lut_byte_count(rig.width, rig.height));
+  file = described(path, content);
+  if (file.sha256 != sha256) {
+    throw std::runtime_error(
+        fmt::format("'{}': SHA-256 {}: must be the table that the calibration was written with, {}",
+                    path.string(), file.sha256, sha256));
+  }
+  try {
+    return calib::parse_lut(content, rig.width, rig.height);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("'{}': {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
+                                                 process::Problems& problems, const std::string& named) {
+  bool is_right = true;
+  const auto attempt = [&](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception& error) {
+      problems.add(fmt::format("{} {}", named, error.what()));
+      is_right = false;
+    }
+  };
+  const auto at_path = [&path](const std::string& problem) {
+    return std::runtime_error(fmt::format("'{}': {}", path, problem));
+  };
+  CalibrationInput input;
+  attempt([&] {
+    const RigFiles files = rig_files(path);
+    for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
+      input.files.push_back({named, file.string()});
+    }
+    const std::string content = files::read_whole_file(files.calibration, calib::kMostStorageBytes);
+    input.described.file = described(files.calibration, content);
+    try {
+      input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));
+      if (board != nullptr) check_board(input.calibration->rig, *board);
+    } catch (const std::exception& error) {
+      throw at_path(error.what());
+    }
+    const calib::Calibration& calibration = *input.calibration;
+    attempt([&] {
+      input.tables.left =
+          load_table(files.left_lut, calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
+    });
+    attempt([&] {
+      input.tables.right = load_table(files.right_lut, calibration.rig, calibration.right_lut_sha256,
+                                      input.described.right_lut);
+    });
+  });
+  if (!is_right) return std::nullopt;
+  attempt([&] {
+    const calib::Calibration& calibration = *input.calibration;
+    if (!calib::are_tables_of({*input.tables.left, *input.tables.right}, calibration.rig,
+                              calibration.rectification, calibration.disparity_offset)) {
+      throw at_path("matrices and disparity_offset: must be those that its tables were made with");
+    }
+  });
+  if (!is_right) return std::nullopt;
+  return input;
+}
+
+std::string sha256_of(const platform::Tables& tables) {
+  std::string bytes;
+  for (const auto& table : {tables.left, tables.right}) {
+    if (table) bytes.append(reinterpret_cast<const char*>(table->entries.data()), table->entries.size() * 4);
+    bytes += '|';
+  }
+  return files::sha256_hex(bytes.data(), bytes.size());
+}
+
+platform::Tables tables_of(const platform::BoardConfig& board,
+                           const std::optional<CalibrationInput>& calibration) {
+  return calibration ? calibration->tables : platform::identity_tables(board);
+}
+
+}  // namespace stereotlm::runs

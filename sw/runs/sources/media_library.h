@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "models/kernels/gray_image.h"
+#include "sw/media/load.h"
+#include "sw/media/video.h"
+
+namespace stereotlm::runs {
+
+// What this program uses of sw/media. It lies in two libraries that are loaded when they are first asked for,
+// because OpenCV's own libraries, which come with them, take 90 ms, and those for videos 50 ms more.
+
+// load.h, encode.h
+struct MediaFunctions {
+  media::LoadedGray (*load_gray)(const std::string& path);
+  media::Truth (*load_truth)(const std::string& path, double scale);
+  std::vector<std::uint8_t> (*encode_png_gray)(const kernels::GrayImage& image);
+  std::vector<std::uint8_t> (*encode_disparity_color_png)(const kernels::GrayImage& disparity,
+                                                          int disparities);
+  std::vector<std::uint8_t> (*encode_png_16)(int width, int height, const std::vector<std::uint16_t>& values);
+  std::vector<std::uint8_t> (*encode_pfm)(const kernels::GrayImage& disparity);
+};
+
+// video.h
+struct VideoFunctions {
+  std::unique_ptr<media::Video> (*open_video)(const std::string& path, const media::VideoSizeCheck& check);
+};
+
+// Throw std::runtime_error if the library cannot be loaded; it lies beside the program, as installed.
+const MediaFunctions& media_functions();
+const VideoFunctions& video_functions();
+
+}  // namespace stereotlm::runs

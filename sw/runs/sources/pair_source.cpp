@@ -1,0 +1,27 @@
+#include "sw/runs/sources/pair_source.h"
+
+#include <algorithm>
+#include <future>
+#include <stdexcept>
+
+namespace stereotlm::runs {
+
+const host::StereoPair& PairSource::pair(std::uint64_t frame) {
+  const std::uint64_t index = frame % length_;
+  const auto found =
+      std::find_if(held_.begin(), held_.end(), [&](const Held& held) { return held.index == index; });
+  if (found != held_.end()) {
+    held_.splice(held_.begin(), held_, found);
+    return held_.front().pair;
+  }
+  try {
+    // On a thread of its own: who asks may be a SystemC process, whose stack is too small for decoders.
+    held_.push_front({index, std::async(std::launch::async, [&] { return load(index); }).get()});
+  } catch (const std::exception& error) {
+    throw std::runtime_error(option_ + ' ' + error.what());
+  }
+  if (held_.size() > kHeld) held_.pop_back();
+  return held_.front().pair;
+}
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,36 @@
+#include <opencv2/core/utility.hpp>
+
+#include "calib/calibration_yaml.h"
+#include "sw/runs/sources/calibration_library.h"
+
+namespace {
+
+using namespace stereotlm;
+
+// OpenCV would say on standard error what it then throws.
+int say_nothing(int /*status*/, const char* /*function*/, const char* /*message*/, const char* /*file*/,
+                int /*line*/, void* /*data*/) {
+  return 0;
+}
+
+calib::CalibrationResult calibrate(const calib::CalibrationRequest& request) {
+  cv::redirectError(say_nothing);
+  return calib::calibrate(request);
+}
+
+}  // namespace
+
+// The one symbol of the library that calibration_library.h loads.
+extern "C" {
+extern const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions;
+const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions = {
+    calibrate,
+    calib::calibration_yaml,
+    calib::matched_rows,
+    calib::encode_corners_png,
+    calib::encode_rectified_pair_png,
+    calib::encode_displacement_png,
+    calib::encode_source_lines_png,
+    calib::grid_sheet_pdf,
+    calib::grid_sheet_svg};
+}

@@ -1,0 +1,115 @@
+#include "sw/runs/verification.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <string_view>
+
+#include "models/binder.h"
+#include "sw/process/interrupt.h"
+#include "sw/report/stats_differences.h"
+#include "sw/report/stats_json.h"
+#include "sw/runs/run_mode.h"
+#include "sw/runs/sources/open_source.h"
+
+namespace stereotlm::runs {
+namespace {
+
+constexpr std::size_t kMostLines = 10;
+constexpr std::chrono::milliseconds kBetweenLooks{100};
+
+struct Interrupted {};
+
+// The result of a frame, short enough to be kept for all of them.
+std::string line_of(const Result& result, bool with_pixels) {
+  std::string line = fmt::format("camera frame {}, done at {} ps", result.number, result.time_ps);
+  if (with_pixels) {
+    const auto& pixels = result.disparity.pixels;
+    const std::string_view bytes(reinterpret_cast<const char*>(pixels.data()), pixels.size());
+    line += fmt::format(", pixels {:016x}", std::hash<std::string_view>()(bytes));
+  }
+  return line;
+}
+
+// But for the name of the fidelity.
+std::string stats_text(platform::Statistics statistics) {
+  statistics.fidelity = "both";
+  return report::stats_json(statistics, std::nullopt);
+}
+
+std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" : "fast"; }
+
+// `pictures`, opened by this process.
+std::unique_ptr<PairSource> open_pairs(const RunInput& input, const PictureSource& pictures) {
+  process::Problems problems;
+  RecordedOptions described;
+  OpenedSource source = open_source(pictures, &input.board, described, problems);
+  if (!problems.empty())
+    throw std::runtime_error("the pictures cannot be read any more: " + problems.in_one_line());
+  return std::move(source.pairs);
+}
+
+void run_other(const RunInput& input, const PictureSource& pictures, const process::Child::Tell& tell) {
+  const std::unique_ptr<PairSource> pairs = open_pairs(input, pictures);
+  BlankPairs blank(input.board);
+  host::FrameSource& source = pairs ? static_cast<host::FrameSource&>(*pairs) : blank;
+  Binder binder;
+  RunMode mode = run_mode(input);
+  mode.fidelity = input.fast ? fpga::Fidelity::kCycle : fpga::Fidelity::kFast;
+  const auto simulation = make_simulation(input.board, input.tables, source, mode, binder);
+  while (!simulation->finished()) {
+    for (const Result& result : simulation->advance()) tell(line_of(result, !input.timing_only));
+  }
+  tell(stats_text(simulation->statistics()));
+}
+
+}  // namespace
+
+Verification::Verification(const RunInput& input, const PictureSource& pictures)
+    : input_(input),
+      other_(std::make_unique<process::Child>(
+          [&input, &pictures](const process::Child::Tell& tell) { run_other(input, pictures, tell); })) {}
+
+void Verification::add(const Result& result) { results_.push_back(line_of(result, !input_.timing_only)); }
+
+// While it waits it looks for interrupts.
+std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
+  do {
+    if (process::interrupted()) throw Interrupted();
+    progress.show([&](double) { return verification_text(frames_compared, results_.size()); });
+  } while (!other_->has_news(kBetweenLooks));
+  return other_->next();
+}
+
+Verification::Outcome Verification::compare(const platform::Statistics& statistics) {
+  const std::string ours = input_.fast ? "fast" : "cycle";
+  const std::string other = name_of_other(input_);
+  std::vector<std::string> lines;
+  ProgressLine progress;
+  try {
+    for (std::size_t frame = 0; frame < results_.size(); ++frame) {
+      const std::string theirs = next_of_other(progress, frame).value_or("nothing");
+      if (theirs != results_[frame])
+        lines.push_back(fmt::format("frame {}: {}: {}; {}: {}", frame, ours, results_[frame], other, theirs));
+    }
+    const std::string theirs = next_of_other(progress, results_.size()).value_or("{}");
+    for (const std::string& difference :
+         report::stats_differences(stats_text(statistics), theirs, ours, other))
+      lines.push_back("stats.json: " + difference);
+  } catch (const Interrupted&) {
+    return {true, {}};
+  } catch (const std::runtime_error& error) {
+    return {false, {fmt::format("--verify: the run at fidelity {}: {}", other, error.what())}};
+  }
+  Outcome outcome;
+  for (std::size_t i = 0; i < lines.size() && i < kMostLines; ++i)
+    outcome.failed.push_back("the fidelities differ: " + lines[i]);
+  if (lines.size() > kMostLines) {
+    outcome.failed.push_back(fmt::format("the fidelities differ: {} more lines", lines.size() - kMostLines));
+  }
+  return outcome;
+}
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,223 @@
+#include "sw/runs/simulation/camera_simulation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "models/kernels/stereo.h"
+#include "platform/config/board_yaml.h"
+#include "tests/support/expected_report.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/noise_picture.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A frame of the core takes 1.6 of the cameras'.
+platform::BoardConfig small_board(std::vector<std::string> sets = {}) {
+  sets.insert(sets.begin(),
+              {"image.width=64", "image.height=48", "matcher.disparities=16", "cameras.frame_rate_hz=1000"});
+  sets.emplace_back("fpga.clock_mhz=14.5");
+  return platform::load_board("fpl2003", sets);
+}
+
+// Pair k is noise of its own.
+class Noise : public host::FrameSource {
+ public:
+  explicit Noise(int width = 64, int height = 48)
+      : pair_{kernels::GrayImage(width, height), kernels::GrayImage(width, height)} {}
+  const host::StereoPair& pair(std::uint64_t number) override {
+    if (number == failing_frame) throw std::runtime_error("the disk is gone");
+    pair_.left = test::noise_picture(pair_.left.width, pair_.left.height, number);
+    pair_.right = test::noise_picture(pair_.right.width, pair_.right.height, number, 5);
+    return pair_;
+  }
+  std::optional<std::uint64_t> failing_frame;
+  host::StereoPair pair_;
+};
+
+kernels::GrayImage disparity_of(const host::StereoPair& pair, const platform::BoardConfig& board) {
+  return kernels::disparity_image(
+      pair.left, pair.right, nullptr, nullptr,
+      {board.matcher.window, board.matcher.disparities, board.matcher.filter, board.matcher.lr_tolerance});
+}
+
+class CameraSimulationTest : public testing::Test {
+ protected:
+  void build(std::uint64_t frames, const platform::BoardConfig& config = small_board()) {
+    board = config;
+    tables = platform::identity_tables(board);
+    simulation.emplace(board, tables, pairs, frames, binder);
+  }
+  std::vector<runs::Result> run() {
+    std::vector<runs::Result> results;
+    while (!simulation->finished()) {
+      for (runs::Result& result : simulation->advance()) results.push_back(std::move(result));
+    }
+    return results;
+  }
+  std::string message_of_running() {
+    try {
+      run();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  test::MonitoringBinder binder;
+  platform::BoardConfig board;
+  platform::Tables tables;
+  Noise pairs;
+  std::optional<runs::CameraSimulation> simulation;
+};
+
+TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
+  build(8);
+  const std::vector<runs::Result> results = run();
+  ASSERT_EQ(results.size(), 8U);
+  for (std::size_t frame = 0; frame < results.size(); ++frame) {
+    EXPECT_EQ(results[frame].disparity, disparity_of(pairs.pair(results[frame].number), board)) << frame;
+    if (frame > 0) {
+      EXPECT_GT(results[frame].number, results[frame - 1].number);
+    }
+  }
+  EXPECT_EQ(simulation->last().number, results.back().number);
+}
+
+TEST_F(CameraSimulationTest, AccountsForTheComputer) {
+  build(8);
+  const std::vector<runs::Result> results = run();
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_THAT(statistics.failed, IsEmpty());
+  EXPECT_EQ(statistics.frames, 8U);
+  EXPECT_EQ(statistics.frame_cycles.size(), 8U);
+  ASSERT_TRUE(statistics.computer.has_value());
+  const platform::ComputerStatistics& computer = *statistics.computer;
+  ASSERT_EQ(computer.cameras.size(), 2U);
+  for (const platform::CameraStatistics& camera : computer.cameras) {
+    EXPECT_EQ(camera.frames, camera.captured_frames + camera.dropped_frames);
+    EXPECT_GE(camera.captured_frames, 8U);
+    EXPECT_GT(camera.frames, results.back().number);
+    EXPECT_EQ(camera.dropped_pixels, 0U);
+  }
+  // The cameras' frames are 1 ms long.
+  EXPECT_GT(computer.capture_to_host_ms.min, 1.0);
+  EXPECT_LE(computer.capture_to_host_ms.min, computer.capture_to_host_ms.p50);
+  EXPECT_LE(computer.capture_to_host_ms.p99, computer.capture_to_host_ms.max);
+  const std::uint64_t words = 64 * 48 / 4;
+  EXPECT_EQ(computer.dma_words, 8 * words + 2 * 4 * words);  // results and tables
+  ASSERT_EQ(computer.pci_masters.size(), 4U);
+  EXPECT_GE(computer.pci_masters[1].words, 8 * words);
+  EXPECT_LE(computer.pci_busy_clocks, computer.pci_clocks);
+  EXPECT_LE(computer.local_busy_clocks, computer.local_clocks);
+  EXPECT_LT(*statistics.frames_per_second.system, *statistics.bound.system);
+  EXPECT_LT(*statistics.frames_per_second.steady, 1000);
+}
+
+TEST_F(CameraSimulationTest, HasNoSteadyRateOfOneFrame) {
+  build(1);
+  run();
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_TRUE(statistics.frames_per_second.system.has_value());
+  EXPECT_FALSE(statistics.frames_per_second.steady.has_value());
+}
+
+TEST_F(CameraSimulationTest, FinishesWhatTheCoreHasBegunToEndEarly) {
+  build(100);
+  while (simulation->frames_done() < 3) simulation->advance();
+  const std::uint64_t done = simulation->frames_done();
+  simulation->end_early();
+  const std::uint64_t frames = simulation->frames();
+  EXPECT_GE(frames, done);
+  EXPECT_LE(frames, done + 2);  // one in the core, one on its way back
+  run();
+  EXPECT_EQ(simulation->frames_done(), frames);
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_EQ(statistics.frames, frames);
+  EXPECT_THAT(statistics.failed, IsEmpty());
+}
+
+TEST_F(CameraSimulationTest, HasNothingToFinishBeforeTheFirstCapture) {
+  build(100);
+  simulation->end_early();
+  EXPECT_TRUE(simulation->finished());
+  EXPECT_EQ(simulation->frames(), 0U);
+}
+
+// Lines as fast as those of the paper's board, 640 pixels in 52.15 us, 24 of them. A third party keeps the
+// bus for 50 us from the first pixel of a line on: the FIFO of 140 words is full at pixel 560, 45.6 us after
+// the first.
+TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
+  constexpr int kRow = 10;
+  constexpr int kFirstDropped = 560;
+  constexpr std::uint64_t kFrame = 4;
+  const capture::CameraTiming timing({640, 24, 599.4, capture::CameraTrigger::kFreeRunning});
+  const auto line_ps = static_cast<double>(timing.frame_ps(kFrame) + timing.row_ps(kRow));
+  EXPECT_NEAR(static_cast<double>(timing.pixel_ps(kFirstDropped, 0)) / 1e6, 45.6, 0.05);
+  pairs = Noise(640, 24);
+  platform::BoardConfig config = platform::load_board(
+      "fpl2003", {"image.height=24", "matcher.disparities=16", "cameras.frame_rate_hz=599.4"});
+  config.pci.load = platform::PciLoadConfig{1, 1e6, line_ps / 1e6, 50};
+  build(6, config);
+  const std::vector<runs::Result> results = run();
+  std::vector<host::StereoPair> buffers(2, Noise(640, 24).pair_);
+  std::uint64_t hit = 0;
+  for (std::size_t frame = 0; frame < results.size(); ++frame) {
+    host::StereoPair captured = pairs.pair(results[frame].number);
+    host::StereoPair& buffer = buffers[frame % 2];
+    if (results[frame].number == kFrame) {
+      ++hit;
+      ASSERT_GE(frame, 2U);  // an earlier picture is in the buffer
+      for (int column = kFirstDropped; column < 640; ++column) {
+        captured.left.at(column, kRow) = buffer.left.at(column, kRow);
+        captured.right.at(column, kRow) = buffer.right.at(column, kRow);
+      }
+    }
+    buffer = captured;
+    EXPECT_EQ(results[frame].disparity, disparity_of(captured, board)) << frame;
+  }
+  EXPECT_EQ(hit, 1U);
+  const platform::Statistics statistics = simulation->statistics();
+  EXPECT_THAT(statistics.failed, IsEmpty());
+  for (const platform::CameraStatistics& camera : statistics.computer->cameras)
+    EXPECT_EQ(camera.dropped_pixels, 640U - kFirstDropped);
+}
+
+TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
+  pairs.failing_frame = 5;
+  build(100);
+  const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
+  EXPECT_EQ(message_of_running(), "the disk is gone");
+}
+
+TEST_F(CameraSimulationTest, SaysWhoWaitsForWhatWhenNothingGoesOn) {
+  // A camera whose error is not thrown sends no lines: its capture never ends.
+  sc_core::sc_report_handler::set_actions("/stereotlm/camera", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+  const test::ExpectedReport expected("/stereotlm/camera");
+  pairs.pair_.right = kernels::GrayImage(64, 44);
+  build(100);
+  EXPECT_THAT(
+      message_of_running(),
+      AllOf(HasSubstr("nothing has gone on for 0.10"),
+            HasSubstr("s of simulated time; delivered: 0 of 100 frames; the driver waits for: capture 0; the "
+                      "core runs no frame")));
+}
+
+TEST_F(CameraSimulationTest, CannotBeBuiltOfAWrongBoard) {
+  platform::BoardConfig wrong = small_board();
+  tables = platform::identity_tables(wrong);
+  wrong.matcher.window = 4;
+  EXPECT_THROW(runs::CameraSimulation(wrong, tables, pairs, 1, binder), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::simulation

@@ -1,0 +1,156 @@
+// Identities of the computer that do not hold: a valid run, of which one counter is changed.
+#include "platform/collect_computer.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "platform/config/board_rules.h"
+#include "platform/config/board_yaml.h"
+#include "sw/runs/simulation/camera_simulation.h"
+#include "tests/support/monitoring_binder.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+using platform::ComputerCounters;
+using platform::Delivery;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+class OnePair : public host::FrameSource {
+ public:
+  const host::StereoPair& pair(std::uint64_t /*number*/) override { return pair_; }
+
+ private:
+  host::StereoPair pair_ = {kernels::GrayImage(32, 24), kernels::GrayImage(32, 24)};
+};
+
+class CollectComputer : public testing::Test {
+ protected:
+  CollectComputer() {
+    while (!simulation.finished()) simulation.advance();
+    // The core is idle: as many frames as deliveries.
+    counters = platform::counters_of(simulation.computer());
+  }
+  platform::Statistics statistics() const {
+    return platform::collect_statistics(board, tables, simulation.computer(), counters, deliveries);
+  }
+
+  platform::BoardConfig board = platform::load_board(
+      "fpl2003",
+      {"image.width=32", "image.height=24", "matcher.disparities=8", "cameras.frame_rate_hz=1000"});
+  platform::Tables tables = platform::identity_tables(board);
+  OnePair pairs;
+  test::MonitoringBinder binder;
+  runs::CameraSimulation simulation{board, tables, pairs, 3, binder};
+  ComputerCounters counters;
+  std::vector<Delivery> deliveries = {
+      {1'000'000'000, 3'000'000'000}, {2'000'000'000, 5'000'000'000}, {4'000'000'000, 9'000'000'000}};
+};
+
+TEST_F(CollectComputer, FindsNothingInASoundRun) { EXPECT_THAT(statistics().failed, IsEmpty()); }
+
+TEST_F(CollectComputer, TakesRatesAndLatenciesFromTheDeliveries) {
+  const platform::Statistics found = statistics();
+  EXPECT_DOUBLE_EQ(*found.frames_per_second.system, 3 / 9e-3);
+  EXPECT_DOUBLE_EQ(*found.frames_per_second.steady, 2 / 6e-3);
+  const platform::Percentiles& latency = found.computer->capture_to_host_ms;
+  EXPECT_EQ(latency.min, 2);
+  EXPECT_EQ(latency.p50, 3);  // nearest rank: the second of three
+  EXPECT_EQ(latency.p95, 5);
+  EXPECT_EQ(latency.p99, 5);
+  EXPECT_EQ(latency.max, 5);
+}
+
+TEST_F(CollectComputer, TakesTheNearestRankOfAHundred) {
+  deliveries.clear();
+  for (std::uint64_t i = 0; i < 100; ++i) deliveries.push_back({0, (100 - i) * 1'000'000'000});
+  const platform::Percentiles latency = statistics().computer->capture_to_host_ms;
+  EXPECT_EQ(latency.min, 1);
+  EXPECT_EQ(latency.p50, 50);
+  EXPECT_EQ(latency.p95, 95);
+  EXPECT_EQ(latency.p99, 99);
+  EXPECT_EQ(latency.max, 100);
+}
+
+// Each identity is broken alone, by one counter of a valid run.
+TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
+  const ComputerCounters valid = counters;
+  const auto expect_failed = [&](const std::string& left, std::uint64_t is, const std::string& right,
+                                 std::uint64_t but, const auto& change) {
+    counters = valid;
+    change(counters);
+    EXPECT_THAT(statistics().failed, ElementsAre(fmt::format("{} = {}, but {} = {}", left, is, right, but)));
+  };
+  std::vector<std::string> names;
+  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.path());
+  names.emplace_back("no buffer");
+  ASSERT_EQ(valid.words.into_bridge.size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::uint64_t bytes = 4 * valid.words.into_bridge[i];
+    const std::string left = "bytes written into the bridge for " + names[i];
+    const std::string right = "granted on the host port and still in the bridge";
+    expect_failed(left, bytes + 4, right, bytes, [i](auto& found) { ++found.words.into_bridge[i]; });
+    for (const auto part : {&ComputerCounters::Words::in_bridge, &ComputerCounters::Words::on_bus,
+                            &ComputerCounters::Words::granted}) {
+      expect_failed(left, bytes, right, bytes + 4, [i, part](auto& found) { ++(found.words.*part)[i]; });
+    }
+  }
+  const std::uint64_t words = valid.local_bus.words_read + valid.local_bus.words_written;
+  for (const auto part : {&fpga::LocalBus::Stats::words_read, &fpga::LocalBus::Stats::words_written}) {
+    expect_failed("port host: grants in and between frames", words, "words of the local bus", words + 1,
+                  [part](auto& found) { ++(found.local_bus.*part); });
+  }
+  for (const std::size_t side : {0U, 1U}) {
+    const std::string camera = side == 0 ? "camera left: " : "camera right: ";
+    const std::uint64_t frames = valid.cameras[side].frames;
+    expect_failed(camera + "frames", frames + 1, "captured and dropped", frames,
+                  [side](auto& found) { ++found.cameras[side].frames; });
+    for (const auto part :
+         {&capture::CaptureBoard::Stats::started_frames, &capture::CaptureBoard::Stats::dropped_not_armed,
+          &capture::CaptureBoard::Stats::dropped_busy, &capture::CaptureBoard::Stats::dropped_by_partner}) {
+      expect_failed(camera + "frames", frames, "captured and dropped", frames + 1,
+                    [side, part](auto& found) { ++(found.cameras[side].capture.*part); });
+    }
+    const std::uint64_t written = valid.cameras[side].capture.words;
+    EXPECT_GT(written, 0U);
+    expect_failed(camera + "words written", written + 1, "words of its PCI master", written,
+                  [side](auto& found) { ++found.cameras[side].capture.words; });
+  }
+  EXPECT_GT(words, 0U);
+}
+
+TEST_F(CollectComputer, CountsWordsThatWaitInTheBridgeAndOnTheLocalBus) {
+  counters.words.into_bridge[0] += 3;
+  counters.words.in_bridge[0] += 1;
+  counters.words.on_bus[0] += 2;
+  EXPECT_THAT(statistics().failed, IsEmpty());
+}
+
+TEST_F(CollectComputer, DropsAFrameThatBeginsAtTheEnd) {
+  const std::uint64_t dropped = statistics().computer->cameras[0].dropped_frames;
+  ++counters.cameras[0].frames;
+  counters.cameras[0].undecided = true;
+  EXPECT_THAT(statistics().failed, IsEmpty());
+  EXPECT_EQ(statistics().computer->cameras[0].dropped_frames, dropped + 1);
+}
+
+TEST_F(CollectComputer, FindsMoreDeliveriesThanFrames) {
+  deliveries.push_back(deliveries.back());
+  EXPECT_THAT(statistics().failed, ElementsAre("frames delivered = 4, but frames of the core = 3"));
+}
+
+TEST_F(CollectComputer, FindsARateAboveItsBound) {
+  deliveries.back().host_ps = deliveries.back().capture_ps + 1;
+  EXPECT_THAT(statistics().failed, IsEmpty());  // 750 frames a second
+  deliveries = {{0, 1'000'000}, {0, 2'000'000}, {0, 2'500'000}};
+  EXPECT_THAT(statistics().failed, ElementsAre(StartsWith("frames_per_second.system = 1200000")));
+}
+
+}  // namespace
+}  // namespace stereotlm::simulation

@@ -1,0 +1,46 @@
+#include "sw/runs/progress.h"
+
+#include <gtest/gtest.h>
+
+namespace stereotlm::runs {
+namespace {
+
+TEST(ProgressText, CountsAFrameInProgressByItsCycles) {
+  const RunState state{4, 1, 2'000'000, 2'500'000, 1'000'000};
+  EXPECT_EQ(progress_text(state, 0.5),
+            "1.25/4 frames   31.2 %   5.00 M cycles/s   2.50 frames/s   0:01 left");
+}
+
+TEST(ProgressText, TakesTheBoundForTheFirstFrame) {
+  const RunState state{2, 0, 0, 250'000, 1'000'000};
+  EXPECT_EQ(progress_text(state, 1), "0.25/2 frames   12.5 %   0.25 M cycles/s   0.25 frames/s   0:07 left");
+}
+
+TEST(ProgressText, NeverSaysThatALongFrameIsFinished) {
+  const RunState state{1, 0, 0, 3'000'000, 1'000'000};
+  EXPECT_EQ(progress_text(state, 1).substr(0, 22), "1.00/1 frames   99.9 %");
+}
+
+TEST(ProgressText, EndsAtTheLastFrame) {
+  const RunState state{2, 2, 2'000'000, 2'000'016, 1'000'000};
+  EXPECT_EQ(progress_text(state, 1), "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
+}
+
+TEST(VerificationText, CountsTheFramesCompared) {
+  EXPECT_EQ(verification_text(0, 5), "verifying: 0/5 frames");
+  EXPECT_EQ(verification_text(1, 5), "verifying: 1/5 frames");
+}
+
+TEST(ProgressText, WritesLongTimes) {
+  const auto left = [](std::uint64_t frames) {
+    const std::string text = progress_text({frames, 1, 1'000'000, 1'000'000, 1}, 1);
+    return text.substr(text.rfind("   ") + 3);
+  };
+  EXPECT_EQ(left(3600), "59:59 left");
+  EXPECT_EQ(left(3601), "1:00:00 left");
+  EXPECT_EQ(left(360'001), "100:00:00 left");
+  EXPECT_EQ(left(18'446'744'073'709'551'615U), "years left");
+}
+
+}  // namespace
+}  // namespace stereotlm::runs

@@ -1,0 +1,279 @@
+// Whole computers around random boards, each in a process of its own under the monitor, against the plain loop
+// over events: every figure, time and pixel, at each fidelity.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "sw/runs/simulation/camera_simulation.h"
+#include "tests/support/board_of_random.h"
+#include "tests/support/fork.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/plain_computer.h"
+#include "tests/support/random_computer.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+using fpga::Fidelity;
+
+// What the cameras of a random computer see.
+class Pictures : public host::FrameSource {
+ public:
+  explicit Pictures(const test::RandomBoard& board) : board_(board) {}
+  const host::StereoPair& pair(std::uint64_t number) override {
+    pair_ = test::stereo_pair(board_, test::camera_pictures(board_, number));
+    return pair_;
+  }
+
+ private:
+  const test::RandomBoard& board_;
+  host::StereoPair pair_;
+};
+
+struct Outcome {
+  std::vector<runs::Result> results;
+  std::vector<fpga::RowProfile> rows;
+  platform::Statistics statistics;
+};
+
+Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
+                 std::uint64_t frames, Fidelity fidelity) {
+  test::MonitoringBinder binder;
+  runs::CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
+  simulation.record_rows();
+  Outcome outcome;
+  while (!simulation.finished()) {
+    for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
+  }
+  outcome.rows = simulation.take_rows();
+  outcome.statistics = simulation.statistics();
+  return outcome;
+}
+
+// One figure a line, under the names of stats.json. What the models and the plain computer say is compared as
+// such a text.
+class Figures {
+ public:
+  template <typename... Values>
+  void line(const std::string& name, Values&&... values) {
+    text_ += name;
+    ((text_ += fmt::format(" {}", std::forward<Values>(values))), ...);
+    text_ += '\n';
+  }
+  void decimal(const std::string& name, double value) { line(name, fmt::format("{:.12g}", value)); }
+  void pixels(std::uint64_t camera_frame, const std::vector<std::uint8_t>& disparity) {
+    line(fmt::format("disparities of camera frame {}", camera_frame), fmt::join(disparity, ","));
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string figures_of(const Outcome& outcome, bool with_pixels) {
+  const platform::Statistics& statistics = outcome.statistics;
+  const platform::ComputerStatistics& computer = *statistics.computer;
+  Figures figures;
+  for (const runs::Result& result : outcome.results) {
+    figures.line("delivered", result.number, result.time_ps);
+    if (with_pixels) figures.pixels(result.number, result.disparity.pixels);
+  }
+  figures.line("cycles", statistics.cycles);
+  figures.line("frame_cycles", fmt::join(statistics.frame_cycles, " "));
+  figures.decimal("frames_per_second.core", statistics.frames_per_second.core);
+  figures.decimal("frames_per_second.system", *statistics.frames_per_second.system);
+  if (statistics.frames_per_second.steady)
+    figures.decimal("frames_per_second.steady", *statistics.frames_per_second.steady);
+  for (const platform::BankStatistics& bank : statistics.banks) {
+    figures.line("bank " + bank.name, bank.reads, bank.writes, bank.busy_cycles, bank.turnaround_cycles,
+                 bank.idle_cycles, bank.contended_cycles);
+  }
+  for (const platform::PortStatistics& port : statistics.ports) {
+    figures.line("port " + port.name, port.grants, port.stall_cycles, port.passed_cycles, port.idle_cycles,
+                 port.blocked_cycles, port.starved_cycles);
+  }
+  for (const platform::BlameRow& row : statistics.blame)
+    figures.line("blame", row.port, row.bank, row.by, row.cycles);
+  for (const fpga::RowProfile& rows : outcome.rows) {
+    for (const fpga::RowEnd& row : rows) figures.line("row", row.cycles, fmt::join(row.stalls, " "));
+  }
+  figures.line("pci", computer.pci_clocks, computer.pci_busy_clocks);
+  for (const platform::PciMasterStatistics& master : computer.pci_masters)
+    figures.line("pci master " + master.name, master.transactions, master.words, master.wait_clocks);
+  figures.line("bridge", computer.posted_words, computer.dma_words, computer.local_clocks,
+               computer.local_busy_clocks);
+  for (const platform::CameraStatistics& camera : computer.cameras) {
+    figures.line("camera " + camera.name, camera.frames, camera.captured_frames, camera.dropped_not_armed,
+                 camera.dropped_busy, camera.dropped_by_partner, camera.dropped_pixels);
+  }
+  const platform::Percentiles& latency = computer.capture_to_host_ms;
+  for (const double ms : {latency.min, latency.p50, latency.p95, latency.p99, latency.max})
+    figures.decimal("latency_ms", ms);
+  return figures.text();
+}
+
+const char* name_of(const std::optional<test::PlainPort>& by) {
+  return by ? test::name_of(*by) : "turnaround";
+}
+
+std::string figures_of(const test::PlainComputerResult& plain, const test::PlainComputerInput& input,
+                       bool with_pixels) {
+  Figures figures;
+  std::vector<test::PlainTime> latencies;
+  for (const test::PlainDelivery& delivery : plain.deliveries) {
+    figures.line("delivered", delivery.camera_frame, delivery.host_ps);
+    if (with_pixels) figures.pixels(delivery.camera_frame, delivery.disparity);
+    latencies.push_back(delivery.host_ps - delivery.begin_ps);
+  }
+  const test::PlainCycleResult& core = plain.core;
+  figures.line("cycles", core.counted_cycles);
+  figures.line("frame_cycles", fmt::join(core.frame_cycles, " "));
+  const double frames = static_cast<double>(plain.deliveries.size());
+  const test::PlainTime first_ps = plain.deliveries.front().host_ps;
+  const test::PlainTime last_ps = plain.deliveries.back().host_ps;
+  double cycles = 0;
+  for (const std::uint64_t frame : core.frame_cycles) cycles += static_cast<double>(frame);
+  const test::PlainNumber& mhz = input.board.clock_mhz;
+  figures.decimal("frames_per_second.core", 1e6 * static_cast<double>(mhz.numerator) /
+                                                static_cast<double>(mhz.denominator) * frames / cycles);
+  figures.decimal("frames_per_second.system", frames * 1e12 / static_cast<double>(last_ps));
+  if (frames > 1) {
+    figures.decimal("frames_per_second.steady",
+                    (frames - 1) * 1e12 / static_cast<double>(last_ps - first_ps));
+  }
+  for (std::size_t index = 0; index < core.banks.size(); ++index) {
+    const test::PlainBankStates& bank = core.banks[index];
+    figures.line(fmt::format("bank bank{}", index), bank.reads, bank.writes, bank.busy, bank.turnaround,
+                 bank.idle, bank.contended);
+  }
+  for (std::size_t index = 0; index < core.ports.size(); ++index) {
+    const test::PlainPortStates& port = core.ports[index];
+    figures.line(fmt::format("port {}", test::name_of(static_cast<test::PlainPort>(index))), port.granted,
+                 port.stalled, port.passed, port.idle, port.blocked, port.starved);
+  }
+  // In the order of the keys but for turnaround, which is the least of them and comes last.
+  const auto is_before = [](const auto& a, const auto& b) {
+    const auto key = [](const test::PlainBlame& blame) {
+      return std::make_tuple(blame.port, blame.bank, !blame.by, blame.by);
+    };
+    return key(a.first) < key(b.first);
+  };
+  std::vector<std::pair<test::PlainBlame, std::uint64_t>> blame(core.blame.begin(), core.blame.end());
+  std::sort(blame.begin(), blame.end(), is_before);
+  for (const auto& [who, lost] : blame)
+    figures.line("blame", test::name_of(who.port), fmt::format("bank{}", who.bank), name_of(who.by), lost);
+  for (const auto& rows : core.rows) {
+    for (const test::PlainRowEnd& row : rows)
+      figures.line("row", row.cycles, fmt::join(row.stalls.begin(), row.stalls.end() - 1, " "));
+  }
+  figures.line("pci", plain.pci_clocks, plain.pci_busy_clocks);
+  const std::vector<std::string> masters = {"host", "left_capture", "right_capture", "bridge", "load"};
+  for (std::size_t index = 0; index < plain.masters.size(); ++index) {
+    const test::PlainPciBus::MasterStats& master = plain.masters[index];
+    figures.line("pci master " + masters[index], master.transactions, master.words, master.wait_clocks);
+  }
+  figures.line("bridge", plain.posted_words, plain.dma_words, plain.local_clocks, plain.local_busy_clocks);
+  for (std::size_t side = 0; side < plain.cameras.size(); ++side) {
+    const test::PlainCaptureBoard::Stats& capture = plain.cameras[side].capture;
+    figures.line(side == 0 ? "camera left" : "camera right", plain.cameras[side].frames,
+                 capture.captured_frames, capture.dropped_not_armed, capture.dropped_busy,
+                 capture.dropped_by_partner, capture.dropped_pixels);
+  }
+  std::sort(latencies.begin(), latencies.end());
+  for (const std::size_t percent : {0, 50, 95, 99, 100}) {  // nearest rank
+    const std::size_t rank = std::max<std::size_t>(1, (latencies.size() * percent + 99) / 100);
+    figures.decimal("latency_ms", static_cast<double>(latencies[rank - 1]) / 1e9);
+  }
+  return figures.text();
+}
+
+// The lines that differ.
+std::string differences(const std::string& expected, const std::string& found) {
+  std::string text;
+  std::size_t expected_begin = 0;
+  std::size_t found_begin = 0;
+  const auto next_line = [](const std::string& from, std::size_t& begin) {
+    const std::size_t end = std::min(from.find('\n', begin), from.size());
+    const std::string line = from.substr(begin, end - begin);
+    begin = std::min(end + 1, from.size());
+    return line;
+  };
+  while (expected_begin < expected.size() || found_begin < found.size()) {
+    const std::string expected_line = next_line(expected, expected_begin);
+    const std::string found_line = next_line(found, found_begin);
+    if (expected_line != found_line) text += "plain: " + expected_line + "\nmodel: " + found_line + '\n';
+  }
+  return text;
+}
+
+// Where a run of the models is not what it should be.
+std::string problems_of(std::uint64_t seed, Fidelity fidelity) {
+  const test::RandomComputer computer = test::make_random_computer(seed);
+  const platform::BoardConfig board = test::board_config(computer);
+  const platform::Tables tables = test::board_tables(computer.board);
+  Pictures pictures(computer.board);
+  const Outcome outcome =
+      simulate(board, tables, pictures, static_cast<std::uint64_t>(computer.frames), fidelity);
+  std::string problems;
+  for (const std::string& failed : outcome.statistics.failed) problems += failed + '\n';
+  const bool with_pixels = fidelity != Fidelity::kTiming;
+  const test::PlainComputerInput input = test::plain_input(computer);
+  problems += differences(figures_of(test::run_plain_computer(input), input, with_pixels),
+                          figures_of(outcome, with_pixels));
+  return problems.empty() ? problems : problems + platform::to_yaml(board);
+}
+
+std::uint64_t computers() {
+  const char* text = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
+  return text != nullptr ? std::stoull(text) : 300;
+}
+
+int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+class RandomComputers : public testing::TestWithParam<Fidelity> {};
+
+TEST_P(RandomComputers, EqualThePlainLoopOverEvents) {
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < computers(); ++seed)
+    jobs.push_back([seed] { return problems_of(seed, GetParam()); });
+  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
+  for (std::size_t seed = 0; seed < results.size(); ++seed)
+    EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Fidelities, RandomComputers,
+                         testing::Values(Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming),
+                         [](const auto& suite) {
+                           if (suite.param == Fidelity::kCycle) return "Cycle";
+                           return suite.param == Fidelity::kFast ? "Fast" : "Timing";
+                         });
+
+// Four local clocks a cycle and one word a burst: what lies between two words costs nothing.
+TEST(SaturatedLocalBus, StaysBelowItsBound) {
+  const platform::BoardConfig board = platform::load_board(
+      "fpl2003-no-calibration",
+      {"image.width=32", "image.height=28", "matcher.disparities=1", "matcher.window=3",
+       "matcher.filter=none", "matcher.fetch=line_buffer", "cameras.frame_rate_hz=1000", "pci.clock_mhz=1000",
+       "pci.bridge_wait_clocks=0", "pci.memory_wait_clocks=0", "bridge.local_clock_mhz=4",
+       "bridge.dma_burst_words=1", "bridge.posted_words=4096", "fpga.clock_mhz=1",
+       "fpga.pipeline_latency_cycles=0", "ssram.default={words: 524288, kind: zbt_flow_through}"});
+  test::RandomBoard size;
+  size.width = board.image.width;
+  size.height = board.image.height;
+  Pictures pictures(size);
+  const Outcome outcome = simulate(board, platform::identity_tables(board), pictures, 30, Fidelity::kCycle);
+  EXPECT_EQ(outcome.statistics.failed, std::vector<std::string>());
+}
+
+}  // namespace
+}  // namespace stereotlm::simulation

@@ -1,0 +1,100 @@
+#include "sw/runs/run_results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+
+#include "platform/config/board_yaml.h"
+
+namespace stereotlm::runs {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct Delivery {
+  bool all_hold = false;
+  std::string out;
+  std::string err;
+};
+
+Delivery delivery_of(const std::vector<std::string>& failed,
+                     const std::vector<std::string>& differences = {}) {
+  RunInput input;
+  input.board = platform::load_board("fpl2003");
+  platform::Statistics statistics;
+  statistics.frames = 1;
+  statistics.failed = failed;
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  Delivery delivery;
+  delivery.all_hold = deliver(input, statistics, {0, kernels::GrayImage(4, 1)}, differences);
+  delivery.out = ::testing::internal::GetCapturedStdout();
+  delivery.err = ::testing::internal::GetCapturedStderr();
+  return delivery;
+}
+
+TEST(Deliver, IsContentWhereAllIdentitiesHold) {
+  const Delivery delivery = delivery_of({});
+  EXPECT_TRUE(delivery.all_hold);
+  EXPECT_THAT(delivery.out, HasSubstr("worst stall"));
+  EXPECT_THAT(delivery.err, IsEmpty());
+}
+
+TEST(Deliver, SaysEachIdentityThatDoesNotHold) {
+  const Delivery delivery = delivery_of({"grants = 3: accesses = 4", "stalls = 5: blames = 6"});
+  EXPECT_FALSE(delivery.all_hold);
+  EXPECT_EQ(delivery.err,
+            "stereotlm: error: identity does not hold: grants = 3: accesses = 4\n"
+            "stereotlm: error: identity does not hold: stalls = 5: blames = 6\n");
+  EXPECT_THAT(delivery.out, HasSubstr("worst stall")) << "the table is printed nevertheless";
+}
+
+TEST(Deliver, SaysEachDifferenceOfTheFidelities) {
+  const Delivery delivery = delivery_of({"grants = 3: accesses = 4"}, {"the fidelities differ: frame 0"});
+  EXPECT_FALSE(delivery.all_hold);
+  EXPECT_EQ(delivery.err,
+            "stereotlm: error: identity does not hold: grants = 3: accesses = 4\n"
+            "stereotlm: error: the fidelities differ: frame 0\n");
+  EXPECT_FALSE(delivery_of({}, {"the fidelities differ: frame 0"}).all_hold);
+}
+
+class EmptyPairs : public PairSource {
+ public:
+  explicit EmptyPairs(std::uint64_t length) : PairSource("--empty", length) {}
+
+ private:
+  host::StereoPair load(std::uint64_t /*index*/) override { return {}; }
+};
+
+// Whether the truth of a run of this many frames is left after it ended early, with what is said.
+std::pair<bool, std::string> truth_after(std::uint64_t done, std::uint64_t frames, std::uint64_t pairs) {
+  RunInput input;
+  input.frames = frames;
+  input.pairs = std::make_unique<EmptyPairs>(pairs);
+  input.truth = media::Truth{};
+  input.described.truth = InputFile{"/t.png", "aa"};
+  ::testing::internal::CaptureStderr();
+  leave_out_truth_of_another_pair(input, done);
+  EXPECT_EQ(input.truth.has_value(), input.described.truth.has_value());
+  return {input.truth.has_value(), ::testing::internal::GetCapturedStderr()};
+}
+
+TEST(TruthOfAnInterruptedRun, StaysWhereTheLastFrameShowsTheSamePair) {
+  EXPECT_EQ(truth_after(3, 10, 1), std::pair(true, std::string()));
+  EXPECT_EQ(truth_after(6, 10, 4), std::pair(true, std::string()));
+  EXPECT_EQ(truth_after(10, 10, 4), std::pair(true, std::string()));
+}
+
+TEST(TruthOfAnInterruptedRun, IsLeftOutWhereItIsOfAnotherPair) {
+  const std::string note =
+      "stereotlm: note: --truth is of the pair of frame 9, which was not reached: no accuracy\n";
+  EXPECT_EQ(truth_after(5, 10, 4), std::pair(false, note));
+  EXPECT_EQ(truth_after(7, 10, 4), std::pair(false, note));
+  EXPECT_EQ(truth_after(9, 10, 10), std::pair(false, note));
+}
+
+}  // namespace
+}  // namespace stereotlm::runs

@@ -1,0 +1,209 @@
+#include "platform/config/board_config.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stereotlm::platform {
+namespace {
+
+using Problems = std::vector<std::string>;
+
+Problems problems_with(const std::function<void(BoardConfig&)>& change) {
+  BoardConfig board;
+  change(board);
+  return problems(board);
+}
+
+TEST(BoardConfig, HasNoProblemsByDefault) { EXPECT_EQ(problems(BoardConfig()), Problems{}); }
+
+TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
+  BoardConfig board;
+  board.name = "a\nb";
+  board.image.width = 642;
+  board.cameras.frame_rate_hz = std::nan("");
+  board.capture.fifo_trigger_words = 141;
+  board.pci.clock_mhz = std::numeric_limits<double>::infinity();
+  board.fpga.device = "xc2v8000";
+  board.fpga.arbiter.priority[0] = memory::Port::kResult;
+  board.banks[1].name = "bank0";
+  board.banks[2].name = "none";
+  board.banks[3].words = 0;
+  board.banks[4].kind = memory::BankKind::kSyncBurst;
+  board.banks[5].turnaround_cycles = 3;
+  board.allocation.disparity = {};
+  board.matcher.filter->shift = 32;
+  board.matcher.lr_tolerance = 254;
+  const std::string name_problem =
+      "name = a\nb: a text of one or more characters without control characters; quoted if it could be read "
+      "as a "
+      "number, a truth value or null";
+  const std::string priority_problem =
+      "fpga.priority = [result, result, left_pixel, right_pixel, left_lut, right_lut]: a list that names "
+      "each of "
+      "the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, host";
+  EXPECT_EQ(
+      problems(board),
+      (Problems{name_problem, "image.width = 642: 4..2048, a multiple of 4",
+                "cameras.frame_rate_hz = nan: 0.1..1000",
+                "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140",
+                "pci.clock_mhz = inf: 1..1000", "fpga.device = xc2v8000: xc2v6000", priority_problem,
+                "ssram.banks = bank0: repeated name",
+                "ssram.banks = none: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
+                "ssram.banks.bank3.words = 0: 1..67108864",
+                "ssram.banks.bank4.turnaround_cycles = 0: 1..16 for sync_burst",
+                "ssram.banks.bank5.turnaround_cycles = 3: 0 for zbt_pipelined",
+                "allocation.disparity = []: a bank, or a list of 1 to 3 banks",
+                "matcher.filter.shift = 32: must be 0..31", "matcher.lr_tolerance = 254: 0..253 or off"}));
+}
+
+TEST(BoardConfig, ChecksTheFieldsOfALoad) {
+  const auto with_load = [](const PciLoadConfig& load) {
+    return problems_with([&load](BoardConfig& b) { b.pci.load = load; });
+  };
+  EXPECT_EQ(with_load({}), Problems{});
+  EXPECT_EQ(with_load({1, 0, 0, 0}), Problems{});
+  EXPECT_EQ(with_load({1024, 1e9, 1e9, 1e6}), Problems{});
+  EXPECT_EQ(
+      with_load({0, -0.5, std::nan(""), 1000000.5}),
+      (Problems{"pci.load.burst_words = 0: 1..1024", "pci.load.interval_us = -0.5: 0..1000000000",
+                "pci.load.first_us = nan: 0..1000000000", "pci.load.access_us = 1000000.5: 0..1000000"}));
+  EXPECT_EQ(with_load({1025, 1, 1, 1}), Problems{"pci.load.burst_words = 1025: 1..1024"});
+}
+
+TEST(BoardConfig, DiffersInEachFieldOfALoad) {
+  const auto with_load = [](const PciLoadConfig& load) {
+    BoardConfig board;
+    board.pci.load = load;
+    return board;
+  };
+  const BoardConfig board = with_load({1, 2, 3, 4});
+  EXPECT_EQ(board, with_load({1, 2, 3, 4}));
+  EXPECT_NE(board, BoardConfig());
+  EXPECT_NE(board, with_load({5, 2, 3, 4}));
+  EXPECT_NE(board, with_load({1, 5, 3, 4}));
+  EXPECT_NE(board, with_load({1, 2, 5, 4}));
+  EXPECT_NE(board, with_load({1, 2, 3, 5}));
+}
+
+TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
+            Problems{"cameras.trigger = 2: free_running or on_demand"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(3); }),
+            Problems{"ssram.banks.bank0.kind = 3: zbt_pipelined, zbt_flow_through or sync_burst"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
+            Problems{"fpga.arbitration = lottery: fixed_priority or round_robin"});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = static_cast<memory::Port>(6); }).size(),
+      1U);
+}
+
+TEST(BoardConfig, ChecksTheRulesBetweenKeys) {
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.allocation.left_lut = "bank9"; }),
+            Problems{"allocation.left_lut = bank9: not a bank of this board; nearest: bank0"});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.allocation.left_image.pop_back(); }),
+      Problems{"allocation.right_image = [bank2, bank3]: must be as long as left_image, which is [bank0]"});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.banks[6].words = 307199; }),
+      Problems{"ssram.banks.bank6.words = 307199: 1 words missing, its buffers (left_lut) need 307200"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[6].words = 307200; }), Problems{});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks.clear(); }),
+            Problems{"ssram.banks = 0 banks: a map of 1..64 banks"});
+}
+
+TEST(BoardConfig, TakesSixtyFourBanks) {
+  const auto with_banks = [](std::size_t count) {
+    return problems_with([count](BoardConfig& b) {
+      while (b.banks.size() < count) b.banks.push_back({"bank" + std::to_string(b.banks.size())});
+    });
+  };
+  EXPECT_EQ(with_banks(64), Problems{});
+  EXPECT_EQ(with_banks(65), Problems{"ssram.banks = 65 banks: a map of 1..64 banks"});
+}
+
+TEST(BoardConfig, LaysBuffersOfOneBankOneBehindTheOther) {
+  BoardConfig board;
+  board.image = {8, 3};  // 6 words an image, 24 a table
+  board.allocation.left_image = {"bank1", "bank0", "bank1"};
+  board.allocation.right_image = {"bank0", "bank1", "bank2"};
+  board.allocation.disparity = {"bank1", "bank1"};
+  board.allocation.left_lut = "bank1";
+  board.allocation.right_lut = "bank1";
+  const BufferLayout layout = layout_buffers(board);
+  const auto expect_place = [](const BufferPlace& place, int bank, std::uint32_t first_word) {
+    EXPECT_EQ(place.bank, bank);
+    EXPECT_EQ(place.first_word, first_word);
+  };
+  ASSERT_EQ(layout.left_image.size(), 3U);
+  ASSERT_EQ(layout.right_image.size(), 3U);
+  ASSERT_EQ(layout.disparity.size(), 2U);
+  expect_place(layout.left_image[0], 1, 0);
+  expect_place(layout.left_image[1], 0, 0);
+  expect_place(layout.left_image[2], 1, 6);
+  expect_place(layout.right_image[0], 0, 6);
+  expect_place(layout.right_image[1], 1, 12);
+  expect_place(layout.right_image[2], 2, 0);
+  expect_place(layout.disparity[0], 1, 18);
+  expect_place(layout.disparity[1], 1, 24);
+  expect_place(layout.left_lut.value(), 1, 30);
+  expect_place(layout.right_lut.value(), 1, 54);
+}
+
+TEST(BoardConfig, LaysOutNoTableThatDoesNotExist) {
+  BoardConfig board;
+  board.allocation.left_lut = std::nullopt;
+  EXPECT_FALSE(layout_buffers(board).left_lut.has_value());
+  EXPECT_TRUE(layout_buffers(board).right_lut.has_value());
+  EXPECT_FALSE(core_config(board).left_table);
+  EXPECT_TRUE(core_config(board).right_table);
+}
+
+TEST(BoardConfig, IsNotLaidOutWithProblems) {
+  BoardConfig board;
+  board.allocation.left_lut = "bank9";
+  EXPECT_THROW(layout_buffers(board), std::invalid_argument);
+  EXPECT_THROW(core_config(board), std::invalid_argument);
+  board = BoardConfig();
+  board.banks[6].words = 307199;
+  EXPECT_THROW(layout_buffers(board), std::invalid_argument);
+  board.banks[6].words = 307200;
+  EXPECT_NO_THROW(layout_buffers(board));
+}
+
+TEST(BoardConfig, GivesTheCoreItsOwnValues) {
+  BoardConfig board;
+  board.image = {32, 16};
+  board.matcher = {5, 9, std::nullopt, fpga::Fetch::kLineBuffer, std::nullopt};
+  board.fpga.clock_mhz = 66;
+  board.fpga.lane_fifo_slots = 3;
+  board.fpga.result_fifo_words = 4;
+  board.fpga.pipeline_latency_cycles = 5;
+  board.allocation.right_lut = std::nullopt;
+  const fpga::CoreConfig core = core_config(board);
+  EXPECT_EQ(core.width, 32);
+  EXPECT_EQ(core.height, 16);
+  EXPECT_EQ(core.window, 5);
+  EXPECT_EQ(core.disparities, 9);
+  EXPECT_FALSE(core.filter.has_value());
+  EXPECT_EQ(core.fetch, fpga::Fetch::kLineBuffer);
+  EXPECT_FALSE(core.lr_tolerance.has_value());
+  EXPECT_TRUE(core.left_table);
+  EXPECT_FALSE(core.right_table);
+  EXPECT_EQ(core.clock_mhz, 66);
+  EXPECT_EQ(core.lane_fifo_slots, 3);
+  EXPECT_EQ(core.result_fifo_words, 4);
+  EXPECT_EQ(core.pipeline_latency_cycles, 5);
+  board.matcher.filter = kernels::log7();
+  board.matcher.lr_tolerance = 2;
+  EXPECT_EQ(core_config(board).filter, kernels::log7());
+  EXPECT_EQ(core_config(board).lr_tolerance, 2);
+}
+
+}  // namespace
+}  // namespace stereotlm::platform

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "tests/unit/platform/config/board_files.h"
+
+namespace stereotlm::platform::testing {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(BoardPresets, AreTheBoardsOfThisProject) {
+  EXPECT_EQ(preset_names(), (Names{"fpl2003", "fpl2003-no-calibration", "fpl2003-line-buffer", "fpl2003-qvga",
+                                   "fpl2003-syncburst", "fpl2003-triple"}));
+  for (const std::string& name : preset_names()) {
+    EXPECT_EQ(load_board(name).name, name);
+    EXPECT_NE(std::string(preset_text(name)).find("name: " + name + '\n'), std::string::npos);
+  }
+  EXPECT_THROW(preset_text("fpl2004"), std::out_of_range);
+}
+
+TEST(BoardPresets, HoldThePapersBoardAsTheDefaultOfBoardConfig) {
+  EXPECT_EQ(load_board("fpl2003"), BoardConfig());
+}
+
+TEST(BoardPresets, DifferFromThePapersBoardOnlyInWhatTheyAreFor) {
+  BoardConfig expected;
+  expected.name = "fpl2003-no-calibration";
+  expected.allocation.left_lut = std::nullopt;
+  expected.allocation.right_lut = std::nullopt;
+  EXPECT_EQ(load_board(expected.name), expected);
+
+  expected = BoardConfig();
+  expected.name = "fpl2003-line-buffer";
+  expected.matcher.fetch = fpga::Fetch::kLineBuffer;
+  EXPECT_EQ(load_board(expected.name), expected);
+
+  expected = BoardConfig();
+  expected.name = "fpl2003-qvga";
+  expected.image = {320, 240};
+  EXPECT_EQ(load_board(expected.name), expected);
+
+  expected = BoardConfig();
+  expected.name = "fpl2003-syncburst";
+  for (BankConfig& bank : expected.banks) {
+    bank.kind = memory::BankKind::kSyncBurst;
+    bank.turnaround_cycles = 2;
+  }
+  EXPECT_EQ(load_board(expected.name), expected);
+
+  expected = BoardConfig();
+  expected.name = "fpl2003-triple";
+  expected.banks.push_back({"bank8"});
+  expected.banks.push_back({"bank9"});
+  expected.allocation.left_image = {"bank0", "bank1", "bank8"};
+  expected.allocation.right_image = {"bank2", "bank3", "bank9"};
+  EXPECT_EQ(load_board(expected.name), expected);
+}
+
+TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
+  BoardConfig expected = load_board("fpl2003-syncburst");
+  expected.image.width = 320;
+  for (BankConfig& bank : expected.banks) bank.turnaround_cycles = 3;
+  EXPECT_EQ(
+      load_text(
+          "extends: fpl2003-syncburst\nimage: {width: 320}\nssram: {default: {turnaround_cycles: 3}}\n"),
+      expected);
+}
+
+TEST(BoardExtends, WorksBesideALoadThatNoPresetHas) {
+  BoardConfig expected;
+  expected.pci.memory_wait_clocks = 4;
+  expected.pci.load = PciLoadConfig{16, 2.5, 0, 0};
+  EXPECT_EQ(load_text("extends: fpl2003\n"
+                      "pci: {load: {burst_words: 16, interval_us: 2.5}, memory_wait_clocks: 4}\n"),
+            expected);
+}
+
+TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
+  const BoardConfig board = load_text(
+      "extends: fpl2003\n"
+      "ssram: {banks: {z: {words: 2000000}, a: {}, m: {kind: zbt_flow_through}}}\n"
+      "allocation: {left_image: z, right_image: [z], disparity: [a, m, z], left_lut: z, right_lut: none}\n");
+  ASSERT_EQ(board.banks.size(), 3U);
+  EXPECT_EQ(board.banks[0].name, "z");
+  EXPECT_EQ(board.banks[0].words, 2000000);
+  EXPECT_EQ(board.banks[1].name, "a");
+  EXPECT_EQ(board.banks[1].words, 524288);
+  EXPECT_EQ(board.banks[2].kind, memory::BankKind::kZbtFlowThrough);
+  EXPECT_EQ(board.allocation.left_image, (Names{"z"}));
+  EXPECT_EQ(board.allocation.disparity, (Names{"a", "m", "z"}));
+  EXPECT_EQ(
+      refusal_of("extends: fpl2003\nmatcher: {filter: {shift: 5}}\n"),
+      "board.yaml:2:11: matcher.filter.kernel: missing: a square list of lists, 3..31, odd rows, entries "
+      "-32768..32767, sum 0");
+}
+
+TEST(BoardExtends, SuppliesTheNameToo) { EXPECT_EQ(load_text("extends: fpl2003-qvga").name, "fpl2003-qvga"); }
+
+TEST(BoardExtends, NamesAPreset) {
+  const std::string presets =
+      "; presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst or "
+      "fpl2003-triple";
+  // Without its preset nothing is said about keys that it would have supplied.
+  EXPECT_EQ(refusal_of("extends: fpl2003-tripel\nimage: {width: 5}\n"),
+            "board.yaml:1:10: extends = fpl2003-tripel: not a preset; nearest: fpl2003-triple" + presets +
+                "\nboard.yaml:2:16: image.width = 5: 4..2048, a multiple of 4");
+  EXPECT_EQ(refusal_of("extends: ./fpl2003.yaml\n"),
+            "board.yaml:1:10: extends = ./fpl2003.yaml: not a preset" + presets);
+  for (const std::string value : {"null", "[fpl2003]", "{a: b}"}) {
+    EXPECT_EQ(refusal_of("extends: " + value),
+              fmt::format("board.yaml:1:10: extends = {}: not a preset{}", value, presets));
+  }
+}
+
+TEST(BoardExtends, IsToldToAFileThatLacksMostKeys) {
+  const auto line = [](int missing) {
+    return fmt::format(
+        "board.yaml:1:1: {} of the 36 keys of a board are missing: begin the file with "
+        "`extends: fpl2003`, which supplies them",
+        missing);
+  };
+  EXPECT_EQ(refusal_of("image: {width: 640}\n"), line(35));
+  EXPECT_EQ(refusal_of("matcher: {}\nssram: {banks: {a: {}}}\n"), line(35));
+  EXPECT_EQ(refusal_of("extend: fpl2003\nimage: {width: 5}\n", {"fpga.clock_mhz=0"}),
+            line(34) +
+                "\nboard.yaml:1:1: extend = fpl2003: unknown key; nearest known key: extends\n"
+                "board.yaml:2:16: image.width = 5: 4..2048, a multiple of 4\n"
+                "--set fpga.clock_mhz: fpga.clock_mhz = 0: 1..1000");
+  EXPECT_EQ(refusal_of("extends: fpl2003\nmatcher: {filter: {}}\n").find("of a board are missing"),
+            std::string::npos);
+}
+
+TEST(BoardExtends, IsTheFirstKeyAndStandsOnce) {
+  EXPECT_EQ(refusal_of("name: x\nextends: fpl2003\n"),
+            "board.yaml:2:1: extends = fpl2003: extends must be the first key");
+  EXPECT_EQ(refusal_of("extends: fpl2003\nname: x\nextends: fpl2003\n"),
+            "board.yaml:3:1: extends = fpl2003: repeated key");
+  EXPECT_EQ(refusal_of("extends: fpl2003\nimage: {extends: fpl2003}\n").substr(0, 52),
+            "board.yaml:2:9: image.extends = fpl2003: unknown key");
+}
+
+TEST(BoardExtends, PointsAtTheFilesValueWhereItBreaksARuleWithThePresets) {
+  EXPECT_EQ(refusal_of("extends: fpl2003\ncapture: {fifo_words: 31}\n"),
+            "board.yaml:2:23: capture.fifo_trigger_words = 32: 1..fifo_words, which is 31");
+  EXPECT_EQ(refusal_of("extends: fpl2003\ncapture: {fifo_words: 32}\n"), "");
+  EXPECT_EQ(refusal_of("extends: fpl2003\ncapture: {fifo_trigger_words: 141}\n"),
+            "board.yaml:2:31: capture.fifo_trigger_words = 141: 1..fifo_words, which is 140");
+  EXPECT_EQ(refusal_of("extends: fpl2003\nallocation: {left_image: bank0}\n"),
+            "board.yaml:2:26: allocation.right_image = [bank2, bank3]: must be as long as left_image, which "
+            "is [bank0]");
+  EXPECT_EQ(
+      refusal_of("extends: fpl2003\nimage: {width: 2048, height: 257}\n"),
+      "board.yaml:2:16: ssram.banks.bank6.words = 524288: 2048 words missing, its buffers (left_lut) need "
+      "526336\n"
+      "board.yaml:2:16: ssram.banks.bank7.words = 524288: 2048 words missing, its buffers (right_lut) need "
+      "526336");
+  EXPECT_EQ(refusal_of("extends: fpl2003\nimage: {width: 2048, height: 256}\n"), "");
+  EXPECT_EQ(
+      refusal_of("extends: fpl2003\nssram: {banks: {bank0: {}}}\nallocation: {disparity: bank0}\n")
+          .substr(0, 98),
+      "board.yaml:2:16: allocation.left_image = bank1: not a bank of this board; nearest: bank0\nboard.yam");
+  // The preset's turnaround_cycles is inherited, and has no effect.
+  EXPECT_EQ(refusal_of("extends: fpl2003-syncburst\nssram:\n  default: {kind: zbt_pipelined}\n"), "");
+}
+
+}  // namespace
+}  // namespace stereotlm::platform::testing

@@ -1,0 +1,267 @@
+#include "platform/config/board_keys.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "tests/unit/platform/config/board_files.h"
+
+namespace stereotlm::platform::testing {
+namespace {
+
+TEST(NearestKey, IsNamedWhereItCanBeMeant) {
+  const std::vector<std::pair<std::string, std::string>> meant = {
+      {"imge.width", "image.width"},
+      {"image.widht", "image.width"},
+      {"widht", "image.width"},
+      {"image.clock_mhz", "pci.clock_mhz"},
+      {"pci.lode", "pci.load"},
+      {"matcher.filter.sift", "matcher.filter.shift"},
+      {"matcher.windows", "matcher.window"},
+      {"ssram.banks.b.wrods", "ssram.banks.b.words"},
+      {"ssram.default.kin", "ssram.default.kind"},
+      {"alocation", "allocation"},
+      {"fpga.clock", "fpga.clock_mhz"},
+      {"latency_timer", "pci.latency_timer_clocks"},
+  };
+  for (const auto& [typed, key] : meant)
+    EXPECT_EQ(unknown_key_text(typed), "unknown key; nearest known key: " + key) << typed;
+  for (const std::string typed :
+       {"matcher.cost", "matcher.size", "x", "", "image.x", "image.", "matcher.filter.x", "cost", "größe",
+        "<<", "ssram.banks.", "ssram.banks.b.size", "matcher.a_key_that_is_longer_than_any_other"})
+    EXPECT_EQ(unknown_key_text(typed), "unknown key, and no known key is near") << typed;
+}
+
+TEST(NearestWord, IsNamedWhereItCanBeMeant) {
+  const std::vector<std::string> words = {"bank0", "bank1", "left_bank", "a"};
+  EXPECT_EQ(nearest_text("bank9", words), "; nearest: bank0");
+  EXPECT_EQ(nearest_text("bakn1", words), "; nearest: bank1");
+  EXPECT_EQ(nearest_text("lft_bnk", words), "; nearest: left_bank");
+  for (const std::string typed : {"x", "", "none", "memory"})
+    EXPECT_EQ(nearest_text(typed, words), "") << typed;
+  EXPECT_EQ(nearest_text("x", {}), "");
+}
+
+// One key: values at and inside its limits, values beyond them, and the rule as messages give it.
+struct KeyCase {
+  std::string path;
+  std::vector<std::string> accepted;
+  std::vector<std::string> refused;
+  std::string rule;
+  std::vector<std::string> mistyped = {};
+};
+
+const std::vector<std::string> kNoInteger = {"0x10", "1e3",  "1_000", "\"7\"", "+7",    "7.0", "seven",
+                                             "[7]",  "{}",   "~",     "null",  "'7'",   "-",   "7a",
+                                             "true", ".inf", ".nan",  "0o7",   "1 000", "0b1"};
+const std::vector<std::string> kNoDecimal = {"0x10", "1e3", "1_000", "\"7\"", "+7",   "7.",   ".5",
+                                             "fast", "[7]", "{}",    "null",  ".inf", ".nan", "-.inf"};
+const std::string kTooLong = "99999999999999999999999999999999999999";
+
+KeyCase integer_case(const std::string& path, int min, int max) {
+  return {path,
+          {std::to_string(min), std::to_string(max), "00" + std::to_string(max)},
+          {std::to_string(min - 1), std::to_string(max + 1), "4294967297", kTooLong, '-' + kTooLong},
+          fmt::format("{}..{}", min, max),
+          kNoInteger};
+}
+
+KeyCase decimal_case(const std::string& path, const std::string& min, const std::string& below,
+                     const std::string& above) {
+  return {path,
+          {min, "1000", "1000.000", "33.333", "29.97"},
+          {below, above, "0", "-1", kTooLong, std::string(400, '9'), "0." + std::string(400, '0') + '1'},
+          fmt::format("{}..1000", min),
+          kNoDecimal};
+}
+
+KeyCase microseconds_case(const std::string& path, const std::string& max) {
+  return {path,
+          {"0", "0.0", "0.000001", "10", max, max + ".000", "0." + std::string(400, '0') + '1'},
+          {"-1", "-0.000001", max + ".001", kTooLong, std::string(400, '9')},
+          "0.." + max,
+          kNoDecimal};
+}
+
+std::vector<KeyCase> key_cases() {
+  const std::string list = "a bank, or a list of 1 to 3 banks";
+  const std::string images = list + "; left_image and right_image equally long";
+  KeyCase width = integer_case("image.width", 4, 2048);
+  width.refused = {"3", "0", "-4", "641", "642", "643", "2047", "2049", "2052", kTooLong};
+  width.rule = "4..2048, a multiple of 4";
+  KeyCase window = integer_case("matcher.window", 3, 31);
+  window.refused = {"1", "2", "4", "30", "32", "33", "-7", kTooLong};
+  window.rule = "3..31, odd";
+  KeyCase tolerance = integer_case("matcher.lr_tolerance", 0, 253);
+  tolerance.accepted.insert(tolerance.accepted.end(), {"off", "\"off\"", "'off'", "-0"});
+  tolerance.rule = "0..253 or off";
+  tolerance.mistyped.insert(tolerance.mistyped.end(), {"false", "none", "Off"});
+  return {
+      {"name",
+       {"x", "\"7\"", "off", "'null'", "two words", "größe", "7a", "e3", "0xg", "1e", "1.2.3", "2003-09-01",
+        "_1"},
+       {"7", "1.5", "0x10", "true", "False", "null", "~", "\"\"", "[a]", "{a: b}", ".inf", "-.Inf", "+.NaN",
+        "1e3", ".5e-3", "+7", "1_000", "1.", "0O17"},
+       "a text of one or more characters without control characters; quoted if it could be read as a number, "
+       "a truth value or null"},
+      width,
+      {"image.height", {"1", "480", "2048"}, {"0", "-1", "2049", kTooLong}, "1..2048", kNoInteger},
+      decimal_case("cameras.frame_rate_hz", "0.1", "0.0999", "1000.0001"),
+      {"cameras.trigger",
+       {"free_running", "on_demand", "\"on_demand\""},
+       {"off", "none", "on-demand", "[on_demand]", "null", "1", "On_demand"},
+       "free_running or on_demand"},
+      {"capture.destination", {"board", "host_memory"}, {"host", "null", "{}"}, "board or host_memory"},
+      integer_case("capture.host_frames", 1, 64),
+      {"capture.fifo_words", {"32", "4096"}, {"0", "-1", "4097", kTooLong}, "1..4096", kNoInteger},
+      {"capture.fifo_trigger_words",
+       {"1", "140"},
+       {"0", "-1", "4097", kTooLong},
+       "1..fifo_words",
+       kNoInteger},
+      decimal_case("pci.clock_mhz", "1", "0.999", "1000.001"),
+      integer_case("pci.latency_timer_clocks", 0, 255),
+      integer_case("pci.bridge_wait_clocks", 0, 255),
+      integer_case("pci.memory_wait_clocks", 0, 255),
+      {"pci.load",
+       {"none", "\"none\"", "'none'", "{burst_words: 8, interval_us: 10}",
+        "{access_us: 1, first_us: 2.5, interval_us: 0, burst_words: 1024}"},
+       {"off", "false", "null", "~", "[]", "[none]", "7", "None"},
+       "none or a map of burst_words, interval_us, first_us, access_us"},
+      integer_case("pci.load.burst_words", 1, 1024),
+      microseconds_case("pci.load.interval_us", "1000000000"),
+      microseconds_case("pci.load.first_us", "1000000000"),
+      microseconds_case("pci.load.access_us", "1000000"),
+      decimal_case("bridge.local_clock_mhz", "1", "0.999", "1000.001"),
+      integer_case("bridge.dma_burst_words", 1, 1024),
+      integer_case("bridge.posted_words", 1, 4096),
+      {"fpga.device",
+       {"xc2v6000", "\"xc2v6000\""},
+       {"xc2v8000", "XC2V6000", "null", "[xc2v6000]"},
+       "xc2v6000"},
+      decimal_case("fpga.clock_mhz", "1", "0.999", "1000.001"),
+      {"fpga.arbitration",
+       {"fixed_priority", "round_robin"},
+       {"lottery", "null", "[round_robin]"},
+       "fixed_priority or round_robin"},
+      {"fpga.priority",
+       {"[right_lut, left_lut, right_pixel, left_pixel, result, host]"},
+       {"host", "{}", "null", "5"},
+       "a list that names each of the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, "
+       "host"},
+      integer_case("fpga.lane_fifo_slots", 1, 64),
+      integer_case("fpga.result_fifo_words", 1, 64),
+      integer_case("fpga.pipeline_latency_cycles", 0, 1024),
+      {"allocation.left_image",
+       {"[bank0, bank1]", "[bank7, bank7]", "['bank0', bank2]"},
+       {"[]", "[bank0, bank1, bank2, bank3]", "null", "{bank0: bank1}"},
+       images},
+      {"allocation.right_image",
+       {"[bank0, bank1]"},
+       {"[]", "[bank0, bank1, bank2, bank3]", "~", "{}"},
+       images},
+      {"allocation.disparity",
+       {"bank4", "[bank4]", "[bank4, bank4, bank5]"},
+       {"[]", "[bank0, bank1, bank2, bank3]", "null", "{}"},
+       list},
+      {"allocation.left_lut",
+       {"none", "\"none\"", "bank6", "[bank6]", "[none]"},
+       {"null", "[]", "[bank6, bank7]", "{}"},
+       "a bank or none"},
+      {"allocation.right_lut", {"none", "bank7"}, {"~", "[]", "[bank6, bank7]", "{}"}, "a bank or none"},
+      window,
+      integer_case("matcher.disparities", 1, 254),
+      {"matcher.filter",
+       {"none", "\"none\"", "log7", "{kernel: [[0, 0, 0], [1, -2, 1], [0, 0, 0]], shift: 0}"},
+       {"log9", "off", "false", "null", "[]", "7"},
+       "none, log7 or a map of kernel, shift"},
+      {"matcher.fetch", {"column", "line_buffer"}, {"columns", "null", "[column]"}, "column or line_buffer"},
+      tolerance,
+  };
+}
+
+class BoardKeys : public ::testing::TestWithParam<KeyCase> {};
+
+TEST_P(BoardKeys, TakeTheirValuesUpToBothLimits) {
+  for (const std::string& value : GetParam().accepted) {
+    const ChangedBoard board = board_with(GetParam().path, value);
+    EXPECT_EQ(refusal_of(board.text), "") << value;
+    EXPECT_EQ(refusal_of(block_board(), {GetParam().path + '=' + value}), "") << value;
+  }
+}
+
+TEST_P(BoardKeys, RefuseAValueBeyondTheirRuleAtItsPlace) {
+  const KeyCase& key = GetParam();
+  for (const std::string& value : key.refused) {
+    const ChangedBoard board = board_with(key.path, value);
+    const std::string shown = value.size() > 60 ? value.substr(0, 57) + "..." : value;
+    const std::string text = fmt::format("{} = {}: {}", key.path, shown, key.rule);
+    EXPECT_EQ(refusal_of(board.text), board.place + ": " + text);
+    EXPECT_EQ(refusal_of(block_board(), {key.path + '=' + value}),
+              fmt::format("--set {}: {}", key.path, text));
+  }
+}
+
+TEST_P(BoardKeys, RefuseWhatIsNoNumberAtItsPlace) {
+  const KeyCase& key = GetParam();
+  const bool is_decimal = key.rule.find("..1000") != std::string::npos && key.mistyped == kNoDecimal;
+  const std::string type = is_decimal ? "not a decimal number (such as 29.97, not in quotes)"
+                                      : "not an integer (decimal digits, not in quotes)";
+  for (const std::string& value : key.mistyped) {
+    const ChangedBoard board = board_with(key.path, value);
+    const std::string shown = value == "'7'" ? "\"7\"" : value;
+    const std::string place = value == "-" ? "" : board.place;  // `-` begins a list: no YAML here
+    const std::string refusal = refusal_of(board.text);
+    if (place.empty()) {
+      EXPECT_NE(refusal.find("not YAML"), std::string::npos) << refusal;
+    } else {
+      EXPECT_EQ(refusal, fmt::format("{}: {} = {}: {}; {}", place, key.path, shown, type, key.rule));
+    }
+  }
+}
+
+std::string case_name(const ::testing::TestParamInfo<KeyCase>& key) {
+  std::string name = key.param.path;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BoardKeys, ::testing::ValuesIn(key_cases()), case_name);
+
+TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksAndFilters) {
+  std::set<std::string> expected = {"extends",
+                                    "matcher.filter.kernel",
+                                    "matcher.filter.shift",
+                                    "ssram.default.words",
+                                    "ssram.default.kind",
+                                    "ssram.default.turnaround_cycles",
+                                    "ssram.banks.NAME.words",
+                                    "ssram.banks.NAME.kind",
+                                    "ssram.banks.NAME.turnaround_cycles"};
+  for (const KeyCase& key : key_cases()) expected.insert(key.path);
+  std::set<std::string> listed;
+  for (const KeyInfo& key : keys()) {
+    EXPECT_FALSE(key.meaning.empty()) << key.path;
+    EXPECT_FALSE(key.range.empty()) << key.path;
+    EXPECT_TRUE(listed.insert(key.path).second) << key.path;
+  }
+  EXPECT_EQ(listed, expected);
+}
+
+TEST(BoardKeysTable, GivesTheRangesThatMessagesGive) {
+  for (const KeyCase& key : key_cases()) {
+    for (const KeyInfo& info : keys()) {
+      if (info.path == key.path) {
+        EXPECT_EQ(info.range, key.rule) << key.path;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::platform::testing

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "models/memory/arbitration_policies.h"
+#include "platform/config/board_yaml.h"
+#include "tests/unit/platform/config/board_files.h"
+
+namespace stereotlm::platform::testing {
+namespace {
+
+int any_int(int min, int max) { return *rc::gen::inRange(min, max + 1); }
+
+double any_decimal(double min, double max) {
+  const std::int64_t part = *rc::gen::inRange<std::int64_t>(0, std::int64_t{1} << 53);
+  return min + (max - min) * static_cast<double>(part) / 0x1p53;
+}
+
+double any_microseconds(double max) {
+  return any_int(0, 2) == 0 ? *rc::gen::element(0.0, 0.1, 1e-6, 2e-5, 5e-324, 2.2250738585072014e-308, max)
+                            : any_decimal(0, max);
+}
+
+std::vector<BankConfig> any_banks() {
+  std::vector<std::string> names = {"off",   "null", "yes", "True", "No",  "on",
+                                    "false", "y",    "n-1", "Z_",   "None"};
+  for (int i = 0; i < 53; ++i) names.push_back("bank" + std::to_string(i));
+  std::vector<BankConfig> banks;
+  const int count = any_int(1, 64);
+  const int first = any_int(0, 63);
+  for (int i = 0; i < count; ++i) {
+    BankConfig bank;
+    bank.name = names[static_cast<std::size_t>(first + i) % names.size()];
+    bank.words = *rc::gen::element(18000000, 18000001, 1 << 26);  // any allocation fits
+    const int kind = any_int(0, static_cast<int>(memory::kBankTraits.size()) - 1);
+    const memory::BankTraits& traits = memory::kBankTraits[static_cast<std::size_t>(kind)];
+    bank.kind = traits.kind;
+    if (traits.has_turnaround) bank.turnaround_cycles = any_int(1, 16);
+    banks.push_back(bank);
+  }
+  return banks;
+}
+
+kernels::FilterKernel any_kernel() {
+  kernels::FilterKernel kernel;
+  kernel.size = 3 + 2 * any_int(0, 14);
+  const auto entries = static_cast<std::size_t>(kernel.size) * static_cast<std::size_t>(kernel.size);
+  kernel.weights.assign(entries, 0);
+  for (std::size_t i = 0; i + 1 < entries; i += 2) {
+    kernel.weights[i] = any_int(-32767, 32767);
+    kernel.weights[i + 1] = -kernel.weights[i];
+  }
+  kernel.shift = any_int(0, 31);
+  return kernel;
+}
+
+BoardConfig any_board() {
+  BoardConfig board;
+  board.name = *rc::gen::element<std::string>("x", "7", "1e3", "off", "null", "größe", "a: b", "# no",
+                                              "\"q\\", " ", "0x1F", "true", "- a", "{", "2003-09-01");
+  board.image = {4 * any_int(1, 512), any_int(1, 2048)};
+  board.cameras = {any_decimal(0.1, 1000), static_cast<CameraTrigger>(any_int(0, 1))};
+  board.capture.destination = static_cast<CaptureDestination>(any_int(0, 1));
+  board.capture.host_frames = any_int(1, 64);
+  board.capture.fifo_words = any_int(1, 4096);
+  board.capture.fifo_trigger_words = any_int(1, board.capture.fifo_words);
+  board.pci = {any_decimal(1, 1000), any_int(0, 255), any_int(0, 255), any_int(0, 255), std::nullopt};
+  if (any_int(0, 1) == 1) {
+    board.pci.load =
+        PciLoadConfig{any_int(1, 1024), any_microseconds(1e9), any_microseconds(1e9), any_microseconds(1e6)};
+  }
+  board.bridge = {any_decimal(1, 1000), any_int(1, 1024), any_int(1, 4096)};
+  board.fpga.clock_mhz = any_decimal(1, 1000);
+  const auto& policies = memory::arbitration_policies();
+  const int policy = any_int(0, static_cast<int>(policies.size()) - 1);
+  board.fpga.arbiter.policy = policies[static_cast<std::size_t>(policy)].name;
+  auto& priority = board.fpga.arbiter.priority;
+  for (std::size_t i = 0; i < priority.size(); ++i) {
+    std::swap(priority[i], priority[static_cast<std::size_t>(any_int(0, 5))]);
+  }
+  board.fpga.lane_fifo_slots = any_int(1, 64);
+  board.fpga.result_fifo_words = any_int(1, 64);
+  board.fpga.pipeline_latency_cycles = any_int(0, 1024);
+  board.banks = any_banks();
+  const auto any_bank = [&board] {
+    return board.banks[static_cast<std::size_t>(any_int(0, static_cast<int>(board.banks.size()) - 1))].name;
+  };
+  const auto any_list = [&](int length) {
+    std::vector<std::string> list(static_cast<std::size_t>(length));
+    for (std::string& bank : list) bank = any_bank();
+    return list;
+  };
+  const int images = any_int(1, 3);
+  board.allocation = {any_list(images), any_list(images), any_list(any_int(1, 3)), std::nullopt,
+                      std::nullopt};
+  if (any_int(0, 1) == 1) board.allocation.left_lut = any_bank();
+  if (any_int(0, 1) == 1) board.allocation.right_lut = any_bank();
+  board.matcher = {3 + 2 * any_int(0, 14), any_int(1, 254), kernels::log7(),
+                   static_cast<fpga::Fetch>(any_int(0, 1)), std::nullopt};
+  if (any_int(0, 2) == 0) board.matcher.filter = std::nullopt;
+  if (any_int(0, 2) == 0) board.matcher.filter = any_kernel();
+  if (any_int(0, 2) > 0) board.matcher.lr_tolerance = any_int(0, 253);
+  return board;
+}
+
+TEST(BoardRoundTrip, EveryPresetReadsBackEqual) {
+  for (const std::string& name : preset_names()) {
+    const BoardConfig board = load_board(name);
+    EXPECT_EQ(load_text(to_yaml(board)), board) << name;
+    EXPECT_EQ(to_yaml(load_text(to_yaml(board))), to_yaml(board)) << name;
+  }
+}
+
+RC_GTEST_PROP(BoardRoundTrip, AnyBoardReadsBackEqual, ()) {
+  const BoardConfig board = any_board();
+  RC_ASSERT(problems(board) == std::vector<std::string>{});
+  const std::string text = to_yaml(board);
+  RC_LOG() << text;
+  RC_ASSERT(refusal_of(text) == "");
+  RC_ASSERT(load_text(text) == board);
+}
+
+TEST(BoardRoundTrip, QuotesOffAndNone) {
+  const std::string text =
+      to_yaml(load_board("fpl2003", {"matcher.filter=none", "matcher.lr_tolerance=off",
+                                     "allocation.left_lut=none", "allocation.right_lut=none"}));
+  EXPECT_NE(text.find("  filter: \"none\"\n"), std::string::npos);
+  EXPECT_NE(text.find("  lr_tolerance: \"off\"\n"), std::string::npos);
+  EXPECT_NE(text.find("  left_lut: \"none\"\n  right_lut: \"none\"\n"), std::string::npos);
+}
+
+TEST(BoardRoundTrip, WritesALoadInFullAndNoneNotAtAll) {
+  EXPECT_EQ(to_yaml(load_board("fpl2003", {"pci.load=none"})).find("load"), std::string::npos);
+  EXPECT_NE(to_yaml(load_board("fpl2003", {"pci.load={burst_words: 32, interval_us: 0.00001}"}))
+                .find("  memory_wait_clocks: 8\n"
+                      "  load:\n"
+                      "    burst_words: 32\n"
+                      "    interval_us: 0.00001\n"
+                      "    first_us: 0\n"
+                      "    access_us: 0\n"
+                      "bridge:\n"),
+            std::string::npos);
+}
+
+TEST(BoardRoundTrip, WritesTheShortestDecimals) {
+  const std::string text =
+      to_yaml(load_board("fpl2003", {"fpga.clock_mhz=40.000", "cameras.frame_rate_hz=29.970"}));
+  EXPECT_NE(text.find("  clock_mhz: 40\n"), std::string::npos);
+  EXPECT_NE(text.find("  frame_rate_hz: 29.97\n"), std::string::npos);
+}
+
+TEST(BoardRoundTrip, ABoardWithProblemsIsNotWritten) {
+  BoardConfig board;
+  board.image.width = 3;
+  EXPECT_THROW(to_yaml(board), std::invalid_argument);
+}
+
+// A board file is a board or is refused, whatever was done to it.
+RC_GTEST_PROP(BoardRoundTrip, ADamagedFileIsABoardOrIsRefused, ()) {
+  std::string text(preset_text("fpl2003"));
+  const int changes = any_int(1, 6);
+  const std::string bytes = "{}[]:,-?&*!|>'\"%@`#~ \n\t\r0159azäé\x04\x7F\xFF.=<";
+  for (int i = 0; i < changes; ++i) {
+    const auto at = static_cast<std::size_t>(any_int(0, static_cast<int>(text.size()) - 1));
+    const char byte = bytes[static_cast<std::size_t>(any_int(0, static_cast<int>(bytes.size()) - 1))];
+    switch (any_int(0, 3)) {
+      case 0:
+        text[at] = byte;
+        break;
+      case 1:
+        text.insert(at, 1, byte);
+        break;
+      case 2:
+        text.erase(at, static_cast<std::size_t>(any_int(1, 40)));
+        break;
+      default:
+        text.insert(at, text.substr(static_cast<std::size_t>(any_int(0, static_cast<int>(at))), 30));
+    }
+    if (text.empty()) text = " ";
+  }
+  const std::string refusal = refusal_of(text);  // any exception but BoardError fails the property
+  RC_ASSERT(refusal.empty() || refusal.find("board.yaml:") == 0);
+}
+
+}  // namespace
+}  // namespace stereotlm::platform::testing

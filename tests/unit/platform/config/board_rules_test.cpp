@@ -1,0 +1,321 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "tests/unit/platform/config/board_files.h"
+
+namespace stereotlm::platform::testing {
+namespace {
+
+const std::string kBase = "extends: fpl2003\n";
+
+// A board with these banks alone, all buffers of a 4x1 image (1 word each, tables 4) in `bank`.
+std::string banks_board(const std::string& ssram, const std::string& bank = "a") {
+  return kBase + "ssram: " + ssram + "\nimage: {width: 4, height: 1}\n" +
+         fmt::format(
+             "allocation: {{left_image: {0}, right_image: {0}, disparity: {0}, left_lut: {0}, right_lut: "
+             "{0}}}\n",
+             bank);
+}
+
+std::string board_with_load(const std::string& load) { return kBase + "pci: {load: " + load + "}\n"; }
+
+std::string kernel_board(const std::string& filter) { return kBase + "matcher: {filter: " + filter + "}\n"; }
+
+// m rows of m entries of one value, the last entry balancing the sum.
+std::string square_kernel(int m) {
+  std::string rows;
+  for (int row = 0; row < m; ++row) {
+    rows += row == 0 ? "[" : ", [";
+    for (int column = 0; column < m; ++column) {
+      const bool is_last = row + 1 == m && column + 1 == m;
+      rows += fmt::format("{}{}", column == 0 ? "" : ", ", is_last ? 1 - m * m : 1);
+    }
+    rows += ']';
+  }
+  return '[' + rows + ']';
+}
+
+TEST(BoardBanks, TakeTheirWordsUpToBothLimits) {
+  const std::string rule = "1..67108864";
+  for (const std::string value : {"0", "-1", "67108865", "4294967296", "99999999999999999999"}) {
+    EXPECT_EQ(refusal_of(banks_board("{default: {words: " + value + "}, banks: {a: {words: 100}}}")),
+              fmt::format("board.yaml:2:26: ssram.default.words = {}: {}", value, rule));
+    EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: " + value + "}}}")),
+              fmt::format("board.yaml:2:28: ssram.banks.a.words = {}: {}", value, rule));
+  }
+  EXPECT_EQ(refusal_of(banks_board("{default: {words: 1}, banks: {a: {words: 67108864}, b: {}}}")), "");
+  EXPECT_EQ(
+      refusal_of(banks_board("{banks: {a: {words: 0x64}}}")),
+      "board.yaml:2:28: ssram.banks.a.words = 0x64: not an integer (decimal digits, not in quotes); " + rule);
+}
+
+TEST(BoardBanks, TakeAKnownKind) {
+  for (const std::string value : {"zbt", "null", "[sync_burst]", "0"}) {
+    const std::string rule = " = " + value + ": zbt_pipelined, zbt_flow_through or sync_burst";
+    EXPECT_EQ(refusal_of(banks_board("{default: {kind: " + value + "}, banks: {a: {}}}")),
+              "board.yaml:2:25: ssram.default.kind" + rule);
+    EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: " + value + "}}}")),
+              "board.yaml:2:27: ssram.banks.a.kind" + rule);
+  }
+}
+
+TEST(BoardBanks, TakeTheirTurnaroundUpToBothLimits) {
+  for (const std::string value : {"1", "16"}) {
+    EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: sync_burst, turnaround_cycles: " + value + "}}}")),
+              "");
+  }
+  for (const std::string value : {"0", "17", "-1", "99999999999999999999"}) {
+    EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: sync_burst, turnaround_cycles: " + value + "}}}")),
+              "board.yaml:2:58: ssram.banks.a.turnaround_cycles = " + value + ": 1..16");
+    EXPECT_EQ(refusal_of(banks_board("{default: {kind: sync_burst, turnaround_cycles: " + value +
+                                     "}, banks: {a: {}}}")),
+              "board.yaml:2:56: ssram.default.turnaround_cycles = " + value + ": 1..16");
+  }
+}
+
+TEST(BoardBanks, RequireATurnaroundWhereTheKindIsSyncBurst) {
+  const std::string rule =
+      ".turnaround_cycles: missing: 1..16; required where the kind is sync_burst, refused beside another";
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: sync_burst}}}")),
+            "board.yaml:2:17: ssram.banks.a" + rule);
+  EXPECT_EQ(refusal_of(banks_board("{default: {kind: sync_burst}, banks: {a: {}, b: {}}}")),
+            "board.yaml:2:9: ssram.default" + rule);
+  EXPECT_EQ(refusal_of(banks_board("{default: {kind: sync_burst}, banks: {a: {turnaround_cycles: 1}}}")), "");
+  EXPECT_EQ(
+      refusal_of(banks_board(
+          "{default: {kind: sync_burst, turnaround_cycles: 4}, banks: {a: {}, b: {kind: sync_burst}}}")),
+      "");
+  EXPECT_EQ(refusal_of(banks_board("{default: {kind: sync_burst}, banks: {a: {kind: zbt_pipelined}}}")), "");
+}
+
+TEST(BoardBanks, RefuseATurnaroundInAnEntryOfAnotherKind) {
+  const std::string rule = " = 2: only where the kind is sync_burst, and it is zbt_pipelined";
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: zbt_pipelined, turnaround_cycles: 2}}}")),
+            "board.yaml:2:61: ssram.banks.a.turnaround_cycles" + rule);
+  EXPECT_EQ(refusal_of(banks_board("{default: {turnaround_cycles: 2}, banks: {a: {}}}")),
+            "board.yaml:2:38: ssram.default.turnaround_cycles" + rule);
+}
+
+TEST(BoardBanks, IgnoreATurnaroundBesideAnInheritedKindThatHasNone) {
+  const BoardConfig board = load_text(banks_board("{banks: {a: {turnaround_cycles: 2}}}"));
+  EXPECT_EQ(board.banks[0].kind, memory::BankKind::kZbtPipelined);
+  EXPECT_EQ(board.banks[0].turnaround_cycles, 0);
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {turnaround_cycles: 17}}}")),
+            "board.yaml:2:40: ssram.banks.a.turnaround_cycles = 17: 1..16");
+  EXPECT_EQ(load_board("fpl2003", {"ssram.banks.bank3.turnaround_cycles=2"}), load_board("fpl2003"));
+  EXPECT_EQ(
+      load_board("fpl2003-syncburst", {"ssram.banks.bank3.turnaround_cycles=3"}).banks[3].turnaround_cycles,
+      3);
+}
+
+TEST(BoardBanks, IgnoreATurnaroundThatAnotherKindInherits) {
+  const BoardConfig board = load_text(banks_board(
+      "{default: {kind: sync_burst, turnaround_cycles: 5}, banks: {a: {kind: zbt_flow_through}, b: {}}}"));
+  EXPECT_EQ(board.banks[0].turnaround_cycles, 0);
+  EXPECT_EQ(board.banks[1].turnaround_cycles, 5);
+}
+
+TEST(BoardBanks, AreOneToSixtyFour) {
+  std::string banks = "a: {}";
+  for (int i = 1; i < 64; ++i) banks += fmt::format(", b{}: {{}}", i);
+  EXPECT_EQ(load_text(banks_board("{banks: {" + banks + "}}")).banks.size(), 64U);
+  const std::string refusal = refusal_of(banks_board("{banks: {" + banks + ", b64: {}}}"));
+  EXPECT_EQ(refusal.substr(0, 31), "board.yaml:2:16: ssram.banks = ");
+  EXPECT_NE(refusal.find("65 banks; a map of 1..64 banks"), std::string::npos);
+  EXPECT_EQ(refusal_of(banks_board("{banks: {}}")),
+            "board.yaml:2:16: ssram.banks = {}: 0 banks; a map of 1..64 banks");
+}
+
+TEST(BoardBanks, HaveNames) {
+  for (const std::string name : {"a", "Z9_-", "null-", "true", "\"null\"", "off"}) {
+    EXPECT_EQ(refusal_of(banks_board("{banks: {" + name + ": {}}}", name)), "") << name;
+  }
+  for (const std::string name : {"9a", "_a", "-a", "none", "ä", "a b", "~", "null", "a/b", "[a]", "7"}) {
+    EXPECT_EQ(refusal_of(banks_board("{banks: {a: {}, " + name + ": {}}}")),
+              "board.yaml:2:24: ssram.banks." + name +
+                  " = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none");
+  }
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {}, b: {}, a: {words: 5}}}")),
+            "board.yaml:2:31: ssram.banks.a = {words: 5}: repeated key, first at 2:17");
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {}, b}}")),
+            "board.yaml:2:24: ssram.banks.b = (nothing): a map of words, kind, turnaround_cycles");
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {depth: 5}}}")).substr(0, 51),
+            "board.yaml:2:21: ssram.banks.a.depth = 5: unknown k");
+}
+
+TEST(BoardBanks, HoldTheirBuffers) {
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: 11}}}")), "");
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: 10}}}")),
+            "board.yaml:2:28: ssram.banks.a.words = 10: 1 words missing, its buffers (left_image[0], "
+            "right_image[0], disparity[0], left_lut, right_lut) need 11");
+  EXPECT_EQ(refusal_of(banks_board("{default: {words: 1}, banks: {a: {}}}")),
+            "board.yaml:2:26: ssram.banks.a.words = 1: 10 words missing, its buffers (left_image[0], "
+            "right_image[0], disparity[0], left_lut, right_lut) need 11");
+}
+
+TEST(BoardAllocation, NamesBanksOfTheBoard) {
+  EXPECT_EQ(refusal_of(kBase +
+                       "allocation: {disparity: [bank4, bonk5], left_lut: bank66, right_image: [x, none]}\n"),
+            "board.yaml:2:33: allocation.disparity = bonk5: not a bank of this board; nearest: bank5\n"
+            "board.yaml:2:51: allocation.left_lut = bank66: not a bank of this board; nearest: bank6\n"
+            "board.yaml:2:73: allocation.right_image = x: not a bank of this board\n"
+            "board.yaml:2:76: allocation.right_image = none: not a bank of this board");
+  EXPECT_EQ(refusal_of(kBase + "allocation: {disparity: [bank4, [bank5], null]}\n"),
+            "board.yaml:2:33: allocation.disparity = [bank5]: a bank, or a list of 1 to 3 banks\n"
+            "board.yaml:2:42: allocation.disparity = null: a bank, or a list of 1 to 3 banks");
+}
+
+TEST(BoardAllocation, TakesAListOfOneAndItsScalarForTheSame) {
+  const std::string head = kBase + "allocation: ";
+  EXPECT_EQ(
+      load_text(head + "{left_image: bank0, right_image: bank2, disparity: bank4, left_lut: bank6}"),
+      load_text(head + "{left_image: [bank0], right_image: [bank2], disparity: [bank4], left_lut: [bank6]}"));
+}
+
+TEST(BoardAllocation, HasImageListsOfOneLength) {
+  EXPECT_EQ(
+      refusal_of(kBase + "allocation:\n  left_image: [bank0, bank1, bank0]\n  right_image: [bank2, bank3]\n"),
+      "board.yaml:4:16: allocation.right_image = [bank2, bank3]: must be as long as left_image, which is "
+      "[bank0, "
+      "bank1, bank0]");
+  EXPECT_EQ(
+      refusal_of(kBase +
+                 "allocation: {left_image: bank0, right_image: bank2, disparity: [bank4, bank4, bank4]}"),
+      "");
+}
+
+TEST(BoardPriority, NamesEachPortOnce) {
+  const std::string head = kBase + "fpga: {priority: ";
+  EXPECT_EQ(
+      refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut]}"),
+      "board.yaml:2:18: fpga.priority = [host, result, left_pixel, right_pixel, left_lut]: each of the six "
+      "ports once; right_lut missing");
+  EXPECT_EQ(refusal_of(head + "[]}").substr(0, 80),
+            "board.yaml:2:18: fpga.priority = []: each of the six ports once; left_lut, right");
+  EXPECT_EQ(refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, right_lut, host]}"),
+            "board.yaml:2:79: fpga.priority = host: repeated; each of the six ports once");
+  EXPECT_EQ(
+      refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, lut]}"),
+      "board.yaml:2:68: fpga.priority = lut: left_lut, right_lut, left_pixel, right_pixel, result or host");
+  const BoardConfig board = load_text(head + "[right_lut, host, result, left_pixel, right_pixel, left_lut]}");
+  EXPECT_EQ(board.fpga.arbiter.priority[0], memory::Port::kRightLut);
+  EXPECT_EQ(board.fpga.arbiter.priority[1], memory::Port::kHost);
+  EXPECT_EQ(board.fpga.arbiter.priority[5], memory::Port::kLeftLut);
+}
+
+TEST(BoardLoad, IsNoneUnlessTheBoardHasOne) {
+  EXPECT_EQ(load_board("fpl2003").pci.load, std::nullopt);
+  EXPECT_EQ(load_text(board_with_load("none")), load_board("fpl2003"));
+  EXPECT_EQ(load_text(board_with_load("{burst_words: 8, interval_us: 10}"), {"pci.load=none"}),
+            load_board("fpl2003"));
+}
+
+TEST(BoardLoad, IsAMapOfItsWordsAndTimes) {
+  EXPECT_EQ(load_text(board_with_load("{first_us: 0.5, burst_words: 8, access_us: 0.25, interval_us: 10}"))
+                .pci.load,
+            (PciLoadConfig{8, 10, 0.5, 0.25}));
+  EXPECT_EQ(
+      load_text(board_with_load("{burst_words: 8, interval_us: 10}"), {"pci.load.burst_words=9"}).pci.load,
+      (PciLoadConfig{9, 10, 0, 0}));
+}
+
+TEST(BoardLoad, RequiresItsWordsAndItsInterval) {
+  EXPECT_EQ(refusal_of(board_with_load("{}")),
+            "board.yaml:2:7: pci.load.burst_words: missing: 1..1024\n"
+            "board.yaml:2:7: pci.load.interval_us: missing: 0..1000000000");
+  EXPECT_EQ(refusal_of(board_with_load("{burst_words: 8, first_us: 1}")),
+            "board.yaml:2:7: pci.load.interval_us: missing: 0..1000000000");
+}
+
+TEST(BoardLoad, HasNoOtherKeyAndEachOnce) {
+  EXPECT_EQ(
+      refusal_of(board_with_load("{burst_words: 8, interval_us: 10, burst_wrods: 9, interval_us: 11}")),
+      "board.yaml:2:47: pci.load.burst_wrods = 9: unknown key; nearest known key: pci.load.burst_words\n"
+      "board.yaml:2:63: pci.load.interval_us = 11: repeated key, first at 2:30");
+  EXPECT_EQ(refusal_of(kBase + "pci: {lode: none}\n"),
+            "board.yaml:2:7: pci.lode = none: unknown key; nearest known key: pci.load");
+  EXPECT_EQ(refusal_of(kBase + "pci: {load: none, load: none}\n"),
+            "board.yaml:2:19: pci.load = none: repeated key, first at 2:7");
+}
+
+TEST(BoardLoad, ReportsEveryValueAtItsPlace) {
+  EXPECT_EQ(
+      refusal_of(board_with_load("{burst_words: 0, interval_us: fast, first_us: -1, access_us: 1000000.1}")),
+      "board.yaml:2:27: pci.load.burst_words = 0: 1..1024\n"
+      "board.yaml:2:43: pci.load.interval_us = fast: not a decimal number (such as 29.97, not in quotes); "
+      "0..1000000000\n"
+      "board.yaml:2:59: pci.load.first_us = -1: 0..1000000000\n"
+      "board.yaml:2:74: pci.load.access_us = 1000000.1: 0..1000000");
+}
+
+TEST(BoardFilter, HasRowsFromTheTop) {
+  const BoardConfig board =
+      load_text(kernel_board("{kernel: [[1, 2, 3], [4, -45, 6], [7, 8, 14]], shift: 31}"));
+  ASSERT_TRUE(board.matcher.filter);
+  EXPECT_EQ(board.matcher.filter->size, 3);
+  EXPECT_EQ(board.matcher.filter->shift, 31);
+  EXPECT_EQ(board.matcher.filter->weight(2, 0), 3);
+  EXPECT_EQ(board.matcher.filter->weight(0, 2), 7);
+}
+
+TEST(BoardFilter, HasAnOddSizeUpToBothLimits) {
+  for (const int m : {3, 5, 31}) {
+    EXPECT_EQ(refusal_of(kernel_board(fmt::format("{{kernel: {}, shift: 0}}", square_kernel(m)))), "") << m;
+  }
+  for (const int m : {1, 2, 4, 30, 32, 33}) {
+    const std::string refusal =
+        refusal_of(kernel_board(fmt::format("{{kernel: {}, shift: 0}}", square_kernel(m))));
+    EXPECT_EQ(refusal.substr(0, 41), "board.yaml:2:28: matcher.filter.kernel = ") << m;
+    EXPECT_NE(refusal.find(": a square list of lists, 3..31, odd rows"), std::string::npos) << refusal;
+  }
+  for (const std::string value : {"log7", "null", "{}", "[]"}) {
+    EXPECT_EQ(refusal_of(kernel_board("{kernel: " + value + ", shift: 0}")),
+              "board.yaml:2:28: matcher.filter.kernel = " + value +
+                  ": a square list of lists, 3..31, odd rows, entries -32768..32767, sum 0");
+  }
+}
+
+TEST(BoardFilter, IsSquare) {
+  EXPECT_EQ(refusal_of(kernel_board("{kernel: [[0, 0, 0], [0, 0], 5], shift: 0}")),
+            "board.yaml:2:40: matcher.filter.kernel = [0, 0]: a row of 3 entries, as many as there are rows\n"
+            "board.yaml:2:48: matcher.filter.kernel = 5: a row of 3 entries, as many as there are rows");
+}
+
+TEST(BoardFilter, HasEntriesUpToBothLimits) {
+  EXPECT_EQ(refusal_of(kernel_board("{kernel: [[-32768, 32767, 1], [0, 0, 0], [0, 0, 0]], shift: 0}")), "");
+  EXPECT_EQ(
+      refusal_of(kernel_board("{kernel: [[-32769, 32768, 1.5], [0, 0, 0], [0, 0, 0]], shift: 0}")),
+      "board.yaml:2:30: matcher.filter.kernel = -32769: entries -32768..32767\n"
+      "board.yaml:2:38: matcher.filter.kernel = 32768: entries -32768..32767\n"
+      "board.yaml:2:45: matcher.filter.kernel = 1.5: not an integer (decimal digits, not in quotes); entries "
+      "-32768..32767");
+}
+
+TEST(BoardFilter, HasTheSumZero) {
+  EXPECT_EQ(
+      refusal_of(kernel_board("{kernel: [[1, 0, 0], [0, 0, 0], [0, 0, 2]], shift: 0}")),
+      "board.yaml:2:28: matcher.filter.kernel = [[1, 0, 0], [0, 0, 0], [0, 0, 2]]: the entries' sum must be "
+      "0, not 3");
+}
+
+TEST(BoardFilter, HasAShiftUpToBothLimits) {
+  const std::string head = "{kernel: [[0, 0, 0], [0, 0, 0], [0, 0, 0]], shift: ";
+  for (const std::string value : {"0", "31"}) EXPECT_EQ(refusal_of(kernel_board(head + value + '}')), "");
+  for (const std::string value : {"-1", "32", "99999999999999999999"}) {
+    EXPECT_EQ(refusal_of(kernel_board(head + value + '}')),
+              "board.yaml:2:70: matcher.filter.shift = " + value + ": 0..31");
+  }
+  EXPECT_EQ(
+      refusal_of(kernel_board(head + "'6'}")),
+      "board.yaml:2:70: matcher.filter.shift = \"6\": not an integer (decimal digits, not in quotes); 0..31");
+  EXPECT_EQ(refusal_of(kernel_board(head + "1, sift: 2}")),
+            "board.yaml:2:73: matcher.filter.sift = 2: unknown key; nearest known key: matcher.filter.shift");
+}
+
+}  // namespace
+}  // namespace stereotlm::platform::testing

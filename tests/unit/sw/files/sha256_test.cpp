@@ -1,0 +1,37 @@
+#include "sw/files/sha256.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::files {
+namespace {
+
+using ::testing::HasSubstr;
+
+// FIPS 180-2, appendix B.
+TEST(Sha256, GivesThePublishedSums) {
+  EXPECT_EQ(sha256_hex("", 0), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_hex("abc", 3), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Sha256, OfAFileIsThatOfItsBytes) {
+  const test::ScratchFolder scratch;
+  std::string bytes;
+  for (int i = 0; i < 200000; ++i) bytes += static_cast<char>(i % 251);
+  const std::string path = test::write_file(scratch.path() / "large", bytes);
+  EXPECT_EQ(sha256_file(path), sha256_hex(bytes.data(), bytes.size()));
+  EXPECT_EQ(sha256_file(test::write_file(scratch.path() / "empty", "")), sha256_hex("", 0));
+}
+
+TEST(Sha256, RefusesAFileThatCannotBeRead) {
+  const test::ScratchFolder scratch;
+  const std::string missing = scratch.path() / "missing";
+  EXPECT_EQ(test::message_of([&] { sha256_file(missing); }),
+            "'" + missing + "': cannot be read: No such file or directory");
+  EXPECT_THAT(test::message_of([&] { sha256_file(scratch.path()); }), HasSubstr("Is a directory"));
+}
+
+}  // namespace
+}  // namespace stereotlm::files

@@ -1,0 +1,73 @@
+#include "sw/files/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <climits>
+#include <cstdlib>
+#include <string>
+
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TemporaryFolderTest : public ::testing::Test {
+ protected:
+  TemporaryFolderTest() { unset_all(); }
+  ~TemporaryFolderTest() override { unset_all(); }
+  static void unset_all() {
+    for (const char* variable : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) unsetenv(variable);
+  }
+  void set(const char* variable, const std::string& value) const { setenv(variable, value.c_str(), 1); }
+
+  std::string refusal() const {
+    return test::message_of([] { const TemporaryFolder folder; });
+  }
+
+  test::ScratchFolder scratch_;
+};
+
+TEST_F(TemporaryFolderTest, LiesWhereTheEnvironmentSays) {
+  EXPECT_EQ(temporary_place().folder, "/tmp");
+  for (const char* variable : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
+    set(variable, scratch_.path() / variable);
+    EXPECT_EQ(temporary_place().variable, variable);
+    EXPECT_EQ(temporary_place().folder, scratch_.path() / variable);
+  }
+  set("TMPDIR", "");
+  EXPECT_EQ(temporary_place().variable, "TMP");
+}
+
+TEST_F(TemporaryFolderTest, GoesWithItsFiles) {
+  set("TMPDIR", scratch_.path());
+  {
+    const TemporaryFolder folder;
+    EXPECT_EQ(folder.path().parent_path(), scratch_.path());
+    test::write_file(folder.path() / "file", "x");
+  }
+  EXPECT_TRUE(fs::is_empty(scratch_.path()));
+}
+
+TEST_F(TemporaryFolderTest, NamesAPlaceThatIsNoFolder) {
+  const std::string file = test::write_file(scratch_.path() / "file", "");
+  for (const std::string& place : {(scratch_.path() / "none").string(), file, file + "/below"}) {
+    set("TMPDIR", place);
+    EXPECT_EQ(refusal(), "TMPDIR = " + place + ": must be a folder");
+  }
+}
+
+TEST_F(TemporaryFolderTest, NamesAFolderThatTakesNoFiles) {
+  // The path of a folder in it would be longer than a path can be.
+  fs::path deep = scratch_.path();
+  while (deep.native().size() + 102 < PATH_MAX) deep /= std::string(100, 'd');
+  deep /= std::string(PATH_MAX - 2 - deep.native().size(), 'd');
+  fs::create_directories(deep);
+  set("TEMP", deep);
+  EXPECT_EQ(refusal(),
+            "TEMP = " + deep.string() + ": must be a folder that takes temporary files: File name too long");
+}
+
+}  // namespace
+}  // namespace stereotlm::files

@@ -1,0 +1,69 @@
+#include "sw/paper/area_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <stdexcept>
+
+#include "models/area/area.h"
+
+namespace stereotlm::paper {
+namespace {
+
+constexpr area::Device kXc2v6000 = area::kDevices[0];
+
+double modelled_percent(const PrintedArea& row) {
+  return area::total(area::items(row.core), kXc2v6000).slices_percent;
+}
+
+TEST(AreaFit, IsTheConstantOfTheModel) {
+  // Both as printed, with four decimals.
+  EXPECT_NEAR(fit_area(table_2(), kXc2v6000).slices_per_lut_equivalent, area::kSlicesPerLutEquivalent,
+              0.00005);
+}
+
+TEST(AreaFit, BringsEachRowOfTable2WithinAPercentagePoint) {
+  const std::vector<PrintedArea> rows = table_2();
+  const AreaFit fit = fit_area(rows, kXc2v6000);
+  ASSERT_EQ(fit.slices_percent.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double modelled = modelled_percent(rows[i]);
+    std::cout << rows[i].core.disparities << " disparities: printed " << rows[i].slices_percent
+              << " %, modelled " << modelled << " %, error " << modelled - rows[i].slices_percent
+              << " points\n";
+    EXPECT_NEAR(modelled, rows[i].slices_percent, 1) << rows[i].core.disparities;
+    EXPECT_NEAR(modelled, fit.slices_percent[i], 0.01) << rows[i].core.disparities;
+  }
+}
+
+TEST(AreaFit, HasTheErrorsThatAreDocumented) {
+  const std::vector<PrintedArea> rows = table_2();
+  EXPECT_EQ(rows[0].core.disparities, 80);
+  EXPECT_EQ(rows[1].core.disparities, 160);
+  EXPECT_EQ(rows[2].core.disparities, 200);
+  EXPECT_NEAR(modelled_percent(rows[0]) - 21, 0.96, 0.005);
+  EXPECT_NEAR(modelled_percent(rows[1]) - 43, 0.02, 0.005);
+  EXPECT_NEAR(modelled_percent(rows[2]) - 54, -0.41, 0.005);
+}
+
+TEST(AreaFit, FindsTheConstantOfRowsThatFollowTheModel) {
+  std::vector<PrintedArea> rows = table_2();
+  for (PrintedArea& row : rows) {
+    const auto places = static_cast<double>(area::total(area::items(row.core), kXc2v6000).lut_equivalents);
+    row.slices_percent = 100 * 0.75 * places / 33'792;
+  }
+  const AreaFit fit = fit_area(rows, kXc2v6000);
+  EXPECT_NEAR(fit.slices_per_lut_equivalent, 0.75, 1e-12);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    EXPECT_NEAR(fit.slices_percent[i], rows[i].slices_percent, 1e-9);
+}
+
+TEST(AreaFit, RefusesNoRowsAndACoreWithProblems) {
+  EXPECT_THROW(fit_area({}, kXc2v6000), std::invalid_argument);
+  std::vector<PrintedArea> rows = table_2();
+  rows[1].core.disparities = 0;
+  EXPECT_THROW(fit_area(rows, kXc2v6000), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::paper
