@@ -73,21 +73,7 @@ TEST_P(Turnaround, GrantsTheOtherDirectionAtTurnaroundPlusOne) {
   }
 }
 
-TEST_P(Turnaround, GrantsTheSameDirectionEveryCycle) {
-  for (const PortMask writes : {kNone, kResult}) {
-    BankArbiter arbiter(kFixedPriority, GetParam());
-    for (uint64_t cycle = 0; cycle < 5; ++cycle)
-      EXPECT_EQ(arbitrate(arbiter, cycle, kResult, writes), kResult);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(BankArbiter, Turnaround, testing::Values(1, 2, 7, 16));
-
-TEST(BankArbiter, GrantsBothDirectionsInTurnWithoutTurnaround) {
-  BankArbiter arbiter(kFixedPriority, 0);
-  for (uint64_t cycle = 0; cycle < 6; ++cycle)
-    EXPECT_EQ(arbitrate(arbiter, cycle, kAll, cycle % 2 == 0 ? kAll : kNone), kHost);
-}
 
 TEST(BankArbiter, RefusesAWinnerBecauseOfTurnaroundEvenIfAnotherPortCouldBeGranted) {
   BankArbiter arbiter(kFixedPriority, 2);
@@ -103,17 +89,6 @@ TEST(BankArbiter, RefusesAWinnerBecauseOfTurnaroundEvenIfAnotherPortCouldBeGrant
   EXPECT_EQ(stats.blame[index_of(Port::kResult)][ArbiterStats::kTurnaround], 2U);
   EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][ArbiterStats::kTurnaround], 2U);
   EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][index_of(Port::kResult)], 1U);
-}
-
-TEST(BankArbiter, DoesNotMoveTheRoundRobinPlaceOnATurnaround) {
-  BankArbiter arbiter(kRoundRobin, 1);
-  ASSERT_EQ(arbitrate(arbiter, 0, kHost, kNone), kHost);
-  // From after the host: the result port wins, and waits one cycle; it is still the one to win.
-  EXPECT_EQ(arbitrate(arbiter, 1, kAll, kResult), kNone);
-  EXPECT_EQ(arbitrate(arbiter, 2, kAll, kResult), kResult);
-  // The next in the list is a reader again.
-  EXPECT_EQ(arbitrate(arbiter, 3, kAll, kResult), kNone);
-  EXPECT_EQ(arbitrate(arbiter, 4, kAll, kResult), kLeft);
 }
 
 TEST(BankArbiter, CountsUncontendedGrantsWhereverTheyLay) {

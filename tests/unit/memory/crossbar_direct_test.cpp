@@ -21,10 +21,7 @@ class CrossbarWatch : public CrossbarBench {
   static constexpr std::uint32_t kFirst = 4;
   static constexpr std::uint32_t kEnd = 8;
 
-  CrossbarWatch() {
-    build();
-    EXPECT_TRUE(has_changed());
-  }
+  CrossbarWatch() { EXPECT_TRUE(has_changed()); }
   bool has_changed(Port port = Port::kLeftLut, std::uint32_t first = kFirst, std::uint32_t end = kEnd) {
     return crossbar->may_have_changed(port, crossbar_address(kPipelined, first),
                                       crossbar_address(kPipelined, end));
@@ -110,7 +107,6 @@ TEST_F(CrossbarWatch, ReportsEachChangeToEachPort) {
 class CrossbarDirect : public CrossbarBench {};
 
 TEST_F(CrossbarDirect, ReachesTheWordsOfABankAndNoneBeyondItsEnd) {
-  build();
   const auto* const stored = reinterpret_cast<const unsigned char*>(banks[kFlowThrough]->words());
   const auto direct = [this](std::uint32_t word, std::uint64_t bytes) {
     return crossbar->direct(crossbar_address(kFlowThrough, word), bytes);
@@ -125,7 +121,6 @@ TEST_F(CrossbarDirect, ReachesTheWordsOfABankAndNoneBeyondItsEnd) {
 }
 
 TEST_F(CrossbarDirect, CountsWhatIsReportedByBankAndByRoute) {
-  build();
   crossbar->route(Port::kLeftPixel, kBurst, false);
   crossbar->count_direct(Port::kLeftPixel, 7);
   crossbar->count_direct(kFlowThrough, 3);
@@ -207,7 +202,6 @@ TEST_F(CrossbarRevoked, IsNullForWordsThatCanOnlyBeRead) {
 class CrossbarAim : public CrossbarBench {};
 
 TEST_F(CrossbarAim, LeadsAnAccessOnlyIfThePortIsGranted) {
-  build();
   crossbar->aim(Port::kHost, kFlowThrough, true);
   const auto write = [this] { return at(Port::kHost).write(crossbar_address(kFlowThrough, 2), 9).status; };
   EXPECT_EQ(write(), tlm::TLM_GENERIC_ERROR_RESPONSE);
@@ -219,7 +213,6 @@ TEST_F(CrossbarAim, LeadsAnAccessOnlyIfThePortIsGranted) {
 }
 
 TEST_F(CrossbarAim, TakesNoPartInTheArbitration) {
-  build();
   crossbar->route(Port::kResult, kFlowThrough, true);
   crossbar->aim(Port::kHost, kFlowThrough, true);
   EXPECT_FALSE(crossbar->arbitration().is_used_beside(Port::kResult, kFlowThrough));
@@ -227,7 +220,6 @@ TEST_F(CrossbarAim, TakesNoPartInTheArbitration) {
 }
 
 TEST_F(CrossbarAim, RedirectsTheAccessesOfARoutedPortButNotItsRequests) {
-  build();
   crossbar->route(Port::kHost, kPipelined, false);
   crossbar->aim(Port::kHost, kFlowThrough, false);
   EXPECT_EQ(crossbar->bank_of(Port::kHost), kPipelined);

@@ -3,6 +3,7 @@
 
 #include <ostream>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/unit/memory/crossbar_bench.h"
 #include "tests/unit/support/scripted_link.h"
@@ -20,7 +21,6 @@ constexpr PortMask kNobody = 0;
 class CrossbarPorts : public CrossbarBench {};
 
 TEST_F(CrossbarPorts, LeadAGrantedAccessToTheBankOfItsRoute) {
-  build();
   at(Port::kHost).debug_write(crossbar_address(kFlowThrough, 3), {0x0BAD'CAFE});
   crossbar->route(Port::kLeftPixel, kFlowThrough, false);
   EXPECT_EQ(arbitrate(0, kLeft), kLeft);
@@ -33,7 +33,6 @@ TEST_F(CrossbarPorts, LeadAGrantedAccessToTheBankOfItsRoute) {
 }
 
 TEST_F(CrossbarPorts, AddTheReadTimeOfTheBankAndNothingForAWrite) {
-  build();
   crossbar->route(Port::kLeftPixel, kPipelined, false);
   crossbar->route(Port::kResult, kBurst, true);
   ASSERT_EQ(arbitrate(0, kLeft | kResult), kLeft | kResult);
@@ -58,7 +57,6 @@ class RefusedAccess : public CrossbarBench, public testing::WithParamInterface<R
 
 TEST_P(RefusedAccess, ReachesNoBank) {
   const Refused& access = GetParam();
-  build();
   crossbar->route(Port::kLeftPixel, kPipelined, false);
   crossbar->route(Port::kResult, kFlowThrough, true);
   ASSERT_EQ(arbitrate(0, kLeft), kLeft);
@@ -68,26 +66,20 @@ TEST_P(RefusedAccess, ReachesNoBank) {
   EXPECT_EQ(accesses(kPipelined) + accesses(kFlowThrough) + accesses(kBurst), 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Crossbar, RefusedAccess,
-                         testing::Values(Refused{"WithTheGrantOfTheCycleBefore", kNobody, Port::kLeftPixel,
-                                                 false, crossbar_address(0, 0),
-                                                 tlm::TLM_GENERIC_ERROR_RESPONSE},
-                                         Refused{"WithoutGrant", kNobody, Port::kResult, true,
-                                                 crossbar_address(1, 0), tlm::TLM_GENERIC_ERROR_RESPONSE},
-                                         Refused{"OfAnotherBankThanTheRoutes", kLeft, Port::kLeftPixel, false,
-                                                 crossbar_address(1, 0), tlm::TLM_GENERIC_ERROR_RESPONSE},
-                                         Refused{"ThatWriteOnAReadingRoute", kLeft, Port::kLeftPixel, true,
-                                                 crossbar_address(0, 0), tlm::TLM_GENERIC_ERROR_RESPONSE},
-                                         Refused{"ThatReadOnAWritingRoute", kResult, Port::kResult, false,
-                                                 crossbar_address(1, 0), tlm::TLM_GENERIC_ERROR_RESPONSE},
-                                         Refused{"OfABankThatDoesNotExist", kLeft, Port::kLeftPixel, false,
-                                                 crossbar_address(3, 0), tlm::TLM_ADDRESS_ERROR_RESPONSE},
-                                         Refused{"OfTheLastAddress", kLeft, Port::kLeftPixel, false,
-                                                 ~std::uint64_t{3}, tlm::TLM_ADDRESS_ERROR_RESPONSE}),
+constexpr auto kNoGrant = tlm::TLM_GENERIC_ERROR_RESPONSE;
+constexpr auto kNoBank = tlm::TLM_ADDRESS_ERROR_RESPONSE;
+const std::vector<Refused> kRefused = {
+    {"WithTheGrantOfTheCycleBefore", kNobody, Port::kLeftPixel, false, crossbar_address(0, 0), kNoGrant},
+    {"WithoutGrant", kNobody, Port::kResult, true, crossbar_address(1, 0), kNoGrant},
+    {"OfAnotherBankThanTheRoutes", kLeft, Port::kLeftPixel, false, crossbar_address(1, 0), kNoGrant},
+    {"ThatWriteOnAReadingRoute", kLeft, Port::kLeftPixel, true, crossbar_address(0, 0), kNoGrant},
+    {"ThatReadOnAWritingRoute", kResult, Port::kResult, false, crossbar_address(1, 0), kNoGrant},
+    {"OfABankThatDoesNotExist", kLeft, Port::kLeftPixel, false, crossbar_address(3, 0), kNoBank},
+    {"OfTheLastAddress", kLeft, Port::kLeftPixel, false, ~std::uint64_t{3}, kNoBank}};
+INSTANTIATE_TEST_SUITE_P(Crossbar, RefusedAccess, testing::ValuesIn(kRefused),
                          [](const auto& suite) { return std::string(suite.param.name); });
 
 TEST_F(CrossbarPorts, RefuseTheSecondAccessOnOneGrant) {
-  build();
   crossbar->route(Port::kLeftPixel, kPipelined, false);
   for (const std::uint64_t cycle : {0U, 1U}) {
     arbitrate(cycle, kLeft);
@@ -98,24 +90,17 @@ TEST_F(CrossbarPorts, RefuseTheSecondAccessOnOneGrant) {
   EXPECT_EQ(accesses(kPipelined), 2U);
 }
 
-TEST_F(CrossbarPorts, ReachTheLastWordOfTheLastBank) {
-  build();
+TEST_F(CrossbarPorts, ReachTheLastWordOfTheLastBankAndPassOnItsErrorsBeyond) {
   crossbar->route(Port::kLeftPixel, kBurst, false);
   arbitrate(0, kLeft);
   EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kBurst, kWords - 1)).status, tlm::TLM_OK_RESPONSE);
-}
-
-TEST_F(CrossbarPorts, PassOnTheErrorsOfTheBank) {
-  build();
-  crossbar->route(Port::kLeftPixel, kPipelined, false);
-  arbitrate(0, kLeft);
-  EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kPipelined, kWords)).status,
+  arbitrate(1, kLeft);
+  EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kBurst, kWords)).status,
             tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  EXPECT_EQ(banks[kPipelined]->stats().errors, 1U);
+  EXPECT_EQ(banks[kBurst]->stats().errors, 1U);
 }
 
 TEST_F(CrossbarPorts, ShareABankOneAtATime) {
-  build();
   crossbar->route(Port::kLeftPixel, kPipelined, false);
   crossbar->route(Port::kRightPixel, kPipelined, false);
   crossbar->route(Port::kResult, kPipelined, true);
@@ -134,7 +119,6 @@ TEST_F(CrossbarPorts, ShareABankOneAtATime) {
 }
 
 TEST_F(CrossbarPorts, MoveToAnotherBankWithTheirRoute) {
-  build();
   crossbar->route(Port::kLeftPixel, kPipelined, false);
   crossbar->route(Port::kRightPixel, kPipelined, false);
   EXPECT_EQ(arbitrate(0, kLeft | kRight), kLeft);
@@ -144,7 +128,6 @@ TEST_F(CrossbarPorts, MoveToAnotherBankWithTheirRoute) {
 }
 
 TEST_F(CrossbarPorts, WaitForTheTurnaroundOfASyncBurstBank) {
-  build();
   crossbar->route(Port::kLeftPixel, kBurst, false);
   crossbar->route(Port::kResult, kBurst, true);
   ASSERT_EQ(arbitrate(0, kLeft), kLeft);
@@ -153,7 +136,6 @@ TEST_F(CrossbarPorts, WaitForTheTurnaroundOfASyncBurstBank) {
 }
 
 TEST_F(CrossbarPorts, ReachEveryBankByDebugTransport) {
-  build();
   for (std::size_t bank = 0; bank < 3; ++bank) {
     const auto number = static_cast<std::uint32_t>(bank);
     EXPECT_EQ(at(Port::kHost).debug_write(crossbar_address(bank, 2), {number, number + 10}), 8U);
@@ -166,7 +148,6 @@ TEST_F(CrossbarPorts, ReachEveryBankByDebugTransport) {
 }
 
 TEST_F(CrossbarPorts, SeeTheRangeOfDirectAccessInTheirOwnAddresses) {
-  build();
   tlm::tlm_dmi dmi;
   ASSERT_TRUE(at(Port::kHost).dmi(crossbar_address(kBurst, 5), dmi));
   EXPECT_EQ(dmi.get_start_address(), crossbar_address(kBurst, 0));
@@ -177,7 +158,6 @@ TEST_F(CrossbarPorts, SeeTheRangeOfDirectAccessInTheirOwnAddresses) {
 }
 
 TEST_F(CrossbarPorts, AreRefusedDirectAccessBeyondABankWithARangeThatHoldsTheAddress) {
-  build();
   for (std::size_t bank = 0; bank < 3; ++bank) {
     const std::uint64_t address = crossbar_address(bank, kWords);
     tlm::tlm_dmi dmi;
@@ -192,9 +172,8 @@ TEST(Crossbar, TellsEveryPortWhichDirectAccessABankRevokes) {
   test::MonitoringBinder binder;
   sc_core::sc_vector<TestHost> hosts("test_host", kPortCount);
   sc_core::sc_vector<test::ScriptedTarget> targets("target", 2);
-  for (std::size_t port = 0; port < kPortCount; ++port) {
+  for (std::size_t port = 0; port < kPortCount; ++port)
     binder.bind(hosts[port].socket, crossbar.ports[port], kPortNames[port]);
-  }
   for (std::size_t bank = 0; bank < 2; ++bank)
     binder.bind(crossbar.banks[bank], targets[bank].socket, "bank" + std::to_string(bank));
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
