@@ -4,8 +4,21 @@
 
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/port_cycles.h"
+#include "models/memory/bank_traits.h"
 
 namespace stereotlm::fpga {
+
+// Read latencies that a lane can hold, in cycles.
+inline constexpr kernels::IntegerRule kLaneLatencyRule{1, 2};
+
+static_assert(
+    [] {
+      for (const memory::BankTraits& bank : memory::kBankTraits) {
+        if (!kLaneLatencyRule.allows(bank.read_latency_cycles)) return false;
+      }
+      return true;
+    }(),
+    "a lane cannot hold the read latency of a kind of bank");
 
 // One lane of the core, from the sequence of slots to the matcher: what its ports request in each cycle, and
 // what follows from the grants. Plain C++. It is the only description of the lane's timing, at every
@@ -25,8 +38,14 @@ class LaneControl {
         has_table_(has_table),
         fifo_slots_(static_cast<std::uint64_t>(kLaneFifoRule.required("lane_fifo_slots", fifo_slots))) {}
 
-  // Read latencies of the banks that hold the frame's table and image: 1 or 2 cycles.
+  // Read latencies of the banks that hold this frame's table and image; without a table the first has no
+  // effect. Throws std::invalid_argument outside kLaneLatencyRule.
   void start_frame(int table_latency_cycles, int image_latency_cycles) {
+    const auto takes_two = [](const char* field, int latency) {
+      return kLaneLatencyRule.required(field, latency) == 2;
+    };
+    table_takes_two_cycles_ = has_table_ && takes_two("table_latency_cycles", table_latency_cycles);
+    image_takes_two_cycles_ = takes_two("image_latency_cycles", image_latency_cycles);
     next_slot_ = SlotCursor(geometry_);
     consumed_before_frame_ += consumed_;
     taken_ = 0;
@@ -34,8 +53,6 @@ class LaneControl {
     consumed_ = 0;
     arrived_entries_ = 0;
     arrived_pixels_ = 0;
-    table_takes_two_cycles_ = has_table_ && table_latency_cycles == 2;
-    image_takes_two_cycles_ = image_latency_cycles == 2;
   }
 
   Decision decide() const {

@@ -40,7 +40,7 @@ std::size_t TransitionCache::Hash::operator()(const State& state) const {
     mix(lane.marks);
   }
   mix(state.control.rest);
-  for (const std::uint32_t word : state.arbitration) mix(word);
+  for (const std::uint64_t word : state.arbitration) mix(word);
   return hash;
 }
 

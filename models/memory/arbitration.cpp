@@ -39,7 +39,7 @@ BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_
   return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});
 }
 
-// Which ports meet in which banks.
+// Finds the uncontended ports, and the banks that are shared or have turnaround.
 void Arbitration::share_banks() {
   recording_ = false;
   writes_ = 0;
@@ -50,8 +50,8 @@ void Arbitration::share_banks() {
     if (!is_routed(i)) continue;
     writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
     for (std::size_t other = 0; other < kPortCount; ++other) {
-      const bool meet = is_routed(other) && routes_[other].bank == routes_[i].bank;
-      together[i] = static_cast<PortMask>(together[i] | unsigned{meet} << other);
+      const bool same_bank = is_routed(other) && routes_[other].bank == routes_[i].bank;
+      together[i] = static_cast<PortMask>(together[i] | unsigned{same_bank} << other);
     }
   }
   for (std::size_t i = 0; i < kPortCount; ++i) {
@@ -68,7 +68,7 @@ void Arbitration::share_banks() {
   }
 }
 
-// Tells the arbiters how much was granted without them.
+// Adds the grants of uncontended ports to the counts of the arbiters.
 void Arbitration::count_alone() const {
   std::array<std::uint64_t, kPortCount> cycles{};
   for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
@@ -87,12 +87,12 @@ void Arbitration::count_alone() const {
   retracted_grants_ = {};
 }
 
-// The same, and all that has been granted without them is known: nothing will be taken back any more.
+// The same when no grant can be retracted any more: the grants also move the states of the policies.
 void Arbitration::settle() {
   count_alone();
   for (std::size_t port = 0; port < kPortCount; ++port) {
     if (alone_grants_[port] == 0) continue;
-    arbiters_[routes_[port].bank].move_place_behind(mask_of(static_cast<Port>(port)));
+    arbiters_[routes_[port].bank].grant_alone(mask_of(static_cast<Port>(port)));
   }
   alone_grants_ = {};
 }

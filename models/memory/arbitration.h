@@ -9,13 +9,13 @@
 
 namespace stereotlm::memory {
 
-// Which port works on which bank, and what the banks' arbiters grant them in a cycle (contract section 2).
-// Plain C++, no SystemC: the crossbar is built around it.
+// The arbitration of all banks (contract section 2): routes each port to a bank, and its requests to the
+// bank's arbiter. Plain C++, no SystemC: the crossbar is built around it.
 class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
 
-  // Requests of this port go to this bank, in this direction, from the next arbitrate() on. The bank must
+  // Routes the port's requests to this bank, in this direction, from the next arbitrate() on. The bank must
   // exist.
   void route(Port port, std::size_t bank, bool write);
   // The port requests nothing from now on.
@@ -25,7 +25,8 @@ class Arbitration {
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
-  // One cycle: decides these requests, and returns the ports granted. Cycles must increase.
+  // One cycle: decides these requests, and returns the ports granted. Cycles must increase; those left out
+  // have no request.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     const auto granted = static_cast<PortMask>(requests & alone_);
     ++alone_cycles_[granted];
@@ -36,8 +37,8 @@ class Arbitration {
   // Whether the port is uncontended: its requests are granted at once as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
   // Retracts grants of an uncontended port that were counted provisionally: those cycles held no request. To
-  // be called before a route changes or counting ends, because the remaining grants then move the bank's
-  // round-robin place.
+  // be called before a route changes or counting ends, because the remaining grants then move the state of
+  // the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[index_of(port)] += grants; }
 
   // Decides one request of a port for a bank that no routed port requests, in the given direction. The
@@ -54,7 +55,7 @@ class Arbitration {
 
   // The state that determines all arbitration from `cycle` on as long as no route changes. One word for each
   // shared bank; the other words are 0.
-  using State = std::array<std::uint32_t, kPortCount>;
+  using State = std::array<std::uint64_t, kPortCount>;
   State state(std::uint64_t cycle) const;
   // The decisions of some cycles. Valid as long as no route changes.
   struct Decided {
@@ -64,7 +65,7 @@ class Arbitration {
       std::uint64_t cycles;
     };
     struct Alone {
-      std::size_t ports;  // granted, a mask
+      std::size_t ports;  // mask of the ports granted
       std::uint64_t cycles;
     };
     std::vector<Shared> shared;
@@ -110,9 +111,9 @@ class Arbitration {
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes
   // Uncontended ports: each is alone on a bank without turnaround. They need no arbitration; their grants are
-  // added to the arbiter's counts later, at the latest when the arbiters are queried.
+  // added to the counts of the arbiters later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
-  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
+  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [mask of the ports granted]
   mutable AloneCycles alone_cycles_{};
   mutable AloneCycles alone_before_recording_{};  // only the difference to alone_cycles_ counts
   mutable std::array<std::uint64_t, kPortCount> retracted_grants_{};  // of the alone_cycles_

@@ -124,9 +124,9 @@ bool Crossbar::grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::t
   access.set_address(address & kOffsetMask);
   const bool granted = banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi);
   access.set_address(address);
-  // The host's program may write there whenever it likes; the stages tell.
+  // The host's program may write at any time and reports nothing; the stages report what they write.
   if (granted && port == mask_of(Port::kHost)) open_banks_ |= std::uint64_t{1} << bank_of_address(address);
-  // Also a refusal names a range; what lies beyond the bank's window belongs to the next bank.
+  // A refusal names a range too. Addresses beyond the bank's window belong to the next bank.
   dmi.set_start_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_start_address(), kOffsetMask));
   dmi.set_end_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_end_address(), kOffsetMask));
   return granted;

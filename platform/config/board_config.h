@@ -69,7 +69,7 @@ struct BankConfig {
   std::string name;
   int words = 524288;  // 32-bit words, 1..2^26
   memory::BankKind kind = memory::BankKind::kZbtPipelined;
-  int turnaround_cycles = 0;  // 1..16 with sync_burst, else 0
+  int turnaround_cycles = 0;  // 1..16 if the kind has turnaround, else 0
 };
 
 // Buffers to banks, by bank name. A list is used in turn, frame by frame; 1 to 3 entries, the two image lists

@@ -27,7 +27,7 @@ struct Given {
 struct BankEntry {
   Place key;
   Given words;
-  Given kind;  // index into memory::kBankKindNames
+  Given kind;  // index into memory::kBankTraits
   Given turnaround_cycles;
 };
 
@@ -274,7 +274,7 @@ class BoardReader {
     };
     read("words", bank.words, integer(memory::kBankWordsRule));
     read("kind", bank.kind, [this](const std::string& key, const YamlNode& node) {
-      return values_.read_word(key, node, {memory::kBankKindNames.begin(), memory::kBankKindNames.end()});
+      return values_.read_word(key, node, bank_kind_names());
     });
     read("turnaround_cycles", bank.turnaround_cycles, integer(memory::kTurnaroundRule));
     check_turnaround_use(path, bank);
@@ -282,21 +282,21 @@ class BoardReader {
   }
 
   // Turnaround cycles in one entry with a kind that has none are a mistake. Where the kind is inherited they
-  // have no effect unless it is sync_burst.
+  // have no effect unless it has turnaround.
   void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;
-    if (!given.value || !kind.value || is_sync_burst(*kind.value)) return;
+    if (!given.value || !kind.value || traits_of(kind)->has_turnaround) return;
     // A preset's own, under a kind that the file or `--set` has put in its place, is inherited.
     if (given.place.source == Place::kPreset) return;
-    const auto name = memory::kBankKindNames[static_cast<std::size_t>(*kind.value)];
     values_.report_between_keys(
         latest(given.place, kind.place),
-        fmt::format("{}.turnaround_cycles = {}: only where the kind is sync_burst, and it is {}", path,
-                    *given.value, name));
+        fmt::format("{}.turnaround_cycles = {}: only where the kind is {}, and it is {}", path, *given.value,
+                    turnaround_kinds(), traits_of(kind)->name));
   }
-  static bool is_sync_burst(int kind) {
-    return static_cast<memory::BankKind>(kind) == memory::BankKind::kSyncBurst;
+  // Null if the kind could not be read.
+  static const memory::BankTraits* traits_of(const Given& kind) {
+    return kind.value ? &memory::kBankTraits[static_cast<std::size_t>(*kind.value)] : nullptr;
   }
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
@@ -338,7 +338,8 @@ class BoardReader {
     const Given& words = own.words.present ? own.words : defaults.words;
     const Given& turnaround =
         own.turnaround_cycles.present ? own.turnaround_cycles : defaults.turnaround_cycles;
-    if (kind.value && is_sync_burst(*kind.value) && !turnaround.present) {
+    const memory::BankTraits* const traits = traits_of(kind);
+    if (traits != nullptr && traits->has_turnaround && !turnaround.present) {
       if (own.kind.present) {
         values_.report_missing_beside(latest(latest(own.key, own.kind.place), defaults.key),
                                       path + ".turnaround_cycles",
@@ -353,8 +354,10 @@ class BoardReader {
       bank.words = *words.value;
       values_.accept(path + ".words", words.place);
     }
-    if (kind.value) bank.kind = static_cast<memory::BankKind>(*kind.value);
-    if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles = turnaround.value.value_or(0);
+    if (traits != nullptr) {
+      bank.kind = traits->kind;
+      if (traits->has_turnaround) bank.turnaround_cycles = turnaround.value.value_or(0);
+    }
     board_.banks.push_back(std::move(bank));
   }
 

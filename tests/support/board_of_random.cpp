@@ -93,9 +93,7 @@ platform::BoardConfig board_config(const PlainCycleInput& input) {
   platform::BoardConfig board;
   board.name = "plain";
   board.image = {input.width, input.height};
-  board.fpga.arbiter.policy = input.arbitration == PlainArbitration::kFixedPriority
-                                  ? memory::ArbitrationPolicy::kFixedPriority
-                                  : memory::ArbitrationPolicy::kRoundRobin;
+  board.fpga.arbiter.policy = name_of(input.arbitration);
   std::transform(input.priority.begin(), input.priority.end(), board.fpga.arbiter.priority.begin(), port_of);
   board.fpga.lane_fifo_slots = input.lane_fifo_slots;
   board.fpga.result_fifo_words = input.result_fifo_words;

@@ -27,9 +27,9 @@ void for_each_placement(const platform::BoardConfig& board, int most_banks,
 // The board with its buffers placed so.
 platform::BoardConfig placed(const platform::BoardConfig& board, const Placement& placement);
 
-// Whether a frame of the core alone leaves nothing behind that the next one could notice: fixed priority, and
-// no bank with turnaround. (In round robin the arbiters' places, after a turnaround the direction of a bank's
-// last access stay.)
+// Whether a frame of the core alone leaves nothing behind that the next one could observe: an arbitration
+// policy that forgets, and no bank with turnaround. (The search places of round robin persist, and the
+// direction of the last access to a bank with turnaround.)
 bool frames_are_independent(const platform::BoardConfig& board);
 
 // The board that does one frame of the list's cycle, with the buffers of that frame alone, in the first banks

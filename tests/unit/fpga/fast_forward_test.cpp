@@ -11,6 +11,7 @@
 #include "models/fpga/frame_run.h"
 #include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/random_core.h"
+#include "tests/unit/support/random_memory.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -43,8 +44,9 @@ struct Setting {
 Setting random_setting(test::SplitMix64& random) {
   Setting setting;
   setting.core = random_core(random, 64);
-  setting.arbiter = random_arbiter(random);
-  setting.banks = random_banks(random, 6);
+  setting.arbiter = test::random_arbiter(random);
+  for (int banks = random.between(1, 6); banks > 0; --banks)
+    setting.banks.push_back(test::random_bank(random));
   for (std::uint32_t& base : setting.bases) {
     const int banks = static_cast<int>(setting.banks.size());
     base = registers::base(static_cast<std::uint32_t>(random.between(0, banks - 1)), 0);

@@ -215,6 +215,15 @@ TEST(LaneControl, RefusesADepthOutsideItsRange) {
   EXPECT_THROW(LaneControl(geometry, true, 65), std::invalid_argument);
 }
 
+TEST(LaneControl, RefusesAReadLatencyThatItCannotHold) {
+  for (const int latency : {1, 2}) EXPECT_NO_THROW(Lane(1, latency, latency));
+  for (const int latency : {0, 3}) {
+    EXPECT_THROW(Lane(1, latency, 2), std::invalid_argument);
+    EXPECT_THROW(Lane(1, 2, latency), std::invalid_argument);
+    EXPECT_NO_THROW(Lane(1, latency, 2, false));  // without a table its latency has no effect
+  }
+}
+
 TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
   Lane lane(16, 2, 2, true, 1);
   for (int cycle = 0; cycle < 20; ++cycle) lane.step();

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "models/fpga/core_config.h"
 #include "models/kernels/rectification_table.h"
-#include "models/memory/memory_config.h"
 #include "tests/support/random_board.h"
 
 namespace stereotlm::fpga {
@@ -31,27 +29,6 @@ inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   config.result_fifo_words = random.mostly_small(1, 8, 64);
   config.pipeline_latency_cycles = random.between(0, 20);
   return config;
-}
-
-// Every policy, and any order of the ports.
-inline memory::ArbiterConfig random_arbiter(test::SplitMix64& random) {
-  memory::ArbiterConfig arbiter;
-  if (random.chance(40)) arbiter.policy = memory::ArbitrationPolicy::kRoundRobin;
-  auto& priority = arbiter.priority;
-  for (std::size_t place = 0; place < priority.size(); ++place)
-    std::swap(priority[place],
-              priority[static_cast<std::size_t>(random.between(static_cast<int>(place), 5))]);
-  return arbiter;
-}
-
-// One to `most` banks of any kind.
-inline std::vector<memory::SsramBankConfig> random_banks(test::SplitMix64& random, int most) {
-  std::vector<memory::SsramBankConfig> banks(static_cast<std::size_t>(random.between(1, most)));
-  for (memory::SsramBankConfig& bank : banks) {
-    bank.kind = static_cast<memory::BankKind>(random.between(0, 2));
-    if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles = random.mostly_small(1, 3, 16);
-  }
-  return banks;
 }
 
 // Index of a pixel's entry in a table.

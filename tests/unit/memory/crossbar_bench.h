@@ -24,15 +24,14 @@ class CrossbarBench : public testing::Test {
   static constexpr std::size_t kBurst = 2;
   static constexpr std::uint64_t kPeriodPs = 25'000;
 
-  void build(const ArbiterConfig& arbiter = {}, double clock_mhz = 40) {
-    CrossbarConfig config{arbiter,
-                          {{kWords, BankKind::kZbtPipelined, 0, clock_mhz},
-                           {kWords, BankKind::kZbtFlowThrough, 0, clock_mhz},
-                           {kWords, BankKind::kSyncBurst, 2, clock_mhz}}};
+  CrossbarBench() {
+    const CrossbarConfig config{{},
+                                {{kWords, BankKind::kZbtPipelined},
+                                 {kWords, BankKind::kZbtFlowThrough},
+                                 {kWords, BankKind::kSyncBurst, 2}}};
     crossbar = std::make_unique<Crossbar>("crossbar", config);
-    for (std::size_t port = 0; port < kPortCount; ++port) {
+    for (std::size_t port = 0; port < kPortCount; ++port)
       binder.bind(hosts[port].socket, crossbar->ports[port], std::string(kPortNames[port]) + "_to_crossbar");
-    }
     for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
       const std::string number = std::to_string(bank);
       banks.push_back(std::make_unique<SsramBank>(("ssram" + number).c_str(), config.banks[bank]));
@@ -42,7 +41,7 @@ class CrossbarBench : public testing::Test {
   }
 
   test::TestHost& at(Port port) { return hosts[index_of(port)]; }
-  // Cycle number `cycle`, with these stages asking.
+  // One cycle with these requests.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests = 0) {
     return crossbar->arbitrate(cycle, requests);
   }

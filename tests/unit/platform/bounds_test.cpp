@@ -243,7 +243,7 @@ Case board_case(const std::string& name) {
   if (name == "table_with_image_and_holes") allocation.left_lut = "bank0", holes = true;
   if (name == "result_with_image") allocation.disparity = {"bank0", "bank0"};
   if (name == "round_robin") {
-    board.fpga.arbiter.policy = memory::ArbitrationPolicy::kRoundRobin;
+    board.fpga.arbiter.policy = "round_robin";
     allocation.left_lut = "bank0", allocation.right_lut = "bank0",
     allocation.right_image = {"bank0", "bank1"};
   }

@@ -91,11 +91,13 @@ TEST(BoardConfig, DiffersInEachFieldOfALoad) {
   EXPECT_NE(board, with_load({1, 2, 3, 5}));
 }
 
-TEST(BoardConfig, RefusesEnumeratorsThatDoNotExist) {
+TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
             Problems{"cameras.trigger = 2: free_running or on_demand"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(3); }),
             Problems{"ssram.banks.bank0.kind = 3: zbt_pipelined, zbt_flow_through or sync_burst"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
+            Problems{"fpga.arbitration = lottery: fixed_priority or round_robin"});
   EXPECT_EQ(
       problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = static_cast<memory::Port>(6); }).size(),
       1U);
