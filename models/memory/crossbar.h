@@ -69,8 +69,8 @@ class Crossbar : public sc_core::sc_module {
   void changes(std::uint64_t first, std::uint64_t bytes);
   // Counts direct accesses of a stage to the bank that its port is routed to.
   void count_direct(Port port, std::uint64_t accesses) { direct_accesses_[bank_of(port)] += accesses; }
-  // Pointer to these bytes, for one use at once; null if the bank does not grant direct access to all of them.
-  // The caller reports writes with changes(), and accesses with count_direct().
+  // Pointer to these bytes, for one use at once; null if the bank does not grant direct access to all of
+  // them. The caller reports writes with changes(), and accesses with count_direct().
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
   void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
