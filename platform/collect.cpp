@@ -11,8 +11,8 @@
 namespace stereotlm::platform {
 namespace {
 
+using fpga::kPortCount;
 using memory::ArbiterStats;
-using memory::kPortCount;
 using memory::Port;
 
 BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbiter, std::uint64_t cycles,
@@ -34,8 +34,8 @@ BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbi
 }
 
 PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
-  return {memory::name_of(port), cycles.granted(), cycles.stalled(), cycles.passed(),
-          cycles.idle(),         cycles.blocked(), cycles.starved()};
+  return {fpga::kPorts[port].name, cycles.granted(), cycles.stalled(), cycles.passed(),
+          cycles.idle(),           cycles.blocked(), cycles.starved()};
 }
 
 // In the order of ports, banks and ports, turnaround last.
@@ -46,8 +46,8 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
       for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
         const std::uint64_t cycles = counters.banks[bank].arbiter.blame[victim][by];
         if (cycles == 0) continue;
-        rows.push_back({memory::kPortNames[victim], config.banks[bank].name,
-                        by == ArbiterStats::kTurnaround ? "turnaround" : memory::kPortNames[by], cycles});
+        rows.push_back({fpga::kPorts[victim].name, config.banks[bank].name,
+                        by == ArbiterStats::kTurnaround ? "turnaround" : fpga::kPorts[by].name, cycles});
       }
     }
   }
@@ -57,7 +57,7 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
 void audit_ports(const BoardCounters& counters, std::uint64_t cycles, Audit& audit) {
   for (std::size_t index = 0; index < kPortCount; ++index) {
     const fpga::PortCycles& port = counters.ports[index];
-    const std::string name = std::string("port ") + memory::kPortNames[index];
+    const std::string name = std::string("port ") + fpga::kPorts[index].name;
     std::uint64_t blamed = 0;
     std::uint64_t granted = 0;
     for (const BoardCounters::Bank& bank : counters.banks) {
@@ -101,7 +101,7 @@ BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory
   BoardCounters counters;
   counters.frames = frames.frame_cycles().size();
   for (std::size_t port = 0; port < kPortCount; ++port)
-    counters.ports[port] = frames.control().port_cycles(static_cast<Port>(port));
+    counters.ports[port] = frames.control().port_cycles(port);
   counters.banks.reserve(arbiters.size());
   for (const memory::BankArbiter& arbiter : arbiters)
     counters.banks.push_back({arbiter.stats(), arbiter.uncounted_accesses(), 0});
@@ -150,7 +150,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                                                statistics.cycles, config.fpga.clock_mhz));
   }
   for (std::size_t port = 0; port < kPortCount; ++port) {
-    statistics.ports.push_back(port_statistics(static_cast<Port>(port), counters.ports[port]));
+    statistics.ports.push_back(port_statistics(port, counters.ports[port]));
   }
   statistics.blame = blame_rows(config, counters);
   statistics.area = area_of(config);

@@ -30,8 +30,8 @@ struct BoardCounters {
   };
 
   std::size_t frames = 0;
-  std::array<fpga::PortCycles, memory::kPortCount> ports{};  // [memory::index_of(Port)]
-  std::vector<Bank> banks;                                   // in the order of the configuration
+  std::array<fpga::PortCycles, fpga::kPortCount> ports{};  // [port]
+  std::vector<Bank> banks;                                 // in the order of the configuration
   Lane left;
   Lane right;
   std::uint64_t packed_words = 0;

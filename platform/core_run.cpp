@@ -66,7 +66,7 @@ class CoreRun {
   void count_frame() {
     const fpga::FrameCounts counts(config_, patterns_, frames_, std::nullopt);
     for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      accesses_[arbitration_.bank_of(static_cast<memory::Port>(port))] += counts.accesses[port];
+      accesses_[arbitration_.bank_of(port)] += counts.accesses[port];
     for (std::size_t side = 0; side < issued_.size(); ++side) issued_[side] += counts.lanes[side].slots.slots;
     packed_words_ += counts.packed.words;
     written_words_ += counts.result.writes;

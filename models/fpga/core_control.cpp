@@ -21,17 +21,15 @@ CoreControl::CoreControl(const CoreConfig& config)
       result_(geometry_, config.result_fifo_words) {}
 
 void CoreControl::start_frame(const FrameLatencies& latencies) {
-  using memory::index_of;
   for (const Side side : kSides) {
-    lanes_[index_of(side)].start_frame(latencies[index_of(lut_port(side))],
-                                       latencies[index_of(pixel_port(side))]);
+    lanes_[index_of(side)].start_frame(latencies[lut_port(side)], latencies[pixel_port(side)]);
   }
   match_.start_frame();
   result_.start_frame();
 }
 
 void CoreControl::correct_passes(Side side, std::uint64_t cycles, std::uint64_t marks) {
-  PortCycles& pixel = cycles_[memory::index_of(pixel_port(side))];
+  PortCycles& pixel = cycles_[pixel_port(side)];
   pixel.subtract(Intent::kRequest, true, cycles);
   pixel.add(Intent::kPass, false, cycles);
   lanes_[index_of(side)].correct_marks(marks);

@@ -98,48 +98,52 @@ class CoreControl {
   // A lower bound of the cycle in which the last write of the frame is granted. `cycle` is the next to run.
   std::uint64_t earliest_last_write(std::uint64_t cycle) const;
   // Counts over all frames, of the cycles from the start of each frame to its last write.
-  const PortCycles& port_cycles(memory::Port port) const { return cycles_[memory::index_of(port)]; }
+  const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }
   // Slots consumed and words written, over all frames: grows as long as frames proceed.
-  std::uint64_t work() const {
-    return lane(Side::kLeft).consumed() + port_cycles(memory::Port::kResult).granted();
-  }
+  std::uint64_t work() const { return lane(Side::kLeft).consumed() + port_cycles(kResultPort).granted(); }
 
  private:
-  PortCycles& host_cycles() { return cycles_[memory::index_of(memory::Port::kHost)]; }
+  PortCycles& host_cycles() { return cycles_[kHostPort]; }
 
   FrameGeometry geometry_;
   std::array<LaneControl, 2> lanes_;  // [side]
   MatchControl match_;
   ResultControl result_;
-  std::array<PortCycles, memory::kPortCount> cycles_{};  // [port]
+  std::array<PortCycles, kPortCount> cycles_{};  // [port]
 };
 
 inline CoreControl::Decision CoreControl::decide() const {
-  const LaneControl::Decision left = lane(Side::kLeft).decide();
-  const LaneControl::Decision right = lane(Side::kRight).decide();
+  Decision decision;
+  const auto decide_lane = [&](Side side) {
+    const LaneControl::Decision of_lane = lane(side).decide();
+    decision.intents[lut_port(side)] = of_lane.lut;
+    decision.intents[pixel_port(side)] = of_lane.pixel;
+  };
+  decide_lane(Side::kLeft);
+  decide_lane(Side::kRight);
+  decision.intents[kResultPort] = result_.decide();
   const bool slots_ready = lane(Side::kLeft).ready() && lane(Side::kRight).ready();
-  return {{left.lut, right.lut, left.pixel, right.pixel, result_.decide()},
-          match_.decide(slots_ready, result_.has_room()),
-          match_.draining()};
+  decision.consume = match_.decide(slots_ready, result_.has_room());
+  decision.drain = match_.draining();
+  return decision;
 }
 
 inline bool CoreControl::commit(const Decision& decision, memory::PortMask granted,
                                 const EntriesRead& entries_valid) {
-  using memory::index_of;
   const auto is_granted = [granted](std::size_t port) { return (granted >> port & 1U) != 0; };
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     cycles_[port].add(decision.intents[port], is_granted(port));
   const bool consumes_slot = decision.consume && !decision.drain;
   const auto commit_lane = [&](Side side) {
-    const std::size_t lut = index_of(lut_port(side));
-    const std::size_t pixel = index_of(pixel_port(side));
+    const memory::Port lut = lut_port(side);
+    const memory::Port pixel = pixel_port(side);
     lanes_[index_of(side)].commit({decision.intents[lut], decision.intents[pixel]}, is_granted(lut),
                                   is_granted(pixel), entries_valid[index_of(side)], consumes_slot);
   };
   commit_lane(Side::kLeft);
   commit_lane(Side::kRight);
   const bool four_columns = decision.consume && match_.consume();
-  result_.commit(is_granted(index_of(memory::Port::kResult)), four_columns && match_.word_leaves());
+  result_.commit(is_granted(kResultPort), four_columns && match_.word_leaves());
   return four_columns;
 }
 

@@ -5,10 +5,9 @@
 namespace stereotlm::fpga {
 namespace {
 
-using memory::Port;
 using memory::PortMask;
 
-constexpr bool has(PortMask mask, Port port) { return (mask & memory::mask_of(port)) != 0; }
+constexpr bool has(PortMask mask, memory::Port port) { return (mask & memory::mask_of(port)) != 0; }
 
 }  // namespace
 
@@ -26,16 +25,15 @@ CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar,
 }
 
 void CoreDatapath::bind_memory(Binder& binder) {
-  const auto bind = [this, &binder](InitiatorSocket& from, Port port) {
-    binder.bind(from, crossbar_.ports[memory::index_of(port)],
-                std::string(memory::name_of(port)) + "_to_crossbar");
+  const auto bind = [this, &binder](InitiatorSocket& from, memory::Port port) {
+    binder.bind(from, crossbar_.ports[port], std::string(kPorts[port].name) + "_to_crossbar");
   };
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
     if (lane.lut_reader) bind(lane.lut_reader->port, lut_port(side));
     bind(lane.pixel_reader.port, pixel_port(side));
   }
-  bind(result_writer_.port, Port::kResult);
+  bind(result_writer_.port, kResultPort);
 }
 
 void CoreDatapath::bind_streams() {
@@ -69,10 +67,9 @@ void CoreDatapath::bind_streams() {
 }
 
 void CoreDatapath::start_frame(const FrameBases& bases) {
-  const auto aim = [this, &bases](Port port) {
-    const std::size_t index = memory::index_of(port);
-    crossbar_.aim(port, registers::bank_of(bases[index]), kCorePorts[index].write);
-    return registers::base_address(bases[index]);
+  const auto aim = [this, &bases](memory::Port port) {
+    crossbar_.aim(port, registers::bank_of(bases[port]), kPorts[port].write);
+    return registers::base_address(bases[port]);
   };
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
@@ -81,7 +78,7 @@ void CoreDatapath::start_frame(const FrameBases& bases) {
     lane.filter.start_frame();
     if (lane.row_buffer) lane.row_buffer->start_frame();
   }
-  result_writer_.start_frame(aim(Port::kResult));
+  result_writer_.start_frame(aim(kResultPort));
   sad_array_.start_frame();
   select_min_chain_.start_frame();
   lr_check_.start_frame();
@@ -107,7 +104,7 @@ EntriesRead CoreDatapath::move(const CoreControl& control, const CoreControl::De
   take_slot(Side::kRight, right);
   handle_slot(Side::kLeft, left);
   handle_slot(Side::kRight, right);
-  if (has(granted, Port::kResult)) result_writer_.write(at);
+  if (has(granted, kResultPort)) result_writer_.write(at);
   if (!decision.consume) return entries_valid;
   if (decision.drain) {
     left.pixel_reader.release_blank();
@@ -136,7 +133,7 @@ DirectFrame::Memory CoreDatapath::direct_memory(const DirectFrame::Buffers& buff
     if (!lane.lut_reader) continue;
     DirectFrame::Table& table = memory.tables[index_of(side)];
     table.entries = lane.lut_reader->table(config_.height);
-    const AddressRange& range = buffers[memory::index_of(lut_port(side))];
+    const AddressRange& range = buffers[lut_port(side)];
     table.may_have_changed =
         table.entries != nullptr && crossbar_.may_have_changed(lut_port(side), range.first, range.end);
   }
@@ -160,8 +157,8 @@ void CoreDatapath::count(const FrameCounts& frame) {
   if (frame.check) lr_check_.count(*frame.check);
   result_packer_.count(frame.packed);
   result_writer_.count(frame.result);
-  for (std::size_t port = 0; port < kCorePortCount; ++port)
-    crossbar_.count_direct(static_cast<Port>(port), frame.accesses[port]);
+  for (memory::Port port = 0; port < kCorePortCount; ++port)
+    crossbar_.count_direct(crossbar_.bank_of(port), frame.accesses[port]);
 }
 
 }  // namespace stereotlm::fpga

@@ -29,7 +29,7 @@ class CoreStepper {
   memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
     using memory::PortMask;
     const CoreControl::Decision decision = control_.decide();
-    const PortMask host = host_requests ? memory::mask_of(memory::Port::kHost) : PortMask{0};
+    const PortMask host = host_requests ? memory::mask_of(kHostPort) : PortMask{0};
     const PortMask granted = arbitration_.arbitrate(cycle, static_cast<PortMask>(decision.requests() | host));
     completed_group_ = control_.commit(decision, granted, move(decision, granted));
     control_.count_host(host_requests, (granted & host) != 0);

@@ -27,12 +27,12 @@ void DirectFrame::set_buffers(const FrameBases& bases) {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
     if (!has_port(config_, port)) continue;
     const std::uint64_t first = registers::base_address(bases[port]);
-    buffers_[port] = {first, first + pixels_of(config_) * kCorePorts[port].bytes_per_pixel};
+    buffers_[port] = {first, first + pixels_of(config_) * kPorts[port].bytes_per_pixel};
   }
 }
 
 bool DirectFrame::disparities_are_apart() const {
-  const AddressRange& disparities = buffers_[memory::index_of(memory::Port::kResult)];
+  const AddressRange& disparities = buffers_[kResultPort];
   return std::count_if(buffers_.begin(), buffers_.end(), [&disparities](const AddressRange& buffer) {
            return buffer.overlaps(disparities);
          }) == 1;  // itself
@@ -42,7 +42,7 @@ bool DirectFrame::read(const Memory& memory) {
   bool is_readable = memory.disparities != nullptr;
   for (const Side side : kSides) {
     const std::size_t index = index_of(side);
-    const bool has_table = has_port(config_, memory::index_of(lut_port(side)));
+    const bool has_table = has_port(config_, lut_port(side));
     if (has_table && !read_table(side, memory.tables[index])) is_readable = false;
     if (memory.images[index] == nullptr) is_readable = false;
   }
@@ -66,8 +66,8 @@ bool DirectFrame::read_table(Side side, const Table& table) {
 
 std::optional<memory::Port> DirectFrame::hazard_with(const AddressRange& words, bool write) const {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    const bool is_exclusive = write || kCorePorts[port].write;
-    if (is_exclusive && buffers_[port].overlaps(words)) return static_cast<memory::Port>(port);
+    const bool is_exclusive = write || kPorts[port].write;
+    if (is_exclusive && buffers_[port].overlaps(words)) return port;
   }
   return std::nullopt;
 }

@@ -35,7 +35,7 @@ std::uint64_t FastForward::run_ahead(std::uint64_t cycle, std::uint64_t end) {
 std::uint64_t FastForward::skip_known(std::uint64_t cycle, std::uint64_t end) {
   memory::Arbitration& arbitration = stepper_.arbitration();
   // The host may contend for a bank that is uncontended without it.
-  if (arbitration.is_routed(memory::Port::kHost)) return cycle;
+  if (arbitration.is_routed(kHostPort)) return cycle;
   if (known_.is_full()) forget();
   if (stepped_) end_group(cycle);
   if (!has_uniform_slots()) return cycle;

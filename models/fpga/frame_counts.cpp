@@ -30,10 +30,10 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
   const FrameGeometry& geometry = control.geometry();
   for (const Side side : kSides) {
     const std::size_t index = index_of(side);
-    const std::size_t lut = memory::index_of(lut_port(side));
+    const std::size_t lut = lut_port(side);
     lanes[index] = lane_counts(geometry, patterns[index], has_port(config, lut), control.lane(side));
     accesses[lut] = lanes[index].table.reads;
-    accesses[memory::index_of(pixel_port(side))] = lanes[index].image.reads;
+    accesses[pixel_port(side)] = lanes[index].image.reads;
   }
   filter.pixels = geometry.slots + geometry.drain_cycles;
   // The first columns are among them, which the filter does not filter yet; their windows stay in the array.
@@ -59,7 +59,7 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
   if (answered) check = LrCheck::Stats{*answered, geometry.result_words * 4 - *answered};
   packed.words = control.match().words();
   result = {run.writes(), static_cast<std::uint64_t>(control.result().most_queued()), 0};
-  accesses[memory::index_of(memory::Port::kResult)] = geometry.result_words;
+  accesses[kResultPort] = geometry.result_words;
 }
 
 }  // namespace stereotlm::fpga

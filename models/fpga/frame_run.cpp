@@ -40,7 +40,7 @@ FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
     if (!has_port(config_, port)) continue;
     const std::size_t bank = registers::bank_of(bases[port]);
-    stepper_.arbitration().route(static_cast<memory::Port>(port), bank, kCorePorts[port].write);
+    stepper_.arbitration().route(port, bank, kPorts[port].write);
     latencies[port] = latencies_[bank];
   }
   return latencies;

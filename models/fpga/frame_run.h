@@ -82,7 +82,7 @@ class FrameRun {
 
   FrameLatencies route_ports(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
-  std::uint64_t all_writes() const { return control().port_cycles(memory::Port::kResult).granted(); }
+  std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
 
   CoreConfig config_;
   std::vector<int> latencies_;  // [bank]: read latency, cycles

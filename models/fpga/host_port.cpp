@@ -5,9 +5,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-using memory::Port;
-
-constexpr memory::PortMask kHostMask = memory::mask_of(Port::kHost);
+constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
 // Most cycles in which one serve_contended() serves.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
@@ -20,11 +18,11 @@ void HostPort::route(const HostRoute& route) {
   is_moved_ = false;
   if (route.bank) {
     read_latency_cycles_ = frames_.read_latency_cycles(*route.bank);
-    crossbar_.aim(Port::kHost, *route.bank, route.write);
+    crossbar_.aim(kHostPort, *route.bank, route.write);
   } else if (is_joined_) {
     is_joined_ = false;
     frames_.host_route_changes();
-    crossbar_.unroute(Port::kHost);
+    crossbar_.unroute(kHostPort);
   }
 }
 
@@ -32,7 +30,7 @@ void HostPort::join() {
   if (!burst_.bank || is_joined_) return;
   is_joined_ = true;
   frames_.host_route_changes();
-  crossbar_.arbitration().route(Port::kHost, *burst_.bank, burst_.write);
+  crossbar_.arbitration().route(kHostPort, *burst_.bank, burst_.write);
 }
 
 bool HostPort::access(std::uint64_t cycle, const sc_core::sc_time& at) {
@@ -42,7 +40,7 @@ bool HostPort::access(std::uint64_t cycle, const sc_core::sc_time& at) {
 
 bool HostPort::is_contended() const {
   return frames_.is_running() &&
-         (!is_only_master_ || crossbar_.arbitration().is_used_beside(Port::kHost, *burst_.bank));
+         (!is_only_master_ || crossbar_.arbitration().is_used_beside(kHostPort, *burst_.bank));
 }
 
 void HostPort::serve_contended() {
@@ -98,7 +96,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
 }
 
 memory::BankArbiter::Outcome HostPort::decide(std::uint64_t cycle) {
-  return crossbar_.arbitration().decide_unrouted(*burst_.bank, cycle, Port::kHost, burst_.write);
+  return crossbar_.arbitration().decide_unrouted(*burst_.bank, cycle, kHostPort, burst_.write);
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants

@@ -95,7 +95,7 @@ void RegisterFile::start(const sc_core::sc_time& delay) {
   busy_ = true;
   FrameStart start{{}, delay};
   for (std::size_t port = 0; port < kCorePortCount; ++port)
-    start.bases[port] = bases_[base_index(kCorePorts[port].base_register)];
+    start.bases[port] = bases_[base_index(kPorts[port].base_register)];
   start_out->push(start);
 }
 

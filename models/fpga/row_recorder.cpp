@@ -25,7 +25,7 @@ RowProfile RowRecorder::profile(std::uint64_t first_cycle) const {
 RowRecorder::Stalls RowRecorder::stalls_of(const CoreControl& control) {
   Stalls stalls{};
   for (std::size_t port = 0; port < kCorePortCount; ++port)
-    stalls[port] = control.port_cycles(static_cast<memory::Port>(port)).stalled();
+    stalls[port] = control.port_cycles(port).stalled();
   return stalls;
 }
 

@@ -27,7 +27,7 @@ std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter) {
   if (*most == 0) return {};
   const auto by = static_cast<std::size_t>(most - blame.begin());
   return ", lost " + std::to_string(*most) + " cycles to " +
-         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : memory::kPortNames[by]);
+         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : kPorts[by].name);
 }
 
 }  // namespace
@@ -47,12 +47,12 @@ std::string waits_of_ports(const CoreControl& control, const memory::Arbitration
                            bool host_requests) {
   const CoreControl::Decision decision = control.decide();
   std::string text;
-  for (std::size_t port = 0; port < memory::kPortCount; ++port) {
+  for (std::size_t port = 0; port < kPortCount; ++port) {
     const Intent host = host_requests ? Intent::kRequest : Intent::kIdle;
     const Intent intent = port < kCorePortCount ? decision.intents[port] : host;
-    text += std::string(port == 0 ? "" : "; ") + memory::kPortNames[port] + ' ' + text_of(intent);
+    text += std::string(port == 0 ? "" : "; ") + kPorts[port].name + ' ' + text_of(intent);
     if (intent != Intent::kRequest) continue;
-    const std::size_t bank = arbitration.bank_of(static_cast<memory::Port>(port));
+    const std::size_t bank = arbitration.bank_of(port);
     text += std::to_string(bank) + losses_of(port, arbitration.arbiters()[bank].stats());
   }
   return text;

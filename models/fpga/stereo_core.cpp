@@ -6,7 +6,6 @@
 namespace stereotlm::fpga {
 namespace {
 
-using memory::Port;
 using memory::PortMask;
 
 // Most cycles between two returns to the kernel, while the process steps. Each return checks for a stall.
@@ -18,7 +17,17 @@ std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
 // No event can occur before this time.
 std::uint64_t horizon_ps() { return present_ps() + Clock::to_ps(sc_core::sc_time_to_pending_activity()); }
 
-constexpr bool has_host(PortMask mask) { return (mask & memory::mask_of(Port::kHost)) != 0; }
+memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
+  if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
+    throw std::invalid_argument("memory.arbiter.priority = " + std::to_string(ports) +
+                                " ports: must name all " + std::to_string(kPortCount));
+  }
+  memory::CrossbarConfig crossbar = config.memory;
+  crossbar.silent_ports = memory::mask_of(kHostPort);  // the host's program reports no write
+  return crossbar;
+}
+
+constexpr bool has_host(PortMask mask) { return (mask & memory::mask_of(kHostPort)) != 0; }
 
 }  // namespace
 
@@ -27,6 +36,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
       banks("bank", config.memory.banks.size()),
       config_(config),
       clock_(config.core.clock_mhz),
+      crossbar_("crossbar", crossbar_config(config)),
       datapath_(config_.core, crossbar_, binder) {
   SC_HAS_PROCESS(StereoCore);
   if (const double banks_mhz = config.memory.banks.front().clock_mhz; banks_mhz != config.core.clock_mhz) {
@@ -35,7 +45,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
                                 ": must be that of the banks, " + std::to_string(banks_mhz));
   }
   local_bus.bind(local_bus_.bus);
-  binder.bind(local_bus_.memory, crossbar_.ports[memory::index_of(Port::kHost)], "host_to_crossbar");
+  binder.bind(local_bus_.memory, crossbar_.ports[kHostPort], "host_to_crossbar");
   binder.bind(local_bus_.registers, register_file_.local_bus, "local_bus_to_registers");
   local_bus_.route_out.bind(route_in_);
   for (std::size_t bank = 0; bank < banks.size(); ++bank) crossbar_.banks[bank].bind(banks[bank]);
@@ -120,14 +130,13 @@ void StereoCore::route_host(const HostRoute& route) {
 }
 
 // A burst of the local bus is a hazard: it accesses the buffer of this port.
-void StereoCore::report_hazard(const HostRoute& burst, Port port) {
+void StereoCore::report_hazard(const HostRoute& burst, memory::Port port) {
   const auto word = [](std::uint64_t address) {
     return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
   };
   fail("a burst of the local bus " + std::string(burst.write ? "writes" : "reads") + " words " +
        word(burst.first) + ".." + word(burst.end - 4) + " of bank number " + std::to_string(*burst.bank) +
-       ", where the running frame has its " + kCorePorts[memory::index_of(port)].buffer +
-       ": needs fidelity cycle");
+       ", where the running frame has its " + kPorts[port].buffer + ": needs fidelity cycle");
 }
 
 // The running frame may differ from that at Fidelity::kCycle. Where reports are not thrown, it ends with the
@@ -252,7 +261,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
         });
     if (control().frame_done()) finish_frame();
   } else {
-    granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(Port::kHost) : PortMask{0});
+    granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(kHostPort) : PortMask{0});
     frames_.skip_to(cycle + 1);
   }
   return has_host(granted) && host_port_.access(cycle, at);

@@ -23,7 +23,7 @@ namespace stereotlm::fpga {
 
 struct StereoCoreConfig {
   CoreConfig core;
-  memory::CrossbarConfig memory;
+  memory::CrossbarConfig memory = {core_arbiter(), {}};
   LocalBusConfig local_bus;
   Fidelity fidelity = Fidelity::kCycle;
   std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U;  // of a frame that makes no progress
@@ -62,7 +62,7 @@ class StereoCore : public sc_core::sc_module {
   sc_core::sc_out<bool> done{"done"};                       // interrupt
 
   // `binder` binds the stages to the crossbar. Throws std::invalid_argument if the configuration has
-  // problems, or the banks another clock than the core.
+  // problems, the banks have another clock than the core, or the arbiters other ports.
   StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
 
   Fidelity fidelity() const { return config_.fidelity; }
@@ -110,7 +110,7 @@ class StereoCore : public sc_core::sc_module {
 
   StereoCoreConfig config_;
   Clock clock_;
-  memory::Crossbar crossbar_{"crossbar", config_.memory};
+  memory::Crossbar crossbar_;
   FrameRun frames_{config_.core, config_.memory.banks, crossbar_.arbitration(), config_.stall_timeout_cycles};
   RegisterFile register_file_{"register_file"};
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};

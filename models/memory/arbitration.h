@@ -20,8 +20,8 @@ class Arbitration {
   void route(Port port, std::size_t bank, bool write);
   // The port requests nothing from now on.
   void unroute(Port port);
-  std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
-  bool is_routed(Port port) const { return is_routed(index_of(port)); }
+  std::size_t bank_of(Port port) const { return routes_[port].bank; }  // of its last route
+  bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
@@ -39,7 +39,7 @@ class Arbitration {
   // Retracts grants of an uncontended port that were counted provisionally: those cycles held no request. To
   // be called before a route changes or counting ends, because the remaining grants then move the state of
   // the bank's policy.
-  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[index_of(port)] += grants; }
+  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
   // Decides one request of a port for a bank that no routed port requests, in the given direction. The
   // outcome is counted later, by count_unrouted().
@@ -55,7 +55,7 @@ class Arbitration {
 
   // The state that determines all arbitration from `cycle` on as long as no route changes. One word for each
   // shared bank; the other words are 0.
-  using State = std::array<std::uint64_t, kPortCount>;
+  using State = std::array<std::uint64_t, kMostPorts>;
   State state(std::uint64_t cycle) const;
   // The decisions of some cycles. Valid as long as no route changes.
   struct Decided {
@@ -100,25 +100,24 @@ class Arbitration {
     std::vector<BankArbiter::Outcome> recorded;
   };
 
-  bool is_routed(std::size_t port) const { return (routed_ >> port & 1U) != 0; }
   void share_banks();
   void count_alone() const;
   void settle();
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
   mutable std::vector<BankArbiter> arbiters_;
-  std::array<Route, kPortCount> routes_{};
+  std::array<Route, kMostPorts> routes_{};
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes
   // Uncontended ports: each is alone on a bank without turnaround. They need no arbitration; their grants are
   // added to the counts of the arbiters later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
-  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [mask of the ports granted]
+  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kMostPorts>;  // [mask of the ports granted]
   mutable AloneCycles alone_cycles_{};
   mutable AloneCycles alone_before_recording_{};  // only the difference to alone_cycles_ counts
-  mutable std::array<std::uint64_t, kPortCount> retracted_grants_{};  // of the alone_cycles_
-  mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those retracted
-  std::array<SharedBank, kPortCount> shared_banks_{};
+  mutable std::array<std::uint64_t, kMostPorts> retracted_grants_{};  // of the alone_cycles_
+  mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // since settle(), without those retracted
+  std::array<SharedBank, kMostPorts> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;
 };

@@ -100,7 +100,7 @@ void BankArbiter::end_counting(std::uint64_t end_cycle) {
 ArbiterStats BankArbiter::stats() const {
   ArbiterStats stats;
   stats.idle_cycles = idle_cycles_;
-  for (std::size_t by = 0; by <= kPortCount; ++by) {
+  for (std::size_t by = 0; by <= kMostPorts; ++by) {
     for (std::size_t requests = 1; requests < kMasks; ++requests) {
       const std::uint64_t reads = outcomes_[outcome_of(requests, by, 0)];
       const std::uint64_t writes = outcomes_[outcome_of(requests, by, 1)];
@@ -114,7 +114,7 @@ ArbiterStats BankArbiter::stats() const {
         stats.writes += writes;
         stats.grants[by] += cycles;
       }
-      for (std::size_t port = 0; port < kPortCount; ++port) {
+      for (std::size_t port = 0; port < kMostPorts; ++port) {
         if (port != by && (requests >> port & 1U) != 0) stats.blame[port][by] += cycles;
       }
     }

@@ -12,15 +12,15 @@ namespace stereotlm::memory {
 // What one arbiter counted. The blame of a stalled port goes to the port that was granted, or to the
 // turnaround.
 struct ArbiterStats {
-  static constexpr std::size_t kTurnaround = kPortCount;  // column of `blame`
+  static constexpr std::size_t kTurnaround = kMostPorts;  // column of `blame`
 
   std::uint64_t reads = 0;              // cycles with a read granted
   std::uint64_t writes = 0;             // cycles with a write granted
   std::uint64_t turnaround_cycles = 0;  // cycles in which the winner was refused
   std::uint64_t idle_cycles = 0;        // cycles without request
   std::uint64_t contended_cycles = 0;   // cycles with two or more requests
-  std::array<std::uint64_t, kPortCount> grants{};
-  std::array<std::array<std::uint64_t, kPortCount + 1>, kPortCount> blame{};  // [victim][by]
+  std::array<std::uint64_t, kMostPorts> grants{};
+  std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts> blame{};  // [victim][by]
 };
 
 // Decides each cycle which port may access one bank (contract section 2). The policy chooses the winner
@@ -54,7 +54,7 @@ class BankArbiter {
   }
   // The port that was granted, as a mask of one bit; 0 if the bank was turning round.
   static PortMask granted_in(Outcome outcome) {
-    return static_cast<PortMask>(1U << (outcome >> (kPortCount + 1)) & (kMasks - 1));
+    return static_cast<PortMask>(1U << (outcome >> (kMostPorts + 1)) & (kMasks - 1));
   }
   // Counts `cycles` cycles from this one on, all with the same outcome.
   void count(std::uint64_t cycle, Outcome outcome, std::uint64_t cycles = 1) {
@@ -89,11 +89,11 @@ class BankArbiter {
   std::uint64_t uncounted_accesses() const { return uncounted_accesses_; }
 
  private:
-  static constexpr std::size_t kMasks = std::size_t{1} << kPortCount;
+  static constexpr std::size_t kMasks = std::size_t{1} << kMostPorts;
 
   // `by`: index of the port that was granted, or ArbiterStats::kTurnaround.
   static constexpr Outcome outcome_of(std::size_t requests, std::size_t by, std::size_t write) {
-    return static_cast<Outcome>((by << 1U | write) << kPortCount | requests);
+    return static_cast<Outcome>((by << 1U | write) << kMostPorts | requests);
   }
   Outcome prepare_and_decide(std::uint64_t cycle, PortMask requests, PortMask writes);
   DecisionTable::Row& row_at(std::uint64_t cycle) const;
@@ -107,7 +107,7 @@ class BankArbiter {
   std::uint64_t next_uncounted_cycle_ = 0;  // all counted cycles before it are in the statistics
   std::uint64_t idle_cycles_ = 0;
   // Counted cycles by outcome: all that stats() reports follows from them.
-  std::array<std::uint64_t, (kPortCount + 1) * 2 * kMasks> outcomes_{};
+  std::array<std::uint64_t, (kMostPorts + 1) * 2 * kMasks> outcomes_{};
   std::uint64_t uncounted_accesses_ = 0;
 };
 

@@ -25,6 +25,8 @@ constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address 
 struct CrossbarConfig {
   ArbiterConfig arbiter;
   std::vector<SsramBankConfig> banks;  // what the memory controllers know about them; all of one clock
+  // Ports whose masters write by DMI at any time, without changes(). The other masters report their writes.
+  PortMask silent_ports = 0;
 };
 
 // The crossbar between the ports and the banks, with one arbiter per bank. It has no process: the clocked
@@ -40,7 +42,7 @@ class Crossbar : public sc_core::sc_module {
  public:
   sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
                                             sc_core::SC_ZERO_OR_MORE_BOUND>>
-      ports;  // [index_of(Port)]; one that nobody uses may stay unbound
+      ports;  // [port]; one that nobody uses may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket_tagged<Crossbar>> banks;  // [bank]
 
   // Throws std::invalid_argument if the configuration has problems.
@@ -67,11 +69,10 @@ class Crossbar : public sc_core::sc_module {
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
   // Reports that words have been written by direct access.
   void changes(std::uint64_t first, std::uint64_t bytes);
-  // Counts direct accesses of a stage to the bank that its port is routed to.
-  void count_direct(Port port, std::uint64_t accesses) { direct_accesses_[bank_of(port)] += accesses; }
   // Pointer to these bytes, for one use at once; null if the bank does not grant direct access to all of
   // them. The caller reports writes with changes(), and accesses with count_direct().
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
+  // Counts direct accesses.
   void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
 
@@ -118,8 +119,9 @@ class Crossbar : public sc_core::sc_module {
 
   Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  std::array<Watch, kPortCount> watches_{};
-  std::uint64_t open_banks_ = 0;  // bit per bank: the host has direct access
+  std::array<Watch, kMostPorts> watches_{};
+  PortMask silent_ports_;
+  std::uint64_t open_banks_ = 0;  // bit per bank: a silent port has direct access
   std::vector<std::uint64_t> direct_accesses_;
   std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: direct access that is not revoked
   PortMask granted_ = 0;                                   // in the current cycle and not yet used

@@ -24,7 +24,7 @@ void DecisionTable::fill(Row& row, PortMask requests) {
   const Port winner = policy_->winner(row.state, requests);
   decision.if_granted = &row_of(policy_->next(row.state, requests, mask_of(winner)));
   decision.if_refused = &row_of(policy_->next(row.state, requests, 0));
-  decision.winner = index_of(winner);
+  decision.winner = winner;
 }
 
 }  // namespace stereotlm::memory

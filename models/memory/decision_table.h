@@ -25,7 +25,7 @@ class DecisionTable {
   struct Row {
     ArbitrationPolicy::State state = 0;
     Row* after_idle = nullptr;  // the next state after a cycle without request
-    std::array<Decision, std::size_t{1} << kPortCount> decisions;  // [mask of requests]; see fill()
+    std::array<Decision, std::size_t{1} << kMostPorts> decisions;  // [mask of requests]; see fill()
 
     Row& after_idle_cycles(std::uint64_t cycles);
   };

@@ -35,10 +35,15 @@ std::vector<std::string> problems(const ArbiterConfig& config) {
       names += (names.empty() ? "" : ", ") + std::string(policy.name);
     found.push_back("policy = " + config.policy + ": must be one of " + names);
   }
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    const auto times = std::count(config.priority.begin(), config.priority.end(), static_cast<Port>(port));
+  const std::size_t ports = config.priority.size();
+  if (ports == 0 || ports > kMostPorts) {
+    found.push_back("priority = " + std::to_string(ports) + " ports: must be 1.." +
+                    std::to_string(kMostPorts));
+  }
+  for (Port port = 0; port < ports; ++port) {
+    const auto times = std::count(config.priority.begin(), config.priority.end(), port);
     if (times != 1) {
-      found.push_back(std::string("priority = ") + kPortNames[port] + " " + std::to_string(times) +
+      found.push_back("priority = port " + std::to_string(port) + " " + std::to_string(times) +
                       " times: must name each port once");
     }
   }

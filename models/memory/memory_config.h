@@ -14,25 +14,21 @@ namespace stereotlm::memory {
 inline constexpr kernels::IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
 inline constexpr kernels::IntegerRule kBankCountRule{1, 64};
 
-// The six ports of the FPGA on the SSRAM banks, in the order in which results list them.
-enum class Port : std::uint8_t { kLeftLut, kRightLut, kLeftPixel, kRightPixel, kResult, kHost };
-inline constexpr std::size_t kPortCount = 6;
-inline constexpr std::array<const char*, kPortCount> kPortNames = {"left_lut",    "right_lut", "left_pixel",
-                                                                   "right_pixel", "result",    "host"};
-constexpr std::size_t index_of(Port port) { return static_cast<std::size_t>(port); }
-constexpr const char* name_of(Port port) { return kPortNames[index_of(port)]; }
+// A port on the banks, by its index: 0 .. n-1. What the ports are is the business of the module that has them.
+using Port = std::size_t;
+// Most ports. The tables of the arbiters grow with 2^kMostPorts.
+inline constexpr std::size_t kMostPorts = 6;
 
-// A set of ports: bit index_of(port) for each.
+// A set of ports: bit number `port` for each.
 using PortMask = std::uint8_t;
-constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << index_of(port)); }
+static_assert(kMostPorts <= 8);
+constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << port); }
 
-using PriorityList = std::array<Port, kPortCount>;
+using PriorityList = std::vector<Port>;
 
 struct ArbiterConfig {
   std::string policy = "fixed_priority";  // a name of arbitration_policies()
-  // Each port once; the policy says what the order means.
-  PriorityList priority = {Port::kHost,       Port::kResult,  Port::kLeftPixel,
-                           Port::kRightPixel, Port::kLeftLut, Port::kRightLut};
+  PriorityList priority;                  // all ports, each once; the policy says what the order means
 };
 
 struct SsramBankConfig {

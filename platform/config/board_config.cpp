@@ -93,8 +93,7 @@ class FieldChecker {
     const auto& list = board_.fpga.arbiter.priority;
     std::vector<std::string> names;
     for (const memory::Port port : list) {
-      const std::size_t index = memory::index_of(port);
-      names.emplace_back(index < memory::kPortCount ? memory::kPortNames[index] : "(no port)");
+      names.emplace_back(port < fpga::kPortCount ? fpga::kPorts[port].name : "(no port)");
     }
     const std::set<std::string> different(names.begin(), names.end());
     if (different.size() < list.size() || different.count("(no port)") > 0) {

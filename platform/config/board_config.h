@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/fpga/core_config.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "models/memory/memory_config.h"
 
@@ -58,7 +59,7 @@ struct BridgeConfig {
 struct FpgaConfig {
   std::string device = "xc2v6000";
   double clock_mhz = 40;  // 1..1000
-  memory::ArbiterConfig arbiter;
+  memory::ArbiterConfig arbiter = fpga::core_arbiter();
   int lane_fifo_slots = 16;          // slots, 1..64
   int result_fifo_words = 8;         // 32-bit words, 1..64
   int pipeline_latency_cycles = 16;  // cycles, 0..1024

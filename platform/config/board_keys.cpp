@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "models/area/device.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
 #include "models/memory/arbitration_policies.h"
 #include "models/pci/pci_config.h"
@@ -121,6 +122,12 @@ std::string priority_meaning() {
   return fmt::format("the ports, {}", fmt::join(meanings, "; "));
 }
 
+std::string port_names() {
+  std::vector<std::string> names;
+  for (const fpga::CorePort& port : fpga::kPorts) names.emplace_back(port.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<Key> make_keys() {
   using B = BoardConfig;
   const std::string list_rule = "a bank, or a list of 1 to 3 banks";
@@ -191,9 +198,7 @@ std::vector<Key> make_keys() {
               member<&B::fpga, &FpgaConfig::clock_mhz>),
       name<policy_names, &B::fpga, &FpgaConfig::arbiter, &memory::ArbiterConfig::policy>(
           "fpga.arbitration", "how a bank picks one of the ports that request it"),
-      other("fpga.priority", priority_meaning(), "",
-            fmt::format("a list that names each of the six ports once: {}",
-                        fmt::join(memory::kPortNames, ", "))),
+      other("fpga.priority", priority_meaning(), "", "a list that names each port once: " + port_names()),
       integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
               fpga::kLaneFifoRule, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
       integer("fpga.result_fifo_words", "queue of result words before the result port", "words",

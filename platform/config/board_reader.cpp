@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
@@ -123,31 +124,30 @@ class BoardReader {
 
   void read_priority(const Key& key, const YamlNode& node) {
     if (!node.is_list()) return values_.report(key.path, node, key.rule_text);
-    const std::vector<std::string> names(memory::kPortNames.begin(), memory::kPortNames.end());
-    std::vector<memory::Port> ports;
+    std::vector<std::string> names;
+    for (const fpga::CorePort& port : fpga::kPorts) names.emplace_back(port.name);
+    memory::PriorityList ports;
     bool all_known = true;
     for (const YamlNode& item : node.items) {
       const auto index = values_.read_word(key.path, item, names);
       all_known = all_known && index;
       if (!index) continue;
-      const auto port = static_cast<memory::Port>(*index);
-      if (std::find(ports.begin(), ports.end(), port) != ports.end()) {
-        values_.report(key.path, item, "repeated; each of the six ports once");
+      if (std::find(ports.begin(), ports.end(), *index) != ports.end()) {
+        values_.report(key.path, item, "repeated; each port once");
         all_known = false;
       }
-      ports.push_back(port);
+      ports.push_back(*index);
     }
     if (!all_known) return;
-    if (ports.size() != memory::kPortCount) {
+    if (ports.size() != fpga::kPortCount) {
       std::vector<std::string> lacking;
       for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto port = static_cast<memory::Port>(i);
-        if (std::find(ports.begin(), ports.end(), port) == ports.end()) lacking.push_back(names[i]);
+        if (std::find(ports.begin(), ports.end(), i) == ports.end()) lacking.push_back(names[i]);
       }
       return values_.report(key.path, node,
-                            fmt::format("each of the six ports once; {} missing", fmt::join(lacking, ", ")));
+                            fmt::format("each port once; {} missing", fmt::join(lacking, ", ")));
     }
-    std::copy(ports.begin(), ports.end(), board_.fpga.arbiter.priority.begin());
+    board_.fpga.arbiter.priority = ports;
   }
 
   // Whether the bank exists is a rule between keys.

@@ -130,7 +130,8 @@ class BoardWriter {
     if (key.path == "name") return scalar_text(board_.name);
     if (key.path == "fpga.priority") {
       std::vector<std::string> ports;
-      for (const memory::Port port : board_.fpga.arbiter.priority) ports.emplace_back(memory::name_of(port));
+      for (const memory::Port port : board_.fpga.arbiter.priority)
+        ports.emplace_back(fpga::kPorts[port].name);
       return list_text(ports);
     }
     if (key.path == "allocation.left_image") return banks_text(allocation.left_image);

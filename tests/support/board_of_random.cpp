@@ -7,22 +7,10 @@
 namespace stereotlm::test {
 namespace {
 
-memory::Port port_of(PlainPort port) {
-  switch (port) {
-    case PlainPort::kLeftLut:
-      return memory::Port::kLeftLut;
-    case PlainPort::kRightLut:
-      return memory::Port::kRightLut;
-    case PlainPort::kLeftPixel:
-      return memory::Port::kLeftPixel;
-    case PlainPort::kRightPixel:
-      return memory::Port::kRightPixel;
-    case PlainPort::kResult:
-      return memory::Port::kResult;
-    case PlainPort::kHost:
-      break;
-  }
-  return memory::Port::kHost;
+memory::Port port_of(PlainPort plain) {
+  memory::Port port = 0;
+  while (std::string(fpga::kPorts[port].name) != name_of(plain)) ++port;
+  return port;
 }
 
 memory::BankKind kind_of(PlainBankKind kind) {

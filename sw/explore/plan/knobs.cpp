@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
@@ -54,8 +55,8 @@ class Steps {
   void add_priorities() {
     const auto& list = board_.fpga.arbiter.priority;
     for (std::size_t first = 0; first + 1 < list.size(); ++first) {
-      const std::string a = memory::kPortNames[memory::index_of(list[first])];
-      const std::string b = memory::kPortNames[memory::index_of(list[first + 1])];
+      const std::string a = fpga::kPorts[list[first]].name;
+      const std::string b = fpga::kPorts[list[first + 1]].name;
       BoardConfig changed = board_;
       std::swap(changed.fpga.arbiter.priority[first], changed.fpga.arbiter.priority[first + 1]);
       add({"fpga.priority", a + ", " + b, b + ", " + a, std::move(changed)});

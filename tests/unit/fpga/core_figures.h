@@ -13,9 +13,9 @@ class CoreFigures {
  public:
   CoreFigures(const FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
     line("frame_cycles", frames.frame_cycles());
-    for (std::size_t index = 0; index < memory::kPortCount; ++index) {
-      const PortCycles& port = frames.control().port_cycles(static_cast<memory::Port>(index));
-      line(memory::kPortNames[index],
+    for (std::size_t index = 0; index < kPortCount; ++index) {
+      const PortCycles& port = frames.control().port_cycles(index);
+      line(kPorts[index].name,
            {port.granted(), port.stalled(), port.passed(), port.idle(), port.blocked(), port.starved()});
     }
     for (const memory::BankArbiter& arbiter : arbiters) add(arbiter);

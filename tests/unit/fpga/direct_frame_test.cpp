@@ -33,18 +33,18 @@ FrameBases bases() {
 }
 
 std::uint32_t words_of(std::size_t port) {
-  return 8 * 6 * static_cast<std::uint32_t>(kCorePorts[port].bytes_per_pixel) / 4;
+  return 8 * 6 * static_cast<std::uint32_t>(kPorts[port].bytes_per_pixel) / 4;
 }
 
 TEST(DirectFrame, FindsDisparitiesThatOverlapAnotherBuffer) {
   DirectFrame frame(small_core(), false);
   frame.set_buffers(bases());
   EXPECT_TRUE(frame.disparities_are_apart());
-  const std::uint32_t own_words = words_of(memory::index_of(Port::kResult));
-  for (std::uint32_t other = 0; other < memory::index_of(Port::kResult); ++other) {
+  const std::uint32_t own_words = words_of(kResultPort);
+  for (std::uint32_t other = 0; other < kResultPort; ++other) {
     const auto is_apart = [&](std::uint32_t first_word) {
       FrameBases moved = bases();
-      moved[memory::index_of(Port::kResult)] = registers::base(other, first_word);
+      moved[kResultPort] = registers::base(other, first_word);
       frame.set_buffers(moved);
       return frame.disparities_are_apart();
     };
@@ -59,7 +59,7 @@ TEST(DirectFrame, FindsTheHazardOfAnAccess) {
   DirectFrame frame(small_core(), false);
   frame.set_buffers(bases());
   for (std::uint32_t index = 0; index < kCorePortCount; ++index) {
-    const Port port = static_cast<Port>(index);
+    const Port port = index;
     const auto hazard = [&](std::uint32_t word, bool write) {
       const std::uint64_t address = registers::base_address(registers::base(index, word));
       return frame.hazard_with({address, address + 4}, write);
@@ -67,7 +67,7 @@ TEST(DirectFrame, FindsTheHazardOfAnAccess) {
     const std::uint32_t behind = kFirst + words_of(index);
     for (const std::uint32_t word : {kFirst, behind - 1}) {
       EXPECT_EQ(hazard(word, true), port) << index;
-      EXPECT_EQ(hazard(word, false), port == Port::kResult ? std::optional(port) : std::nullopt) << index;
+      EXPECT_EQ(hazard(word, false), port == kResultPort ? std::optional(port) : std::nullopt) << index;
     }
     for (const std::uint32_t word : {kFirst - 1, behind})
       EXPECT_EQ(hazard(word, true), std::nullopt) << index;
@@ -79,7 +79,7 @@ TEST(DirectFrame, HasNoHazardWithATableThatItsCoreDoesNotHave) {
   config.left_table = false;
   DirectFrame frame(config, false);
   frame.set_buffers(bases());
-  const std::uint64_t address = registers::base_address(bases()[memory::index_of(Port::kLeftLut)]);
+  const std::uint64_t address = registers::base_address(bases()[lut_port(Side::kLeft)]);
   EXPECT_EQ(frame.hazard_with({address, address + 4}, true), std::nullopt);
 }
 

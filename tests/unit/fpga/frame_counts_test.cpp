@@ -34,32 +34,28 @@ class FrameCountsTest : public testing::Test {
 
  private:
   CoreConfig config_ = small_core();
-  std::vector<memory::SsramBankConfig> banks_ = std::vector<memory::SsramBankConfig>(memory::kPortCount);
-  memory::Arbitration arbitration_{memory::ArbiterConfig{}, banks_};
+  std::vector<memory::SsramBankConfig> banks_ = std::vector<memory::SsramBankConfig>(kPortCount);
+  memory::Arbitration arbitration_{core_arbiter(), banks_};
   FrameRun run_{config_, banks_, arbitration_, UINT64_MAX};
   AccessPatterns patterns_{AccessPattern(geometry()), AccessPattern(geometry())};
 };
 
-TEST_F(FrameCountsTest, HaveTheSlotsAndWordsOfTheGeometryAtTheEnd) {
-  const FrameCounts whole = counts(UINT64_MAX);
-  EXPECT_EQ(whole.lanes[0].slots.slots, geometry().slots);
-  EXPECT_EQ(whole.lanes[1].slots.slots, geometry().slots);
-  EXPECT_EQ(whole.packed.words, geometry().result_words);
-}
-
-// A control that has not done what it should is noticed: its counts are not those of the geometry.
+// A control that has not done what it should is found: its counts are not those of the geometry.
 TEST_F(FrameCountsTest, HaveTheSlotsAndWordsThatTheControlHasComeTo) {
-  const FrameCounts early = counts(1);
-  EXPECT_EQ(early.lanes[0].slots.slots, 1U);
-  EXPECT_EQ(early.lanes[1].slots.slots, 1U);
-  EXPECT_EQ(early.packed.words, 0U);
   // From cycle 4 on a slot is consumed a cycle, three of them a column.
   const std::uint64_t columns = geometry().result_delay_columns + 8;
-  EXPECT_EQ(counts(4 + 3 * columns - 1).packed.words, 1U);
-  const FrameCounts later = counts(4 + 3 * columns);
-  EXPECT_EQ(later.packed.words, 2U);
-  EXPECT_EQ(later.lanes[0].slots.slots, 4 + 3 * columns);
-  EXPECT_EQ(later.lanes[1].slots.slots, 4 + 3 * columns);
+  struct Expected {
+    std::uint64_t end;
+    std::uint64_t slots;
+    std::uint64_t words;
+  };
+  for (const Expected& expected : {Expected{1, 1, 0}, Expected{4 + 3 * columns - 1, 4 + 3 * columns - 1, 1},
+                                   Expected{4 + 3 * columns, 4 + 3 * columns, 2},
+                                   Expected{UINT64_MAX, geometry().slots, geometry().result_words}}) {
+    const FrameCounts found = counts(expected.end);
+    for (const FrameCounts::Lane& lane : found.lanes) EXPECT_EQ(lane.slots.slots, expected.slots);
+    EXPECT_EQ(found.packed.words, expected.words);
+  }
 }
 
 }  // namespace

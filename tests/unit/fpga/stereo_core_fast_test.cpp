@@ -19,7 +19,6 @@ namespace stereotlm::fpga {
 namespace {
 
 using memory::crossbar_address;
-using memory::Port;
 using tlm::TLM_READ_COMMAND;
 using tlm::TLM_WRITE_COMMAND;
 using Words = std::vector<std::uint32_t>;
@@ -127,13 +126,13 @@ class StereoCoreTables : public StereoCoreFast, public testing::WithParamInterfa
 TEST_P(StereoCoreTables, ChangedBetweenTwoFramesAreReadAgain) {
   build(small_board());
   run_frame();
-  const std::uint64_t reads = port(Port::kLeftPixel).granted();
+  const std::uint64_t reads = port(pixel_port(Side::kLeft)).granted();
   ASSERT_GT(reads, 0U);
   ASSERT_NE(result_words(), Words(kImageWords, 0xFFFF'FFFF));
   change_left_table();
   run_frame();
   EXPECT_EQ(result_words(), Words(kImageWords, 0xFFFF'FFFF));
-  EXPECT_EQ(port(Port::kLeftPixel).granted(), reads);
+  EXPECT_EQ(port(pixel_port(Side::kLeft)).granted(), reads);
 }
 
 INSTANTIATE_TEST_SUITE_P(Changed, StereoCoreTables,
@@ -247,7 +246,7 @@ TEST_F(StereoCoreDirectAccess, TakenBackWithinAFrameIsReportedAndRaisesError) {
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   // Its counts are those of the cycles.
   EXPECT_EQ(core->datapath().result_writer().stats().writes, kImageWords);
-  EXPECT_EQ(accesses(kResult), port(Port::kResult).granted());
+  EXPECT_EQ(accesses(kResult), port(kResultPort).granted());
   start();
   finish();
   EXPECT_EQ(status(), registers::kStatusDone);
@@ -267,7 +266,7 @@ TEST_P(StereoCoreCatchUp, ShowsTheSlotsOfThePresent) {
     at(edge(cycle) + sc_core::sc_time::from_value(2), [this, &consumed, &handled] {
       core->catch_up();
       consumed.push_back(core->control().lane(Side::kLeft).consumed());
-      handled.push_back(port(Port::kLeftPixel).granted() + port(Port::kLeftPixel).passed());
+      handled.push_back(port(pixel_port(Side::kLeft)).granted() + port(pixel_port(Side::kLeft)).passed());
     });
   }
   finish();

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/memory/ports.h"
+
 namespace stereotlm::memory {
 
 void PrintTo(const PolicyEntry& policy, std::ostream* out) { *out << policy.name; }
@@ -17,8 +19,8 @@ namespace {
 using State = ArbitrationPolicy::State;
 
 constexpr PortMask kAll = (1U << kPortCount) - 1;
-constexpr PriorityList kList = {Port::kRightLut, Port::kResult,    Port::kLeftLut,
-                                Port::kHost,     Port::kLeftPixel, Port::kRightPixel};
+const PriorityList kList = {port::kRightLut, port::kResult,    port::kLeftLut,
+                            port::kHost,     port::kLeftPixel, port::kRightPixel};
 
 std::unique_ptr<const ArbitrationPolicy> policy_of(const std::string& name) {
   return find_arbitration_policy(name)->make(kList);

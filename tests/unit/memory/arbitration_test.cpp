@@ -19,11 +19,12 @@ using test::random_arbiter;
 using test::SplitMix64;
 
 constexpr PortMask kNone = 0;
-constexpr PortMask kLeft = mask_of(Port::kLeftPixel);
-constexpr PortMask kRight = mask_of(Port::kRightPixel);
-constexpr PortMask kResult = mask_of(Port::kResult);
-constexpr PortMask kHost = mask_of(Port::kHost);
-const ArbiterConfig kRoundRobin{"round_robin", ArbiterConfig{}.priority};
+constexpr PortMask kLeft = mask_of(port::kLeftPixel);
+constexpr PortMask kRight = mask_of(port::kRightPixel);
+constexpr PortMask kResult = mask_of(port::kResult);
+constexpr PortMask kHost = mask_of(port::kHost);
+const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
+const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
 constexpr int kBanks = 4;
 
@@ -44,10 +45,9 @@ struct Routes {
     }
   }
   void apply(Arbitration& arbitration) const {
-    for (std::size_t i = 0; i < kPortCount; ++i) {
-      const auto port = static_cast<Port>(i);
+    for (Port port = 0; port < kPortCount; ++port) {
       arbitration.unroute(port);
-      if ((ports & mask_of(port)) != 0) arbitration.route(port, bank[i], (writes & mask_of(port)) != 0);
+      if ((ports & mask_of(port)) != 0) arbitration.route(port, bank[port], (writes & mask_of(port)) != 0);
     }
   }
   // The requests for one bank.
@@ -165,12 +165,12 @@ INSTANTIATE_TEST_SUITE_P(Arbitration, SkippedArbitration, testing::Bool(), [](co
 // Round robin: left_pixel is before right_pixel, unless it was the last that was granted.
 PortMask granted_after_being_alone(std::uint64_t grants, std::uint64_t retracted) {
   Arbitration arbitration(kRoundRobin, banks());
-  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.route(port::kLeftPixel, 0, false);
   for (std::uint64_t cycle = 0; cycle < grants; ++cycle) arbitration.arbitrate(cycle, kLeft);
   EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants);
-  arbitration.retract_grants(Port::kLeftPixel, retracted);
+  arbitration.retract_grants(port::kLeftPixel, retracted);
   EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants - retracted);
-  arbitration.route(Port::kRightPixel, 0, false);
+  arbitration.route(port::kRightPixel, 0, false);
   return arbitration.arbitrate(grants, kLeft | kRight);
 }
 
@@ -184,36 +184,36 @@ TEST(Arbitration, MovesNoPlaceForGrantsThatAreRetractedAfterAQuery) {
 TEST(Arbitration, HasAStateOnlyWherePortsContendOrTheBankHasTurnaround) {
   Arbitration arbitration(kRoundRobin, banks());
   const Arbitration::State none{};
-  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.route(port::kLeftPixel, 0, false);
   arbitration.arbitrate(0, kLeft);
   EXPECT_EQ(arbitration.state(1), none);
-  arbitration.route(Port::kRightPixel, 0, false);
+  arbitration.route(port::kRightPixel, 0, false);
   EXPECT_NE(arbitration.state(1), none);
-  arbitration.unroute(Port::kRightPixel);
-  arbitration.unroute(Port::kLeftPixel);
-  arbitration.route(Port::kResult, 2, true);
+  arbitration.unroute(port::kRightPixel);
+  arbitration.unroute(port::kLeftPixel);
+  arbitration.route(port::kResult, 2, true);
   arbitration.arbitrate(1, kResult);
   EXPECT_NE(arbitration.state(2), none);
 }
 
 TEST(Arbitration, KnowsWhichOtherPortsAreRoutedToABankAndWhetherItHasTurnaround) {
-  Arbitration arbitration(ArbiterConfig{}, banks());
-  arbitration.route(Port::kHost, 1, false);
-  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 1));
-  EXPECT_TRUE(arbitration.is_used_beside(Port::kResult, 1));
-  arbitration.route(Port::kLeftPixel, 1, false);
-  EXPECT_TRUE(arbitration.is_used_beside(Port::kHost, 1));
-  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 0));
-  arbitration.unroute(Port::kLeftPixel);
-  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 1));
+  Arbitration arbitration(kFixedPriority, banks());
+  arbitration.route(port::kHost, 1, false);
+  EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 1));
+  EXPECT_TRUE(arbitration.is_used_beside(port::kResult, 1));
+  arbitration.route(port::kLeftPixel, 1, false);
+  EXPECT_TRUE(arbitration.is_used_beside(port::kHost, 1));
+  EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 0));
+  arbitration.unroute(port::kLeftPixel);
+  EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 1));
   for (std::size_t bank = 0; bank < kBanks; ++bank) EXPECT_EQ(arbitration.needs_turnaround(bank), bank >= 2);
 }
 
 TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {
-  Arbitration arbitration(ArbiterConfig{}, banks());
-  arbitration.route(Port::kLeftPixel, 0, false);
-  arbitration.route(Port::kRightPixel, 0, false);
-  arbitration.unroute(Port::kLeftPixel);
+  Arbitration arbitration(kFixedPriority, banks());
+  arbitration.route(port::kLeftPixel, 0, false);
+  arbitration.route(port::kRightPixel, 0, false);
+  arbitration.unroute(port::kLeftPixel);
   EXPECT_EQ(arbitration.arbitrate(0, kLeft | kRight), kRight);
 }
 
@@ -236,7 +236,7 @@ TEST(Arbitration, DecidesAndCountsUnroutedAsRouted) {
     std::vector<Run> runs;
     std::uint64_t cycle = 0;
     const auto decide = [&](bool write, std::uint64_t cycles) {
-      const auto outcome = unrouted.decide_unrouted(bank, cycle, Port::kHost, write);
+      const auto outcome = unrouted.decide_unrouted(bank, cycle, port::kHost, write);
       runs.push_back({cycle, cycles, outcome});
       for (; cycles > 0; --cycles)
         ASSERT_EQ(unrouted.grants(bank, outcome), routed.arbitrate(cycle++, kHost) == kHost);
@@ -244,7 +244,7 @@ TEST(Arbitration, DecidesAndCountsUnroutedAsRouted) {
     for (int requests = 0; requests < 100; ++requests) {
       cycle += static_cast<std::uint64_t>(random.mostly_small(0, 2, 19));
       const bool write = random.chance(50);
-      routed.route(Port::kHost, bank, write);
+      routed.route(port::kHost, bank, write);
       decide(write, 1);
       if (bank < 2) decide(write, static_cast<std::uint64_t>(random.between(1, 5)));
     }

@@ -17,12 +17,12 @@ using test::SplitMix64;
 
 constexpr PortMask kNone = 0;
 constexpr PortMask kAll = (1U << kPortCount) - 1;
-constexpr PortMask kHost = mask_of(Port::kHost);
-constexpr PortMask kResult = mask_of(Port::kResult);
-constexpr PortMask kLeft = mask_of(Port::kLeftPixel);
+constexpr PortMask kHost = mask_of(port::kHost);
+constexpr PortMask kResult = mask_of(port::kResult);
+constexpr PortMask kLeft = mask_of(port::kLeftPixel);
 
-const ArbiterConfig kFixedPriority;
-const ArbiterConfig kRoundRobin{"round_robin", ArbiterConfig{}.priority};
+const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
+const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
 // One cycle, decided and counted. Returns the port that is granted.
 PortMask arbitrate(BankArbiter& arbiter, uint64_t cycle, PortMask requests, PortMask writes) {
@@ -86,9 +86,9 @@ TEST(BankArbiter, RefusesAWinnerBecauseOfTurnaroundEvenIfAnotherPortCouldBeGrant
   arbiter.end_counting(4);
   const ArbiterStats stats = arbiter.stats();
   EXPECT_EQ(stats.turnaround_cycles, 2U);
-  EXPECT_EQ(stats.blame[index_of(Port::kResult)][ArbiterStats::kTurnaround], 2U);
-  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][ArbiterStats::kTurnaround], 2U);
-  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][index_of(Port::kResult)], 1U);
+  EXPECT_EQ(stats.blame[port::kResult][ArbiterStats::kTurnaround], 2U);
+  EXPECT_EQ(stats.blame[port::kLeftPixel][ArbiterStats::kTurnaround], 2U);
+  EXPECT_EQ(stats.blame[port::kLeftPixel][port::kResult], 1U);
 }
 
 TEST(BankArbiter, CountsUncontendedGrantsWhereverTheyLay) {
@@ -110,7 +110,7 @@ TEST(BankArbiter, CountsUncontendedGrantsWhereverTheyLay) {
   EXPECT_EQ(stats.writes, 1U);
   EXPECT_EQ(stats.idle_cycles, 12U);
   EXPECT_EQ(stats.contended_cycles, 1U);
-  EXPECT_EQ(stats.grants[index_of(Port::kLeftPixel)], 7U);
+  EXPECT_EQ(stats.grants[port::kLeftPixel], 7U);
   EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
 }
 
@@ -131,7 +131,7 @@ TEST(BankArbiter, HasTheStateOfItsPolicyAndOfTheCyclesThatItStillTurnsRound) {
 }
 
 TEST(BankArbiter, RefusesAConfigurationWithProblems) {
-  EXPECT_THROW(BankArbiter({"lottery", ArbiterConfig{}.priority}, 0), std::invalid_argument);
+  EXPECT_THROW(BankArbiter(arbiter_of("lottery"), 0), std::invalid_argument);
 }
 
 }  // namespace

@@ -13,18 +13,18 @@ namespace {
 
 using test::TestHost;
 
-constexpr PortMask kLeft = mask_of(Port::kLeftPixel);
-constexpr PortMask kRight = mask_of(Port::kRightPixel);
-constexpr PortMask kResult = mask_of(Port::kResult);
+constexpr PortMask kLeft = mask_of(port::kLeftPixel);
+constexpr PortMask kRight = mask_of(port::kRightPixel);
+constexpr PortMask kResult = mask_of(port::kResult);
 constexpr PortMask kNobody = 0;
 
 class CrossbarPorts : public CrossbarBench {};
 
 TEST_F(CrossbarPorts, LeadAGrantedAccessToTheBankOfItsRoute) {
-  at(Port::kHost).debug_write(crossbar_address(kFlowThrough, 3), {0x0BAD'CAFE});
-  crossbar->route(Port::kLeftPixel, kFlowThrough, false);
+  at(port::kHost).debug_write(crossbar_address(kFlowThrough, 3), {0x0BAD'CAFE});
+  crossbar->route(port::kLeftPixel, kFlowThrough, false);
   EXPECT_EQ(arbitrate(0, kLeft), kLeft);
-  const TestHost::Answer answer = at(Port::kLeftPixel).read(crossbar_address(kFlowThrough, 3), cycles(5));
+  const TestHost::Answer answer = at(port::kLeftPixel).read(crossbar_address(kFlowThrough, 3), cycles(5));
   EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
   EXPECT_EQ(answer.word, 0x0BAD'CAFEU);
   EXPECT_EQ(answer.at, cycles(5 + 1));
@@ -33,11 +33,11 @@ TEST_F(CrossbarPorts, LeadAGrantedAccessToTheBankOfItsRoute) {
 }
 
 TEST_F(CrossbarPorts, AddTheReadTimeOfTheBankAndNothingForAWrite) {
-  crossbar->route(Port::kLeftPixel, kPipelined, false);
-  crossbar->route(Port::kResult, kBurst, true);
+  crossbar->route(port::kLeftPixel, kPipelined, false);
+  crossbar->route(port::kResult, kBurst, true);
   ASSERT_EQ(arbitrate(0, kLeft | kResult), kLeft | kResult);
-  EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kPipelined, 0)).at, cycles(2));
-  EXPECT_EQ(at(Port::kResult).write(crossbar_address(kBurst, 0), 5).at, cycles(0));
+  EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kPipelined, 0)).at, cycles(2));
+  EXPECT_EQ(at(port::kResult).write(crossbar_address(kBurst, 0), 5).at, cycles(0));
   EXPECT_EQ(banks[kBurst]->words()[0], 5U);
 }
 
@@ -57,8 +57,8 @@ class RefusedAccess : public CrossbarBench, public testing::WithParamInterface<R
 
 TEST_P(RefusedAccess, ReachesNoBank) {
   const Refused& access = GetParam();
-  crossbar->route(Port::kLeftPixel, kPipelined, false);
-  crossbar->route(Port::kResult, kFlowThrough, true);
+  crossbar->route(port::kLeftPixel, kPipelined, false);
+  crossbar->route(port::kResult, kFlowThrough, true);
   ASSERT_EQ(arbitrate(0, kLeft), kLeft);
   ASSERT_EQ(arbitrate(1, access.requests), access.requests);
   TestHost& host = at(access.port);
@@ -69,41 +69,41 @@ TEST_P(RefusedAccess, ReachesNoBank) {
 constexpr auto kNoGrant = tlm::TLM_GENERIC_ERROR_RESPONSE;
 constexpr auto kNoBank = tlm::TLM_ADDRESS_ERROR_RESPONSE;
 const std::vector<Refused> kRefused = {
-    {"WithTheGrantOfTheCycleBefore", kNobody, Port::kLeftPixel, false, crossbar_address(0, 0), kNoGrant},
-    {"WithoutGrant", kNobody, Port::kResult, true, crossbar_address(1, 0), kNoGrant},
-    {"OfAnotherBankThanTheRoutes", kLeft, Port::kLeftPixel, false, crossbar_address(1, 0), kNoGrant},
-    {"ThatWriteOnAReadingRoute", kLeft, Port::kLeftPixel, true, crossbar_address(0, 0), kNoGrant},
-    {"ThatReadOnAWritingRoute", kResult, Port::kResult, false, crossbar_address(1, 0), kNoGrant},
-    {"OfABankThatDoesNotExist", kLeft, Port::kLeftPixel, false, crossbar_address(3, 0), kNoBank},
-    {"OfTheLastAddress", kLeft, Port::kLeftPixel, false, ~std::uint64_t{3}, kNoBank}};
+    {"WithTheGrantOfTheCycleBefore", kNobody, port::kLeftPixel, false, crossbar_address(0, 0), kNoGrant},
+    {"WithoutGrant", kNobody, port::kResult, true, crossbar_address(1, 0), kNoGrant},
+    {"OfAnotherBankThanTheRoutes", kLeft, port::kLeftPixel, false, crossbar_address(1, 0), kNoGrant},
+    {"ThatWriteOnAReadingRoute", kLeft, port::kLeftPixel, true, crossbar_address(0, 0), kNoGrant},
+    {"ThatReadOnAWritingRoute", kResult, port::kResult, false, crossbar_address(1, 0), kNoGrant},
+    {"OfABankThatDoesNotExist", kLeft, port::kLeftPixel, false, crossbar_address(3, 0), kNoBank},
+    {"OfTheLastAddress", kLeft, port::kLeftPixel, false, ~std::uint64_t{3}, kNoBank}};
 INSTANTIATE_TEST_SUITE_P(Crossbar, RefusedAccess, testing::ValuesIn(kRefused),
                          [](const auto& suite) { return std::string(suite.param.name); });
 
 TEST_F(CrossbarPorts, RefuseTheSecondAccessOnOneGrant) {
-  crossbar->route(Port::kLeftPixel, kPipelined, false);
+  crossbar->route(port::kLeftPixel, kPipelined, false);
   for (const std::uint64_t cycle : {0U, 1U}) {
     arbitrate(cycle, kLeft);
-    EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kPipelined, 0)).status, tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kPipelined, 0)).status,
+    EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kPipelined, 0)).status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kPipelined, 0)).status,
               tlm::TLM_GENERIC_ERROR_RESPONSE);
   }
   EXPECT_EQ(accesses(kPipelined), 2U);
 }
 
 TEST_F(CrossbarPorts, ReachTheLastWordOfTheLastBankAndPassOnItsErrorsBeyond) {
-  crossbar->route(Port::kLeftPixel, kBurst, false);
+  crossbar->route(port::kLeftPixel, kBurst, false);
   arbitrate(0, kLeft);
-  EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kBurst, kWords - 1)).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kBurst, kWords - 1)).status, tlm::TLM_OK_RESPONSE);
   arbitrate(1, kLeft);
-  EXPECT_EQ(at(Port::kLeftPixel).read(crossbar_address(kBurst, kWords)).status,
+  EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kBurst, kWords)).status,
             tlm::TLM_ADDRESS_ERROR_RESPONSE);
   EXPECT_EQ(banks[kBurst]->stats().errors, 1U);
 }
 
 TEST_F(CrossbarPorts, ShareABankOneAtATime) {
-  crossbar->route(Port::kLeftPixel, kPipelined, false);
-  crossbar->route(Port::kRightPixel, kPipelined, false);
-  crossbar->route(Port::kResult, kPipelined, true);
+  crossbar->route(port::kLeftPixel, kPipelined, false);
+  crossbar->route(port::kRightPixel, kPipelined, false);
+  crossbar->route(port::kResult, kPipelined, true);
   crossbar->begin_counting(0);
   EXPECT_EQ(arbitrate(0, kLeft | kRight | kResult), kResult);
   EXPECT_EQ(arbitrate(1, kLeft | kRight), kLeft);
@@ -112,24 +112,24 @@ TEST_F(CrossbarPorts, ShareABankOneAtATime) {
   const ArbiterStats stats = crossbar->arbiters()[kPipelined].stats();
   EXPECT_EQ(stats.contended_cycles, 2U);
   EXPECT_EQ(stats.idle_cycles, 1U);
-  EXPECT_EQ(stats.blame[index_of(Port::kRightPixel)][index_of(Port::kResult)], 1U);
-  EXPECT_EQ(stats.blame[index_of(Port::kRightPixel)][index_of(Port::kLeftPixel)], 1U);
-  EXPECT_EQ(stats.blame[index_of(Port::kLeftPixel)][index_of(Port::kResult)], 1U);
+  EXPECT_EQ(stats.blame[port::kRightPixel][port::kResult], 1U);
+  EXPECT_EQ(stats.blame[port::kRightPixel][port::kLeftPixel], 1U);
+  EXPECT_EQ(stats.blame[port::kLeftPixel][port::kResult], 1U);
   EXPECT_EQ(crossbar->arbiters()[kFlowThrough].stats().idle_cycles, 4U);
 }
 
 TEST_F(CrossbarPorts, MoveToAnotherBankWithTheirRoute) {
-  crossbar->route(Port::kLeftPixel, kPipelined, false);
-  crossbar->route(Port::kRightPixel, kPipelined, false);
+  crossbar->route(port::kLeftPixel, kPipelined, false);
+  crossbar->route(port::kRightPixel, kPipelined, false);
   EXPECT_EQ(arbitrate(0, kLeft | kRight), kLeft);
-  crossbar->route(Port::kRightPixel, kBurst, false);
+  crossbar->route(port::kRightPixel, kBurst, false);
   EXPECT_EQ(arbitrate(1, kLeft | kRight), kLeft | kRight);
-  EXPECT_EQ(at(Port::kRightPixel).read(crossbar_address(kBurst, 1)).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(at(port::kRightPixel).read(crossbar_address(kBurst, 1)).status, tlm::TLM_OK_RESPONSE);
 }
 
 TEST_F(CrossbarPorts, WaitForTheTurnaroundOfASyncBurstBank) {
-  crossbar->route(Port::kLeftPixel, kBurst, false);
-  crossbar->route(Port::kResult, kBurst, true);
+  crossbar->route(port::kLeftPixel, kBurst, false);
+  crossbar->route(port::kResult, kBurst, true);
   ASSERT_EQ(arbitrate(0, kLeft), kLeft);
   EXPECT_EQ(arbitrate(2, kResult), kNobody);
   EXPECT_EQ(arbitrate(3, kResult), kResult);
@@ -138,42 +138,42 @@ TEST_F(CrossbarPorts, WaitForTheTurnaroundOfASyncBurstBank) {
 TEST_F(CrossbarPorts, ReachEveryBankByDebugTransport) {
   for (std::size_t bank = 0; bank < 3; ++bank) {
     const auto number = static_cast<std::uint32_t>(bank);
-    EXPECT_EQ(at(Port::kHost).debug_write(crossbar_address(bank, 2), {number, number + 10}), 8U);
+    EXPECT_EQ(at(port::kHost).debug_write(crossbar_address(bank, 2), {number, number + 10}), 8U);
     EXPECT_EQ(banks[bank]->words()[3], number + 10);
-    EXPECT_EQ(at(Port::kLeftLut).debug_read(crossbar_address(bank, 2), 2),
+    EXPECT_EQ(at(port::kLeftLut).debug_read(crossbar_address(bank, 2), 2),
               (std::vector<std::uint32_t>{number, number + 10}));
-    EXPECT_EQ(at(Port::kHost).debug_read(crossbar_address(bank, kWords - 1), 2).size(), 1U);
+    EXPECT_EQ(at(port::kHost).debug_read(crossbar_address(bank, kWords - 1), 2).size(), 1U);
   }
-  EXPECT_EQ(at(Port::kHost).debug_write(crossbar_address(3, 0), {1}), 0U);
+  EXPECT_EQ(at(port::kHost).debug_write(crossbar_address(3, 0), {1}), 0U);
 }
 
 TEST_F(CrossbarPorts, SeeTheRangeOfDirectAccessInTheirOwnAddresses) {
   tlm::tlm_dmi dmi;
-  ASSERT_TRUE(at(Port::kHost).dmi(crossbar_address(kBurst, 5), dmi));
+  ASSERT_TRUE(at(port::kHost).dmi(crossbar_address(kBurst, 5), dmi));
   EXPECT_EQ(dmi.get_start_address(), crossbar_address(kBurst, 0));
   EXPECT_EQ(dmi.get_end_address(), crossbar_address(kBurst, kWords) - 1);
   reinterpret_cast<std::uint32_t*>(dmi.get_dmi_ptr())[5] = 1234;
   EXPECT_EQ(banks[kBurst]->words()[5], 1234U);
-  EXPECT_FALSE(at(Port::kHost).dmi(crossbar_address(3, 0), dmi));
+  EXPECT_FALSE(at(port::kHost).dmi(crossbar_address(3, 0), dmi));
 }
 
 TEST_F(CrossbarPorts, AreRefusedDirectAccessBeyondABankWithARangeThatHoldsTheAddress) {
   for (std::size_t bank = 0; bank < 3; ++bank) {
     const std::uint64_t address = crossbar_address(bank, kWords);
     tlm::tlm_dmi dmi;
-    EXPECT_FALSE(at(Port::kHost).dmi(address, dmi));
+    EXPECT_FALSE(at(port::kHost).dmi(address, dmi));
     EXPECT_LE(dmi.get_start_address(), address) << bank;
     EXPECT_GE(dmi.get_end_address(), address) << bank;
   }
 }
 
 TEST(Crossbar, TellsEveryPortWhichDirectAccessABankRevokes) {
-  Crossbar crossbar("crossbar", {ArbiterConfig{}, {{16}, {16}}});
+  Crossbar crossbar("crossbar", {arbiter_of("fixed_priority"), {{16}, {16}}});
   test::MonitoringBinder binder;
   sc_core::sc_vector<TestHost> hosts("test_host", kPortCount);
   sc_core::sc_vector<test::ScriptedTarget> targets("target", 2);
   for (std::size_t port = 0; port < kPortCount; ++port)
-    binder.bind(hosts[port].socket, crossbar.ports[port], kPortNames[port]);
+    binder.bind(hosts[port].socket, crossbar.ports[port], "port" + std::to_string(port));
   for (std::size_t bank = 0; bank < 2; ++bank)
     binder.bind(crossbar.banks[bank], targets[bank].socket, "bank" + std::to_string(bank));
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -186,7 +186,7 @@ TEST(Crossbar, TellsEveryPortWhichDirectAccessABankRevokes) {
 }
 
 TEST(Crossbar, MayLeaveAPortUnbound) {
-  Crossbar crossbar("crossbar", {ArbiterConfig{}, {{16}}});
+  Crossbar crossbar("crossbar", {arbiter_of("fixed_priority"), {{16}}});
   SsramBank bank("ssram", {16});
   test::MonitoringBinder binder;
   binder.bind(crossbar.banks[0], bank.port, "bank0");
@@ -195,9 +195,9 @@ TEST(Crossbar, MayLeaveAPortUnbound) {
 
 TEST(Crossbar, RefusesAConfigurationWithProblems) {
   using Banks = std::vector<SsramBankConfig>;
-  const ArbiterConfig valid;
-  ArbiterConfig twice;
-  twice.priority[0] = Port::kResult;
+  const ArbiterConfig valid = arbiter_of("fixed_priority");
+  ArbiterConfig twice = valid;
+  twice.priority[0] = port::kResult;
   for (const CrossbarConfig& config : {CrossbarConfig{valid, {}}, CrossbarConfig{twice, {{16}}},
                                        CrossbarConfig{valid, {{0}}}, CrossbarConfig{valid, Banks(65)},
                                        CrossbarConfig{valid, {{16}, {16, BankKind::kZbtPipelined, 0, 50}}}})

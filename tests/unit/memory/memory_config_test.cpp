@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/memory/ports.h"
+
 namespace stereotlm::memory {
 namespace {
 
@@ -40,20 +42,24 @@ TEST(SsramBankConfig, RefusesWhatLiesBeyondThem) {
   for (const auto& [config, problem] : refused) EXPECT_EQ(problems(config), Problems{problem});
 }
 
-TEST(ArbiterConfig, HasTheListOfTheContractByDefault) {
-  EXPECT_EQ(ArbiterConfig{}.policy, "fixed_priority");
-  EXPECT_EQ(ArbiterConfig{}.priority, (PriorityList{Port::kHost, Port::kResult, Port::kLeftPixel,
-                                                    Port::kRightPixel, Port::kLeftLut, Port::kRightLut}));
-  EXPECT_EQ(problems(ArbiterConfig{}), Problems{});
+TEST(ArbiterConfig, RefusesAnUnknownPolicyAndAListThatDoesNotNameEachPortOnce) {
+  ArbiterConfig config = arbiter_of("lottery");
+  config.priority[0] = port::kResult;
+  EXPECT_THAT(problems(config), ElementsAre(StartsWith("policy = lottery: must be one of fixed_priority, "),
+                                            "priority = port 4 2 times: must name each port once",
+                                            "priority = port 5 0 times: must name each port once"));
 }
 
-TEST(ArbiterConfig, RefusesAnUnknownPolicyAndAListThatNamesAPortTwice) {
-  ArbiterConfig config;
-  config.policy = "lottery";
-  config.priority[0] = Port::kResult;
-  EXPECT_THAT(problems(config), ElementsAre(StartsWith("policy = lottery: must be one of fixed_priority, "),
-                                            "priority = result 2 times: must name each port once",
-                                            "priority = host 0 times: must name each port once"));
+TEST(ArbiterConfig, HasOneToSixPorts) {
+  const auto problems_with = [](std::size_t ports) {
+    ArbiterConfig config;
+    for (Port port = 0; port < ports; ++port) config.priority.push_back(port);
+    return problems(config);
+  };
+  EXPECT_EQ(problems_with(0), Problems{"priority = 0 ports: must be 1..6"});
+  EXPECT_EQ(problems_with(1), Problems{});
+  EXPECT_EQ(problems_with(6), Problems{});
+  EXPECT_EQ(problems_with(7), Problems{"priority = 7 ports: must be 1..6"});
 }
 
 }  // namespace

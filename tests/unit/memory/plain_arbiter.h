@@ -8,6 +8,7 @@
 
 #include "models/memory/arbitration_policies.h"
 #include "models/memory/bank_arbiter.h"
+#include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
 
@@ -48,7 +49,7 @@ class PlainArbiter {
  private:
   void count(PortMask requests, Port winner, bool write, bool is_refused) {
     if (requests != mask_of(winner)) ++stats.contended_cycles;
-    const std::size_t by = is_refused ? ArbiterStats::kTurnaround : index_of(winner);
+    const std::size_t by = is_refused ? ArbiterStats::kTurnaround : winner;
     for (std::size_t port = 0; port < kPortCount; ++port) {
       if ((requests >> port & 1U) != 0 && port != by) ++stats.blame[port][by];
     }

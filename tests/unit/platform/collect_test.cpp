@@ -156,7 +156,7 @@ TEST(CollectStatistics, TellsWhatDoesNotHoldInTheMiddleOfAFrame) {
   const Statistics statistics = run.collect();
   ASSERT_EQ(statistics.frames, 1U);
   const auto& control = run.system.board.core.control();
-  const uint64_t states = control.port_cycles(memory::Port::kLeftLut).sum();
+  const uint64_t states = control.port_cycles(fpga::lut_port(fpga::Side::kLeft)).sum();
   ASSERT_GT(states, frame - kPipeline);
   EXPECT_THAT(statistics.failed,
               Contains(fmt::format("port left_lut: sum of its states = {}, but cycles = {}", states,
@@ -181,8 +181,8 @@ TEST(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
     change(counters);
     EXPECT_THAT(collect_statistics(board, run.tables, run.system.board, counters).failed, ElementsAre(line));
   };
-  for (std::size_t port = 0; port < memory::kPortCount; ++port) {
-    const std::string name = fmt::format("port {}: ", memory::kPortNames[port]);
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    const std::string name = fmt::format("port {}: ", fpga::kPorts[port].name);
     const uint64_t grants = valid.ports[port].grants;
     expect_failed(
         fmt::format("{}sum of its states = {}, but cycles = {}", name, cycles + 1, cycles),

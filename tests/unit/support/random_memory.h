@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/fpga/core_ports.h"
 #include "models/memory/arbitration_policies.h"
 #include "models/memory/memory_config.h"
 #include "tests/support/random_board.h"
@@ -11,7 +12,7 @@ namespace stereotlm::test {
 // Any policy and any order of the ports.
 inline memory::ArbiterConfig random_arbiter(SplitMix64& random) {
   const auto& policies = memory::arbitration_policies();
-  memory::ArbiterConfig config;
+  memory::ArbiterConfig config = fpga::core_arbiter();
   config.policy =
       policies[static_cast<std::size_t>(random.between(0, static_cast<int>(policies.size()) - 1))].name;
   auto& list = config.priority;

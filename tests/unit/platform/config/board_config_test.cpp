@@ -30,7 +30,7 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   board.capture.fifo_trigger_words = 141;
   board.pci.clock_mhz = std::numeric_limits<double>::infinity();
   board.fpga.device = "xc2v8000";
-  board.fpga.arbiter.priority[0] = memory::Port::kResult;
+  board.fpga.arbiter.priority[0] = fpga::kResultPort;
   board.banks[1].name = "bank0";
   board.banks[2].name = "none";
   board.banks[3].words = 0;
@@ -45,8 +45,7 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
       "number, a truth value or null";
   const std::string priority_problem =
       "fpga.priority = [result, result, left_pixel, right_pixel, left_lut, right_lut]: a list that names "
-      "each of "
-      "the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, host";
+      "each port once: left_lut, right_lut, left_pixel, right_pixel, result, host";
   EXPECT_EQ(
       problems(board),
       (Problems{name_problem, "image.width = 642: 4..2048, a multiple of 4",
@@ -99,7 +98,7 @@ TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
             Problems{"fpga.arbitration = lottery: fixed_priority or round_robin"});
   EXPECT_EQ(
-      problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = static_cast<memory::Port>(6); }).size(),
+      problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = 6; }).size(),
       1U);
 }
 

@@ -152,7 +152,7 @@ std::vector<KeyCase> key_cases() {
       {"fpga.priority",
        {"[right_lut, left_lut, right_pixel, left_pixel, result, host]"},
        {"host", "{}", "null", "5"},
-       "a list that names each of the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, "
+       "a list that names each port once: left_lut, right_lut, left_pixel, right_pixel, result, "
        "host"},
       integer_case("fpga.lane_fifo_slots", 1, 64),
       integer_case("fpga.result_fifo_words", 1, 64),
