@@ -9,7 +9,7 @@
 
 namespace stereotlm::platform {
 
-// Compares the two sides of an identity (contract section 6) and keeps those that do not hold.
+// Checks identities between counters (contract section 6) and lists those that do not hold.
 class Audit {
  public:
   void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {

@@ -9,8 +9,8 @@
 
 namespace stereotlm::platform {
 
-// The FPGA board: the FPGA and its SSRAM banks, bound together. Its sockets are those of `core`: registers,
-// host, done.
+// The ADM-XRC-II board: the FPGA and its SSRAM banks, bound together. Its sockets are those of `core`:
+// `registers`, `local_bus` and `done`.
 class Board : public sc_core::sc_module {
  public:
   // Throws std::invalid_argument if the board has problems.

@@ -14,7 +14,7 @@ namespace {
 
 using kernels::RectificationTable;
 
-// How many slots fetch each row of the image, per column.
+// For each row of the image: the number of slots per column that fetch it.
 std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) {
   std::vector<std::uint64_t> fetches(static_cast<std::size_t>(geometry.height));
   for (int strip = 0; strip < geometry.strips; ++strip) {
@@ -38,7 +38,7 @@ PortAccesses accesses_of(const fpga::FrameGeometry& geometry,
     }
     accesses.lut += fetches[row] * width;
     const std::uint32_t* const entries = table->entries.data() + row * width;
-    std::uint32_t valid = 0;  // summed up like this, compilers use vectors
+    std::uint32_t valid = 0;  // a sum of this form is vectorised by compilers
     for (std::size_t column = 0; column < width; ++column) valid += entries[column] / kernels::kEntryValid;
     accesses.pixel += fetches[row] * valid;
   }
@@ -90,7 +90,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   struct BankDemand {
     std::uint64_t reads = 0;
     std::uint64_t writes = 0;
-    std::uint64_t after_last_read = 0;  // at least
+    std::uint64_t after_last_read = 0;  // a lower bound
   };
   std::map<int, BankDemand> demands;
   const auto read = [&demands](int bank, std::uint64_t count, std::uint64_t cycles_to_matcher) {
@@ -122,8 +122,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   bounds.push_back({"port result", geometry.result_words + pipeline});
   for (const auto& [bank, demand] : demands) {
     std::uint64_t cycles = demand.reads + demand.writes + pipeline;
-    // The matcher consumes the last slot read no earlier than its latency after the grant, in the cycle after
-    // reads - 1 others.
+    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher consumes its slot one
+    // read latency later at the earliest.
     if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
     bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});
   }
@@ -149,7 +149,7 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   constexpr int kAddressAndIdle = 2;
   const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
-  // By DMA, a descriptor included.
+  // DMA: words and descriptor.
   const std::uint64_t moved =
       bus_clocks(4, 4, memory_burst) + bus_clocks(picture, board.bridge.dma_burst_words, memory_burst);
   const std::uint64_t captured =
@@ -157,9 +157,9 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
               : bus_clocks(picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
                            kAddressAndIdle + board.pci.bridge_wait_clocks);
   const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
-  // On the local bus: the result, and the pair either by DMA or as it was captured. A word is granted in a
-  // cycle of the FPGA of its own; between the grants of two of a burst lies a local clock, of two bursts the
-  // idle, address, decode and word clock.
+  // The local bus moves the result, and the pair either by DMA or as it was captured. Each word is granted in
+  // its own cycle of the FPGA. Two words of a burst are at least one local clock apart. Two bursts are apart by
+  // an idle, an address, a decode and a word clock.
   const double local_pictures = to_host || whole_pictures ? 3 : 1;
   const double words = local_pictures * static_cast<double>(picture);
   const double bursts =
@@ -209,7 +209,7 @@ Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::u
 double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from) {
   const BufferLayout layout = layout_buffers(board);
-  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;  // of a picture too
+  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;  // a picture has as many
   const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t one_by_one = 0;
   std::vector<std::uint64_t> cycles_of_banks(board.banks.size());

@@ -38,7 +38,7 @@ PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
           cycles.idle(),           cycles.blocked(), cycles.starved()};
 }
 
-// In the order of ports, banks and ports, turnaround last.
+// Sorted by port, bank and causing port, turnaround last.
 std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters& counters) {
   std::vector<BlameRow> rows;
   for (std::size_t victim = 0; victim < kPortCount; ++victim) {

@@ -16,13 +16,13 @@
 
 namespace stereotlm::platform {
 
-// What the parts of a board have counted over the frames that it has finished. To be taken between two
-// frames: the counters of a frame under way would be mixed in. Its cost does not grow with the frames.
+// Counters of a board's modules over its finished frames. Valid between two frames only: a running frame has
+// counted in part. Taking them costs the same after any number of frames.
 struct BoardCounters {
   struct Bank {
     memory::ArbiterStats arbiter;
-    std::uint64_t uncounted_grants = 0;  // outside the counted cycles
-    std::uint64_t accesses = 0;          // that reached the bank, refused ones too
+    std::uint64_t uncounted_grants = 0;  // grants outside the counted cycles
+    std::uint64_t accesses = 0;          // accesses that reached the bank, also refused ones
   };
   struct Lane {
     std::uint64_t issued = 0;    // slots
@@ -42,16 +42,16 @@ BoardCounters counters_of(const Board& board);
 // What control and arbiters alone have counted. The rest is 0: accesses, slots issued, words packed and written.
 BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters);
 
-// The figures of the frames that `counters` cover, with their bound, and the identities of contract section 6
-// checked: those that do not hold are listed in `failed`. `counters` are of this board, now or earlier.
+// The figures of the frames that `counters` cover, and their bound. Checks the identities of contract section
+// 6; `failed` lists those that do not hold. `counters` are of this board, now or earlier.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters);
 
-// The same of a core that was run without a board: `frame_cycles` of its frames, at this fidelity.
+// The same for a core that ran without a board. `frame_cycles`: one entry per frame.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters);
 
-// Of all frames that the board has finished. To be called between two frames.
+// The figures of all finished frames. To be called between two frames.
 inline Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board) {
   return collect_statistics(config, tables, board, counters_of(board));
 }

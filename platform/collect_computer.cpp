@@ -6,7 +6,7 @@
 
 #include "platform/audit.h"
 #include "platform/bounds.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -20,7 +20,7 @@ ComputerCounters::Camera counters_of(const capture::Camera& camera, const captur
   return {camera.stats().frames, grabber.undecided(), grabber.stats()};
 }
 
-// A frame that begins at the very end is dropped: no capture has taken it.
+// A frame that begins at the end of the run counts as dropped: no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
   const capture::CaptureBoard::Stats& capture = camera.capture;
   CameraStatistics statistics;
@@ -36,7 +36,7 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
   return statistics;
 }
 
-// Nearest rank.
+// The percentile by nearest rank.
 Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
   std::sort(values_ps.begin(), values_ps.end());
   const auto rank = [&values_ps](std::size_t percent) {
@@ -48,7 +48,7 @@ Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
 
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
   std::vector<std::string> names;
-  for (const Buffer& buffer : buffers(config.allocation)) names.push_back(buffer.path());
+  for (const PlacedBuffer& buffer : buffers(config.allocation)) names.push_back(buffer.path());
   names.emplace_back("no buffer");
   for (std::size_t i = 0; i < names.size(); ++i) {
     audit.equal("bytes written into the bridge for " + names[i], 4 * words.into_bridge[i],

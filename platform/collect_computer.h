@@ -16,25 +16,25 @@
 
 namespace stereotlm::platform {
 
-// When a delivered frame was captured and delivered, from time 0.
+// Times of a delivered frame.
 struct Delivery {
-  std::uint64_t capture_ps = 0;  // its first pixel
-  std::uint64_t host_ps = 0;     // the host has handled the end of its read-back
+  std::uint64_t capture_ps = 0;  // time of its first pixel
+  std::uint64_t host_ps = 0;     // time at which the host has handled the end of its read-back
 };
 
-// What the parts of a computer have counted so far. To be taken while the core runs no frame.
+// Counters of a computer's modules up to now. Valid only while the core runs no frame.
 struct ComputerCounters {
-  // Words written to the buffers of the board; [buffer] in the order of buffers() in board_rules.h, then
-  // those outside of all.
+  // Words written to the board: one entry per buffer in the order of buffers() in buffer_layout.h, then one for
+  // words outside all buffers.
   struct Words {
     std::vector<std::uint64_t> into_bridge;
-    std::vector<std::uint64_t> in_bridge;  // still, and not on the local bus
-    std::vector<std::uint64_t> on_bus;     // of the burst on the local bus, not yet granted
-    std::vector<std::uint64_t> granted;    // on the host port
+    std::vector<std::uint64_t> in_bridge;  // words that wait in the bridge
+    std::vector<std::uint64_t> on_bus;     // words of the burst on the local bus that are not granted yet
+    std::vector<std::uint64_t> granted;    // words granted to the host port
   };
   struct Camera {
-    std::uint64_t frames = 0;  // begun
-    bool undecided = false;    // the last of them began just now
+    std::uint64_t frames = 0;  // frames that have begun
+    bool undecided = false;    // the last frame began at this time: its capture is not decided yet
     capture::CaptureBoard::Stats capture;
   };
 
@@ -48,9 +48,9 @@ struct ComputerCounters {
 
 ComputerCounters counters_of(const Computer& computer);
 
-// The figures of a run that ended with the last of `deliveries`, when `counters` were taken, with their
-// bounds; the identities of contract section 6 are checked, and those that do not hold listed in `failed`.
-// The board's counters and `deliveries` are of the same frames, at least one.
+// The figures of a run that ended with the last of `deliveries`, and their bounds. Checks the identities of
+// contract section 6; `failed` lists those that do not hold. `counters` were taken at the end of the run, and
+// cover the same frames as `deliveries`, at least one.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries);
 

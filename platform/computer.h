@@ -22,8 +22,8 @@
 namespace stereotlm::platform {
 
 // The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board
-// behind its PCI bridge, host memory, and the processor that runs `program`. The devices lie where DeviceMap
-// says.
+// behind its PCI bridge, host memory, and the processor that runs `program`. DeviceMap has the addresses of
+// the devices.
 class Computer : public sc_core::sc_module {
  public:
   enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kLoad };
@@ -45,7 +45,7 @@ class Computer : public sc_core::sc_module {
   capture::CaptureBoard left_capture;
   capture::CaptureBoard right_capture;
   std::unique_ptr<pci::TrafficGenerator>
-      load;  // null on a board without one, which has no master kLoad either
+      load;  // null on a board without `pci.load`; then there is no master kLoad
 
  private:
   void bind_pci(Binder& binder);

@@ -8,9 +8,8 @@
 
 namespace stereotlm::platform {
 
-// Where the devices of the computer lie on its PCI bus, in bytes (ours: in a real machine the BIOS decides).
-// All that a program on the host needs to know of the hardware is here and in the headers that this one
-// includes:
+// Addresses of the devices on the PCI bus, in bytes. They are our choice: in a real machine the BIOS assigns
+// them. This header and those in the table are all that a program on the host needs.
 //
 // | from        | holds                                                    | described in                |
 // |-------------|----------------------------------------------------------|-----------------------------|
@@ -20,14 +19,14 @@ namespace stereotlm::platform {
 // | 0xE000'0000 | the bridge's own registers: pages, interrupts, DMA       | pci/bridge_registers.h      |
 // | 0xE100'0000 | the left capture board                                   | capture/capture_registers.h |
 // | 0xE100'1000 | the right capture board                                  | capture/capture_registers.h |
-// | 0xE200'0000 | the device of a third party (board key `pci.load`)       |                             |
+// | 0xE200'0000 | the traffic generator (board key `pci.load`)             |                             |
 struct DeviceMap {
   std::uint64_t host_memory = 0x0000'0000;
-  std::uint64_t bridge_slave = 0xD000'0000;      // pci/bridge_registers.h
-  std::uint64_t bridge_registers = 0xE000'0000;  // pci/bridge_registers.h
-  std::uint64_t left_capture = 0xE100'0000;      // capture/capture_registers.h
+  std::uint64_t bridge_slave = 0xD000'0000;
+  std::uint64_t bridge_registers = 0xE000'0000;
+  std::uint64_t left_capture = 0xE100'0000;
   std::uint64_t right_capture = 0xE100'1000;
-  std::uint64_t load = 0xE200'0000;  // the device of PciLoadConfig
+  std::uint64_t load = 0xE200'0000;
 };
 
 }  // namespace stereotlm::platform

@@ -11,11 +11,11 @@
 
 namespace stereotlm::platform {
 
-// The board alone, fed and emptied by an ideal host (`--source preloaded`).
+// The board with an ideal host that writes its inputs and reads its results (`--source preloaded`).
 class PreloadedSystem : public sc_core::sc_module {
  public:
   // `source` and `sink` outlive the system. Throws std::invalid_argument if the board has problems or the
-  // tables do not fit to it.
+  // tables do not fit the board.
   PreloadedSystem(const sc_core::sc_module_name& name, const BoardConfig& config, const Tables& tables,
                   std::uint64_t frames, host::FrameSource& source, host::FrameSink& sink, Binder& binder,
                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle);

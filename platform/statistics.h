@@ -63,13 +63,13 @@ struct PciMasterStatistics {
 
 struct CameraStatistics {
   std::string name;
-  std::uint64_t frames = 0;           // begun
-  std::uint64_t captured_frames = 0;  // taken by a capture
-  std::uint64_t dropped_frames = 0;   // the sum of the three reasons below
-  std::uint64_t dropped_pixels = 0;   // the FIFO of the capture board was full
-  std::uint64_t dropped_not_armed = 0;
-  std::uint64_t dropped_busy = 0;        // the capture before was running
-  std::uint64_t dropped_by_partner = 0;  // the other side could not start
+  std::uint64_t frames = 0;              // frames that have begun
+  std::uint64_t captured_frames = 0;     // frames taken by a capture
+  std::uint64_t dropped_frames = 0;      // the sum of the three reasons below
+  std::uint64_t dropped_pixels = 0;      // pixels lost because the capture board's FIFO was full
+  std::uint64_t dropped_not_armed = 0;   // reason: the capture board was not armed
+  std::uint64_t dropped_busy = 0;        // reason: the previous capture was running
+  std::uint64_t dropped_by_partner = 0;  // reason: the other side could not start
 };
 
 struct Percentiles {
@@ -85,12 +85,12 @@ struct ComputerStatistics {
   std::uint64_t pci_clocks = 0;
   std::uint64_t pci_busy_clocks = 0;  // address, wait and data clocks
   std::vector<PciMasterStatistics> pci_masters;
-  std::uint64_t posted_words = 0;  // taken by the bridge
-  std::uint64_t dma_words = 0;     // moved by the bridge
+  std::uint64_t posted_words = 0;  // words that masters wrote into the bridge
+  std::uint64_t dma_words = 0;     // words that the bridge's DMA moved
   std::uint64_t local_clocks = 0;
-  std::uint64_t local_busy_clocks = 0;    // without idle clocks
+  std::uint64_t local_busy_clocks = 0;    // local clocks other than idle ones
   std::vector<CameraStatistics> cameras;  // left, right
-  Percentiles capture_to_host_ms;         // from the first pixel of a capture to its delivery
+  Percentiles capture_to_host_ms;         // time from the first pixel of a capture to its delivery
 };
 
 struct Statistics {
@@ -105,7 +105,7 @@ struct Statistics {
   std::vector<PortStatistics> ports;  // in the order of memory::Port
   std::vector<BlameRow> blame;        // sorted by port, bank, by (turnaround last), without zero rows
   std::optional<ComputerStatistics> computer;
-  area::Area area;                  // of the FPGA
+  area::Area area;
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run
 };
 

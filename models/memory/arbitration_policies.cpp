@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/memory/age_policy.h"
 #include "models/memory/fixed_priority_policy.h"
 #include "models/memory/round_robin_policy.h"
 
@@ -19,6 +20,7 @@ const std::vector<PolicyEntry>& arbitration_policies() {
   static const std::vector<PolicyEntry> kPolicies = {
       {"fixed_priority", "highest priority first", true, make<FixedPriorityPolicy>},
       {"round_robin", "the search order of round_robin", false, make<RoundRobinPolicy>},
+      {"age", "with age the order of requests that have waited equally long", true, make<AgePolicy>},
   };
   return kPolicies;
 }

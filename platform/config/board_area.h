@@ -7,10 +7,10 @@
 
 namespace stereotlm::platform {
 
-// The FPGA of this board. Throws std::invalid_argument if it is not a known one.
+// The FPGA of this board. Throws std::invalid_argument if the device is unknown.
 const area::Device& device_of(const BoardConfig& board);
 
-// What the core of this board takes of its FPGA, kind by kind and all in all. No simulation is needed. Throws
+// The FPGA resources of the core, for each kind of part and in total. No simulation is needed. Throws
 // std::invalid_argument if the board has problems.
 std::vector<area::Item> area_items(const BoardConfig& board);
 area::Area area_of(const BoardConfig& board);

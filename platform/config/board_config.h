@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "models/capture/capture_config.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
@@ -12,11 +13,11 @@
 
 namespace stereotlm::platform {
 
-enum class CameraTrigger { kFreeRunning, kOnDemand };
+using capture::CameraTrigger;
 enum class CaptureDestination { kBoard, kHostMemory };
 
-// One board, as its YAML file describes it (contract section 4). Plain values; the defaults are the paper's
-// board, preset `fpl2003`. Units and ranges stand beside each field; `problems()` checks them all.
+// One board as its YAML file describes it (contract section 4). Plain values; the defaults are the paper's
+// board, preset `fpl2003`. Each field has its unit and range beside it; problems() checks them all.
 struct ImageConfig {
   int width = 640;   // pixels, 4..2048, a multiple of 4
   int height = 480;  // pixels, 1..2048
@@ -34,12 +35,13 @@ struct CaptureConfig {
   int fifo_trigger_words = 32;  // 32-bit words, 1..fifo_words
 };
 
-// A third party on the PCI bus, which reads from a device of its own. Times are rounded to picoseconds.
+// A traffic generator on the PCI bus: a further master that reads from a device of its own. Times are rounded
+// to picoseconds.
 struct PciLoadConfig {
-  int burst_words = 32;    // 32-bit words of a transfer, 1..1024
-  double interval_us = 0;  // from one transfer's request to the next, 0..10^9; 0: asks again at once, a hog
-  double first_us = 0;     // of the first request, 0..10^9
-  double access_us = 0;    // that its device makes the bus wait before the first word, 0..10^6
+  int burst_words = 32;    // 32-bit words per transfer, 1..1024
+  double interval_us = 0;  // time from one request to the next, 0..10^9; 0: requests again at once
+  double first_us = 0;     // time of the first request, 0..10^9
+  double access_us = 0;    // wait of the bus before the first word of a transfer, 0..10^6
 };
 
 struct PciConfig {
@@ -73,8 +75,8 @@ struct BankConfig {
   int turnaround_cycles = 0;  // 1..16 if the kind has turnaround, else 0
 };
 
-// Buffers to banks, by bank name. A list is used in turn, frame by frame; 1 to 3 entries, the two image lists
-// equally long. A table without value does not exist (`none`).
+// The bank of each buffer, by name. The frames use the entries of a list in turn. A list has 1 to 3 entries;
+// the two image lists are equally long. A table without value does not exist (`none`).
 struct AllocationConfig {
   std::vector<std::string> left_image = {"bank0", "bank1"};
   std::vector<std::string> right_image = {"bank2", "bank3"};
@@ -113,14 +115,14 @@ inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a 
 // built. The reader of board files adds file, line and column to the same rules.
 std::vector<std::string> problems(const BoardConfig& board);
 
-// Where a buffer lies: index into BoardConfig::banks and first word in that bank.
+// The place of a buffer: an index into BoardConfig::banks, and the first word in that bank.
 struct BufferPlace {
   int bank = 0;
   std::uint32_t first_word = 0;
 };
 
-// The places of all buffers (contract 1.5: buffers that share a bank lie from word 0 in the order left_image,
-// right_image, disparity, each in list order, left_lut, right_lut).
+// The places of all buffers (contract 1.5). Buffers that share a bank begin at word 0 and follow each other in
+// the order left_image, right_image, disparity (each in list order), left_lut, right_lut.
 struct BufferLayout {
   std::vector<BufferPlace> left_image;
   std::vector<BufferPlace> right_image;
@@ -132,14 +134,14 @@ struct BufferLayout {
 // Throws std::invalid_argument with all problems() if there are any.
 BufferLayout layout_buffers(const BoardConfig& board);
 
-// The number of frames after which the allocation lists begin anew together: the least common multiple of
-// their lengths.
+// The number of frames after which all allocation lists start over: the least common multiple of their
+// lengths.
 std::uint64_t allocation_period_frames(const BoardConfig& board);
 
-// What one of its banks is built with.
+// The configuration of one bank's module.
 memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig& bank);
 
-// What the FPGA of this board is synthesised for. Throws as layout_buffers() does.
+// The configuration of the core. Throws as layout_buffers() does.
 fpga::CoreConfig core_config(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

@@ -19,7 +19,7 @@ namespace {
   throw BoardError({{std::move(place), std::move(text)}});
 }
 
-// Puts what `base` has and `own` leaves out into `own`, map by map.
+// Adds to `own` the values that only `base` has, map by map.
 void merge_into(YamlNode& own, const YamlNode& base, const std::string& path) {
   constexpr std::array<std::string_view, 2> kTakenWhole = {"ssram.banks", "matcher.filter"};
   const bool is_whole = std::find(kTakenWhole.begin(), kTakenWhole.end(), path) != kTakenWhole.end();
@@ -44,7 +44,7 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// Why nothing can be put at the path of the tree; empty if it can.
+// Why the tree cannot hold a value at the path; empty if it can.
 std::string way_problem(const YamlNode& tree, const std::string& path) {
   const YamlNode* at = &tree;
   std::string passed;
@@ -58,7 +58,7 @@ std::string way_problem(const YamlNode& tree, const std::string& path) {
   return "";
 }
 
-// Puts the value at the path into the tree. If that cannot be, returns way_problem().
+// Puts the value into the tree at the path, or returns way_problem().
 std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
   YamlNode* at = &tree;
   YamlNode::Entry* entry = nullptr;
@@ -83,8 +83,8 @@ std::string put(YamlNode& tree, const std::string& path, YamlNode value, const P
   return "";
 }
 
-// Replaces the findings of missing keys by a single one if most keys are missing: the writer meant to extend
-// a preset.
+// If most keys are missing, replaces these findings by one that advises `extends`: such a file usually means to
+// extend a preset.
 void say_what_to_extend(std::vector<Finding>& findings) {
   const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
   std::size_t missing = 0;
@@ -156,7 +156,7 @@ BoardDraft::BoardDraft(const std::string& board) {
   resolve_extends();
 }
 
-// The presets are files of this project, without errors.
+// Presets are files of this project and have no errors.
 BoardDraft BoardDraft::of_preset(std::string_view name) {
   BoardDraft draft;
   draft.tree_ = parse_yaml(std::string(preset_text(name)), Place::kPreset);
@@ -164,7 +164,7 @@ BoardDraft BoardDraft::of_preset(std::string_view name) {
   return draft;
 }
 
-// Takes `extends` out of the tree and puts in what the preset supplies.
+// Removes `extends` from the tree and adds the values of the preset.
 void BoardDraft::resolve_extends() {
   const auto is_extends = [](const YamlNode::Entry& entry) {
     return entry.key.is_scalar() && entry.key.text == "extends";
@@ -202,7 +202,7 @@ void BoardDraft::resolve_extends() {
 }
 
 void BoardDraft::set(const std::string& assignment) {
-  if (!tree_.is_map()) return;  // as read() says
+  if (!tree_.is_map()) return;  // read() reports it
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);
   const std::string name = "--set " + path;
@@ -230,7 +230,7 @@ void BoardDraft::set(const std::string& assignment) {
 }
 
 void BoardDraft::replace(const std::string& path, YamlNode value, const std::string& file) {
-  if (!tree_.is_map()) return;  // as read() says
+  if (!tree_.is_map()) return;  // read() reports it
   set_source(value, next_place().source);
   const Place place = value.place;
   sources_.push_back({file, true});
@@ -240,8 +240,8 @@ void BoardDraft::replace(const std::string& path, YamlNode value, const std::str
   if (!problem.empty()) findings_.emplace_back(place, fmt::format("{} = {}: {}", path, text, problem));
 }
 
-// Reads a tree that holds this value alone. A missing key is a problem of the value only if it belongs inside
-// it.
+// Reads a tree that holds only this value. A missing key is a problem of the value only if the key belongs
+// inside the value.
 std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const YamlNode& value,
                                                 const std::string& file) const {
   std::vector<Finding> findings;

@@ -11,49 +11,47 @@
 
 namespace stereotlm::platform {
 
-// Whether a board is given by the path of its file: it has a / or ends in .yaml; else by the name of a
-// preset.
+// Whether `board` is the path of a file (it has a / or ends in .yaml) or the name of a preset.
 bool is_board_file(const std::string& board);
 
-// What is wrong with the path of a value that is to be replaced; empty if the schema has it.
+// Why a value at this path cannot be replaced; empty if the schema has the path.
 std::string path_problem(const std::string& path);
 
-// A board as a file or preset has it, with all that it extends, before it is read; then with values replaced.
-// It may be copied: of one file a sweep makes many boards.
+// A board file as a tree of YAML values, with the preset that it extends, before its values are checked.
+// Values can be replaced. It may be copied: a sweep makes many boards from one file.
 class BoardDraft {
  public:
-  // `board` as for load_board(). Throws BoardError if there is no tree: an unknown preset, a file that cannot
-  // be read, an error of syntax. What else is wrong is said by read().
+  // `board` as for load_board(). Throws BoardError for an unknown preset, a file that cannot be read and an
+  // error of syntax. read() reports all other problems.
   explicit BoardDraft(const std::string& board);
 
-  // `path=value`, as `--set` gives it.
+  // Replaces a value. `assignment` is `path=value` as in `--set`.
   void set(const std::string& assignment);
 
-  // Puts the value at that path of the schema, whether there is one or not. Messages call its place
-  // `file:line:column`, as the value has them.
+  // Replaces or adds the value at that path of the schema. Messages give its place as `file:line:column`; line
+  // and column are those of `value`.
   void replace(const std::string& path, YamlNode value, const std::string& file);
 
-  // The problems that the value has at that path whatever the other keys are. The rest of the board is not
-  // read. Places are as for replace().
+  // The problems of a value at that path that do not depend on other keys. Does not check the rest of the
+  // board. Places are as for replace().
   std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value,
                                       const std::string& file) const;
 
-  // A board, and everything that is wrong with it. The board has all values of the draft if every problem is
-  // between keys.
+  // A board and all its problems. `board` has all values of the draft if each problem is between keys.
   struct Reading {
     BoardConfig board;
     std::vector<Diagnostic> problems;
   };
   Reading read_with_problems() const;
 
-  // Throws BoardError with everything that is wrong.
+  // Throws BoardError with all problems.
   BoardConfig read() const;
 
-  // A board file with the same values: it is read to the same board, or refused for the same reasons.
+  // A board file with the same values. Reading it gives the same board or the same problems.
   std::string to_yaml() const { return yaml_text(tree_); }
 
  private:
-  // Where a value comes from.
+  // The origin of a value.
   struct Source {
     std::string name;
     bool has_lines = false;
@@ -66,11 +64,11 @@ class BoardDraft {
   std::string text_of(const Place& place) const;
   Place next_place() const { return {Place::kFirstSet + static_cast<int>(sources_.size()), 1, 1}; }
 
-  std::string board_name_;       // of the file or preset, for messages
-  std::vector<Source> sources_;  // of the values that were replaced, by Place::source - Place::kFirstSet
+  std::string board_name_;       // name of the file or preset, for messages
+  std::vector<Source> sources_;  // origins of replaced values, by Place::source - Place::kFirstSet
   YamlNode tree_;
   bool has_extends_ = false;
-  bool is_whole_ = true;  // false: the preset that it extends could not be found
+  bool is_whole_ = true;  // false: the preset that it extends does not exist
   std::vector<Finding> findings_;
 };
 

@@ -18,6 +18,7 @@
 #include "models/kernels/stereo.h"
 #include "models/memory/arbitration_policies.h"
 #include "models/pci/pci_config.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/yaml_tree.h"
 
 namespace stereotlm::platform {
@@ -84,7 +85,7 @@ Key other(const char* path, std::string meaning, const char* unit, std::string t
   return {path, std::move(meaning), unit, OtherKey{}, std::move(text)};
 }
 
-// Of numbers, and it may be of words.
+// A key with code of its own that takes numbers, and possibly words.
 Key other_integer(const char* path, std::string meaning, const char* unit, IntegerRule rule,
                   std::string text) {
   return {path, std::move(meaning), unit, OtherKey{rule}, std::move(text)};
@@ -216,11 +217,11 @@ std::vector<Key> make_keys() {
       optional(other_integer("ssram.banks.NAME.turnaround_cycles",
                              "cycles lost when the bank NAME changes between reads and writes", "cycles",
                              memory::kTurnaroundRule, turnaround_rule)),
-      other("allocation.left_image", "banks of the left input buffers, used in turn", "", image_rule),
-      other("allocation.right_image", "banks of the right input buffers, used in turn", "", image_rule),
-      other("allocation.disparity", "banks of the result buffers, used in turn", "", list_rule),
-      other("allocation.left_lut", "bank of the left rectification table", "", table_rule),
-      other("allocation.right_lut", "bank of the right rectification table", "", table_rule),
+      other(key_of(Buffer::kLeftImage), "banks of the left input buffers, used in turn", "", image_rule),
+      other(key_of(Buffer::kRightImage), "banks of the right input buffers, used in turn", "", image_rule),
+      other(key_of(Buffer::kDisparity), "banks of the result buffers, used in turn", "", list_rule),
+      other(key_of(Buffer::kLeftLut), "bank of the left rectification table", "", table_rule),
+      other(key_of(Buffer::kRightLut), "bank of the right rectification table", "", table_rule),
       integer("matcher.window", "rows and columns of the matching window", "pixels", kernels::kWindowRule,
               member<&B::matcher, &MatcherConfig::window>),
       integer("matcher.disparities", "number of candidate disparities", "pixels", kernels::kDisparitiesRule,
@@ -239,7 +240,7 @@ std::vector<Key> make_keys() {
   };
 }
 
-// How many characters have to be changed, added, left out or exchanged with their neighbour.
+// Edit distance: characters to change, add, remove or swap with a neighbour.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> above_last(b.size() + 1);
   std::vector<std::size_t> above(b.size() + 1);
@@ -258,9 +259,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// The distance of a word from a known one, if it can be meant: with at most a slip for each three characters,
-// or without its end from an underscore on, such as its unit.
-std::optional<std::size_t> slips(std::string_view word, std::string_view known) {
+// The distance of a word from a known word, or nothing if the known word is unlikely to be meant. It is likely
+// with at most one edit per three characters, or if the word is the known one without an ending such as a unit.
+std::optional<std::size_t> likely_distance(std::string_view word, std::string_view known) {
   const bool is_begin = !word.empty() && word.size() < known.size() && known[word.size()] == '_' &&
                         known.substr(0, word.size()) == word;
   if (is_begin) return 1;
@@ -271,14 +272,14 @@ std::optional<std::size_t> slips(std::string_view word, std::string_view known) 
   return distance <= most && distance < longer ? std::optional(distance) : std::nullopt;
 }
 
-// The same of two paths, without the sections in front that are equal.
-std::optional<std::size_t> slips_of_path(std::string_view path, std::string_view known) {
+// The distance of two paths after removing equal sections in front.
+std::optional<std::size_t> likely_path_distance(std::string_view path, std::string_view known) {
   for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
     if (path.substr(0, dot + 1) != known.substr(0, dot + 1)) break;
     path.remove_prefix(dot + 1);
     known.remove_prefix(dot + 1);
   }
-  return slips(path, known);
+  return likely_distance(path, known);
 }
 
 bool is_below(std::string_view path, std::string_view section) {
@@ -288,8 +289,8 @@ bool is_below(std::string_view path, std::string_view section) {
 
 std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
-// The known path nearest to one that is not known; empty if none is near. Below `ssram.banks` any name of a
-// bank is known.
+// The known path nearest to an unknown one; empty if no path is near. Below `ssram.banks` every bank name is
+// known.
 std::string nearest_path(const std::string& path) {
   const std::string schema = schema_path(path);
   std::string best;
@@ -300,11 +301,11 @@ std::string nearest_path(const std::string& path) {
     best_distance = *distance;
   };
   const auto offer_known = [&](const std::string& known) {
-    if (is_below(schema, known)) return;  // the section that it is in
-    if (schema == known) return;          // a bank without a name
-    offer(known, slips_of_path(schema, known));
-    // The right key in the wrong place costs less than most wrong keys in the right place.
-    if (const auto moved = slips(last_part(schema), last_part(known))) offer(known, *moved + 2);
+    if (is_below(schema, known)) return;  // the section that holds `path`
+    if (schema == known) return;          // the schema path of a bank, not a key
+    offer(known, likely_path_distance(schema, known));
+    // The right key in a wrong section is nearer than most wrong keys in the right section.
+    if (const auto moved = likely_distance(last_part(schema), last_part(known))) offer(known, *moved + 2);
   };
   offer_known("extends");
   for (const Key& key : board_keys()) {
@@ -326,7 +327,7 @@ struct Names {
   std::vector<std::string> required;
 };
 
-// The names directly below each path, found once: boards are read by the thousand.
+// The names directly below each path. Computed once, because sweeps read thousands of boards.
 const Names& names_below(std::string_view path) {
   static const std::map<std::string, Names, std::less<>> kNames = [] {
     std::map<std::string, Names, std::less<>> found;
@@ -408,7 +409,7 @@ std::string nearest_text(std::string_view word, const std::vector<std::string>& 
   const std::string* nearest = nullptr;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const std::string& known : words) {
-    const auto distance = slips(word, known);
+    const auto distance = likely_distance(word, known);
     if (!distance || *distance >= least) continue;
     nearest = &known;
     least = *distance;

@@ -14,9 +14,9 @@ namespace stereotlm::platform {
 
 using kernels::IntegerRule;
 
-// What a board file may hold: every key with its rule, once. The reader, the writer, the checks of a
-// BoardConfig and the `keys` command all work from this table. The fields of the keys below `pci.load` are
-// those of a load: on a board without one they throw std::bad_optional_access.
+// The schema of board files: each key with its rule, once. The reader, the writer, problems() and the `keys`
+// command use this table. On a board without `pci.load` the fields below that key throw
+// std::bad_optional_access.
 struct IntegerKey {
   IntegerRule rule;
   int& (*field)(BoardConfig&);
@@ -30,8 +30,8 @@ struct DecimalKey {
   bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
 };
 
-// One of a few words, by its index. `get` returns a value outside the list if the board's is none of them;
-// `text` is the board's value for messages.
+// A key whose value is one of a few words, stored as its index. `get` returns an index outside the list if the
+// board's value is none of the words; `text` returns that value for messages.
 struct WordKey {
   std::vector<std::string> words;
   int (*get)(const BoardConfig&);
@@ -41,48 +41,47 @@ struct WordKey {
 
 // A key with code of its own in the reader and the writer.
 struct OtherKey {
-  std::optional<IntegerRule> numbers;  // those that it takes, if it takes any
+  std::optional<IntegerRule> numbers;  // the rule for numbers; nullopt: takes no numbers
 };
 
 struct Key {
-  std::string path;     // dotted; NAME stands for the name of a bank
+  std::string path;     // dotted; NAME stands for a bank's name
   std::string meaning;  // one line
   std::string unit;     // empty: none
   std::variant<IntegerKey, DecimalKey, WordKey, OtherKey> rule;
   std::string rule_text;     // the range or the allowed values
-  bool is_optional = false;  // its map may lack it
+  bool is_optional = false;  // may be missing from its map
 };
 
-// In the order in which boards are written.
+// All keys in the order in which boards are written.
 const std::vector<Key>& board_keys();
 const Key& board_key(std::string_view path);  // throws std::out_of_range
 
 // The names of the keys directly below a path ("" is the top), in order; empty below a single value.
 const std::vector<std::string>& child_keys(std::string_view path);
 
-// Those of child_keys() that are not optional.
+// The keys of child_keys() that are not optional.
 const std::vector<std::string>& required_keys(std::string_view path);
 
-// How many keys a board needs at the path or below it; 1 for the banks. "" is all of them.
+// The number of keys that a board needs at or below the path; 1 for the banks. "" is the whole board.
 std::size_t required_count(std::string_view path);
 
-// The rule of a key, or for a map what it holds: "a map of width, height".
+// The rule of a key. For a map the keys in it: "a map of width, height".
 std::string rule_text(std::string_view path);
 
-// What a message says of a path that is not known: "unknown key; nearest known key: PATH", or that none is
-// near.
+// The message for an unknown path: "unknown key; nearest known key: PATH", or that no known key is near.
 std::string unknown_key_text(const std::string& path);
 
-// "; nearest: WORD" with the nearest of `words` by edit distance, the first of equals; empty if none is near.
+// "; nearest: WORD" with the word of least edit distance, the first of equals; empty if no word is near.
 std::string nearest_text(std::string_view word, const std::vector<std::string>& words);
 
-// `path` with NAME for the name of a bank: `ssram.banks.bank0.words` is `ssram.banks.NAME.words`.
+// `path` with NAME in place of a bank's name: `ssram.banks.NAME.words` for `ssram.banks.bank0.words`.
 std::string schema_path(const std::string& path);
 
 // "a, b or c".
 std::string listed(const std::vector<std::string>& words);
 
-inline constexpr std::size_t kMaximumBuffers = 3;  // of an image or disparity list
+inline constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 
 // The names of the kinds of banks in board files, in the order of memory::BankKind.

@@ -11,20 +11,21 @@
 #include "models/kernels/stereo.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/value_reader.h"
 #include "platform/config/yaml_values.h"
 
 namespace stereotlm::platform {
 namespace {
 
-// A value that may be overruled: where it stands, and what it is if it could be read.
+// A value that a later source may override: its place, and the value if it could be read.
 struct Given {
   bool present = false;
   Place place;
   std::optional<int> value;
 };
 
-// `ssram.default`, or one bank's own entry.
+// The entry of `ssram.default` or of one bank.
 struct BankEntry {
   Place key;
   Given words;
@@ -88,16 +89,12 @@ class BoardReader {
     if (const auto index = values_.read_word(key.path, entry.value, rule.words)) rule.set(board_, *index);
   }
   void read_key(const Key& key, const OtherKey&, const YamlNode::Entry& entry) {
-    AllocationConfig& allocation = board_.allocation;
     const YamlNode& node = entry.value;
     if (key.path == "name") read_name(key, node);
     if (key.path == "pci.load") read_load(key, entry);
     if (key.path == "fpga.priority") read_priority(key, node);
-    if (key.path == "allocation.left_image") read_banks_of(key, node, allocation.left_image);
-    if (key.path == "allocation.right_image") read_banks_of(key, node, allocation.right_image);
-    if (key.path == "allocation.disparity") read_banks_of(key, node, allocation.disparity);
-    if (key.path == "allocation.left_lut") read_bank_of(key, node, allocation.left_lut);
-    if (key.path == "allocation.right_lut") read_bank_of(key, node, allocation.right_lut);
+    if (const auto buffer = buffer_of_key(key.path))
+      visit_buffer(board_.allocation, *buffer, [&](auto& banks) { read_banks_of(key, node, banks); });
     if (key.path == "matcher.filter") read_filter(key, entry);
     if (key.path == "matcher.lr_tolerance") read_tolerance(key, node);
   }
@@ -150,7 +147,7 @@ class BoardReader {
     board_.fpga.arbiter.priority = ports;
   }
 
-  // Whether the bank exists is a rule between keys.
+  // That the bank exists is a rule between keys.
   void read_banks_of(const Key& key, const YamlNode& node, std::vector<std::string>& banks) {
     const std::vector<YamlNode> single = {node};
     const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
@@ -171,7 +168,7 @@ class BoardReader {
     if (all_read) values_.accept(key.path, node.place);
   }
 
-  void read_bank_of(const Key& key, const YamlNode& node, std::optional<std::string>& bank) {
+  void read_banks_of(const Key& key, const YamlNode& node, std::optional<std::string>& bank) {
     const YamlNode& item = node.is_list() && node.items.size() == 1 ? node.items[0] : node;
     if (!values_.check_use(key.path, item)) return;
     if (!item.is_scalar()) return values_.report(key.path, item, key.rule_text);
@@ -281,13 +278,13 @@ class BoardReader {
     return bank;
   }
 
-  // Turnaround cycles in one entry with a kind that has none are a mistake. Where the kind is inherited they
-  // have no effect unless it has turnaround.
+  // Turnaround cycles beside a kind without turnaround in the same entry are a mistake. With an inherited kind
+  // they are allowed, and have no effect unless the kind has turnaround.
   void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;
     if (!given.value || !kind.value || traits_of(kind)->has_turnaround) return;
-    // A preset's own, under a kind that the file or `--set` has put in its place, is inherited.
+    // The value of a preset whose kind is overridden by the file or `--set` counts as inherited.
     if (given.place.source == Place::kPreset) return;
     values_.report_between_keys(
         latest(given.place, kind.place),
@@ -301,7 +298,7 @@ class BoardReader {
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
     const std::string path = "ssram.banks";
-    // The number of banks is checked first: the checks of their names take time that grows with its square.
+    // Checks the number of banks first: the time to check their names grows with its square.
     if (node.is_map() && !memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
       Place place = node.place;
       for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
@@ -361,7 +358,7 @@ class BoardReader {
     board_.banks.push_back(std::move(bank));
   }
 
-  // A rule between keys is reported at the value that was written last, of equals at the first involved.
+  // A rule between keys is reported at the value that was written last; if several were, at the first of them.
   void check_rules() {
     const auto is_valid = [this](const std::string& path) { return values_.find(path) != nullptr; };
     for (const BrokenRule& rule : broken_rules(board_, is_valid)) {

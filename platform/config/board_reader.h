@@ -8,9 +8,9 @@
 
 namespace stereotlm::platform {
 
-// Reads the whole tree of a board, presets and `--set` already put in. Appends everything that is wrong to
-// `findings`; the result is only a board if nothing was appended. With `report_missing` false a key that is
-// not there is no finding (because the preset that should supply it could not be found).
+// Reads the tree of a board into which presets and `--set` values are merged. Appends each problem to
+// `findings`; the result is valid only if nothing was appended. With `report_missing` false a missing key is
+// no problem: the preset that should supply it does not exist.
 BoardConfig read_board(const YamlNode& tree, bool report_missing, std::vector<Finding>& findings);
 
 }  // namespace stereotlm::platform

@@ -40,12 +40,12 @@ void ValueReader::report_missing_beside(const Place& place, const std::string& p
 }
 
 void ValueReader::accept(const std::string& path, const Place& place) {
-  sound_.insert_or_assign(path, place);
+  valid_.insert_or_assign(path, place);
 }
 
 const Place* ValueReader::find(const std::string& path) const {
-  const auto found = sound_.find(path);
-  return found == sound_.end() ? nullptr : &found->second;
+  const auto found = valid_.find(path);
+  return found == valid_.end() ? nullptr : &found->second;
 }
 
 bool ValueReader::check_use(const std::string& path, const YamlNode& node) {
@@ -57,7 +57,7 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
                                                               const Place& key,
                                                               const std::vector<std::string>& known,
                                                               const std::vector<std::string>& required) {
-  if (!node.misuse.empty()) {  // what a preset put into the map is not shown
+  if (!node.misuse.empty()) {  // the message does not show values that a preset added to the map
     report(node.place, path, node.is_map() ? "{..}" : short_text(node), node.misuse);
   }
   if (!node.is_map()) {

@@ -11,27 +11,26 @@
 
 namespace stereotlm::platform {
 
-// Something wrong with a board, and where. The text is `path = value: rule`. Of a rule between keys, each may
-// keep its own.
+// One problem of a board and its place. The text is `path = value: rule`.
 struct Finding {
   Finding(const Place& its_place, std::string its_text) : place(its_place), text(std::move(its_text)) {}
 
   Place place;
   std::string text;
-  bool is_between_keys = false;
-  std::string missing;  // the path of a key or section that is not there; else empty
+  bool is_between_keys = false;  // a rule between keys: each value may keep its own rule
+  std::string missing;           // path of a missing key or section; else empty
 };
 
-// "image" and "width" make "image.width"; below the top, "", the name alone.
+// The path of `name` below `path`: "image.width" for "image" and "width". The top is "".
 std::string below(const std::string& path, const std::string& name);
 
-// Reads maps and single values of a board's tree. What breaks a rule is appended to the findings and comes
-// back empty; what keeps its rule is remembered by its path, with its place.
+// Reads maps and single values of a board's tree. A value that breaks its rule is appended to the findings and
+// returned as empty. The path and place of a value that keeps its rule are stored.
 class ValueReader {
  public:
   using Entries = std::map<std::string, const YamlNode::Entry*>;
 
-  // With `report_missing` false a key that is not there is no finding. `findings` must outlive the reader.
+  // With `report_missing` false a missing key is no finding. `findings` must outlive the reader.
   ValueReader(bool report_missing, std::vector<Finding>& findings)
       : report_missing_(report_missing), findings_(findings) {}
 
@@ -39,7 +38,7 @@ class ValueReader {
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
   void report_missing(const Place& place, const std::string& path, const std::string& rule);
-  // Of a key that is needed beside the value of another one.
+  // Reports a missing key that another key's value requires.
   void report_missing_beside(const Place& place, const std::string& path, const std::string& rule);
   std::size_t finding_count() const { return findings_.size(); }
 
@@ -50,7 +49,7 @@ class ValueReader {
   bool check_use(const std::string& path, const YamlNode& node);
 
   // The entries of a map by name. Reports a value that is no map, keys that are not in `known`, repeated keys
-  // and, at the place of the map's own key, those of `required` that are missing.
+  // and, at the place `key`, missing keys of `required`.
   std::optional<Entries> read_entries(const std::string& path, const YamlNode& node, const Place& key,
                                       const std::vector<std::string>& known,
                                       const std::vector<std::string>& required);
@@ -58,7 +57,7 @@ class ValueReader {
   std::optional<int> read_integer(const std::string& path, const YamlNode& node, const IntegerRule& rule,
                                   const std::string& rule_text);
 
-  // The index of a word.
+  // The index of the word in `words`.
   std::optional<int> read_word(const std::string& path, const YamlNode& node,
                                const std::vector<std::string>& words);
 
@@ -67,7 +66,7 @@ class ValueReader {
 
   bool report_missing_;
   std::vector<Finding>& findings_;
-  std::map<std::string, Place> sound_;
+  std::map<std::string, Place> valid_;
 };
 
 }  // namespace stereotlm::platform

@@ -54,8 +54,8 @@ void check_characters(const std::string& text, int source) {
   }
 }
 
-// Gives yaml-cpp's marks as places. A mark counts lines and columns from 0, and columns in bytes. The cost of
-// a place does not depend on the length of its line.
+// Converts yaml-cpp's marks to places. A mark counts lines and columns from 0, and columns in bytes. The cost
+// does not depend on the length of a line.
 class Places {
  public:
   Places(const std::string& text, int source) : source_(source), continuing_(text.size() + 1) {
@@ -72,10 +72,10 @@ class Places {
 
  private:
   int source_;
-  std::vector<int> continuing_;  // for each byte: how many of the bytes before it continue a character
+  std::vector<int> continuing_;  // for each byte: the number of earlier bytes that continue a character
 };
 
-// Whether the quoted scalar that begins at `at` has its closing quote; true for any other text.
+// Whether the quoted scalar that begins at `at` has a closing quote; true if none begins there.
 bool is_closed(const std::string& text, std::size_t at) {
   const char quote = at < text.size() ? text[at] : ' ';
   if (quote != '"' && quote != '\'') return true;
@@ -118,7 +118,7 @@ class TreeBuilder : public YAML::EventHandler {
     YamlNode node = make(YamlNode::Kind::kScalar, mark, tag, anchor);
     node.text = value;
     node.quoted = tag == "!";
-    // yaml-cpp takes the end of the text after a line break for a closing quote.
+    // yaml-cpp accepts the end of the text after a line break as a closing quote.
     if (node.quoted && !is_closed(text_, static_cast<std::size_t>(std::max(mark.pos, 0)))) {
       throw YamlError(node.place, "not YAML: the closing quote is missing");
     }
@@ -136,13 +136,12 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  // A board or a plan needs fewer than ten. yaml-cpp has a limit too, but does not say where a text exceeds
-  // it.
+  // A board or a plan needs fewer than ten levels. yaml-cpp has a limit too, but gives no place for it.
   static constexpr std::size_t kMostLevels = 100;
 
   struct Open {
     YamlNode node;
-    YamlNode key;  // of the entry whose value comes next
+    YamlNode key;  // key of the entry whose value comes next
     bool has_key;
   };
 
@@ -176,7 +175,7 @@ class TreeBuilder : public YAML::EventHandler {
       parent.key = std::move(node);
       parent.has_key = true;
     } else {
-      // A value that is not there has no place of its own.
+      // A missing value has no place of its own.
       if (node.kind == YamlNode::Kind::kNull && node.text.empty() && node.misuse.empty()) {
         node.place = parent.key.place;
       }
@@ -192,7 +191,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::vector<Open> open_;
 };
 
-// What a board needs where yaml-cpp gives this message; empty for a message that says so itself.
+// The rule to report for a message of yaml-cpp; empty if the message states the rule itself.
 std::string_view expectation(std::string_view message) {
   namespace Message = YAML::ErrorMsg;
   static const std::array<std::array<std::string_view, 2>, 7> kExpectations = {{
@@ -211,7 +210,7 @@ std::string_view expectation(std::string_view message) {
   return "";
 }
 
-// The rule that the text breaks at an error of yaml-cpp. What lies behind `size` is not the writer's.
+// The rule that the text breaks at an error of yaml-cpp. Text after `size` was added by this reader.
 std::string syntax_rule(const std::string& text, std::size_t size, const YAML::Exception& error) {
   const std::size_t at = std::min(static_cast<std::size_t>(std::max(error.mark.pos, 0)), size);
   const std::size_t line = text.substr(0, at).rfind('\n') + 1;
@@ -227,7 +226,7 @@ std::string syntax_rule(const std::string& text, std::size_t size, const YAML::E
                      expected);
 }
 
-// `size`: of what somebody wrote; the rest of the text was put behind it.
+// `size`: length of the user's text; the rest of `text` was added by this reader.
 YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   check_characters(text, source);
   const Places places(text, source);
@@ -244,7 +243,7 @@ YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   return builder.take_root();
 }
 
-// What is beyond `enough` bytes may be left out.
+// Text after `enough` bytes may be left out.
 void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
   if (out.size() > enough) return;
   switch (node.kind) {
@@ -275,8 +274,7 @@ void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
   }
 }
 
-// A scalar in a form that flow style can hold: as it was written, or in quotes where it has characters that
-// YAML could take for something else.
+// A scalar in flow style: as it was written, or in quotes if it has characters with a meaning in YAML.
 std::string flow_scalar(const YamlNode& node) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-";
   if (node.kind == YamlNode::Kind::kNull) return "~";
@@ -345,7 +343,7 @@ YamlNode parse_yaml(const std::string& text, int source) {
   return parse_document(text, text.size(), source);
 }
 
-// Inside a flow list everything is flow style; a comment ends with its line.
+// Flow style throughout: inside a flow list there is no block style. A comment ends with its line.
 YamlNode parse_flow_value(const std::string& text, int source) {
   YamlNode list = parse_document("[" + text + "\n]", 1 + text.size(), source);
   const std::size_t first = text.find_first_not_of(" \t\r\n");

@@ -7,8 +7,8 @@
 
 namespace stereotlm::platform {
 
-// Where a value was written. Sources are numbered by who overrules whom: presets that a board extends, the
-// board itself, then each `--set` in its order.
+// The place at which a value was written. A source overrides those with lower numbers: presets that a board
+// extends, the board itself, then each `--set` in its order.
 struct Place {
   static constexpr int kPreset = 0;
   static constexpr int kBoard = 1;
@@ -19,18 +19,18 @@ struct Place {
   int column = 1;  // from 1, in characters
 };
 
-// A YAML value as it was written: nothing is converted, keys may repeat, every value knows its place.
+// A YAML value as it was written. Nothing is converted, keys may repeat, and each value has its place.
 struct YamlNode {
   enum class Kind { kNull, kScalar, kList, kMap };
   struct Entry;
 
   Kind kind = Kind::kNull;
   Place place;
-  std::string text;             // of a scalar; of a null `~`, `null`, or nothing
+  std::string text;             // text of a scalar; of a null `~`, `null`, or nothing
   bool quoted = false;          // a scalar in quotes, or a block scalar
-  std::string misuse;           // a rule that this value breaks by an anchor, an alias or a tag; else empty
-  std::vector<YamlNode> items;  // of a list
-  std::vector<Entry> entries;   // of a map, in the order of the text
+  std::string misuse;           // the rule that an anchor, an alias or a tag breaks here; else empty
+  std::vector<YamlNode> items;  // values of a list
+  std::vector<Entry> entries;   // entries of a map, in the order of the text
 
   bool is_map() const { return kind == Kind::kMap; }
   bool is_list() const { return kind == Kind::kList; }
@@ -54,20 +54,20 @@ class YamlError : public std::runtime_error {
   Place place;
 };
 
-// One YAML document. Throws YamlError for the first error of syntax, for text that is not UTF-8, for control
-// characters, for nothing at all and for a second document.
+// Parses one YAML document. Throws YamlError for the first error of syntax, text that is not UTF-8, control
+// characters, an empty text and a second document.
 YamlNode parse_yaml(const std::string& text, int source);
 
-// One YAML flow value, such as `3`, `[a, b]` or `{a: 1}`. Throws YamlError.
+// Parses one YAML flow value, such as `3`, `[a, b]` or `{a: 1}`. Throws YamlError.
 YamlNode parse_flow_value(const std::string& text, int source);
 
-// The value in one line for a message: flow style, shortened to about 60 characters.
+// The value in one line in flow style, shortened to about 60 characters for a message.
 std::string short_text(const YamlNode& node);
 
-// The value in one line, flow style, in full.
+// The value in one line in flow style, in full.
 std::string flow_text(const YamlNode& node);
 
-// The map as YAML in block style. parse_yaml() reads the same values back; places and misuse are lost.
+// The map as YAML in block style. parse_yaml() reads the same values back, without places and misuse.
 std::string yaml_text(const YamlNode& map);
 
 bool is_utf8(std::string_view text);

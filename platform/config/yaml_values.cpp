@@ -37,7 +37,7 @@ bool is_one_of(const std::string& text, const std::array<std::string_view, kSize
   return std::find(words.begin(), words.end(), text) != words.end();
 }
 
-// Numbers of YAML 1.1 and 1.2: 7, +7, 0x1F, 0o17, 1_000, 1., .5, 1e3, .inf, .nan.
+// Whether YAML 1.1 or 1.2 reads the text as a number: 7, +7, 0x1F, 0o17, 1_000, 1., .5, 1e3, .inf, .nan.
 bool looks_like_number(const std::string& text) {
   const std::string lower_text = lower(text);
   std::string_view rest = lower_text;
@@ -76,7 +76,7 @@ std::optional<double> decimal_of(const YamlNode& node) {
   if (!node.is_scalar() || node.quoted || !is_decimal(node.text)) return std::nullopt;
   double value = 0;
   const auto result = std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
-  // Too large, or too small to tell from 0.
+  // Too large for double, or so small that it rounds to 0.
   if (result.ec == std::errc::result_out_of_range) {
     const bool is_large = node.text.find_first_not_of("-0") < node.text.find('.');
     return is_large ? std::numeric_limits<double>::infinity() : 0.0;
@@ -85,7 +85,7 @@ std::optional<double> decimal_of(const YamlNode& node) {
 }
 
 std::string decimal_text(double value) {
-  std::array<char, 400> text{};  // the longest has some 330
+  std::array<char, 400> text{};  // the longest number has about 330 characters
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
   return {text.data(), result.ptr};
 }

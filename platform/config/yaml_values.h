@@ -9,21 +9,21 @@
 
 namespace stereotlm::platform {
 
-// Decimal digits with an optional minus, not in quotes; nullopt for anything else. A number beyond 64 bits is
-// the largest or smallest of them, which no key allows.
+// The value of decimal digits with an optional minus, not in quotes; nullopt for anything else. A number beyond
+// 64 bits becomes the largest or smallest 64-bit number, which no key allows.
 std::optional<std::int64_t> integer_of(const YamlNode& node);
 
-// An integer as above, or one with a decimal point and digits on both sides of it. A number beyond the range
-// of double is infinite.
+// The value of an integer as above, or of a number with digits on both sides of a decimal point. A number
+// beyond the range of double becomes infinite.
 std::optional<double> decimal_of(const YamlNode& node);
 
-// The shortest text that decimal_of() reads back as that number, which is finite.
+// The shortest text that decimal_of() reads back as `value`, which must be finite.
 std::string decimal_text(double value);
 
-// A scalar in quotes, or one that no reader of YAML could take for a number, a truth value or null.
+// Whether the value is a scalar in quotes, or one that no reader of YAML takes for a number, a boolean or null.
 bool is_text(const YamlNode& node);
 
-// The text as a flow scalar that every reader of YAML reads back as that text, in quotes where it needs them.
+// `text` as a flow scalar, in quotes where needed, that every reader of YAML reads back as the same text.
 std::string scalar_text(const std::string& text);
 
 }  // namespace stereotlm::platform

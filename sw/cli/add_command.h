@@ -9,7 +9,7 @@ class App;
 
 namespace stereotlm::cli {
 
-// Puts a command into the program. `parsed` is called when the command line holds it, while that is parsed.
+// Adds a command to the program. The parser calls `parsed` if the command line has this command.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description,
                       const std::function<void()>& parsed, const std::string& footer = "");
 

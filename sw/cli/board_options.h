@@ -15,24 +15,24 @@ class App;
 
 namespace stereotlm::cli {
 
-// BOARD and the options that go with every command that takes one.
+// BOARD and the options of every command that takes a board.
 class BoardOptions {
  public:
-  // Adds them to a command, before it is parsed.
+  // Adds the options to a command, before parsing.
   void add_to(CLI::App& command);
 
-  // While the command's callback runs: reports what is missing; or throws Refused.
+  // To be called in the command's callback: reports missing options, or throws Refused.
   void check_given(process::Problems& problems);
   void check_usage();
 
-  // BOARD as it was typed.
+  // BOARD as typed.
   const std::string& name() const { return board_.text; }
 
-  // The board; nothing if it is wrong, with every reason reported.
+  // Loads the board. Reports all problems and returns nullopt if there are any.
   std::optional<platform::BoardConfig> load(process::Problems& problems) const;
 
-  // The calibration that was given, if any, as checked, for that board; nothing if it is wrong too, with
-  // every reason reported. `board`: null if it is wrong.
+  // Loads the calibration and checks that it fits the board; nullopt if no calibration was given. Reports all
+  // problems and returns nullopt if there are any. `board`: null if it has problems.
   std::optional<runs::CalibrationInput> load_calibration(const platform::BoardConfig* board,
                                                          process::Problems& problems) const;
 
@@ -40,7 +40,7 @@ class BoardOptions {
   Typed board_;
   TypedList sets_;
   Typed calibration_option_;
-  std::optional<std::string> calibration_;  // as check_given() leaves it
+  std::optional<std::string> calibration_;  // set by check_given()
 };
 
 }  // namespace stereotlm::cli

@@ -9,7 +9,7 @@
 
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/tables.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
@@ -21,7 +21,7 @@ namespace stereotlm::cli {
 namespace {
 
 using platform::BoardConfig;
-using platform::Buffer;
+using platform::PlacedBuffer;
 using platform::ResourceBound;
 
 using Names = std::vector<std::string>;
@@ -30,57 +30,55 @@ void add_new(Names& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-// One resource.
+// A resource and its bound.
 struct Row {
-  std::string role;  // "port left_lut"; of a bank what lies in it, "bank of left_image left_lut"
+  std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
   std::uint64_t cycles = 0;
-  Names banks;  // that have this role
+  Names banks;  // banks with this role
 
   std::string label() const { return banks.empty() ? role : fmt::format("bank {}", fmt::join(banks, ", ")); }
 };
 
-// A list of the allocation.
+// A list of the allocation and its banks.
 struct List {
   std::string name;  // "left_image"
-  Names banks;       // that it takes
+  Names banks;       // banks in the list
 };
 
-// Frames whose bounds differ in nothing but the names of banks.
+// Frames whose bounds differ only in the names of banks.
 struct Group {
   std::vector<std::uint64_t> frames;
   std::vector<List> lists;
   std::vector<Row> rows;
 };
 
-// The buffers that a frame uses.
-std::vector<Buffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
-  std::vector<Buffer> all = platform::buffers(board.allocation);
-  std::map<std::string, std::uint64_t> lengths;
-  for (const Buffer& buffer : all) ++lengths[buffer.key];
-  const auto is_of_another = [&](const Buffer& buffer) {
-    return buffer.index >= 0 && static_cast<std::uint64_t>(buffer.index) != frame % lengths[buffer.key];
+// The buffers of a frame.
+std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
+  std::vector<PlacedBuffer> all = platform::buffers(board.allocation);
+  std::map<platform::Buffer, std::uint64_t> lengths;
+  for (const PlacedBuffer& buffer : all) ++lengths[buffer.buffer];
+  const auto is_of_another = [&](const PlacedBuffer& buffer) {
+    return buffer.index >= 0 && static_cast<std::uint64_t>(buffer.index) != frame % lengths[buffer.buffer];
   };
   all.erase(std::remove_if(all.begin(), all.end(), is_of_another), all.end());
   return all;
 }
 
-std::string short_name(const Buffer& buffer) { return buffer.key.substr(buffer.key.find('.') + 1); }
-
 Group group_of(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frame) {
   const std::string bank = "bank ";
   Group group;
   group.frames = {frame};
-  const std::vector<Buffer> buffers = buffers_of(board, frame);
-  for (const Buffer& buffer : buffers) {
-    if (buffer.index >= 0) group.lists.push_back({short_name(buffer), {buffer.bank}});
+  const std::vector<PlacedBuffer> buffers = buffers_of(board, frame);
+  for (const PlacedBuffer& buffer : buffers) {
+    if (buffer.index >= 0) group.lists.push_back({platform::name_of(buffer.buffer), {buffer.bank}});
   }
   for (const ResourceBound& bound : platform::frame_bounds(board, tables, frame)) {
     Row row{bound.resource, bound.cycles, {}};
     if (bound.resource.compare(0, bank.size(), bank) == 0) {
       row.banks = {bound.resource.substr(bank.size())};
       row.role = bank + "of";
-      for (const Buffer& buffer : buffers) {
-        if (buffer.bank == row.banks.front()) row.role += ' ' + short_name(buffer);
+      for (const PlacedBuffer& buffer : buffers) {
+        if (buffer.bank == row.banks.front()) row.role += std::string(" ") + platform::name_of(buffer.buffer);
       }
     }
     group.rows.push_back(std::move(row));
@@ -88,7 +86,7 @@ Group group_of(const BoardConfig& board, const platform::Tables& tables, std::ui
   return group;
 }
 
-// Takes the frame of `other` into the group, if it belongs there.
+// Adds the frame of `other` to the group if its bounds are equal.
 bool take_in(Group& group, const Group& other) {
   const auto is_like = [](const Row& a, const Row& b) { return a.role == b.role && a.cycles == b.cycles; };
   if (!std::is_permutation(group.rows.begin(), group.rows.end(), other.rows.begin(), other.rows.end(),

@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSyntheticWidth = 640;  // of fpl2003
+constexpr int kSyntheticWidth = 640;  // image width of fpl2003, pixels
 constexpr int kSyntheticHeight = 480;
 constexpr int kSyntheticPairs = 9;
 
@@ -68,7 +68,7 @@ int print_grid(const CalibrateOptions& options) {
   return kDone;
 }
 
-// What a rig that is made up shows.
+// The pictures of a synthetic rig.
 std::vector<calib::PicturePair> synthetic_pictures(const calib::SyntheticRig& rig,
                                                    const calib::GridShape& grid, const fs::path& folder) {
   std::vector<calib::PicturePair> pairs;
@@ -121,7 +121,7 @@ class Calibrator {
     return kInterrupted;
   }
 
-  // On a thread of its own: OpenCV cannot be asked to stop. An interrupt ends the process.
+  // Runs on a separate thread, because OpenCV cannot be stopped. An interrupt ends the process.
   void calibrate() {
     constexpr std::chrono::milliseconds kBetweenLooks{50};
     auto result =
@@ -153,9 +153,9 @@ class Calibrator {
     }
   }
 
-  // The folder of drawings is replaced whole.
+  // Refuses pictures inside the folder of drawings, which is replaced as a whole.
   void check_pictures_survive(process::Problems& problems) const {
-    std::error_code none;  // what cannot be found was not read either
+    std::error_code none;  // a missing folder holds no picture
     const fs::path drawings = fs::weakly_canonical(output_->files().drawings, none);
     for (const calib::PicturePair& pair : request_.pictures) {
       for (const std::string& name : {pair.left_name, pair.right_name}) {
@@ -204,8 +204,7 @@ class Calibrator {
                  functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
   }
 
-  // The pictures that were calibrated from, and a scene with the disparities that the board should find in
-  // it.
+  // Writes the pictures of the calibration, and a scene with the disparities that the board should find.
   void write_synthetic(const fs::path& folder) {
     const runs::MediaFunctions& media = runs::media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {
@@ -226,7 +225,7 @@ class Calibrator {
     output_->add(folder / "scene_truth.png", media.encode_png_gray(grey));
   }
 
-  // Grey levels a disparity.
+  // Grey levels per disparity.
   int truth_scale() const { return 255 / options_.disparities; }
 
   std::string written_text() const {

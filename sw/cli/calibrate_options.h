@@ -18,20 +18,20 @@ namespace stereotlm::cli {
 // The options of `calibrate`.
 class CalibrateOptions {
  public:
-  // Adds them to the command, before it is parsed.
+  // Adds the options to the command, before parsing.
   void add_to(CLI::App& command);
 
-  // While the command's callback runs: throws Refused if they cannot be used.
+  // To be called in the command's callback: throws Refused if options are wrong.
   void check_usage();
 
-  // As check_usage() leaves them.
+  // Set by check_usage().
   calib::GridShape grid;
-  bool print_grid = false;        // only draw the grid, into `out`
-  std::vector<std::string> left;  // patterns of file names; none for a rig that is made up
+  bool print_grid = false;        // only draw the grid into `out`
+  std::vector<std::string> left;  // patterns of file names; empty for a synthetic rig
   std::vector<std::string> right;
-  std::optional<std::uint64_t> synthetic;  // the seed of that
+  std::optional<std::uint64_t> synthetic;  // seed of a synthetic rig
   int disparities = 80;
-  std::optional<int> disparity_offset;  // nothing: auto
+  std::optional<int> disparity_offset;  // nullopt: auto
   std::string out;
 
  private:

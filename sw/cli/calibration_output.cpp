@@ -21,7 +21,7 @@ using files::is_file;
 using files::is_folder;
 using files::is_there;
 
-using Patterns = std::vector<const char*>;  // of fnmatch
+using Patterns = std::vector<const char*>;  // patterns for fnmatch()
 
 const Patterns kDrawings = {"corners_[0-9]*.png", "rectified_[0-9]*.png", "displacement.png",
                             "source_lines.png"};
@@ -41,7 +41,7 @@ const runs::RigFiles& in_a_folder(const runs::RigFiles& files) {
                                        fs::status_known(status) ? "no such folder" : error.message()));
 }
 
-// What of a folder that is replaced whole is not ours.
+// An entry, in a folder that is replaced as a whole, that calibrate did not write.
 std::optional<fs::path> foreign_file(const fs::path& folder, const Patterns& ours) {
   for (const fs::path& name : files::entries(folder)) {
     const bool is_ours = std::any_of(ours.begin(), ours.end(), [&name](const char* pattern) {
@@ -77,7 +77,7 @@ void check_folder(const fs::path& folder, const Patterns& ours) {
   }
 }
 
-// `in_commit`: a run was killed while it put its files into place, of which the calibration is the last.
+// `in_commit`: a killed run was moving its files into place; the calibration is moved last.
 void check_earlier(const runs::RigFiles& files, bool makes_pictures, bool in_commit) {
   std::vector<fs::path> replaced = {files.left_lut, files.right_lut, files.drawings};
   if (makes_pictures) replaced.push_back(files.pictures);

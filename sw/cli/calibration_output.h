@@ -11,24 +11,24 @@
 
 namespace stereotlm::cli {
 
-// What calibrate writes: an earlier calibration of that name, or none, until commit(), and the new one whole
-// after it. An OutputFolder whose mark is F.yaml; what else is in its folder stays. New files are written
-// aside, into the folder F.partial beside F.yaml.
+// The files of calibrate. commit() replaces an earlier calibration F.yaml as a whole; before, it is unchanged.
+// Other files in the folder stay. An OutputFolder whose mark is F.yaml; new files are first written to the folder
+// F.partial beside F.yaml.
 class CalibrationOutput {
  public:
-  // Proves that the folder can be written to. Throws std::runtime_error, having changed nothing, if it
-  // cannot, or is not there, if F.yaml is there and no calibration, or what lies beside it under the names
-  // that calibrate uses was not written by it. `makes_pictures`: F_pictures/ is written too; else nothing
-  // touches it.
+  // Checks that the folder is writable. Changes nothing and throws std::runtime_error if it does not exist or is
+  // not writable, if F.yaml exists and is no calibration, or if a file beside it has a name that calibrate uses
+  // but was not written by calibrate. `makes_pictures`: writes F_pictures/ too; otherwise that folder stays.
   CalibrationOutput(const std::string& calibration, bool makes_pictures);
 
   const runs::RigFiles& files() const { return files_; }
 
-  // `file`: one of files(), or one in a folder of theirs. Throws std::runtime_error if it cannot be stored.
+  // Adds a file. `file`: one of files(), or one below a folder of files(). Throws std::runtime_error if it cannot
+  // be stored.
   void add(const std::filesystem::path& file, std::string_view bytes);
   void add(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes);
 
-  // Replaces the earlier calibration. Throws std::runtime_error if that fails, with all back in place.
+  // Replaces the earlier calibration. If it fails, restores all files and throws std::runtime_error.
   void commit() { folder_.commit(); }
 
  private:

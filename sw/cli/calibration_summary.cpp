@@ -15,7 +15,7 @@ namespace {
 using calib::Calibration;
 using calib::RowError;
 
-constexpr int kWindow = 7;  // of fpl2003
+constexpr int kWindow = 7;  // window of fpl2003, pixels
 
 std::string row(const std::string& name, const std::string& text) {
   return fmt::format("{:<16} {}\n", name, text);
@@ -40,7 +40,7 @@ std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictu
                      pictures, result.calibration.grid.corners(), corners, result.left_out.size());
 }
 
-// Of the middle of the picture.
+// For the centre of the picture.
 std::string depths_text(const Calibration& made) {
   const calib::DepthGeometry geometry = {made.rectification.q, made.disparity_offset};
   const auto depth = [&](int disparity) {

@@ -6,8 +6,8 @@
 
 namespace stereotlm::cli {
 
-// What calibrate prints: how many pairs and corners, the rig, how good it is, what the tables are for.
-// `pictures`: pairs that there were.
+// The summary that calibrate prints: pairs and corners, the rig, its errors, and the use of the tables.
+// `pictures`: number of pairs given.
 std::string calibration_summary(const calib::CalibrationResult& result, std::size_t pictures);
 
 }  // namespace stereotlm::cli

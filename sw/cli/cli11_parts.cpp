@@ -3,7 +3,7 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/typed_option.h"
 
-// Both headers are done with CLI11, whose own takes long to compile, in this one file.
+// Implements both headers. Only this file includes CLI11 in full, because it takes long to compile.
 namespace stereotlm::cli {
 
 template <typename Text>

@@ -14,12 +14,12 @@
 #include "sw/cli/unbuilt.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 
 namespace stereotlm::cli {
 namespace {
 
-// CLI11's, with descriptions in lines of at most kTextColumns columns.
+// CLI11's formatter with descriptions wrapped to kTextColumns columns.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { label("SUBCOMMAND", "COMMAND"); }
@@ -38,7 +38,7 @@ class HelpFormatter : public CLI::Formatter {
   static constexpr std::size_t kIndent = 30;
 };
 
-// The first argument must be a command, or ask for help or the version.
+// Checks that the first argument is a command, or requests help or the version.
 void check_first_argument(const CLI::App& program, int argc, const char* const* argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   std::vector<std::string> commands;
@@ -60,7 +60,7 @@ std::string help_of(const CLI::App& program) {
   return "stereotlm " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help";
 }
 
-// Refuses the options that the parsed command does not have, if there are any among what it could not use.
+// Throws Refused for options that the parsed command does not have.
 void check_options(const CLI::App& program) {
   process::Problems problems;
   for (const CLI::App* command : program.get_subcommands()) {

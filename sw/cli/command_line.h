@@ -4,7 +4,7 @@
 
 namespace stereotlm::cli {
 
-// What the arguments ask for; the action of --help and --version prints. Throws Refused.
+// Parses the arguments and returns the action to run; that of --help and --version prints. Throws Refused.
 Action parse_command_line(int argc, const char* const* argv);
 
 }  // namespace stereotlm::cli

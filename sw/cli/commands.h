@@ -8,11 +8,11 @@ class App;
 
 namespace stereotlm::cli {
 
-// What the command line asks for; returns the exit status. Throws Refused before it has done anything.
+// The work of a command. Returns the exit status. Throws Refused before it has any effect.
 using Action = std::function<int()>;
 
-// Each puts one command into the program, whose parsing sets `action` if the command line holds that command,
-// and throws Refused if its options are wrong.
+// Each adds one command to the program. Parsing sets `action` if the command line has that command, and throws
+// Refused if its options are wrong.
 void add_run(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_boards(CLI::App& program, Action& action);

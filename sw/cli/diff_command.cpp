@@ -40,7 +40,7 @@ struct DiffOptions {
                       "Write the cycles and stalls of every frame and row of both");
   }
 
-  // As check_usage() leaves it.
+  // Set by check_usage().
   std::optional<std::string> csv;
 
   void check_usage() {

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using report::Values;
 
-// Every value of run.json by its path.
+// All values of run.json by path.
 Values options_of(const runs::RecordedRun& run) {
   Values values;
   const Json flat = Json::parse(run.run_json).flatten();
@@ -30,11 +30,11 @@ Values options_of(const runs::RecordedRun& run) {
   return values;
 }
 
-// The figures of one run by their paths in stats.json.
+// The figures of a run by path in stats.json.
 struct RunFigures {
   explicit RunFigures(const runs::RecordedRun& run) : document(Json::parse(run.stats_json)) {
     for (platform::BoardValue& value : explore::figures_of(document).values) {
-      // These follow from others, or are compared frame by frame.
+      // Not compared here: they follow from other figures, or are compared per frame.
       const auto ends_in = [&value](const std::string& key) {
         return value.path.size() >= key.size() &&
                value.path.compare(value.path.size() - key.size(), key.size(), key) == 0;
@@ -45,7 +45,7 @@ struct RunFigures {
     }
   }
 
-  // Those below some keys, without these in their paths if it is one key.
+  // The figures below some keys. With one key, their paths omit that key.
   Values below(const std::vector<std::string>& keys) const {
     Values found;
     for (platform::BoardValue value : values) {
@@ -76,7 +76,7 @@ std::string figures_text(const std::string& head, const RunFigures& a, const Run
   return report::figures_table(head, a.below({head}), b.below({head}));
 }
 
-// Texts that are not empty, with an empty line between them.
+// Joins the texts that are not empty, with an empty line between them.
 std::string in_sections(const std::vector<std::string>& texts) {
   std::string all;
   for (const std::string& text : texts) {

@@ -7,7 +7,7 @@
 
 namespace stereotlm::cli {
 
-// What `diff` prints of two runs, once they are aligned.
+// The text that `diff` prints for two compared runs.
 std::string diff_text(const runs::RecordedRun& a, const runs::RecordedRun& b,
                       const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 

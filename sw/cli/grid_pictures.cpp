@@ -21,7 +21,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// In the order of their names. A file that has the name of a pattern is meant.
+// The files that match a pattern, sorted by name. A file whose name equals the pattern is taken literally.
 Names files_of(const std::string& option, const Names& patterns, process::Problems& problems) {
   Names files;
   for (const std::string& pattern : patterns) {
@@ -47,7 +47,7 @@ Names files_of(const std::string& option, const Names& patterns, process::Proble
 
 std::string name_of(const std::string& path) { return std::filesystem::path(path).stem(); }
 
-// How many characters at their beginning all names share.
+// The length of the common prefix of all names.
 std::size_t common_beginning(const Names& names) {
   std::size_t length = names.front().size();
   for (const std::string& name : names) {
@@ -58,7 +58,7 @@ std::size_t common_beginning(const Names& names) {
   return length;
 }
 
-// What is left of the names without what all of them have in common.
+// The names without their common prefix and suffix.
 Names own_parts(const Names& files) {
   Names names;
   for (const std::string& file : files) names.push_back(name_of(file));
@@ -71,7 +71,7 @@ Names own_parts(const Names& files) {
   return names;
 }
 
-// A picture that is missing on each side would shift all pairs between them.
+// If each side misses a different picture, all pairs between the two would be wrong.
 void compare_names(const Names& left, const Names& right) {
   const Names left_parts = own_parts(left);
   const Names right_parts = own_parts(right);
@@ -124,7 +124,7 @@ class Loader {
     }
   }
 
-  // A picture that is there twice would count twice, and says nothing new.
+  // A picture that appears twice would count twice without new information.
   void check_new(const std::string& option, const std::string& path, const kernels::GrayImage& image) {
     const auto [known, is_new] =
         paths_.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), path);
@@ -134,7 +134,7 @@ class Loader {
   }
 
   process::Problems& problems_;
-  std::map<std::string, std::string> paths_;  // by the sum of their pixels
+  std::map<std::string, std::string> paths_;  // paths by SHA-256 of the pixels
   std::string first_;
   int width_ = 0;
   int height_ = 0;

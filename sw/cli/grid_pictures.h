@@ -8,10 +8,10 @@
 
 namespace stereotlm::cli {
 
-// The pictures that the patterns name, in pairs: both sides in the order of their names. Reports what is
-// wrong: a pattern without files, counts that differ, what is no picture, a picture that is there twice,
-// pictures of different sizes. Says on standard error which pictures were converted to grey, and where the
-// names of a pair differ in more than what all of their side have in common. Ends where it is interrupted().
+// Loads the pictures that match the patterns, as pairs; both sides are sorted by name. Reports problems: a pattern
+// without files, different counts, a file that is no picture, a picture that appears twice, different sizes.
+// Prints notes on standard error: pictures that were converted to grey, and pairs whose names differ in more than
+// the parts that all names of a side share. Stops when interrupted().
 std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string>& left,
                                                    const std::vector<std::string>& right,
                                                    process::Problems& problems);

@@ -17,7 +17,7 @@
 namespace stereotlm::cli {
 namespace {
 
-// A preset's file begins with a comment of one line that says what the board is for.
+// The first line of a preset's file is a comment with the purpose of the board.
 std::string description(std::string_view file) {
   const std::string line(file.substr(0, file.find('\n')));
   return line.substr(std::min(line.size(), line.find_first_not_of("# ")));

@@ -14,7 +14,7 @@
 #include "sw/files/sha256.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/sources/media_library.h"
@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether the file lies in the folder or below it, whatever links and dots the two paths have. What does not
-// exist lies nowhere.
+// Whether the file lies in the folder or below it, after resolving links and dots. False if either does not
+// exist.
 bool lies_in(const std::string& file, const std::string& folder) {
   std::error_code no_file;
   std::error_code no_folder;
@@ -75,7 +75,7 @@ class InputLoader {
   }
 
  private:
-  // `option`: what an error of this step is about, or nothing.
+  // Runs a step and reports its exception. `option`: its prefix in the message, may be empty.
   void attempt(const std::string& option, const std::function<void()>& step) {
     try {
       step();
@@ -107,12 +107,12 @@ class InputLoader {
         source_.pairs->length()));
   }
 
-  // False, and reported, if an input lies in the result folder, which is replaced whole.
+  // Reports inputs inside the result folder, which is replaced as a whole. Returns whether there are none.
   bool pictures_survive() {
     std::set<std::string> reported;
     for (const runs::NamedFile& file : source_.files) {
       if (!lies_in(file.path, *options_.out)) continue;
-      // Of a sequence, one is enough.
+      // Reports one picture of a sequence only.
       if (file.option == "--sequence" && reported.count(file.option) > 0) continue;
       reported.insert(file.option);
       problems_.add(
@@ -123,7 +123,7 @@ class InputLoader {
     return reported.empty();
   }
 
-  // Nothing in a file says that it is of another rig; the pictures do.
+  // Warns if the pictures do not fit the calibration: the file of another rig cannot be detected by itself.
   void say_how_rows_agree() {
     constexpr double kDoubtful = 1.5;  // pixels
     constexpr std::size_t kFew = 10;
@@ -175,7 +175,7 @@ class InputLoader {
     run.frames = input_.frames;
     run.truth_scale = options_.truth_scale;
     run.save_frames = options_.save_frames;
-    run_json(run);  // refuses now what it would refuse after the run
+    run_json(run);  // throws now instead of after the run
   }
 
   const RunOptions& options_;

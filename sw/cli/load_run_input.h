@@ -5,9 +5,9 @@
 
 namespace stereotlm::cli {
 
-// Throws Refused with everything that is wrong. Says on standard error which pictures were converted to grey.
-// Once the pictures are checked, which may take long, interrupts are caught; before, they end the process,
-// which has changed nothing.
+// Loads and checks the inputs of a run. Throws Refused with all problems. Prints on standard error which pictures
+// were converted to grey. Checking pictures may take long: until then an interrupt ends the process, which has
+// changed nothing; afterwards interrupts are caught.
 runs::RunInput load_run_input(const RunOptions& options);
 
 }  // namespace stereotlm::cli

@@ -14,7 +14,7 @@ std::string text_of(const sc_core::sc_report& report) {
   return std::string(report.get_msg_type()) + ": " + report.get_msg();
 }
 
-// SystemC prints to standard output. An error goes on to where it is caught.
+// Replaces SystemC's report handler, which prints to standard output. An error is thrown to its catcher.
 void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
   if (report.get_severity() == sc_core::SC_WARNING) process::say("warning", text_of(report));
   sc_core::sc_report_handler::default_handler(
@@ -44,7 +44,7 @@ int sc_main(int argc, char** argv) {
   return stereotlm::cli::run_program(argc, argv);
 }
 
-// Takes the place of libsystemc's own main, which prints the copyright banner before sc_main can turn it off.
+// Replaces main() of libsystemc, which prints the copyright banner before sc_main can turn it off.
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
   return sc_core::sc_elab_and_sim(argc, argv);

@@ -15,17 +15,17 @@ class App;
 
 namespace stereotlm::cli {
 
-// The options of `run` that say which pictures it works on.
+// The options of `run` that select its pictures.
 class PictureOptions {
  public:
-  // Adds them to the command, before it is parsed.
+  // Adds the options to the command, before parsing.
   void add_to(CLI::App& command);
 
-  // While the command's callback runs: reports what is missing, and everything else that is wrong.
+  // To be called in the command's callback: report missing options, and all other problems.
   void check_given(process::Problems& problems, bool may_be_missing) const;
   void check_usage(process::Problems& problems);
 
-  // Set by check_usage(): one member is set, if nothing was wrong and the source may not be missing.
+  // Set by check_usage(). Exactly one member is set if there were no problems and the source is required.
   runs::PictureSource source;
 
  private:

@@ -28,7 +28,7 @@ constexpr const char* kFooter =
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
 
-// What they mean, and what is wrong with them, is the script's to say.
+// The arguments are passed to the script, which checks them.
 struct PlotOptions {
   Typed database;
   Typed out;
@@ -45,7 +45,7 @@ struct PlotOptions {
                   "area.slices:min,frames_per_second.core:max");
   }
 
-  // A value that looks like an option stays a value.
+  // Passes values that look like options as values.
   std::vector<std::string> arguments() const {
     std::vector<std::string> words;
     if (out.is_given()) words.push_back("--out=" + out.text);

@@ -23,7 +23,7 @@ namespace {
 
 using runs::Simulation;
 
-// What can go wrong here is known before the first cycle.
+// Problems here are found before the first cycle.
 std::unique_ptr<Simulation> build(const runs::RunInput& input, host::FrameSource& pairs, Binder& binder) {
   try {
     return runs::make_simulation(input.board, input.tables, pairs, runs::run_mode(input), binder);
@@ -40,7 +40,7 @@ std::uint64_t least_frame_cycles(const runs::RunInput& input) {
   return cycles;
 }
 
-// Until the last frame, or the end of an interruption.
+// Runs to the last frame, or until an interrupted run has ended.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
   runs::ProgressLine progress;

@@ -60,7 +60,7 @@ void RunOptions::add_to(CLI::App& command) {
 void RunOptions::check_usage() {
   process::Problems problems;
   unbuilt_.report(problems);
-  problems.check();  // what stands in for the pictures may be among them
+  problems.check();  // now, because one of these options may replace the pictures
   board.check_given(problems);
   pictures.check_given(problems, timing_only);
   const bool is_complete = problems.empty();

@@ -18,17 +18,17 @@ namespace stereotlm::cli {
 // The options of `run`.
 class RunOptions {
  public:
-  // Adds them to the command, before it is parsed.
+  // Adds the options to the command, before parsing.
   void add_to(CLI::App& command);
 
-  // While the command's callback runs: throws Refused if they cannot be used.
+  // To be called in the command's callback: throws Refused if options are wrong.
   void check_usage();
 
   BoardOptions board;
   PictureOptions pictures;
-  // As check_usage() leaves them.
-  bool camera = true;  // else preloaded
-  bool fast = true;    // else cycle by cycle
+  // Set by check_usage().
+  bool camera = true;  // false: preloaded
+  bool fast = true;    // false: fidelity cycle
   bool timing_only = false;
   bool verify = false;
   std::optional<std::uint64_t> frames;

@@ -8,8 +8,8 @@
 
 namespace stereotlm::cli {
 
-// A folder for temporary files, made before a command has done anything. Null, and reported, if there can be
-// none.
+// Creates a folder for temporary files before a command has any effect. Reports the problem and returns null if it
+// cannot be created.
 inline std::unique_ptr<files::TemporaryFolder> temporary_folder(process::Problems& problems) {
   try {
     return std::make_unique<files::TemporaryFolder>();

@@ -20,30 +20,30 @@ class Option;
 
 namespace stereotlm::cli {
 
-// An option as it was typed. Between add_to() and the end of parsing, which writes to it, it stays where it
-// is.
+// An option with its text as typed. The parser writes to the object, so it must not be moved between add_to() and
+// the end of parsing.
 template <typename Text>
 struct TypedOption {
   Text text;
 
-  // Adds it to the command, before that is parsed. A name without dashes is that of an argument.
+  // Adds the option to the command, before parsing. A name without dashes is a positional argument.
   void add_to(CLI::App& command, const std::string& name, const std::string& value,
               const std::string& meaning);
-  // Of a list: how many values; -1: any number.
+  // For a list: its number of values; -1: any number.
   void takes(int least, int most);
-  // Of a list: one value each time that it is given, any number of times.
+  // For a list: the option takes one value and may be repeated.
   void takes_one_at_a_time();
 
   bool is_given() const { return is_given_; }
 
  private:
-  CLI::Option* option_ = nullptr;  // while the command is set up: its CLI::App goes when it is parsed
+  CLI::Option* option_ = nullptr;  // valid until parsing ends, with its CLI::App
   bool is_given_ = false;
 };
 using Typed = TypedOption<std::string>;
 using TypedList = TypedOption<std::vector<std::string>>;
 
-// The whole text as a number.
+// The number that the whole text represents; nullopt if it is none.
 template <typename Number>
 std::optional<Number> number_of(std::string_view text) {
   Number number = 0;
@@ -52,7 +52,7 @@ std::optional<Number> number_of(std::string_view text) {
   return number;
 }
 
-// False, and reported, if the text is none of the values.
+// Whether the text is one of the values. Reports it if not.
 inline bool is_one_of(const std::vector<std::string>& values, const std::string& name,
                       const std::string& text, process::Problems& problems) {
   if (std::find(values.begin(), values.end(), text) != values.end()) return true;

@@ -13,17 +13,17 @@ class Option;
 
 namespace stereotlm::cli {
 
-// Options and commands of contract section 5 that this version does not have are known, so that they can be
-// refused as that instead of as typing errors.
+// Options and commands of contract section 5 that this version does not have. They get a message of their own
+// instead of one about an unknown option.
 class UnbuiltOptions {
  public:
-  // An option with at most `values` values.
+  // Adds an option with at most `values` values.
   void add(CLI::App& command, const std::string& name, int values);
 
   // "--sequence, --video, .."
   std::string names() const;
 
-  // Names each one that was given.
+  // Reports each of these options that was given.
   void report(process::Problems& problems) const;
 
  private:

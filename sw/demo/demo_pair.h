@@ -6,8 +6,7 @@ namespace stereotlm::demo {
 
 inline constexpr int kWidth = 640;
 inline constexpr int kHeight = 480;
-// Grey levels per disparity of DemoPair::truth: the full-size truth has one, and half size halves
-// disparities.
+// Grey levels per disparity of DemoPair::truth. The full-size truth has one; at half size disparities halve.
 inline constexpr int kTruthScale = 2;
 
 struct DemoPair {
@@ -16,9 +15,9 @@ struct DemoPair {
   kernels::GrayImage truth;  // grey / kTruthScale = disparity, 0 = unknown
 };
 
-// A full-size pair and its truth (grey = disparity, 0 = unknown) at half size, cropped to the same middle
-// kWidth x kHeight of all three, which keeps disparities as they are. A picture is averaged over 2x2 pixels
-// (halves up); of the truth the top left one is taken, because depths on both sides of an edge have no mean.
+// Scales a full-size pair and its truth (grey = disparity, 0 = unknown) to half size and crops all three to the
+// same central kWidth x kHeight, which does not change disparities. A pixel of a picture is the mean of 2x2
+// pixels (halves up). A pixel of the truth is the top left one of them: a mean over an edge would be no depth.
 // Throws std::invalid_argument if the sizes differ or are below 2 * kWidth x 2 * kHeight.
 DemoPair make_demo_pair(const kernels::GrayImage& left, const kernels::GrayImage& right,
                         const kernels::GrayImage& truth);

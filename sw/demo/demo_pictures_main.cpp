@@ -1,4 +1,4 @@
-// stereotlm-demo-pictures: what ./demo needs around `stereotlm run`.
+// stereotlm-demo-pictures: makes the inputs and montages of ./demo.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ void prepare(const fs::path& source, const fs::path& out) {
   std::printf("%d\n", disparities_needed(pair.truth));
 }
 
-// NN of every leftNN.jpg in a folder, sorted.
+// The numbers NN of all leftNN.jpg in a folder, sorted.
 std::vector<std::string> numbers_of_pairs(const fs::path& folder) {
   const std::string beginning = "left";
   std::vector<std::string> result;
@@ -109,8 +109,7 @@ void montage(const std::vector<std::string>& arguments) {
   write_file(arguments[0], media::encode_side_by_side_png(panels));
 }
 
-// Near is red, like large disparities. The nearest and the farthest hundredth are shown like the next to
-// them.
+// Colours depths: near is red, as for large disparities. The nearest and the farthest hundredth are clamped.
 media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
   std::vector<std::uint16_t> known;

@@ -7,7 +7,7 @@
 
 namespace stereotlm::driver {
 
-// The driver that a board needs. Throws std::invalid_argument if the board has problems.
+// The configuration of a board's driver. Throws std::invalid_argument if the board has problems.
 DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames);
 
 }  // namespace stereotlm::driver

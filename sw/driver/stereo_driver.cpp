@@ -18,8 +18,8 @@ namespace core_map = fpga::registers;
 constexpr int kToBoard = 0;  // DMA channels
 constexpr int kToHost = 1;
 constexpr std::uint64_t kDescriptorBytes = 16;
-constexpr std::uint64_t kChainBytes = 16 * kDescriptorBytes;  // of one channel
-constexpr std::uint64_t kDataStart = 4096;                    // behind both chains
+constexpr std::uint64_t kChainBytes = 16 * kDescriptorBytes;  // bytes of one channel's chain
+constexpr std::uint64_t kDataStart = 4096;                    // after both chains
 
 std::uint64_t table_bytes(const DriverConfig& config) {
   return static_cast<std::uint64_t>(config.width) * static_cast<std::uint64_t>(config.height) * 4;
@@ -183,7 +183,7 @@ void StereoDriver::start_core() {
   const bool starts = frames_.idle() && frame < config_.frames && frame < pairs &&
                       frame < read_backs_.ended + config_.buffers.disparities.size();
   if (starts) {
-    ++frames_.begun;  // before the first access, which takes time: start_no_more() may come meanwhile
+    ++frames_.begun;  // before the first access: during that access start_no_more() may be called
     const auto input = static_cast<std::size_t>(frame % config_.buffers.left_images.size());
     core(core_map::kLeftImageBase, config_.buffers.left_images[input]);
     core(core_map::kRightImageBase, config_.buffers.right_images[input]);

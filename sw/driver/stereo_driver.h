@@ -10,12 +10,12 @@
 #include "models/host/program.h"
 #include "platform/device_map.h"
 
-// The program on the host (contract section 3), against host::HostBus: it runs on the model's CPU, and could
-// on a real machine.
+// The program on the host (contract section 3). It uses host::HostBus only: it runs on the model's CPU, and could
+// run on a real machine.
 namespace stereotlm::driver {
 
 struct DriverConfig {
-  int width = 0;   // of the images, pixels
+  int width = 0;   // pixels
   int height = 0;  // pixels
   std::uint64_t frames = 1;
   fpga::BufferBases buffers;
@@ -28,14 +28,14 @@ struct DriverConfig {
 // Every broken rule as `field = value: rule`; empty if a driver can be built.
 std::vector<std::string> problems(const DriverConfig& config);
 
-// Bytes of host memory that the driver uses, from its beginning.
+// Bytes of host memory that the driver uses, from address 0 of that memory.
 std::uint64_t host_memory_bytes(const DriverConfig& config);
 
 // A result that has arrived in host memory.
 struct DeliveredFrame {
-  std::uint64_t frame = 0;                  // in the order of the core's frames
-  std::uint64_t camera_frame = 0;           // that the cameras took for it
-  const std::uint8_t* disparity = nullptr;  // width * height pixels, during the call
+  std::uint64_t frame = 0;                  // number of the core's frame
+  std::uint64_t camera_frame = 0;           // number of the camera frame that it shows
+  const std::uint8_t* disparity = nullptr;  // width * height pixels, valid during the call
 };
 
 class FrameListener {
@@ -44,32 +44,33 @@ class FrameListener {
   virtual void frame_delivered(const DeliveredFrame& frame) = 0;
 };
 
-// Uploads the tables, then keeps the books of the buffers: a capture is armed when its buffer is free, the
-// core starts when a pair and a free output buffer are there, results are read back by DMA. Each stage counts
-// the frames that it has begun and ended; a buffer is free when the stage behind has ended with the frame
-// that it held. README.md lists every access.
+// Uploads the tables, then schedules captures, frames and read-backs. It arms a capture when its buffer is free,
+// starts the core when a pair and an output buffer are ready, and reads results back by DMA. Each stage counts
+// the frames that it has begun and ended. A buffer is free when the next stage has ended the frame in it.
+// README.md lists every access.
 //
 // With capture_to_host captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
-// board. run() ends with the last of `frames` deliveries. Throws std::runtime_error if the hardware reports
+// board. run() returns after the last of `frames` deliveries. Throws std::runtime_error if the hardware reports
 // an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
-  // The tables' entries, row by row (contract 1.1); empty for a side without. `listener` outlives the driver.
-  // Throws std::invalid_argument if the configuration has problems or a table has not one entry per pixel.
+  // Entries of the tables, row by row (contract 1.1); empty for a side without table. `listener` outlives the
+  // driver. Throws std::invalid_argument if the configuration has problems or a table does not have one entry
+  // per pixel.
   StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
                std::vector<std::uint32_t> right_table, FrameListener& listener);
 
   void run(host::HostBus& bus) override;
 
-  // While run() waits. How often the core has been started:
+  // The next three may be called while run() waits. The number of starts of the core:
   std::uint64_t frames_started() const { return frames_.begun; }
-  // It is not started any more; run() ends when the frames that it has begun are delivered.
+  // Starts the core no more. run() returns when the frames that it has begun are delivered.
   void start_no_more() { config_.frames = frames_.begun; }
-  // What run() has set going and now waits for: "capture 4, core with frame 2".
+  // The operations that run() waits for: "capture 4, core with frame 2".
   std::string under_way() const;
 
  private:
-  // How far one stage has come.
+  // The progress of one stage.
   struct Stage {
     std::uint64_t begun = 0;
     std::uint64_t ended = 0;
@@ -77,8 +78,8 @@ class StereoDriver : public host::Program {
   };
   // One piece of a DMA.
   struct Piece {
-    std::uint64_t host = 0;   // bytes, in host memory
-    std::uint32_t board = 0;  // first word
+    std::uint64_t host = 0;   // address in host memory, bytes
+    std::uint32_t board = 0;  // first word on the board
     std::uint64_t words = 0;
     bool to_host = false;
   };
@@ -111,11 +112,11 @@ class StereoDriver : public host::Program {
 
   Stage captures_;
   Stage copies_;  // only with capture_to_host
-  Stage frames_;  // of the core
+  Stage frames_;  // frames of the core
   Stage read_backs_;
   bool uploading_ = false;
-  std::array<bool, 2> side_done_{};           // of the capture under way
-  std::vector<std::uint64_t> camera_frames_;  // of each capture that has ended
+  std::array<bool, 2> side_done_{};           // of the running capture
+  std::vector<std::uint64_t> camera_frames_;  // camera frame of each finished capture
   bool core_to_acknowledge_ = false;
 };
 

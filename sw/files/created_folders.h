@@ -5,7 +5,7 @@
 
 namespace stereotlm::files {
 
-// The folders that were missing on the way to one, for as long as it is not sure that they are to stay.
+// The missing parents that were created for a folder, until it is certain that they stay.
 class CreatedFolders {
  public:
   CreatedFolders() = default;
@@ -13,10 +13,10 @@ class CreatedFolders {
   CreatedFolders(const CreatedFolders&) = delete;
   CreatedFolders& operator=(const CreatedFolders&) = delete;
 
-  // Creates `dir`, an absolute path, and its parents where missing. Throws std::filesystem::filesystem_error.
+  // Creates `dir`, an absolute path, and its missing parents. Throws std::filesystem::filesystem_error.
   void create(const std::filesystem::path& dir);
   void keep() { created_.clear(); }
-  // Those that are empty; the others stay, as the user has put something into them.
+  // Removes the created folders that are empty. The user has put something into the others: they stay.
   void remove() noexcept;
 
  private:

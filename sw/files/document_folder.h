@@ -9,17 +9,17 @@
 
 namespace stereotlm::files {
 
-// A folder into which a document and its files go, beside whatever else it holds, which stays: an
-// OutputFolder whose mark is the document.
+// A folder that gets a document and its files. All else in it stays. An OutputFolder whose mark is the
+// document.
 class DocumentFolder {
  public:
-  // Throws as OutputFolder does, and if one of the files is there without the document (then it is somebody
-  // else's), or if something of such a name is no file.
+  // Throws as OutputFolder does, if something of such a name is no file, and if one of the files exists without
+  // the document: then it belongs to somebody else.
   DocumentFolder(const std::filesystem::path& dir, const std::string& document,
                  const std::vector<std::string>& files);
 
-  // `contents`: of the document and every file, else std::invalid_argument. Throws std::runtime_error if they
-  // cannot be stored.
+  // `contents` has the document and every file, else throws std::invalid_argument. Throws std::runtime_error
+  // if they cannot be stored.
   void commit(const std::map<std::string, std::string>& contents);
 
  private:

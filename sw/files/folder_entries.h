@@ -5,10 +5,10 @@
 
 namespace stereotlm::files {
 
-// The names in a folder, sorted. Throws std::filesystem::filesystem_error.
+// Names of the entries of a folder, sorted. Throws std::filesystem::filesystem_error.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
-// Of the entry itself: a symbolic link is there, and neither a file nor a folder.
+// Whether the entry itself exists, is a file, is a folder. A symbolic link exists, and is neither of the two.
 bool is_there(const std::filesystem::path& path);
 bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);

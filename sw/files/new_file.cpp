@@ -28,7 +28,7 @@ void NewFile::write(std::string_view bytes) {
 }
 
 void NewFile::close() {
-  // File systems that have nothing to sync answer EINVAL or ENOTSUP.
+  // File systems without sync return EINVAL or ENOTSUP.
   if (fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
   const int closed = ::close(descriptor_);
   descriptor_ = -1;

@@ -5,18 +5,18 @@
 
 namespace stereotlm::files {
 
-// A new file, written piece by piece. All throw std::system_error, whose code is the cause, if a byte could
-// not be stored: what is left of the file is then the caller's to remove.
+// A new file that is written piece by piece. All functions throw std::system_error with the cause as code if a
+// byte cannot be stored. The caller then removes the file.
 class NewFile {
  public:
-  // An existing file is an error.
+  // Throws also if the file exists.
   explicit NewFile(const std::filesystem::path& path);
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
   void write(std::string_view bytes);
-  // Makes it durable.
+  // Makes the file durable.
   void close();
 
  private:

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kNew = "new";
-constexpr const char* kNames = "names";  // of what is new, during a commit
+constexpr const char* kNames = "names";  // lists the new files during a commit
 constexpr const char* kProbe = "probe";
 
 bool is_same(int file, const fs::path& path) {
@@ -64,7 +64,7 @@ void OutputFolder::lock() {
   }
 }
 
-// False if a run that has ended meanwhile has removed the folder aside.
+// False if another run has ended and removed the folder aside in the meantime.
 bool OutputFolder::try_lock() {
   if (is_there(aside()) && !is_folder(aside()))
     refuse(fmt::format("holds '{}', which is no folder", content_.aside));
@@ -72,7 +72,7 @@ bool OutputFolder::try_lock() {
   lock_ = open(aside().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (lock_ < 0 && errno == ENOENT) return false;
   if (lock_ < 0) throw std::system_error(errno, std::generic_category());
-  // A file system without locks has no second run refused.
+  // On a file system without locks a second run is not refused.
   if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse("in use by another run");
   if (is_same(lock_, aside())) return true;
   close(lock_);
@@ -123,11 +123,11 @@ void OutputFolder::commit() {
     move_into_place();
   } catch (const std::system_error& error) {
     try {
-      // Had it come to its end, it would be taken for done.
+      // Otherwise the next run would take the commit for complete.
       if (!is_there(made() / content_.mark)) fs::rename(dir_ / content_.mark, made() / content_.mark);
       put_back();
     } catch (const std::exception& /*again*/) {
-      owns_aside_ = false;  // the next run puts back what is left there
+      owns_aside_ = false;  // the next run restores the files that are left there
     }
     refuse("the new files cannot be moved into place: " + error.code().message());
   }
@@ -135,8 +135,8 @@ void OutputFolder::commit() {
   discard();
 }
 
-// put_back() relies on the order. The earlier mark goes last: while it is there, all else in place is earlier
-// too. The new mark comes last: once it is there, all is new.
+// put_back() relies on the order of the moves. The earlier mark is moved away last: while it is in place, all
+// other files in place are earlier ones. The new mark is moved in last: once it is in place, all files are new.
 void OutputFolder::move_into_place() const {
   std::vector<fs::path> replaced;
   for (const fs::path& name : entries(dir_)) {
@@ -161,8 +161,8 @@ void OutputFolder::move_into_place() const {
   sync_folder(dir_);
 }
 
-// What a commit puts into place; it may have been that of another run. Nothing where that has been undone and
-// was being cleaned away.
+// The files that an unfinished commit, possibly of another run, moves into place. Empty if that commit was
+// undone and its remains were being removed.
 std::vector<fs::path> OutputFolder::moved_names() const {
   std::vector<fs::path> names;
   if (!is_file(aside() / kNames)) return names;
@@ -173,7 +173,7 @@ std::vector<fs::path> OutputFolder::moved_names() const {
   return names;
 }
 
-// Undoes what a commit has done that did not come to its end, from wherever it ended, and this as well.
+// Undoes an unfinished commit, wherever it stopped. May itself be interrupted and repeated.
 void OutputFolder::put_back() const {
   if (!is_folder(earlier()) || !is_file(made() / content_.mark)) return;
   if (!is_file(dir_ / content_.mark)) {

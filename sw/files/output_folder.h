@@ -11,53 +11,53 @@
 
 namespace stereotlm::files {
 
-// Where DIR keeps what is under way.
+// The folder in DIR that holds unfinished files.
 inline constexpr const char* kAsideFolder = ".partial";
-// In it, while a commit goes on: what it replaces.
+// Its subfolder for the replaced files during a commit.
 inline constexpr const char* kEarlierFolder = "earlier";
 
-// Which files a command writes into a folder, DIR.
+// The files that a command writes into a folder, DIR.
 struct OutputContent {
-  std::string called;  // what DIR is in messages: "result folder"
-  std::string mark;    // the file that is put into place last: with it the others are whole
-  // What of an entry is not the command's own, as seen from DIR ("thesis.tex", "frames/note"). `entry`: of
-  // DIR, or one that a run has written aside to be one of DIR.
+  std::string called;  // name of DIR in messages: "result folder"
+  std::string mark;    // the file that is moved into place last: if it exists, all files are complete
+  // The path below DIR of something in `entry` that the command did not write ("thesis.tex", "frames/note").
+  // `entry` is in DIR, or was written aside to be moved there.
   std::function<std::optional<std::string>(const std::filesystem::path& entry)> foreign;
-  // Why DIR must not be written to. `was_left`: a run that was killed has left files there.
+  // Why DIR must not be written to. `was_left`: a killed run has left files there.
   std::function<std::optional<std::string>(const std::filesystem::path& dir, bool was_left)> problem;
-  // Whether an entry of DIR goes when the new files come; none: what is not foreign.
+  // Whether a commit removes an entry of DIR. Not set: it removes all entries that are not foreign.
   std::function<bool(const std::filesystem::path& entry)> replaced = nullptr;
   std::string aside = kAsideFolder;
 };
 
-// A folder that is as it was until commit(), and has all new files after it, in place of the earlier ones.
+// A folder whose files are replaced all together by commit(). Before, it is unchanged.
 //
-// New files are written aside, into DIR/.partial (inside DIR, so that DIR may be a mount point), and moved
-// into place together. What a run has left there that was killed meanwhile is cleaned away, and what it had
-// moved is put back first. DIR/.partial is locked: a second run is refused.
+// New files are written to DIR/.partial (inside DIR, so that DIR may be a mount point). commit() moves them
+// into place. If an earlier run was killed, the constructor first puts back the files that it had moved, and
+// removes those that it left. DIR/.partial is locked: a second run is refused.
 class OutputFolder {
  public:
-  // Creates DIR and its parents where missing, and proves that it can be written to. Throws
-  // std::runtime_error, having changed nothing, if it cannot be, if it is in use by another run, if
-  // something in DIR/.partial is not ours, or if the content has a problem with DIR.
+  // Creates DIR and its missing parents and checks that DIR is writable. Changes nothing and throws
+  // std::runtime_error if DIR is not writable, another run uses it, DIR/.partial holds foreign files, or
+  // OutputContent reports a problem with DIR.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
-  // Without commit(): removes all it made; an earlier result stays as it was.
+  // Without commit(): removes everything that it created. An earlier result is unchanged.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   const std::filesystem::path& path() const { return dir_; }
-  // That the content has with DIR now.
+  // The problem that OutputContent reports for DIR now.
   std::optional<std::string> problem() const { return content_.problem(dir_, was_left_); }
 
-  // `name`: "stats.json", "frames/000000.png", once each. Throws std::runtime_error if it cannot be stored
-  // (disk full); the object is then good for nothing but to be destroyed.
+  // Adds a file. `name`: "stats.json", "frames/000000.png"; each name once. Throws std::runtime_error if it
+  // cannot be stored (disk full). The object can then only be destroyed.
   void add(const std::string& name, std::string_view bytes);
-  // Once, with the mark, else std::logic_error. Throws std::runtime_error if it fails, with all back in
-  // place.
+  // Moves all files into place. Throws std::logic_error if the mark was not added or commit() was called
+  // before. If it fails, restores all files and throws std::runtime_error.
   void commit();
 
-  // Throws std::runtime_error that names the folder.
+  // Throws std::runtime_error with the folder's name.
   [[noreturn]] void refuse(const std::string& found) const;
 
  private:
@@ -80,8 +80,8 @@ class OutputFolder {
   OutputContent content_;
   CreatedFolders created_;   // DIR and parents that were missing
   int lock_ = -1;            // descriptor of DIR/.partial
-  bool was_left_ = false;    // a run that was killed has left something in DIR/.partial
-  bool owns_aside_ = false;  // DIR/.partial is ours to remove
+  bool was_left_ = false;    // a killed run has left files in DIR/.partial
+  bool owns_aside_ = false;  // this object removes DIR/.partial
   bool committed_ = false;
 };
 

@@ -33,16 +33,17 @@ void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
   if (chmod(made.c_str(), mode) != 0) fail(errno, made);
 }
 
-// ".rows.csv.writing-" and 16 hexadecimal digits: nobody else's name.
+// ".rows.csv.writing-" and 16 hexadecimal digits: a name that nobody else uses.
 constexpr std::size_t kDigits = 16;
 std::string beginning(const fs::path& path) {
-  constexpr std::size_t kMostBytes = 200;  // of the file's own name, so that this one is not too long
+  constexpr std::size_t kMostBytes =
+      200;  // limit for the part from the file's name: file systems limit names to 255 bytes
   return fmt::format(".{}.writing-", path.filename().string().substr(0, kMostBytes));
 }
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-// Without a lock, nobody writes it any more. Where the file system has no locks it stays.
+// A file without a lock is not being written. On a file system without locks the file stays.
 void remove_if_left(const fs::path& aside) {
   const int file = open(aside.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return;
@@ -53,7 +54,7 @@ void remove_if_left(const fs::path& aside) {
 }  // namespace
 
 fs::path linked_file(const fs::path& path) {
-  constexpr int kMostLinks = 40;  // as the system
+  constexpr int kMostLinks = 40;  // the system's limit
   fs::path file = path;
   std::error_code error;
   for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
@@ -129,7 +130,7 @@ void remove_left_aside(const fs::path& path) noexcept try {
   }
   for (const fs::path& aside : left) remove_if_left(aside);
 } catch (const std::exception& /*a path that cannot be followed*/) {
-  // Whoever writes the file reports it.
+  // The caller reports the error when it writes the file.
 }
 
 }  // namespace stereotlm::files

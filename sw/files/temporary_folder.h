@@ -5,18 +5,18 @@
 
 namespace stereotlm::files {
 
-// The folder in which temporary files lie: that of the first of TMPDIR, TMP, TEMP and TEMPDIR which is set,
-// or /tmp.
+// The folder for temporary files: the value of the first of TMPDIR, TMP, TEMP and TEMPDIR that is set, else
+// /tmp.
 struct TemporaryPlace {
   std::string variable;
   std::string folder;
 };
 TemporaryPlace temporary_place();
 
-// A new folder for temporary files, which goes with this object.
+// A new folder for temporary files. The destructor removes it.
 class TemporaryFolder {
  public:
-  TemporaryFolder();  // throws std::runtime_error that names the place if there can be none
+  TemporaryFolder();  // throws std::runtime_error with the place if it cannot be created
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

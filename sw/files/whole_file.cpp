@@ -55,7 +55,7 @@ void sync_folder(const std::filesystem::path& folder) {
   if (descriptor < 0) fail(errno);
   const int error = fsync(descriptor) == 0 ? 0 : errno;
   close(descriptor);
-  // File systems that have nothing to sync answer EINVAL or ENOTSUP.
+  // File systems without sync return EINVAL or ENOTSUP.
   if (error != 0 && error != EINVAL && error != ENOTSUP) fail(error);
 }
 

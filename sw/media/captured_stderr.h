@@ -4,8 +4,8 @@
 
 namespace stereotlm::media {
 
-// What is written to the process's standard error goes aside while one of these lives: decoders write there
-// and offer OpenCV's callers no other way. No other thread may write there meanwhile.
+// Captures what is written to the process's standard error: through OpenCV, decoders report problems only there.
+// No other thread may write to standard error while an object exists.
 class CapturedStderr {
  public:
   CapturedStderr();
@@ -13,7 +13,7 @@ class CapturedStderr {
   CapturedStderr(const CapturedStderr&) = delete;
   CapturedStderr& operator=(const CapturedStderr&) = delete;
 
-  // Ends the capture and returns what was written.
+  // Ends the capture and returns the captured text.
   std::string text();
 
  private:

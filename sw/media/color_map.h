@@ -8,11 +8,11 @@
 
 namespace stereotlm::media {
 
-// For the files of this folder only. The disparity image in colours (BGR) as encode.h says.
+// Internal to this folder. The disparity image in colours (BGR), see encode.h.
 cv::Mat in_colors(const kernels::GrayImage& disparity, int disparities);
 
-// The same pixels, not copied: the image must outlive the result, which must not be written to. Throws
-// std::invalid_argument if the image is empty or its size and its number of pixels disagree.
+// A view of the image's pixels. The image must outlive the view; the view must not be written to. Throws
+// std::invalid_argument if the image is empty or its number of pixels does not fit its size.
 cv::Mat view(const kernels::GrayImage& image);
 
 // PNG bytes of a picture of 1 or 3 channels.

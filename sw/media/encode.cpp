@@ -74,7 +74,7 @@ std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& d
 }
 
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {
-  view(disparity);  // refuses an empty image
+  view(disparity);  // throws for an empty image
   const std::string header = fmt::format("Pf\n{} {}\n-1.0\n", disparity.width, disparity.height);
   std::vector<std::uint8_t> bytes(header.begin(), header.end());
   bytes.reserve(bytes.size() + 4 * disparity.pixels.size());

@@ -9,22 +9,22 @@
 
 namespace stereotlm::media {
 
-// Files as bytes in memory. In a disparity image kernels::kInvalidDisparity is invalid. An empty image is
-// refused with std::invalid_argument. The same image gives the same bytes.
+// Encodes images to the bytes of a file. In a disparity image kernels::kInvalidDisparity marks invalid pixels.
+// Equal images give equal bytes. All throw std::invalid_argument for an empty image.
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
 
 // 16-bit grey, row by row. Throws std::invalid_argument if there are not width * height values.
 std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values);
 
-// 0 .. disparities-1 from dark blue to dark red (Turbo), invalid black. A value that is neither is refused
-// with std::invalid_argument. disparities: kernels::kDisparitiesRule.
+// Disparities 0 .. disparities-1 from dark blue to dark red (Turbo), invalid pixels black. Throws
+// std::invalid_argument for any other value. disparities: kernels::kDisparitiesRule.
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities);
 
 // Portable float map: one channel, little endian (scale -1.0), rows bottom to top, invalid = +infinity.
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity);
 
-// For display: the nearest whole disparity (halves up), invalid where the truth is unknown or lies outside
+// For display: the truth rounded to whole disparities (halves up). Invalid where the truth is unknown or outside
 // 0 .. disparities-1.
 kernels::GrayImage nearest_disparity(const Truth& truth, int disparities);
 

@@ -7,25 +7,25 @@
 
 namespace stereotlm::media {
 
-// Both functions take the formats of kPictureFormats; the content decides, not the name. A picture is decoded
-// as stored: an EXIF orientation is not applied. One that is larger than the images of a board is not decoded
-// at all: its header says so. Each throws one std::runtime_error `'path': what was found: rule` for a file
-// that is missing, not regular, empty, truncated, damaged, too large, or no picture, and for alpha,
-// transparency, 16-bit, float, and grey of fewer than 8 bits (PNG of 1, 2, 4 bits; PNM with a maximum other
-// than 255), whose levels OpenCV would stretch or not, depending on the format. They print nothing: whatever
-// a decoder writes to the process's standard error goes aside during the call, so no other thread may write
-// there meanwhile.
+// Both functions accept the formats of kPictureFormats. The format is detected from the content, not the name. A
+// picture is decoded as stored: an EXIF orientation is not applied. Each throws one std::runtime_error
+// `'path': what was found: rule` for
+// - a file that is missing, not regular, empty, truncated, damaged or no picture;
+// - a picture larger than the largest image of a board, which is found from its header without decoding;
+// - alpha, transparency, 16-bit and float pixels;
+// - grey of fewer than 8 bits (PNG of 1, 2, 4 bits; PNM with a maximum other than 255): OpenCV stretches its
+//   levels in some formats only.
+// They print nothing: standard error is captured during the call, so no other thread may write there.
 
 struct LoadedGray {
   kernels::GrayImage image;
   bool converted_from_colour = false;
 };
 
-// 8-bit grey as stored, or 8-bit colour (a palette counts as colour, even one of greys) through OpenCV's
-// BGR2GRAY.
+// 8-bit grey as stored. 8-bit colour is converted with OpenCV's BGR2GRAY; any palette counts as colour.
 LoadedGray load_gray(const std::string& path);
 
-// Ground truth; grey only. `scale` is positive and finite, else std::invalid_argument.
+// Ground truth; grey only. Throws std::invalid_argument if `scale` is not positive and finite.
 Truth load_truth(const std::string& path, double scale);
 
 }  // namespace stereotlm::media

@@ -4,10 +4,10 @@
 
 namespace stereotlm::media {
 
-// The one form of an error about a picture or video file.
+// An error about a picture or video file; all have this form.
 [[noreturn]] void refuse(const std::string& path, const std::string& found, const std::string& rule);
 
-// Refuses a path where there is no regular file; `rule` says what there must be.
+// Throws if `path` is no regular file. `rule`: the requirement, for the message.
 void check_regular_file(const std::string& path, const std::string& rule);
 
 }  // namespace stereotlm::media

@@ -27,7 +27,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr const char* kRule = "a picture must be 8-bit grey or 8-bit colour, without alpha";
 
-// A file of the largest picture that a board takes: text, or colour with much beside it.
+// Limit for the file of the largest picture of a board: pixels as text, or colour with much metadata.
 constexpr std::uintmax_t kMostBytes = 16 * fpga::kWidthRule.max * fpga::kHeightRule.max;
 
 Bytes read_bytes(const std::string& path) {
@@ -57,14 +57,14 @@ bool starts_with(const Bytes& bytes, const std::string& text) {
 
 struct JpegSegments {
   int scans = 0;
-  bool is_complete = false;  // the end-of-image marker is there
+  bool is_complete = false;  // it has an end-of-image marker
 };
 
-// OpenCV 4.6 fills what a truncated sequential JPEG lacks and reports nothing; every other format's
-// truncation it notices when it decodes from memory.
+// OpenCV 4.6 silently fills the missing part of a truncated sequential JPEG. It reports truncation of every other
+// format when it decodes from memory.
 JpegSegments jpeg_segments(const Bytes& bytes) {
   JpegSegments found;
-  std::size_t at = 2;  // behind the start-of-image marker
+  std::size_t at = 2;  // after the start-of-image marker
   while (at + 1 < bytes.size()) {
     const int marker = bytes[at + 1];
     const bool at_marker = bytes[at] == 0xFF && marker != 0x00 && marker != 0xFF;
@@ -86,7 +86,7 @@ JpegSegments jpeg_segments(const Bytes& bytes) {
 }
 
 bool png_has_chunk(const Bytes& bytes, const char* type) {
-  std::size_t at = 8;  // behind the signature
+  std::size_t at = 8;  // after the signature
   while (at + 8 <= bytes.size()) {
     if (std::memcmp(&bytes[at + 4], type, 4) == 0) return true;
     at += 12U + (static_cast<std::size_t>(bytes[at]) << 24U | static_cast<std::size_t>(bytes[at + 1]) << 16U |
@@ -95,10 +95,11 @@ bool png_has_chunk(const Bytes& bytes, const char* type) {
   return false;
 }
 
-// Of a progressive JPEG. An encoder makes a dozen; each is a pass over all pixels, and may be empty.
+// Limit for the scans of a progressive JPEG. Encoders make about a dozen. Each costs a pass over all pixels, even
+// if it is empty.
 constexpr int kMostScans = 100;
 
-// Whether it may be decoded: OpenCV would reserve memory for whatever a header says.
+// Checks the size before decoding: OpenCV allocates whatever size a header states.
 void check_size(const std::string& path, const std::optional<PictureSize>& size) {
   if (!size) refuse(path, "truncated or damaged in its header", "a picture must be complete");
   const auto width = static_cast<std::uint64_t>(fpga::kWidthRule.max);
@@ -108,7 +109,8 @@ void check_size(const std::string& path, const std::optional<PictureSize>& size)
          fmt::format("a board's images are {}x{} at most", width, height));
 }
 
-// What OpenCV hides: levels that it stretches, transparency that it drops, greys that it takes for black.
+// Properties that OpenCV changes silently: it stretches levels, drops transparency, and reads some greys as
+// black.
 void check_stored_form(const std::string& path, const Bytes& bytes) {
   constexpr std::size_t kPngDepth = 24;
   constexpr std::size_t kPngColourType = 25;
@@ -174,7 +176,7 @@ cv::Mat read_picture(const std::string& path) {
   if (picture.empty() || !jpeg.is_complete) {
     refuse(path, "truncated or damaged", "a picture must be complete");
   }
-  // A warning of libjpeg only: it puts grey where scan data are damaged and carries on.
+  // libjpeg only warns: it fills damaged scan data with grey and continues.
   if (header->is_jpeg && complaint.find("Corrupt JPEG data") != std::string::npos) {
     refuse(path, "a damaged JPEG", "a picture must be complete");
   }

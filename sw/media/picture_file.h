@@ -5,9 +5,9 @@
 
 namespace stereotlm::media {
 
-// For the files of this folder only: the one header here that shows OpenCV.
+// Internal to this folder: this header exposes OpenCV.
 
-// The picture in `path` as stored: 8 bits, 1 or 3 channels (BGR). Refuses as load.h says.
+// The picture in `path` as stored: 8 bits, 1 or 3 channels (BGR). Throws as load.h states.
 cv::Mat read_picture(const std::string& path);
 
 }  // namespace stereotlm::media

@@ -12,9 +12,9 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Size = std::optional<PictureSize>;
 
-constexpr std::uint64_t kMostNumber = 1'000'000'000;  // that is read from a text
+constexpr std::uint64_t kMostNumber = 1'000'000'000;  // largest number read from a text header
 
-// The bytes of a file, as numbers. Those behind its end are 0, and make it not whole().
+// Reads numbers from the bytes of a file. A byte after the end reads as 0; whole() is false from then on.
 class View {
  public:
   enum class Order { kBig, kLittle };
@@ -55,7 +55,7 @@ Size png_size(const Bytes& bytes) {
   return holds(bytes, 12, "IHDR") ? view.size(view.number(16, 4), view.number(20, 4)) : std::nullopt;
 }
 
-// In the frame header, SOF0 to SOF15 but for three markers of other kinds.
+// The size is in the frame header: SOF0 to SOF15, without three markers of other kinds.
 Size jpeg_size(const Bytes& bytes) {
   View view(bytes, View::Order::kBig);
   for (std::size_t at = 2; view.whole();) {
@@ -88,14 +88,15 @@ Size sun_raster_size(const Bytes& bytes) {
   return view.size(view.number(4, 4), view.number(8, 4));
 }
 
-// Of the first page. A decoder reserves whole tiles, or strips of many rows.
+// The size of the first page. A decoder allocates whole tiles, or strips of many rows.
 Size tiff_size(const Bytes& bytes) {
   View view(bytes, bytes[0] == 'M' ? View::Order::kBig : View::Order::kLittle);
   PictureSize size;
   std::size_t entry = view.offset(4) + 2;
   for (std::uint64_t left = view.number(entry - 2, 2); left > 0 && view.whole(); --left, entry += 12) {
     constexpr std::uint64_t kShort = 3;
-    constexpr std::uint64_t kOneStrip = 0x7FFFFFFF;  // rows a strip, or more: as many as there are
+    constexpr std::uint64_t kOneStrip =
+        0x7FFFFFFF;  // rows per strip from here on mean: all rows in one strip
     const std::uint64_t value = view.number(entry + 8, view.number(entry + 2, 2) == kShort ? 2 : 4);
     switch (view.number(entry, 2)) {
       case 256:  // ImageWidth
@@ -126,7 +127,7 @@ Size webp_size(const Bytes& bytes) {
   return view.size(view.number(26, 2) & 0x3FFFU, view.number(28, 2) & 0x3FFFU);
 }
 
-// In the first segment of the code stream, SIZ: the grid's end and its beginning.
+// The size is in the first segment of the code stream, SIZ: end and origin of the grid.
 Size jpeg_2000_size(const Bytes& bytes) {
   constexpr std::string_view kBegin = "\xFF\x4F\xFF\x51";
   const auto same = [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); };

@@ -11,21 +11,21 @@ struct PictureSize {
   std::uint64_t height = 0;
 };
 
-// What a file is: a format by its first bytes, and the pixels that decoding it takes, by its header.
+// The format of a picture file, by its first bytes, and the size that decoding it needs, by its header.
 struct PictureHeader {
   bool is_jpeg = false;
-  std::optional<PictureSize> size;  // nothing: the header is not whole
+  std::optional<PictureSize> size;  // nullopt: the header is incomplete
 };
 
-// The formats that pictures may have. Nothing for any other.
+// Parses the header of an accepted format; nullopt for any other.
 inline constexpr const char* kPictureFormats =
     "PNG, JPEG, BMP, PGM, PPM, PAM, TIFF, WebP, JPEG 2000 or Sun raster";
 std::optional<PictureHeader> read_header(const std::vector<std::uint8_t>& bytes);
 
-// Of a PNM, also a PFM: the number at `index`, from 0, in its header, where comments may stand between
-// numbers; nothing if it is not there.
+// Number `index`, from 0, in the header of a PNM or PFM, whose numbers may have comments between them; nullopt if
+// it does not exist.
 std::optional<std::uint64_t> pnm_number(const std::vector<std::uint8_t>& bytes, int index);
-// Of a PAM: the number behind the name of a field.
+// The number after a field's name in the header of a PAM.
 std::optional<std::uint64_t> pam_number(const std::vector<std::uint8_t>& bytes, const char* field);
 
 }  // namespace stereotlm::media

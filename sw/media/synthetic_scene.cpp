@@ -30,7 +30,7 @@ class Random {
   std::uint64_t state_;
 };
 
-// 0 .. 2^bits-1, for this position of a texture.
+// The noise of a texture at this position, 0 .. 2^bits-1.
 int noise(std::uint64_t texture, int column, int row, unsigned bits) {
   const std::uint64_t position = static_cast<std::uint64_t>(row) << 32U | static_cast<std::uint64_t>(column);
   return static_cast<int>(mixed(texture + position * kStep) >> (64 - bits));
@@ -42,7 +42,7 @@ std::uint8_t texel(std::uint64_t texture, int column, int row) {
                                    noise(~texture, column / 4, row / 4, 6));
 }
 
-// An eighth to three eighths of the side.
+// A length from one to three eighths of the side.
 int size_within(int side, Random& random) {
   const int part = side / 8 + static_cast<int>(random.below(static_cast<std::uint64_t>(side) / 4 + 1));
   return std::max(1, part);
@@ -91,7 +91,7 @@ SyntheticScene::Frame SyntheticScene::frame(std::uint64_t number) const {
   return frame;
 }
 
-// The wall's in the upper half, from there on the floor's.
+// The disparity of the wall in the upper half, and of the floor below.
 int SyntheticScene::background_disparity(int row) const {
   const int floor_row = row - height_ / 2;
   if (floor_row <= 0) return far_;
@@ -109,7 +109,7 @@ void SyntheticScene::draw_background(Frame& frame) const {
   }
 }
 
-// A box is nearer than all that is drawn before it, in both pictures.
+// Draws far boxes first: a box hides all that was drawn before it, in both pictures.
 void SyntheticScene::draw(const Box& box, std::uint64_t number, Frame& frame) const {
   const int first_column = box.column.at(number);
   const int first_row = box.row.at(number);

@@ -7,36 +7,35 @@
 
 namespace stereotlm::media {
 
-// A moving scene whose disparities are known: a far wall, a floor that comes nearer towards the bottom, and
-// boxes at several depths in front of them that move from frame to frame and bounce at the border of the left
-// picture. All are textured with noise, as seen by two ideal cameras: without noise of their own, and a point
-// at column x of the left picture is at column x - d of the right one, unless something nearer hides it
-// there.
+// A moving scene with known disparities: a far wall, a floor that rises towards the viewer, and boxes at several
+// depths that move from frame to frame and bounce at the border of the left picture. All surfaces have a noise
+// texture. Two ideal cameras without noise see them: a point at column x of the left picture is at column x - d
+// of the right one, unless something nearer hides it.
 //
-// Integer arithmetic and a generator of its own (SplitMix64): the same pictures on every machine. Any frame
-// can be asked for at any time; there is no last one.
+// Uses integer arithmetic and SplitMix64, so that the pictures are equal on every machine. Frames can be
+// requested in any order, without limit.
 class SyntheticScene {
  public:
-  // For a board of this size and number of candidates; disparities are 1 .. disparities-1, at most a quarter
-  // of the width (all 0 if disparities = 1). Throws std::invalid_argument if the size or the disparities
-  // break the rules of a board.
+  // A scene for a board with images of this size. Its disparities are 1 .. disparities-1, at most a quarter of
+  // the width; all are 0 if disparities = 1. Throws std::invalid_argument if the arguments break the rules of a
+  // board.
   SyntheticScene(std::uint64_t seed, int width, int height, int disparities);
 
   struct Frame {
     kernels::GrayImage left;
     kernels::GrayImage right;
     kernels::GrayImage
-        disparity;  // left-referenced, of every pixel, also where the right camera cannot see it
+        disparity;  // referenced to the left picture, also for pixels that the right camera cannot see
   };
   // Costs about 15 ms at 640x480.
   Frame frame(std::uint64_t number) const;
 
  private:
-  // A movement along one axis, to and fro between 0 and `range`.
+  // A movement along one axis, back and forth between 0 and `range`.
   struct Path {
     std::uint64_t range = 0;  // pixels
-    std::uint64_t start = 0;  // way covered at frame 0, 0 .. 2 * range - 1
-    std::uint64_t speed = 0;  // pixels a frame
+    std::uint64_t start = 0;  // phase at frame 0, 0 .. 2 * range - 1
+    std::uint64_t speed = 0;  // pixels per frame
 
     int at(std::uint64_t frame) const;
   };
@@ -44,8 +43,8 @@ class SyntheticScene {
     int width = 0;
     int height = 0;
     int disparity = 0;
-    Path column;  // of its left edge in the left picture
-    Path row;     // of its upper edge
+    Path column;  // column of its left edge in the left picture
+    Path row;     // row of its upper edge
     std::uint64_t texture = 0;
   };
 
@@ -58,7 +57,7 @@ class SyntheticScene {
   int far_ = 0;         // disparity of the wall
   int floor_near_ = 0;  // disparity of the floor just below the picture
   std::uint64_t background_texture_ = 0;
-  std::array<Box, 5> boxes_;  // the farthest first
+  std::array<Box, 5> boxes_;  // farthest first
 };
 
 }  // namespace stereotlm::media

@@ -20,28 +20,28 @@ namespace {
 
 using kernels::GrayImage;
 
-// Containers that hold the video themselves: a playlist would bring in files that nobody has named. A packet
-// that FFmpeg knows to be cut is left out.
+// Only containers that hold the video itself: a playlist would open files that the user has not named. FFmpeg
+// drops a packet that it knows to be truncated.
 constexpr const char* kOptions =
     "format_whitelist;avi,matroska,webm,mov,mp4,mpeg,mpegts,ogg,asf,flv,yuv4mpegpipe|fflags;discardcorrupt";
 constexpr const char* kRule =
     "a video must be an AVI, Matroska, WebM, MP4, MPEG, Ogg, ASF, FLV or Y4M file that FFmpeg decodes";
 
-// A frame has the pictures of a pair beside each other or on top of each other.
+// A frame may hold both pictures of a pair, side by side or one above the other.
 constexpr std::int64_t kMostWidth = 2 * fpga::kWidthRule.max;
 constexpr std::int64_t kMostHeight = 2 * fpga::kHeightRule.max;
 
-// A frame may be larger than the file's header says. No block of FFmpeg's memory is larger than the pixels of
-// such a pair take, 16 bits for each of four channels; a frame that needs more cannot be decoded.
+// A frame may be larger than the file's header states. So the memory of FFmpeg is limited to the largest pair at
+// four channels of 16 bits; a frame that needs more cannot be decoded.
 void limit_memory() {
   constexpr std::size_t kMostBytes = 8 * 2 * fpga::kWidthRule.max * fpga::kHeightRule.max;
   using Limit = void(std::size_t);
-  // OpenCV's own FFmpeg, which has no header here.
+  // OpenCV's copy of FFmpeg, for which no header is installed.
   static auto* const limit = reinterpret_cast<Limit*>(dlsym(RTLD_DEFAULT, "av_max_alloc"));
   if (limit != nullptr) limit(kMostBytes);
 }
 
-// The first line, without the address in "[h264 @ 0x5603dadfee80] ..".
+// The first line of a message, without the address in "[h264 @ 0x5603dadfee80] ..".
 std::string first_complaint(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
   const std::size_t address = line.find(" @ 0x");
@@ -90,7 +90,8 @@ class FfmpegVideo : public Video {
   }
 
  private:
-  // At the first frame. An absolute path, because FFmpeg takes what precedes a colon for a protocol.
+  // Opens the video at its first frame. The path is absolute, because FFmpeg reads text before a colon as a
+  // protocol.
   bool open() {
     setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", kOptions, 1);
     next_ = 0;
@@ -111,7 +112,7 @@ class FfmpegVideo : public Video {
     check(width, height);
   }
 
-  // Leaves the video open at its end. OpenCV gives all frames the size of the first.
+  // Counts the frames and leaves the video at its end. OpenCV gives all frames the size of the first.
   void count() {
     for (; capture_.read(picture_); ++frames_) size_ = picture_.size();
     next_ = frames_;
@@ -125,7 +126,7 @@ class FfmpegVideo : public Video {
 
   std::string path_;
   cv::VideoCapture capture_;
-  std::uint64_t next_ = 0;  // the frame that the next one read is
+  std::uint64_t next_ = 0;  // index of the next frame to read
   std::uint64_t frames_ = 0;
   std::uint64_t stated_frames_ = 0;
   cv::Size size_;

@@ -7,19 +7,19 @@
 
 namespace stereotlm::paper {
 
-// A core whose share of the slices of an FPGA has been published.
+// A core with its published share of the slices of an FPGA.
 struct PrintedArea {
   fpga::CoreConfig core;
   double slices_percent = 0;
 };
 
-// Table 2 of the paper. Its caption gives images of 640x480 and windows of 7x7; the circuit whose size it
-// prints is that of figure 5, with calibration (look-up tables) and LoG filter for both sides. What the paper
-// does not say, the coefficients of the filter and the depths of the queues, is as in the preset `fpl2003`.
+// Table 2 of the paper: images of 640x480 and windows of 7x7 (its caption), for the circuit of figure 5, with
+// look-up tables and LoG filters for both sides. The coefficients of the filter and the depths of the queues,
+// which the paper does not state, are those of the preset `fpl2003`.
 std::vector<PrintedArea> table_2();
 
-// The constant of area::total() that brings the model nearest to printed rows, by least squares of slices,
-// and what the model then says of each row.
+// The constant of area::total() with the least squared error in slices over the printed rows, and the model's
+// value for each row.
 struct AreaFit {
   double slices_per_lut_equivalent = 0;
   std::vector<double> slices_percent;

@@ -15,14 +15,14 @@ constexpr const char* kBoard = "fpl2003";
 constexpr std::pair<int, double> kTable1[] = {{15, 8.7}, {13, 10.0}, {11, 11.8},
                                               {9, 14.5}, {7, 18.9},  {5, 26.0}};
 constexpr double kTable1HalfDigit = 0.05;
-// Of its rows but one; a row is printed with three digits, which is up to 0.57 %.
+// Tolerance for all rows but one. A row has three digits, a rounding of up to 0.57 %.
 constexpr double kRatePercent = 0.35;
 // Table 2: frames per second at 80, 160 and 200 disparities, 640x480, 7x7, 40 MHz.
 constexpr double kTable2Rate = 18.9;
 constexpr double kSizeHalfDigit = 0.5;
 constexpr double kSizePoints = 1;
-// Section 4: in practice, in windows of 7x7 and 9x9. Abstract and section 5: without a window. Section 1:
-// more.
+// Section 4 gives the rate in practice for windows of 7x7 and 9x9. The abstract and section 5 give it without a
+// window. Section 1 says more.
 constexpr double kPracticeRate = 20;
 // Abstract: at 320x240. Section 1: more. Section 4: four times as fast there.
 constexpr double kSmallRate = 80;
@@ -37,7 +37,7 @@ constexpr const char* kOf[] = {"the core alone", "the whole computer"};
 std::string window_key(int window) { return fmt::format("matcher.window={}", window); }
 std::string square(int n) { return fmt::format("{}x{}", n, n); }
 
-// A case for each window, of the core alone and of the whole computer.
+// One case per window, for the core alone and for the whole computer.
 std::vector<Case> of_windows(double printed, const std::vector<int>& windows, const std::string& preset,
                              const std::vector<std::string>& more) {
   std::vector<Case> cases;
@@ -210,8 +210,8 @@ std::string key(const std::string& buffer, const std::string& first, const std::
   return key(buffer, fmt::format("[{}, {}]", first, second));
 }
 
-// The whole computer with some allocations: of each number of banks the best, as `allocate` finds it in some
-// minutes. Banks that are not named are those of the board.
+// The whole computer with chosen allocations: for each number of banks the best, as `allocate` finds it. Buffers
+// that are not named stay in the board's banks.
 Claim banks_of_computer() {
   const std::vector<std::vector<std::string>> placed = {
       {},

@@ -7,25 +7,25 @@
 
 namespace stereotlm::paper {
 
-// A board as a command line names it, and how it is run: without pixels, for as many frames as
-// explore::frames_of().
+// A board as a command line names it. It is run without pixels for explore::frames_of() frames.
 struct BoardRun {
   std::string preset;
   std::vector<std::string> sets;  // KEY=VALUE
-  bool camera = false;            // the whole computer, else the core alone
+  bool camera = false;            // true: the whole computer; false: the core alone
 };
 
-// What is compared.
+// The quantity that is compared.
 enum class Quantity {
-  // Frames per second of the first run: of the core alone, or of the computer between the first delivery and
-  // the last. Further runs stand beside it.
+  // Frames per second of the first run: of the core alone, or of the computer from the first delivery to the
+  // last. Further runs are shown beside it.
   kRate,
-  kSlices,   // % of the slices of the FPGA, of the first run's board
-  kSpread,   // the highest rate of the runs less the lowest
-  kSpeedUp,  // the first run's rate in times of the second's
-  // The fewest banks with which, of all allocations, one reaches the best rate of the first run's board.
+  kSlices,   // % of the FPGA's slices that the first run's board uses
+  kSpread,   // highest rate of the runs minus the lowest
+  kSpeedUp,  // rate of the first run divided by that of the second
+  // The fewest banks for which some allocation reaches the best rate of the first run's board. Proved over all
+  // allocations.
   kBanksProved,
-  // The fewest banks that one of the runs uses which reaches the rate of the first.
+  // The fewest banks among the runs that reach the rate of the first run.
   kBanksFound,
 };
 
@@ -38,19 +38,19 @@ struct Case {
   std::vector<BoardRun> runs;
 };
 
-// Something that the paper says in numbers.
+// A statement of the paper with numbers.
 struct Claim {
-  std::string name;   // "table1": a word, also in the files
-  std::string place;  // in the paper: "Table 1"
-  std::string says;   // in a few words
+  std::string name;   // "table1": one word, also used in the files
+  std::string place;  // place in the paper: "Table 1"
+  std::string says;   // the statement in a few words
   Quantity quantity = Quantity::kRate;
   Rule rule;
-  double half_digit = 0;  // the printed value may be off by so much: half of its last digit
+  double half_digit = 0;  // rounding of the printed value: half of its last digit
   std::vector<Case> cases;
 };
 
-// Every number of the paper that is compared, with where it stands, the boards that it is about and the rule
-// that decides; the sizes of Table 2 alone are explore::table_2(), to which the area is fitted.
+// All numbers of the paper that are compared: place, boards and rule of each. The sizes of Table 2 are in
+// table_2(): the area model is fitted to them.
 std::vector<Claim> claims();
 
 }  // namespace stereotlm::paper

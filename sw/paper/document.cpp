@@ -32,7 +32,7 @@ constexpr const char* kHead =
 
 std::string three(double value) { return fmt::format("{:.3f}", value); }
 
-// As the paper prints it: 10.0 in Table 1, 80 elsewhere.
+// The value with the digits of the paper: 10.0 in Table 1, 80 elsewhere.
 std::string printed_text(const Claim& claim, double printed) {
   const bool has_decimals = claim.half_digit > 0 && claim.half_digit < 0.5;
   return fmt::format("{:.{}f}", printed, has_decimals ? 1 : 0);
@@ -43,7 +43,7 @@ std::string modelled_text(const Claim& claim, double modelled) {
   return is_count ? fmt::format("{:.0f}", modelled) : three(modelled);
 }
 
-// "of its own", where there is one: in points where the printed value is a percentage.
+// The deviation, if there is one; in points if the printed value is a percentage.
 std::string deviation_text(const Claim& claim, const Case& one, const CaseFinding& finding) {
   if (claim.quantity == Quantity::kSlices)
     return fmt::format("{:+.2f} points", finding.modelled - one.printed);
@@ -72,7 +72,7 @@ std::string overview(const Findings& findings) {
   return text;
 }
 
-// The cases of a claim, and how to get their numbers again.
+// The cases of a claim, and the commands that reproduce their numbers.
 std::string cases_text(const ClaimFinding& found) {
   const Claim& claim = found.claim;
   const bool has_bound = claim.quantity == Quantity::kRate;
@@ -136,7 +136,7 @@ std::string table1_remarks(const ClaimFinding& found) {
           "  at their clock it would print {:.1f} here.\n",
           clock.least_mhz, clock.most_mhz, finding.modelled);
     }
-    const int rows = std::stoi(one.name);  // of the window
+    const int rows = std::stoi(one.name);  // rows of the window
     if (one.printed - found.claim.half_digit > 40e6 / (640 * 480 * rows)) {
       text += fmt::format(
           "- It is above what the paper's own rule allows at 40 MHz, one pixel a cycle and {0} reads of "
@@ -167,7 +167,7 @@ std::string table2_remarks(const ClaimFinding& found) {
       area::kSlicesPerLutEquivalent, worst);
 }
 
-// The rate of the cameras of a claim's boards.
+// The camera rate of a claim's boards.
 double camera_hz(const Claim& claim) {
   const BoardRun& run = claim.cases.back().runs.front();
   return platform::load_board(run.preset, run.sets).cameras.frame_rate_hz;
@@ -310,7 +310,7 @@ std::string remarks(const Findings& findings, const ClaimFinding& found) {
   return found.claim.quantity == Quantity::kBanksProved ? banks_remarks(findings, found) : "";
 }
 
-// Below the claim that it shows.
+// The picture below its claim.
 std::string figure_text(const std::string& claim) {
   if (claim == "table1") return "\n![frames per second against the window](table1.png)\n";
   if (claim == "table2_size") return "\n![slices against the disparities](table2.png)\n";

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/search/allocation_run.h"
@@ -19,14 +19,14 @@ namespace {
 
 using platform::BoardConfig;
 
-// A rate is a quotient; what two of them differ by then is not a difference.
+// Rates are quotients: a relative difference below this is rounding.
 constexpr double kRounding = 1e-9;
 
 bool reaches(double rate, double best) { return rate >= best * (1 - kRounding); }
 
 int banks_of(const BoardConfig& board) {
   std::vector<std::string> names;
-  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.bank);
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.bank);
   std::sort(names.begin(), names.end());
   return static_cast<int>(std::unique(names.begin(), names.end()) - names.begin());
 }
@@ -37,7 +37,7 @@ std::string identity_of(const BoardRun& run) {
   return text;
 }
 
-// The board as a command line has it: "fpl2003 --set matcher.window=7".
+// The board as on a command line: "fpl2003 --set matcher.window=7".
 std::string words_of(const BoardRun& run) {
   std::string text = run.preset;
   for (const std::string& set : run.sets) {
@@ -47,7 +47,7 @@ std::string words_of(const BoardRun& run) {
   return text;
 }
 
-// All different runs of the claims, those of the core or those of the computer.
+// All different runs of the claims, either of the core or of the computer.
 class Runs {
  public:
   Runs(const std::vector<Claim>& claims, bool camera) : run_{camera, 0, ""} {
@@ -89,14 +89,14 @@ class Runs {
   std::map<std::string, std::size_t> numbers_;
 };
 
-// How far all searches and runs are.
+// The progress of all searches and runs.
 class Count {
  public:
-  // most: boards of all of them.
+  // `most`: upper limit for the boards of all parts.
   Count(std::uint64_t most, const Means& means) : after_(most), means_(means) {}
-  // most: boards of the part that begins, as they were counted.
+  // `most`: the share of the next part in that limit.
   void begin_part(std::uint64_t most) { after_ -= most; }
-  // Of the part that goes on.
+  // Reports the progress of the running part.
   bool keep_going(std::uint64_t done, std::uint64_t most_left) const {
     return means_.keep_going(before_ + done, most_left + after_);
   }
@@ -104,11 +104,11 @@ class Count {
 
  private:
   std::uint64_t before_ = 0;
-  std::uint64_t after_;  // at most
+  std::uint64_t after_;  // upper limit for the boards of later parts
   const Means& means_;
 };
 
-// For the best of every number of banks, of the core alone.
+// Searches the best allocation of the core alone for each number of banks.
 class BankSearch {
  public:
   BankSearch(const Claim& claim, const Means& means)
@@ -123,7 +123,7 @@ class BankSearch {
   // Boards, at most.
   std::uint64_t most() const { return most_; }
 
-  // False if it was ended.
+  // Returns false if it was ended.
   bool simulate(Count& count) {
     const files::TemporaryFolder folder;
     explore::SweepOptions sweep;
@@ -180,7 +180,7 @@ class BankSearch {
   std::uint64_t most_;
 };
 
-// The fewest of the rows of a claim that reach the best of them all.
+// The fewest banks among a claim's rows that reach the best rate of all rows.
 int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
   double best = 0;
   int fewest = 0;
@@ -194,7 +194,7 @@ int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
   return fewest;
 }
 
-// The fewest banks of the runs that reach the rate of the first.
+// The fewest banks among the runs that reach the rate of the first run.
 int fewest_banks(const std::vector<Measured>& runs) {
   int fewest = runs.front().banks;
   for (const Measured& run : runs) {
@@ -235,7 +235,7 @@ Verdict verdict_of_case(const Claim& claim, const Case& one, double modelled) {
   return verdict_of_need(static_cast<int>(one.printed), static_cast<int>(modelled), is_proved);
 }
 
-// The chosen allocations of a case, as rows of their own.
+// The chosen allocations of a case as rows.
 void add_chosen(const Claim& claim, const Case& one, const std::vector<Measured>& runs,
                 std::vector<BankRow>& rows) {
   for (std::size_t i = runs.size(); i-- > 0;) {

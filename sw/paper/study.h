@@ -8,43 +8,43 @@
 
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
-#include "sw/explore/slurm/batch.h"
+#include "sw/explore/sweep/batch.h"
 #include "sw/paper/claims.h"
 
 namespace stereotlm::paper {
 
-// What the simulation of a board has given.
+// The figures of a simulated board.
 struct Measured {
   double rate =
-      0;  // frames per second: of the core alone, or of the computer between the first delivery and the last
-  std::optional<double> delivered;  // of the computer, from time 0 to the last delivery
-  double bound = 0;                 // of the core, or of the computer
-  std::string limited_by;           // by what that is limited
+      0;  // frames per second of the core alone, or of the computer from the first delivery to the last
+  std::optional<double> delivered;  // frames per second of the computer from time 0 to the last delivery
+  double bound = 0;                 // upper bound for the rate, frames per second
+  std::string limited_by;           // the resource that limits the bound
   double slices_percent = 0;
-  int banks = 0;  // that its allocation uses
+  int banks = 0;  // number of banks that its allocation uses
 };
 
-// The best allocations of a number of banks, or one of some.
+// The best allocation for a number of banks, or a chosen one.
 struct BankRow {
   std::string of;  // name of the claim
   int banks = 0;
   std::optional<std::uint64_t>
-      allocations;  // all that use so many and fit, each simulated; nothing: one that was chosen
-  std::optional<std::uint64_t> reached_by;  // of them those that reach the rate
-  Measured measured;                        // of the best, or of that one
+      allocations;  // number of allocations with so many banks that fit; all are simulated. nullopt: a chosen allocation
+  std::optional<std::uint64_t> reached_by;  // number of these that reach the rate
+  Measured measured;                        // figures of the best, or of the chosen one
   std::string allocation;                   // "left_image bank0 bank1, .., right_lut bank7"
   std::string command;
 };
 
 struct CaseFinding {
   double modelled = 0;
-  std::vector<Measured> runs;  // of the case, in its order; none of kBanksProved
+  std::vector<Measured> runs;  // runs of the case, in order; empty for kBanksProved
   Verdict verdict = Verdict::kOpen;
 };
 
 struct ClaimFinding {
   Claim claim;
-  std::vector<CaseFinding> cases;  // in its order
+  std::vector<CaseFinding> cases;  // in the order of the claim
   Verdict verdict = Verdict::kOpen;
 };
 
@@ -55,38 +55,37 @@ struct Findings {
   const ClaimFinding& of(const std::string& claim) const;  // throws std::out_of_range
 };
 
-// How boards are simulated.
+// Functions that simulate boards.
 struct Means {
   explore::Evaluate evaluate;
-  // Of the core alone without calibration, for so many frames: platform::core_bound().
+  // platform::core_bound() of the core alone, without calibration, for this number of frames.
   std::function<platform::Bound(const platform::BoardConfig& board, std::uint64_t frames)> bound;
   std::string version;
   unsigned jobs = 1;
-  // Several times a second: of the boards of all searches and runs, those that are done and those that are
-  // left at most.
+  // Called several times a second with the number of boards that are done, and an upper limit for those that are
+  // left.
   std::function<bool(std::uint64_t done, std::uint64_t most_left)> keep_going;
 };
 
-// Simulates what the claims are about. Nothing if `keep_going` has ended it. Throws std::runtime_error if a
-// board cannot be simulated.
+// Simulates the boards of the claims. nullopt if `keep_going` has ended it. Throws std::runtime_error if a board
+// cannot be simulated.
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means);
 
-// The command that gives the number of a run, as typed into a shell: "stereotlm run fpl2003 --timing-only
-// ..".
+// The shell command that reproduces the number of a run: "stereotlm run fpl2003 --timing-only ..".
 std::string command_of(const BoardRun& run);
-// Of a case: those that give the numbers that its own is made of.
+// The commands that reproduce the numbers of a case.
 std::vector<std::string> commands_of(const Claim& claim, const Case& one);
 
-// At which clock of the FPGA the core alone would reach a printed rate, in MHz: of the least and of the
-// greatest value that is printed so. Nothing unless the case is a rate of the core alone.
+// The clock of the FPGA, in MHz, at which the core alone reaches a printed rate: for the least and the greatest
+// value that rounds to it. nullopt unless the case is a rate of the core alone.
 struct ClockRange {
   double least_mhz = 0;
   double most_mhz = 0;
 };
 std::optional<ClockRange> clock_for(const Claim& claim, const Case& one, const CaseFinding& finding);
 
-// The modelled value against the printed one, in percent of that; nothing where that would say nothing: of
-// banks, and where the printed one is 0.
+// The deviation of the modelled value from the printed one, in percent of the printed one. nullopt for numbers of
+// banks and if the printed value is 0.
 std::optional<double> deviation_percent(const Claim& claim, const Case& one, const CaseFinding& finding);
 
 }  // namespace stereotlm::paper

@@ -35,7 +35,7 @@ std::string command_text(const Claim& claim, const Case& one) {
   return text;
 }
 
-// What a table says of the boards that it is about: a column for each of these keys.
+// Columns of a table that describe its boards: one per key.
 constexpr std::array kBoardKeys = {"image.width",         "image.height",   "matcher.window",
                                    "matcher.disparities", "matcher.filter", "fpga.clock_mhz",
                                    "fpga.device"};
@@ -46,9 +46,9 @@ std::string board_header() {
   return text + '\n';
 }
 
-// Of the board of a run, as the end of a row.
+// The values of these columns for the board of a run: the end of a row.
 std::string with_board(std::string row, const BoardRun& run) {
-  row.pop_back();  // its end of the line
+  row.pop_back();  // the newline
   const auto values = platform::values_of(platform::load_board(run.preset, run.sets));
   for (const char* const key : kBoardKeys) {
     const auto is_it = [key](const platform::BoardValue& value) { return value.path == key; };
@@ -58,7 +58,7 @@ std::string with_board(std::string row, const BoardRun& run) {
   return row + '\n';
 }
 
-// The number that a case is named by: "7x7", "80 disparities".
+// The number in the name of a case: "7x7", "80 disparities".
 std::string leading_number(const std::string& name) {
   return name.substr(0, name.find_first_not_of("0123456789"));
 }

@@ -60,7 +60,7 @@ Verdict verdict_of_all(const std::vector<Verdict>& cases) {
     return one == Verdict::kConfirmed || one == Verdict::kInPart;
   });
   if (any) return Verdict::kInPart;
-  return Verdict::kNotConfirmed;  // none is confirmed, and some are refuted
+  return Verdict::kNotConfirmed;  // no case is confirmed, and some are refuted
 }
 
 }  // namespace stereotlm::paper

@@ -13,16 +13,16 @@
 namespace stereotlm::report {
 namespace {
 
-// Column of the right picture that a left pixel is seen at; outside 0..width-1 if it is not in the picture.
+// The column of a left pixel in the right picture; outside 0..width-1 if it lies outside the picture.
 double right_column(int x, int grey, double scale) { return std::floor(x - grey / scale + 0.5); }
 
-// One row: true where the truth is known and the pixel is seen by the right camera too. Truths are compared
-// in grey levels, where they are whole.
+// For each pixel of a row: whether its truth is known and the right camera sees it too. Truths are compared as
+// grey levels, which are integers.
 std::vector<bool> known_and_visible(const media::Truth& truth, int y) {
   const int width = truth.grey.width;
   const auto inside = [width](double column) { return column >= 0 && column < width; };
   std::vector<int> nearest_grey(static_cast<std::size_t>(width),
-                                0);  // per right column: the largest that lands there
+                                0);  // per right column: the largest truth that lands there
   for (int x = 0; x < width; ++x) {
     const int grey = truth.grey.at(x, y);
     const double column = right_column(x, grey, truth.scale);

@@ -14,11 +14,14 @@ struct ClocksMhz {
   double local = 40;
 };
 
-// The short table that a run prints: frames per second beside their bounds, each bank's traffic against the
-// peak of one word a cycle (`use %` is that share), the largest row of blame; of a computer each PCI master's
-// traffic against the peak of one word a clock and its mean wait for the bus, how busy both buses were, what
-// the cameras dropped for which reason, the latency; and the accuracy if given. ASCII but for names, lines of
-// at most 100 columns (a name of more than 24 characters is shortened), a newline after each.
+// The table that a run prints:
+// - Frames per second and their bounds.
+// - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).
+// - The largest row of blame.
+// - For a computer: each PCI master's traffic, its share of the peak of one word per clock and its mean wait for
+//   the bus; the use of both buses; dropped camera frames by reason; the latency.
+// - The accuracy, if given.
+// Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names.
 std::string console_table(const platform::Statistics& statistics, const ClocksMhz& clocks_mhz,
                           const std::optional<Accuracy>& accuracy);
 

@@ -27,7 +27,7 @@ std::string text_of(const Value* value) {
 
 std::string signed_text(std::int64_t value) { return value == 0 ? "0" : fmt::format("{:+}", value); }
 
-// Nothing for what is no number, or has no partner.
+// nullopt if a value is no number or missing in one run.
 std::string difference_text(const Value* a, const Value* b) {
   if (a == nullptr || b == nullptr) return "";
   const auto number = [](const Value& value) {
@@ -46,7 +46,7 @@ struct Differing {
   const Value* b;
 };
 
-// In the order of A, those that only B has at the end.
+// Values in the order of A; values that only B has follow.
 std::vector<Differing> differing(const Values& a, const Values& b) {
   const auto find = [](const Values& values, const std::string& path) -> const Value* {
     const auto found = std::find_if(values.begin(), values.end(),
@@ -125,7 +125,7 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
                          const std::vector<std::uint64_t>& cycles_b) {
   std::vector<FrameLine> lines;
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::size_t> known;
-  std::int64_t rest = 0;  // of lines that are not shown
+  std::int64_t rest = 0;  // sum of the lines that are not shown
   for (std::size_t frame = 0; frame < std::min(cycles_a.size(), cycles_b.size()); ++frame) {
     const auto [entry, is_new] = known.emplace(std::pair(cycles_a[frame], cycles_b[frame]), lines.size());
     if (is_new) lines.push_back({0, frame, cycles_a[frame], cycles_b[frame]});
@@ -165,7 +165,7 @@ std::string rows_table(const RowComparison& rows) {
         first->frame, first->row);
   }
   const std::vector<RowComparison::Range> ranges = rows.ranges(kMostLines);
-  if (ranges.empty()) return text;  // nothing, or what one frame costs another one gains
+  if (ranges.empty()) return text;  // no difference, or differences of frames cancel out
   text += fmt::format("{:>43}stall cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
   for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
     text += fmt::format(" {:>11}", fpga::kPorts[port].name);

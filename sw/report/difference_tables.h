@@ -11,34 +11,33 @@
 
 namespace stereotlm::report {
 
-// What `diff` prints of two runs, A and B: tables of what is not the same, ASCII but for names and values, a
-// newline after each line. A table without lines is empty, without a head too. Differences are B - A.
+// The tables that `diff` prints for two runs, A and B. A table shows only what differs; without differences it is
+// an empty string. Differences are B - A. Text is ASCII except names and values.
 
-// Values by their paths; one that is missing on one side is "-" there.
+// Values with their paths. A value that one run does not have is "-" there.
 using Values = std::vector<platform::BoardValue>;
 
-// What the runs were told: at most kMostSettings. Values that are too long for a column stand in full in
-// lines of their own.
+// The settings of the runs, at most kMostSettings. A value too long for its column has lines of its own.
 inline constexpr std::size_t kMostSettings = 30;
 std::string settings_table(const std::string& head, const Values& a, const Values& b);
 
-// Figures, numbers with their differences.
+// Figures of the runs. Numbers have their difference beside them.
 std::string figures_table(const std::string& head, const Values& a, const Values& b);
 
-// Of frames with the same number in both runs, those with the same cycles in one line: at most kMostLines,
-// those that cost or gain most, and what the others do.
+// The cycles of frames with the same number in both runs. Frames with the same cycles share a line. Shows the
+// kMostLines largest differences, and the sum of the others.
 inline constexpr std::size_t kMostLines = 10;
 std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
                          const std::vector<std::uint64_t>& cycles_b);
 
-// Where they part, in cycles or else in stalls, and what it costs or gains in which rows:
-// RowComparison::ranges(), at most kMostLines.
+// The first row that differs in cycles, or else in stalls, and the differences by ranges of rows
+// (RowComparison::ranges(), at most kMostLines).
 std::string rows_table(const RowComparison& rows);
 
-// Sorted by what they differ, most first.
+// Sorted by difference, largest first.
 std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b);
 
-// One line, also if no frame was compared.
+// One line, even if no frame was compared.
 std::string pixels_line(const PixelComparison& pixels);
 
 }  // namespace stereotlm::report

@@ -7,17 +7,17 @@
 
 namespace stereotlm::report {
 
-// The disparities of two runs, A and B, pixel for pixel.
+// Compares the disparities of two runs, A and B, pixel by pixel.
 class PixelComparison {
  public:
-  // Those of the same camera frame. Throws std::invalid_argument if they are not of the same size.
+  // Adds the disparities of one camera frame. Throws std::invalid_argument if the sizes differ.
   void add(std::uint64_t camera_frame, const kernels::GrayImage& a, const kernels::GrayImage& b);
 
-  std::uint64_t frames() const { return frames_; }  // compared
+  std::uint64_t frames() const { return frames_; }  // frames compared
   std::uint64_t frames_that_differ() const { return frames_that_differ_; }
-  std::uint64_t pixels() const { return pixels_; }  // that differ
+  std::uint64_t pixels() const { return pixels_; }  // pixels that differ
 
-  // The first pixel that differs, in the order of the frames, from the top, from the left.
+  // The first pixel that differs: of the first frame, in the topmost row, leftmost.
   struct First {
     std::uint64_t camera_frame = 0;
     int column = 0;

@@ -10,20 +10,20 @@
 
 namespace stereotlm::report {
 
-// The rows by themselves: cycles and stalls since the row above was whole; those of the top row since the
-// frame began.
+// The cycles and stalls of each row alone: from the completion of the row above, or from the start of the frame,
+// to its own completion.
 fpga::RowProfile rows_alone(const fpga::RowProfile& profile);
 
-// The rows of results of two runs, A and B, frame by frame: what each takes more in B, by itself.
+// Compares the rows of results of two runs, A and B: the cycles and stalls that each row alone takes more in B.
 class RowComparison {
  public:
-  // The next frame of both. Throws std::invalid_argument if it has not as many rows in both, and as the
-  // frames before.
+  // Adds the next frame of both runs. Throws std::invalid_argument if the numbers of rows differ, or differ from
+  // earlier frames.
   void add(const fpga::RowProfile& a, const fpga::RowProfile& b);
 
   std::uint64_t frames() const { return frames_; }
 
-  // The first row that is not whole after as many cycles of its frame.
+  // The first row that is complete at different cycles of its frame.
   struct Parting {
     std::uint64_t frame = 0;
     std::size_t row = 0;
@@ -32,26 +32,25 @@ class RowComparison {
   };
   const std::optional<Parting>& parting() const { return parting_; }
 
-  // The first row with other stalls of its own.
+  // The first row whose own stalls differ.
   struct OtherStalls {
     std::uint64_t frame = 0;
     std::size_t row = 0;
   };
   const std::optional<OtherStalls>& other_stalls() const { return other_stalls_; }
 
-  // Rows one below the other, summed over the frames, B - A.
+  // Adjacent rows. Figures are sums over the frames, B - A.
   struct Range {
     std::size_t first_row = 0;
     std::size_t last_row = 0;
-    std::int64_t cycles = 0;                                  // of all its rows
-    std::int64_t least = 0;                                   // of one row
-    std::int64_t most = 0;                                    // of one row
-    std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // of all its rows
+    std::int64_t cycles = 0;                                  // sum over the rows
+    std::int64_t least = 0;                                   // least cycles of one row
+    std::int64_t most = 0;                                    // most cycles of one row
+    std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // sums over the rows
   };
-  // From the top, those whose rows all have the same cycles and stalls more or less; where these are more
-  // than `most_ranges`, those whose rows all take as many cycles more or less, or else so many of the same
-  // height. Left out are those of rows that take as long in both, without stalls in all that one of them has
-  // more: the others sum up to the whole, in cycles and in stalls.
+  // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same difference in
+  // cycles and stalls; if these are too many ranges, in cycles only; if still too many, ranges have equal
+  // heights. A range without any difference in its sums is left out, so that the others sum up to the whole.
   std::vector<Range> ranges(std::size_t most_ranges) const;
 
  private:
@@ -61,7 +60,7 @@ class RowComparison {
   };
 
   Range range(std::size_t first_row, std::size_t last_row) const;
-  // Of rows that `is_same` as the one above.
+  // Ranges of rows for which `is_same` holds between neighbours.
   template <typename IsSame>
   std::vector<Range> runs_of(const IsSame& is_same) const;
 

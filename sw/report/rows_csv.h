@@ -10,14 +10,14 @@
 
 namespace stereotlm::report {
 
-// The rows of results of two runs, A and B, as a table for other programs: a line for each frame and row,
-// with the row's own cycles and stalls in both. The file is as it was until commit(), and there whole after
-// it: a ReplacedFile. All throw std::runtime_error naming the file if it cannot be written.
+// A CSV file of the rows of results of two runs, A and B: one line per frame and row with the row's own cycles
+// and stalls in both runs. commit() replaces the file as a whole (files::ReplacedFile). All functions throw
+// std::runtime_error with the file's name if it cannot be written.
 class RowsCsv {
  public:
   explicit RowsCsv(const std::filesystem::path& path);
 
-  // The next frame of both, with as many rows.
+  // Adds the next frame of both runs, which has equally many rows in both.
   void add(const fpga::RowProfile& a, const fpga::RowProfile& b);
   void commit();
 

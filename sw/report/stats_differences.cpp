@@ -9,7 +9,7 @@
 namespace stereotlm::report {
 namespace {
 
-// Every value with its path, which sorts as in the document where lists are shorter than 10.
+// Every value with its path. Paths sort as in the document as long as lists are shorter than 10.
 std::map<std::string, std::string> values_of(const std::string& text) {
   std::map<std::string, std::string> values;
   try {

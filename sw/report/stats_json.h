@@ -9,9 +9,9 @@
 
 namespace stereotlm::report {
 
-// stats.json, and its text (contract section 6), its keys in that order; a camera's reasons of dropped frames
-// behind its other keys. What does not apply is absent: `failed` unless an identity failed, `accuracy` unless
-// it is given, a percentage of nothing.
+// The content of stats.json (contract section 6) and its text. Keys have the order of the contract; a camera's
+// counts of dropped frames by reason follow its other keys. A key is absent if it does not apply: `failed` if
+// all identities hold, `accuracy` if it is not given, a percentage if its denominator is 0.
 nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
                                       const std::optional<Accuracy>& accuracy);
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);

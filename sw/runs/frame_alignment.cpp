@@ -33,7 +33,7 @@ FrameAlignment::FrameAlignment(const RecordedRun& a, const RecordedRun& b, const
 
 bool FrameAlignment::run() {
   bool goes_on = read(a_) && read(b_);
-  // In the order of the camera frames, so that nobody waits for one that has been passed.
+  // Takes frames in the order of the camera frames: neither run has then passed a frame the other still needs.
   while (goes_on && (a_.ahead || b_.ahead)) {
     const bool takes_a = a_.ahead && (!b_.ahead || a_.ahead->number <= b_.ahead->number);
     const bool takes_b = b_.ahead && (!a_.ahead || b_.ahead->number <= a_.ahead->number);
@@ -46,7 +46,7 @@ bool FrameAlignment::run() {
   return goes_on;
 }
 
-// While it waits it looks for interrupts.
+// Polls for interrupts while it waits.
 bool FrameAlignment::read(Side& side) {
   do {
     if (process::interrupted()) return false;

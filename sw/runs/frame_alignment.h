@@ -15,7 +15,7 @@
 
 namespace stereotlm::runs {
 
-// Why two runs, A and B, cannot be compared so far; empty: they can.
+// Why the rows or pixels of two runs, A and B, cannot be compared; empty if they can.
 struct DiffLimits {
   DiffLimits(const RecordedRun& a, const RecordedRun& b);
 
@@ -23,27 +23,27 @@ struct DiffLimits {
   std::string pixels;
 };
 
-// Two runs, run again and laid beside each other: rows where they are of the same frame of the core,
-// disparities where they are of the same camera frame.
+// Repeats two recorded runs side by side and compares them: the rows of equal frames of the core, and the
+// disparities of equal camera frames.
 class FrameAlignment {
  public:
-  // Begins both. All outlives it; `csv` may be null.
+  // Starts both runs. All arguments outlive the object; `csv` may be null.
   FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, report::RowsCsv* csv);
 
-  // Until both have ended, or the first interrupt: false then. Throws what Rerun::next() throws.
+  // Runs until both have ended. Returns false at the first interrupt. Throws what Rerun::next() throws.
   bool run();
 
   const report::RowComparison& rows() const { return rows_; }
   const report::PixelComparison& pixels() const { return pixels_; }
 
  private:
-  // One of the two, a frame ahead.
+  // One of the two runs, with its next frame.
   struct Side {
     explicit Side(const RecordedRun& run) : rerun(run) {}
 
     Rerun rerun;
     std::optional<Rerun::Frame> ahead;
-    std::deque<fpga::RowProfile> rows;  // of frames that the other has not come to
+    std::deque<fpga::RowProfile> rows;  // rows of frames that the other run has not reached
   };
 
   bool read(Side& side);
@@ -52,7 +52,7 @@ class FrameAlignment {
 
   const DiffLimits& limits_;
   report::RowsCsv* csv_;
-  std::uint64_t frames_;  // of the longer one
+  std::uint64_t frames_;  // frames of the longer run
   report::RowComparison rows_;
   report::PixelComparison pixels_;
   Side a_;

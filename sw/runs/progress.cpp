@@ -33,7 +33,7 @@ std::string progress_text(const RunState& state, double seconds) {
   const auto done = static_cast<double>(state.frames_done);
   const double frame_cycles = state.frames_done > 0 ? static_cast<double>(state.cycles_of_done) / done
                                                     : static_cast<double>(state.least_frame_cycles);
-  // The frame may be longer than the ones before it.
+  // The running frame may be longer than earlier ones.
   const double part =
       std::min(0.999, static_cast<double>(state.cycles - state.cycles_of_done) / frame_cycles);
   const double position = state.frames_done == state.frames ? frames : done + part;
@@ -41,6 +41,14 @@ std::string progress_text(const RunState& state, double seconds) {
   return fmt::format("{:.2f}/{} frames   {:.1f} %   {:.2f} M cycles/s   {:.2f} frames/s   {} left", position,
                      state.frames, 100 * position / frames, rate / 1e6, rate / frame_cycles,
                      time_text((frames - position) * frame_cycles / rate));
+}
+
+std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
+  const auto done = static_cast<double>(counts.done());
+  const double rate = (done - static_cast<double>(before)) / seconds;
+  return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
+                     100 * done / static_cast<double>(counts.total), rate,
+                     time_text((static_cast<double>(counts.total) - done) / rate));
 }
 
 std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
@@ -62,7 +70,7 @@ void ProgressLine::show(const std::function<std::string(double seconds)>& line) 
   if (now < next_) return;
   next_ = now + kBetweenDrawings;
   std::string text = line(std::chrono::duration<double>(now - start_).count());
-  text.resize(std::min(text.size(), terminal_columns() - 1));  // a line that wraps cannot be drawn over
+  text.resize(std::min(text.size(), terminal_columns() - 1));  // a wrapped line cannot be overwritten
   const std::size_t columns = text.size();
   if (columns < columns_drawn_) text.append(columns_drawn_ - columns, ' ');
   columns_drawn_ = columns;

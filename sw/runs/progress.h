@@ -5,27 +5,33 @@
 #include <functional>
 #include <string>
 
+#include "sw/explore/sweep/sweep.h"
+
 namespace stereotlm::runs {
 
-// How far a run is. A frame in progress counts by its simulated cycles.
+// The progress of a run. A running frame counts in proportion to its simulated cycles.
 struct RunState {
-  std::uint64_t frames = 0;  // to do, all in all
+  std::uint64_t frames = 0;  // frames of the whole run
   std::uint64_t frames_done = 0;
-  std::uint64_t cycles_of_done = 0;      // FPGA cycles by the end of the last of them
+  std::uint64_t cycles_of_done = 0;      // FPGA cycles until the end of the last finished frame
   std::uint64_t cycles = 0;              // FPGA cycles simulated
-  std::uint64_t least_frame_cycles = 1;  // stands for the length of a frame until one has finished
+  std::uint64_t least_frame_cycles = 1;  // assumed length of a frame until one has finished
 };
 
 // "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
 
+// "3/10 points   30.0 %   2.0 points/s   0:04 left", of a sweep. `before`: points that were done when the
+// time began.
+std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds);
+
 // "0:08", "1:02:03", "years"
 std::string time_text(double seconds);
 
-// "verifying: 1/5 frames": how far the comparison with the other run is.
+// "verifying: 1/5 frames": the progress of the comparison with the other run.
 std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames);
 
-// A progress line, on standard error if that is a terminal; otherwise nothing. The line is erased at the end.
+// A progress line on standard error, if that is a terminal. The destructor erases it.
 class ProgressLine {
  public:
   ProgressLine();
@@ -33,11 +39,11 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Draws the line anew, at most a few times a second.
+  // Redraws the line, at most a few times a second.
   void show(const RunState& state);
-  // `line` is given the seconds since this was made.
+  // `line` gets the seconds since construction.
   void show(const std::function<std::string(double seconds)>& line);
-  // Takes it away, until it is shown again.
+  // Erases the line until the next show().
   void erase();
 
  private:

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct RecordedFile {
   std::string option;
-  InputFile file;  // its path in full
+  InputFile file;  // with its full path
 };
 
 std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
@@ -46,7 +46,7 @@ std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
   return files;
 }
 
-// Throws std::runtime_error for a file that is not the one that the run had.
+// Throws std::runtime_error if the file differs from the one that the run used.
 void check_input(const RecordedFile& input) {
   const std::string sha256 = files::sha256_file(input.file.path);
   if (sha256 == input.file.sha256) return;
@@ -54,7 +54,7 @@ void check_input(const RecordedFile& input) {
                                        input.file.path, sha256, input.file.sha256));
 }
 
-// Throws std::runtime_error for figures that nothing should be compared with.
+// Throws std::runtime_error for figures that must not be compared.
 void check_figures(const std::string& text) {
   nlohmann::ordered_json document;
   try {
@@ -68,7 +68,7 @@ void check_figures(const std::string& text) {
   throw std::runtime_error(fmt::format("failed = {}: must be a run in which nothing failed", failed->dump()));
 }
 
-// Throws std::runtime_error if the layout of videos is none, or not for so many.
+// Throws std::runtime_error if the video layout is unknown, or does not fit the number of videos.
 PictureSource pictures_of(const RecordedOptions& options) {
   PictureSource pictures;
   if (options.left && options.right)
@@ -89,7 +89,7 @@ PictureSource pictures_of(const RecordedOptions& options) {
   return pictures;
 }
 
-// Throws std::runtime_error if the folder has pairs now that the run did not have.
+// Throws std::runtime_error if the folder has new pairs.
 void check_sequence(const InputFolder& found, const InputFolder& recorded) {
   if (found.files.size() == recorded.files.size()) return;
   throw std::runtime_error(fmt::format("'{}': {} pairs: must be those of the run, {}", found.path,

@@ -10,26 +10,25 @@
 
 namespace stereotlm::runs {
 
-// What a result folder of `run --out` says: with which board and options the run was made, and its figures.
+// The content of a result folder of `run --out`: board, options and figures of the run.
 struct RecordedRun {
-  std::string argument;  // the word of the command line for it: "A"
-  std::string folder;    // as it was named
+  std::string argument;  // its name on the command line: "A"
+  std::string folder;    // the folder as typed
   platform::BoardConfig board;
   std::string run_json;
-  RecordedOptions options;  // as run_json says
+  RecordedOptions options;  // from run.json
   std::string stats_json;
 };
 
-// Reads config.yaml, run.json and stats.json of the folder and checks that every input is there, with its
-// SHA-256. Nothing if it is not so, with every reason reported.
+// Reads config.yaml, run.json and stats.json of the folder and checks that every input exists with its SHA-256.
+// Reports all problems and returns nullopt if there are any.
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems);
 
 // "A 'results/demo/a'"
 std::string name_of(const RecordedRun& run);
 
-// What it takes to run it again, with its pictures opened. Reports what is wrong: the result is good for
-// nothing then.
+// The input to repeat the run, with its pictures opened. Reports problems; the result is not usable then.
 RunInput open_again(const RecordedRun& run, process::Problems& problems);
 
 }  // namespace stereotlm::runs

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/binder.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr char kFrame = 'f';
 constexpr char kFigures = 's';
 
-// A message of a frame: its kind, the number, the rows, the pixels; between processes of one program.
+// Message of a frame from child to parent: kind, number, rows, pixels. Both are the same program.
 template <typename Value>
 void put(std::string& message, const Value& value) {
   message.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -69,7 +69,7 @@ void run_again(const RecordedRun& run, const process::Child::Tell& tell) {
   Binder binder;
   const auto simulation = make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
   simulation->record_rows();
-  std::deque<fpga::RowProfile> rows;  // of frames whose results are under way
+  std::deque<fpga::RowProfile> rows;  // rows of frames whose results are not delivered yet
   while (!simulation->finished()) {
     const std::vector<Result> results = simulation->advance();
     for (fpga::RowProfile& frame : simulation->take_rows()) rows.push_back(std::move(frame));

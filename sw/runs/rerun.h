@@ -13,23 +13,23 @@
 
 namespace stereotlm::runs {
 
-// A recorded run, run again in a process of its own, with the rows of its frames. At fidelity fast, whichever
-// it was run at: the figures are the same.
+// Repeats a recorded run in a child process and records the rows of its frames. Always at fidelity fast: the
+// figures do not depend on the fidelity.
 class Rerun {
  public:
-  // Begins. `run` outlives it.
+  // Starts the child. `run` outlives the object.
   explicit Rerun(const RecordedRun& run);
 
   struct Frame {
-    std::uint64_t number = 0;  // of the camera frame
+    std::uint64_t number = 0;  // number of the camera frame
     fpga::RowProfile rows;
     kernels::GrayImage disparity;  // empty without pixels
   };
-  // Waits for as long at most, or until a signal has been caught, and tells whether next() has something to
-  // say.
+  // Waits until next() has a frame, for at most this time or until a signal is caught. Returns whether it
+  // has.
   bool has_news(std::chrono::milliseconds wait) { return child_->has_news(wait); }
-  // Waits for the next frame; nothing after the last. Throws std::runtime_error if the run fails, or ends
-  // with other figures than those recorded.
+  // Waits for the next frame; nullopt after the last. Throws std::runtime_error if the run fails, or if its
+  // figures differ from the recorded ones.
   std::optional<Frame> next();
 
  private:

@@ -18,20 +18,20 @@ struct Calibration;
 
 namespace stereotlm::runs {
 
-// All that a run works on, loaded and checked.
+// The inputs of a run, loaded and checked.
 struct RunInput {
   platform::BoardConfig board;
-  std::shared_ptr<const calib::Calibration> calibration;  // null: without
+  std::shared_ptr<const calib::Calibration> calibration;  // null: no calibration
   platform::Tables tables;
-  std::unique_ptr<PairSource> pairs;  // null: blank ones; only with timing_only
+  std::unique_ptr<PairSource> pairs;  // null: blank pictures; only with timing_only
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
-  std::uint64_t frames = 1;              // to deliver
-  std::optional<media::Truth> truth;     // of the pair that the last one shows
-  std::string config_yaml;               // the text of that result file
-  RecordedOptions described;             // what run.json says; frames: those asked for
-  std::unique_ptr<ResultFolder> folder;  // null: nothing is written
+  std::uint64_t frames = 1;              // frames to deliver
+  std::optional<media::Truth> truth;     // ground truth of the pair that the last frame shows
+  std::string config_yaml;               // text of the result file config.yaml
+  RecordedOptions described;             // content of run.json; `frames` as requested
+  std::unique_ptr<ResultFolder> folder;  // null: no result files
 };
 
 }  // namespace stereotlm::runs

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The name as run.json can hold it.
+// The name in the form that run.json can hold.
 std::string named(const char* option, const std::string& name) {
   try {
     static_cast<void>(files::json_text(name));

@@ -9,7 +9,7 @@ namespace stereotlm::runs {
 
 struct InputFile {
   std::string path;    // absolute, UTF-8
-  std::string sha256;  // of its content, 64 hexadecimal digits (sha256.h)
+  std::string sha256;  // SHA-256 of its content, 64 hexadecimal digits
 };
 
 struct InputCalibration {
@@ -20,32 +20,32 @@ struct InputCalibration {
 
 struct InputFolder {
   std::string path;              // absolute, UTF-8
-  std::vector<InputFile> files;  // their paths are names in the folder
+  std::vector<InputFile> files;  // paths are names in the folder
 };
 
-// All that `run` was told apart from the board, which config.yaml holds in full. With both, running again
-// gives the same bytes.
+// The options of a `run` except the board, which config.yaml holds in full. A run with both gives the same
+// bytes again.
 struct RecordedOptions {
   std::string program_version;
   std::string source;    // "preloaded"
   std::string fidelity;  // "fast"
   bool timing_only = false;
-  bool verify = false;  // false too where the comparison was interrupted
+  bool verify = false;  // also false if the comparison was interrupted
   std::uint64_t frames = 1;
   std::optional<InputFile> left;
   std::optional<InputFile> right;
   std::optional<InputFolder> sequence;
   std::vector<InputFile> video;
-  std::string video_layout;  // written if there is a video
+  std::string video_layout;  // only with a video
   std::optional<std::uint64_t> synthetic;
   std::optional<InputCalibration> calibration;
   std::optional<InputFile> truth;
-  double truth_scale = 1;  // written if there is a truth
+  double truth_scale = 1;  // only with a truth
   bool save_frames = false;
 };
 
-// The text of run.json: keys are the names of the options, one not given is absent. Throws std::runtime_error
-// naming the option whose path is not absolute or not UTF-8.
+// The text of run.json. Keys are the names of the options; an option that was not given is absent. Throws
+// std::runtime_error with the option's name if a path is not absolute or not UTF-8.
 std::string run_json(const RecordedOptions& options);
 
 }  // namespace stereotlm::runs

@@ -56,13 +56,13 @@ RecordedOptions read_options(const Json& document) {
   return options;
 }
 
-// From 1.
+// Counts from 1.
 std::ptrdiff_t first_other_line(const std::string& text, const std::string& other) {
   const auto end = std::mismatch(text.begin(), text.end(), other.begin(), other.end()).first;
   return std::count(text.begin(), end, '\n') + 1;
 }
 
-// What cannot be the options of a run, though it could be written.
+// Refuses options that could be written but cannot be those of a run.
 void check(const RecordedOptions& options) {
   const auto require = [](bool holds, const std::string& rule) {
     if (!holds) throw std::runtime_error(rule);

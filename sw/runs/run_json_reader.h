@@ -6,8 +6,8 @@
 
 namespace stereotlm::runs {
 
-// The options of a run, from the text of its run.json. Throws std::runtime_error, without the name of the
-// file, if it is not what run_json() writes of the options of a run, byte for byte.
+// Reads the options of a run from the text of its run.json. Throws std::runtime_error, without the file's name,
+// if run_json() does not write exactly this text.
 RecordedOptions parse_run_json(const std::string& text);
 
 }  // namespace stereotlm::runs

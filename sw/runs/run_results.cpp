@@ -37,13 +37,13 @@ void write_files(RunInput& input, platform::Statistics statistics, const Result&
   if (!input.timing_only) add_pictures(input, last, folder);
   folder.add("stats.json", report::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
-  // An interrupted run is the same as a whole one of the frames that it finished.
+  // An interrupted run equals a complete run of the frames that it finished.
   input.described.frames = statistics.frames;
   folder.add("run.json", run_json(input.described));
   folder.commit();
 }
 
-// A made scene's own truth, which is without calibration, is shown to the user only: stats.json has the
+// The truth of a synthetic scene holds without calibration. Its accuracy is only printed: stats.json has the
 // accuracy against --truth.
 std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Result& last,
                                                  const std::optional<report::Accuracy>& accuracy) {

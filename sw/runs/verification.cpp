@@ -22,7 +22,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{100};
 
 struct Interrupted {};
 
-// The result of a frame, short enough to be kept for all of them.
+// One line for the result of a frame; short, because the lines of all frames are kept.
 std::string line_of(const Result& result, bool with_pixels) {
   std::string line = fmt::format("camera frame {}, done at {} ps", result.number, result.time_ps);
   if (with_pixels) {
@@ -33,7 +33,7 @@ std::string line_of(const Result& result, bool with_pixels) {
   return line;
 }
 
-// But for the name of the fidelity.
+// The text of stats.json without the name of the fidelity.
 std::string stats_text(platform::Statistics statistics) {
   statistics.fidelity = "both";
   return report::stats_json(statistics, std::nullopt);
@@ -41,7 +41,7 @@ std::string stats_text(platform::Statistics statistics) {
 
 std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" : "fast"; }
 
-// `pictures`, opened by this process.
+// Opens `pictures` in this process.
 std::unique_ptr<PairSource> open_pairs(const RunInput& input, const PictureSource& pictures) {
   process::Problems problems;
   RecordedOptions described;
@@ -74,7 +74,7 @@ Verification::Verification(const RunInput& input, const PictureSource& pictures)
 
 void Verification::add(const Result& result) { results_.push_back(line_of(result, !input_.timing_only)); }
 
-// While it waits it looks for interrupts.
+// Polls for interrupts while it waits.
 std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
   do {
     if (process::interrupted()) throw Interrupted();

@@ -15,29 +15,28 @@
 
 namespace stereotlm::runs {
 
-// `--verify`: the same run at the other fidelity, in a process of its own, and what differs.
+// `--verify`: repeats a run at the other fidelity in a child process and compares the two.
 class Verification {
  public:
-  // Begins the other run; before this process elaborates its own. It opens the pictures anew. `input`
-  // and `pictures` outlive it.
+  // Starts the other run. To be called before this process elaborates its own. The child opens the pictures
+  // itself. `input` and `pictures` outlive the object.
   Verification(const RunInput& input, const PictureSource& pictures);
 
-  // A result of this process's run, in turn.
+  // Adds the next result of this process's run.
   void add(const Result& result);
 
   struct Outcome {
-    bool interrupted = false;  // nothing is compared
-    std::vector<std::string>
-        failed;  // what is not the same, or became of the other run; empty: all is the same
+    bool interrupted = false;         // nothing was compared
+    std::vector<std::string> failed;  // differences, or the failure of the other run; empty if all is equal
   };
-  // Waits for the other run, until the first interrupt, and compares.
+  // Waits for the other run and compares. The first interrupt ends the wait.
   Outcome compare(const platform::Statistics& statistics);
 
  private:
   std::optional<std::string> next_of_other(ProgressLine& progress, std::size_t frames_compared);
 
   const RunInput& input_;
-  std::vector<std::string> results_;  // one line each, in the order of the frames
+  std::vector<std::string> results_;  // one line per frame, in order
   std::unique_ptr<process::Child> other_;
 };
 

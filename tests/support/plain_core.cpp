@@ -11,22 +11,23 @@ using Cycle = std::int64_t;
 
 enum class Direction { kRead, kWrite };
 
-// What a port wants in a cycle, decided from the state at the beginning of that cycle. Every port is in one
-// of these; kAccess becomes granted or stalled, the others are port states as they stand.
+// The wish of a port follows from the state at the beginning of a cycle. kAccess becomes granted or stalled,
+// each other wish is the port's state in that cycle.
 enum class Wish { kIdle, kBlocked, kStarved, kPass, kAccess };
 
 std::size_t index_of(PlainPort port) { return static_cast<std::size_t>(port); }
 
 int read_latency(PlainBankKind kind) { return kind == PlainBankKind::kZbtFlowThrough ? 1 : 2; }
 
-// One bank, its arbiter, and what both remember from frame to frame.
+// One bank and its arbiter; both keep their state from frame to frame.
 class BankAndArbiter {
  public:
   BankAndArbiter(const PlainBank& bank, const PlainCycleInput& input)
       : bank_(bank), arbitration_(input.arbitration), priority_(input.priority) {}
 
   // The winner among the ports that request this bank; nullopt if none does.
-  std::optional<PlainPort> winner(const std::array<bool, kPlainPortCount>& requests) const {
+  std::optional<PlainPort> winner(const std::array<bool, kPlainPortCount>& requests, Cycle now) const {
+    if (arbitration_ == PlainArbitration::kAge) return oldest(requests, now);
     std::size_t first = 0;
     if (arbitration_ == PlainArbitration::kRoundRobin && last_granted_) {
       const auto found = std::find(priority_.begin(), priority_.end(), *last_granted_);
@@ -39,7 +40,7 @@ class BankAndArbiter {
     return std::nullopt;
   }
 
-  // Whether an access in this direction may not be granted yet because of one in the other direction.
+  // Whether an earlier access in the other direction still forbids one in this direction.
   bool is_turning_round(Direction direction, Cycle now) const {
     if (bank_.kind != PlainBankKind::kSyncBurst) return false;
     const std::optional<Cycle>& other = direction == Direction::kRead ? last_write_ : last_read_;
@@ -51,13 +52,39 @@ class BankAndArbiter {
     (direction == Direction::kRead ? last_read_ : last_write_) = now;
   }
 
+  // The port has asked in this cycle, and is not granted.
+  void refuse(PlainPort port, Cycle now) {
+    Wait& wait = waits_[index_of(port)];
+    wait.cycles = age(port, now);
+    wait.last = now;
+  }
+
  private:
+  struct Wait {
+    Cycle cycles = 0;           // asked without a grant, one after the other
+    std::optional<Cycle> last;  // of them
+  };
+
+  // The age of a request in this cycle.
+  Cycle age(PlainPort port, Cycle now) const {
+    const Wait& wait = waits_[index_of(port)];
+    return wait.last == now - 1 ? wait.cycles + 1 : 1;
+  }
+  std::optional<PlainPort> oldest(const std::array<bool, kPlainPortCount>& requests, Cycle now) const {
+    std::optional<PlainPort> found;
+    for (const PlainPort port : priority_) {
+      if (requests[index_of(port)] && (!found || age(port, now) > age(*found, now))) found = port;
+    }
+    return found;
+  }
+
   PlainBank bank_;
   PlainArbitration arbitration_;
   std::array<PlainPort, kPlainPortCount> priority_;
   std::optional<PlainPort> last_granted_;
   std::optional<Cycle> last_read_;
   std::optional<Cycle> last_write_;
+  std::array<Wait, kPlainPortCount> waits_{};  // of each port, the last
 };
 
 // The rectified pixel that a slot is for; the row may be outside the image.
@@ -373,7 +400,7 @@ class PlainCore::Cycles {
       }
       if (request_count >= 2) ++states.contended;
 
-      const PlainPort winner = *banks_[bank].winner(requests);
+      const PlainPort winner = *banks_[bank].winner(requests, now);
       const Direction direction = direction_of(winner);
       const bool refused = banks_[bank].is_turning_round(direction, now);
       if (refused) {
@@ -385,7 +412,9 @@ class PlainCore::Cycles {
         granted[index_of(winner)] = true;
       }
       for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-        if (requests[port] && !granted[port]) ++blame[port][refused ? kTurnaround : index_of(winner)];
+        if (!requests[port] || granted[port]) continue;
+        ++blame[port][refused ? kTurnaround : index_of(winner)];
+        banks_[bank].refuse(static_cast<PlainPort>(port), now);
       }
     }
     return granted;
@@ -448,9 +477,15 @@ bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& ho
 }
 PlainCycleResult PlainCore::result() const { return cycles_->result(); }
 
-std::size_t plain_slot_count(const PlainCycleInput& input) {
-  require_valid(input);
-  return slots_of_a_frame(input).size();
+const char* name_of(PlainPort port) {
+  static constexpr std::array<const char*, kPlainPortCount> kNames = {
+      "left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"};
+  return kNames[index_of(port)];
+}
+
+const char* name_of(PlainArbitration arbitration) {
+  static constexpr std::array<const char*, 3> kNames = {"fixed_priority", "round_robin", "age"};
+  return kNames[static_cast<std::size_t>(arbitration)];
 }
 
 int plain_read_latency(PlainBankKind kind) { return read_latency(kind); }

@@ -15,10 +15,10 @@ std::vector<std::uint32_t> entries_of(const std::optional<kernels::Rectification
   return table ? table->entries : std::vector<std::uint32_t>{};
 }
 
-// Longer than anything waits that will come: for the next frame of the cameras while another one ends, and
-// for the bus behind a third party.
+// A time without progress that is longer than any wait: for the next frame of the cameras while another one
+// ends, and for the bus while the traffic generator holds it.
 double stall_timeout_seconds(const platform::BoardConfig& board) {
-  constexpr double kRest = 0.1;  // clocks of 1 MHz included
+  constexpr double kRest = 0.1;  // enough for clocks of 1 MHz
   constexpr double kTurns = 4;
   double turn = 1 / board.cameras.frame_rate_hz;
   if (board.pci.load) turn += board.pci.load->access_us / 1e6 + board.pci.load->burst_words / 1e6;
@@ -42,7 +42,7 @@ const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, st
   return simulation_.captured_pair(number, begin_ps).*side_;
 }
 
-// Both cameras take the same frames: a pair is loaded for the first, and used until the next.
+// Both cameras take the same frames: the first one loads the pair, which is used until the next frame.
 const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, std::uint64_t begin_ps) {
   if (begins_ps_.emplace(number, begin_ps).second) pair_ = &load_pair(number);
   return *pair_;
@@ -76,7 +76,7 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   add_result({frame.camera_frame, std::move(disparity)});
 }
 
-// Grows with whatever brings a result nearer; what a third party does on the bus does not.
+// A measure of progress towards a result. The traffic generator does not count.
 std::uint64_t CameraSimulation::work_done() {
   computer_.board.core.catch_up();
   std::uint64_t work = computer_.board.core.control().work();

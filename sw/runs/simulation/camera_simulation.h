@@ -13,12 +13,12 @@
 
 namespace stereotlm::runs {
 
-// `--source camera`: the whole computer with the driver on its processor. Camera frame k shows pair k. What
-// the core has begun when it ends early is finished and delivered.
+// `--source camera`: the whole computer with the driver on its processor. Camera frame k shows pair k. A run
+// that ends early still finishes and delivers the frames that the core has begun.
 class CameraSimulation : public Simulation, private driver::FrameListener {
  public:
-  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the
-  // computer cannot be built.
+  // The arguments, except `frames`, outlive the simulation; `binder` binds its sockets. Throws std::exception if
+  // the computer cannot be built.
   CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                    fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
@@ -26,10 +26,12 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void end_early() override;
   platform::Statistics statistics() const override;
   const platform::Computer& computer() const { return computer_; }
-  std::uint64_t frames_started() const { return driver_.frames_started(); }  // by the core
+  std::uint64_t frames_started() const {
+    return driver_.frames_started();
+  }  // frames that the core has started
 
  private:
-  // What the camera of one side sees.
+  // The scene in front of one camera.
   class View : public capture::CameraSource {
    public:
     View(CameraSimulation& simulation, kernels::GrayImage host::StereoPair::*side)
@@ -53,10 +55,11 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   View right_{*this, &host::StereoPair::right};
   driver::StereoDriver driver_;
   platform::Computer computer_;
-  const host::StereoPair* pair_ = nullptr;            // of the last frame that was captured
-  std::map<std::uint64_t, std::uint64_t> begins_ps_;  // of captured camera frames, until they are delivered
+  const host::StereoPair* pair_ = nullptr;  // pair of the last captured frame
+  std::map<std::uint64_t, std::uint64_t>
+      begins_ps_;  // start of each captured camera frame that is not delivered yet
   std::vector<platform::Delivery> deliveries_;
-  platform::ComputerCounters counters_;  // at the last delivery that left nothing to the core
+  platform::ComputerCounters counters_;  // counters at the last delivery with an idle core
   double stall_timeout_seconds_;
   std::uint64_t last_work_ = 0;
   sc_core::sc_time last_work_at_;

@@ -12,19 +12,19 @@
 
 namespace stereotlm::runs {
 
-// What a run is told beside its board, tables and pictures.
+// Options of a simulation beside board, tables and pictures.
 struct RunMode {
-  bool camera = true;  // the whole computer, else the board alone (preloaded)
+  bool camera = true;  // true: the whole computer; false: the board alone (preloaded)
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
   std::uint64_t frames = 1;
 };
 
-// All but `mode` outlives the simulation. Throws std::exception if it cannot be built.
+// The arguments, except `mode`, outlive the simulation. Throws std::exception if it cannot be built.
 std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
                                             const platform::Tables& tables, host::FrameSource& pairs,
                                             const RunMode& mode, Binder& binder);
 
-// Pairs of black pictures, where no pixel matters.
+// Pairs of black pictures, for runs without pixels.
 class BlankPairs : public host::FrameSource {
  public:
   explicit BlankPairs(const platform::BoardConfig& board) : image_(board.image) {}
@@ -38,7 +38,7 @@ class BlankPairs : public host::FrameSource {
 
  private:
   platform::ImageConfig image_;
-  host::StereoPair pair_;  // empty until somebody looks
+  host::StereoPair pair_;  // created at its first use
 };
 
 }  // namespace stereotlm::runs

@@ -10,12 +10,12 @@
 
 namespace stereotlm::runs {
 
-// `--source preloaded`: the board alone, fed by an ideal host. Frame f shows pair f. The frame under way when
-// it ends early is given up.
+// `--source preloaded`: the board alone with an ideal host. Frame f shows pair f. A run that ends early drops the
+// running frame.
 class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
  public:
-  // All but `frames` outlives the simulation; `binder` binds its sockets. Throws std::exception if the board
-  // cannot be built.
+  // The arguments, except `frames`, outlive the simulation; `binder` binds its sockets. Throws std::exception if
+  // the board cannot be built.
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                       host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
@@ -31,7 +31,7 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;
   platform::PreloadedSystem system_;
-  platform::BoardCounters counters_;  // at the end of the last finished frame
+  platform::BoardCounters counters_;  // counters at the end of the last finished frame
 };
 
 }  // namespace stereotlm::runs

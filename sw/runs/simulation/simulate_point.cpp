@@ -36,8 +36,8 @@ Json document_of(const platform::Statistics& statistics) {
   return report::stats_document(statistics, std::nullopt);
 }
 
-// The whole computer, in a process that does nothing else: what has been built is left to its end. Nothing if
-// it is hopeless.
+// Simulates the whole computer in a process that does nothing else; nothing is destroyed at its end. nullopt if
+// the run was given up.
 std::optional<Json> simulate_computer(const explore::Point& point, const platform::Tables& tables,
                                       const PointSimulator::Hopeless& hopeless) {
   const platform::BoardConfig& board = *point.board;

@@ -12,8 +12,8 @@
 namespace stereotlm::runs {
 namespace {
 
-// FPGA cycles of one advance(): some ms of wall time, and at fast what the pixels of a frame take that begins
-// in them.
+// FPGA cycles of one advance(): some ms of wall time, and at fast the time for the pixels of a frame that begins
+// meanwhile.
 constexpr double kSliceCycles = 40'000;
 constexpr double kFastSliceCycles = 2'000'000;
 
@@ -31,7 +31,7 @@ std::vector<Result> Simulation::advance() {
   try {
     sc_core::sc_start(slice_cycles_ / board_.fpga.clock_mhz, sc_core::SC_US);
   } catch (const sc_core::sc_report&) {
-    if (failure_) std::rethrow_exception(failure_);  // SystemC has put a report in its place
+    if (failure_) std::rethrow_exception(failure_);  // SystemC has replaced it by a report
     throw;
   }
   if (!finished() && !sc_core::sc_pending_activity()) {
@@ -67,7 +67,7 @@ void Simulation::add_result(Result result) {
   cycles_of_done_ = cycles();
   last_ = result;
   new_.push_back(std::move(result));
-  if (finished()) sc_core::sc_pause();  // what would happen afterwards is nobody's business
+  if (finished()) sc_core::sc_pause();  // nothing after the last frame matters
 }
 
 }  // namespace stereotlm::runs

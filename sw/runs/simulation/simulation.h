@@ -18,44 +18,43 @@ class StereoCore;
 namespace stereotlm::runs {
 
 struct Result {
-  std::uint64_t number = 0;  // of the camera frame, which shows pair `number` modulo the number of pairs
+  std::uint64_t number = 0;  // number of the camera frame; it shows pair `number` modulo the number of pairs
   kernels::GrayImage disparity;
-  std::uint64_t time_ps = 0;  // when it was there, from time 0
+  std::uint64_t time_ps = 0;  // time of its delivery
 };
 
-// A board and what is around it, on the pairs of a source, until `frames` results are there. One of these a
-// process: SystemC elaborates once.
+// Simulates a board and its surroundings on the pairs of a source until `frames` results are delivered. One
+// object per process: SystemC elaborates once.
 class Simulation {
  public:
   virtual ~Simulation() = default;
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Simulates for a while, some ms of wall time and at fast as long as the pixels of a frame take, and
-  // returns the results that have come in them, in order. Throws sc_core::sc_report if a model reports an
-  // error, what the source throws, and std::runtime_error if nothing is left to happen, or nothing goes on,
-  // before the last frame is finished.
+  // Simulates for some ms of wall time (at fast, as long as the pixels of a frame take) and returns the new
+  // results in order. Throws sc_core::sc_report if a model reports an error, what the source throws, and
+  // std::runtime_error if no event is left or nothing proceeds before the last frame is finished.
   std::vector<Result> advance();
 
-  // To be finished as soon as the results are those of a whole run of fewer frames: of those that are done,
-  // and of those under way where they have left their traces.
+  // Ends the run as soon as its results equal those of a complete run with fewer frames: the finished frames,
+  // and running frames that have already changed the counters.
   virtual void end_early() = 0;
 
-  std::uint64_t frames() const { return frames_; }  // to do
+  std::uint64_t frames() const { return frames_; }  // frames of the whole run
   std::uint64_t frames_done() const { return frames_done_; }
   bool finished() const { return frames_done_ == frames_; }
-  // FPGA cycles since time 0, and those by the last result.
+  // FPGA cycles from time 0 until now, and until the last result.
   std::uint64_t cycles() const;
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }
 
-  // From the next frame of the core on: when its rows of results were whole.
+  // Records, from the next frame of the core on, when each row of results is complete.
   void record_rows();
-  // Of the frames that the core has finished since the last call. Results come in the same order, of a
-  // computer later.
+  // The rows of frames that the core has finished since the last call, in the order of the results. In a
+  // computer the results are delivered later.
   std::vector<fpga::RowProfile> take_rows();
 
-  // Of the frames that are done, with no other under way that end_early() would finish; one at least for a
-  // computer.
+  // The figures of the finished frames. No frame may be running that end_early() would finish; a computer needs
+  // at least one finished frame.
   virtual platform::Statistics statistics() const = 0;
   const Result& last() const { return last_; }
 
@@ -65,11 +64,11 @@ class Simulation {
              fpga::Fidelity fidelity);
 
   void set_frames(std::uint64_t frames) { frames_ = frames; }
-  // Within a SystemC process, which an exception of the source ends.
+  // Called within a SystemC process; an exception of the source ends that process.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
   virtual fpga::StereoCore& core() = 0;
-  // Throws std::runtime_error if nothing has gone on for too long.
+  // Throws std::runtime_error if nothing has proceeded for too long.
   virtual void check_progress() {}
 
  private:
@@ -79,9 +78,9 @@ class Simulation {
   std::uint64_t frames_;
   std::uint64_t frames_done_ = 0;
   std::uint64_t cycles_of_done_ = 0;
-  std::vector<Result> new_;  // since the last advance() began
+  std::vector<Result> new_;  // results since the last advance() began
   Result last_;
-  std::exception_ptr failure_;  // of the source
+  std::exception_ptr failure_;  // exception of the source
 };
 
 }  // namespace stereotlm::runs

@@ -25,18 +25,18 @@ struct CalibrationInput {
   std::vector<NamedFile> files;
 };
 
-// Loads and checks it for the board. Nothing if it cannot be used, with every reason reported: a file that is
-// damaged, of another size than the board's pictures, tables that are not those that it was written with, a
-// side without table. `board`: null if it is not known, which is reported elsewhere. `named`: where the path
-// was given.
+// Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there are
+// any: a damaged file, another size than the board's pictures, tables other than those it was written with, a
+// side without table. `board`: null if unknown, which is reported elsewhere. `named`: the option that gave the
+// path.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
                                                  const std::string& named = "--calibration");
 
-// Of both tables: what tells calibrations apart.
+// The SHA-256 over both tables. It identifies a calibration.
 std::string sha256_of(const platform::Tables& tables);
 
-// The tables of the board: those of the calibration, or without one the identity.
+// The tables of the calibration, or identity tables without one.
 platform::Tables tables_of(const platform::BoardConfig& board,
                            const std::optional<CalibrationInput>& calibration);
 

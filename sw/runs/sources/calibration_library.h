@@ -11,8 +11,7 @@
 
 namespace stereotlm::runs {
 
-// What this program uses of calib with OpenCV and cairo, in a library that is loaded when it is first asked
-// for.
+// The functions of calib that need OpenCV and cairo. They are in a library that is loaded at its first use.
 struct CalibrationFunctions {
   // calibrate.h, calibration_yaml.h, matched_rows.h
   calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);
@@ -36,7 +35,7 @@ struct CalibrationFunctions {
   std::string (*grid_sheet_svg)(const calib::GridShape& shape);
 };
 
-// Throws std::runtime_error if the library cannot be loaded; it lies beside the program, as installed.
+// Throws std::runtime_error if the library cannot be loaded. It is installed with the program.
 const CalibrationFunctions& calibration_functions();
 
 }  // namespace stereotlm::runs

@@ -11,8 +11,8 @@
 
 namespace stereotlm::runs {
 
-// What this program uses of sw/media. It lies in two libraries that are loaded when they are first asked for,
-// because OpenCV's own libraries, which come with them, take 90 ms, and those for videos 50 ms more.
+// The functions of sw/media that the program uses. They are in two libraries that are loaded at their first use:
+// loading OpenCV takes 90 ms, and its part for videos another 50 ms.
 
 // load.h, encode.h
 struct MediaFunctions {
@@ -30,7 +30,7 @@ struct VideoFunctions {
   std::unique_ptr<media::Video> (*open_video)(const std::string& path, const media::VideoSizeCheck& check);
 };
 
-// Throw std::runtime_error if the library cannot be loaded; it lies beside the program, as installed.
+// Throw std::runtime_error if the library cannot be loaded. It is installed with the program.
 const MediaFunctions& media_functions();
 const VideoFunctions& video_functions();
 

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using kernels::GrayImage;
 
-// One pair for every frame.
+// A source that shows one pair in every frame.
 class SinglePair : public PairSource {
  public:
   explicit SinglePair(host::StereoPair pair) : PairSource("--left", 1), pair_(std::move(pair)) {}
@@ -26,7 +26,7 @@ class SinglePair : public PairSource {
  private:
   host::StereoPair load(std::uint64_t /*index*/) override { return std::move(pair_); }
 
-  host::StereoPair pair_;  // until it is asked for: held from then on
+  host::StereoPair pair_;  // moved to the held pairs at its first use
 };
 
 class SyntheticPairs : public PairSource {

@@ -12,7 +12,7 @@
 
 namespace stereotlm::runs {
 
-// A file that the command line names, or finds by a name there.
+// A file that an option names, directly or by its folder.
 struct NamedFile {
   std::string option;
   std::string path;
@@ -22,13 +22,13 @@ struct NamedFile {
 
 struct OpenedSource {
   std::unique_ptr<PairSource> pairs;  // null if it cannot be used
-  std::vector<NamedFile> files;       // that were named or found; also if they cannot be used
+  std::vector<NamedFile> files;       // files that were named or found, usable or not
   std::vector<std::string> notes;     // for standard error
 };
 
-// Opens the source of pictures that the options name and checks all that it will show. Reports what is wrong;
-// enters into `described` what run.json says about it. `board`: null if it is not known, which leaves sizes
-// unchecked and is reported elsewhere.
+// Opens the source of pictures and checks all its pictures. Reports problems. Fills the fields of `described`
+// that concern the pictures. `board`: null if unknown, which is reported elsewhere; sizes are not checked
+// then.
 OpenedSource open_source(const PictureSource& options, const platform::BoardConfig* board,
                          RecordedOptions& described, process::Problems& problems);
 

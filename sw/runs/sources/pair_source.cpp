@@ -15,7 +15,7 @@ const host::StereoPair& PairSource::pair(std::uint64_t frame) {
     return held_.front().pair;
   }
   try {
-    // On a thread of its own: who asks may be a SystemC process, whose stack is too small for decoders.
+    // Loads on a separate thread: the caller may be a SystemC process, whose stack is too small for decoders.
     held_.push_front({index, std::async(std::launch::async, [&] { return load(index); }).get()});
   } catch (const std::exception& error) {
     throw std::runtime_error(option_ + ' ' + error.what());

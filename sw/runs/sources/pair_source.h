@@ -12,25 +12,25 @@
 
 namespace stereotlm::runs {
 
-// The pairs of a run: frame f shows pair f mod length(). They are loaded when they are asked for, and a few
-// are held, so that memory does not grow with the length.
+// The pairs of a run: frame f shows pair f mod length(). Pairs are loaded at their use, and a few of them are
+// kept, so that memory does not grow with the length.
 class PairSource : public host::FrameSource {
  public:
   static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
-  // 1 or more.
+  // The number of pairs, 1 or more.
   std::uint64_t length() const { return length_; }
 
-  // The reference is good until kHeld other pairs have been asked for. Throws std::runtime_error naming
-  // option and path if a file does not give any more what it gave when the source was opened.
+  // The reference is valid until kHeld other pairs have been requested. Throws std::runtime_error with option
+  // and path if a file has changed since the source was opened.
   static constexpr std::size_t kHeld = 4;
   const host::StereoPair& pair(std::uint64_t frame) final;
 
-  // What is known about the disparities of that pair; without calibration.
+  // The truth of that pair, if known; it holds without calibration.
   virtual std::optional<media::Truth> truth(std::uint64_t /*frame*/) const { return std::nullopt; }
 
  protected:
-  // `option`: the one that errors are about.
+  // `option`: its name in error messages.
   PairSource(std::string option, std::uint64_t length) : option_(std::move(option)), length_(length) {}
 
  private:
@@ -43,7 +43,7 @@ class PairSource : public host::FrameSource {
 
   std::string option_;
   std::uint64_t length_;
-  std::list<Held> held_;  // the one asked for last first
+  std::list<Held> held_;  // most recently requested first
 };
 
 }  // namespace stereotlm::runs

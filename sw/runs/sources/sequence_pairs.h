@@ -9,24 +9,26 @@
 
 namespace stereotlm::runs {
 
-// The pairs of `--sequence DIR`: left_*.png with right_*.png of the same `*`, in the order of their names,
-// byte by byte. Other files in the folder do not matter. The first pictures are kept as they were decoded, up
-// to 128 MB; the others are decoded again when they are asked for.
+// The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their names.
+// Other files in the folder are ignored. The first pictures are kept in memory, up to 128 MB. The others are
+// decoded again at each use.
 class SequencePairs : public PairSource {
  public:
-  // Reads every picture once. Throws std::runtime_error, without the name of the option, if the folder cannot
-  // be read, holds no pair or a picture without partner, or for the first picture that cannot be used or is
-  // not as large as the board's images. `board`: null if it is not known.
+  // Reads every picture once. Throws std::runtime_error, without the option's name, if the folder cannot be
+  // read, holds no pair or a picture without partner, or holds a picture that cannot be read or has another
+  // size than the board's images. `board`: null if unknown.
   SequencePairs(const std::string& folder, const platform::BoardConfig* board);
 
-  const InputFolder& input() const { return contents_.input; }              // what run.json says of it
-  std::uint64_t pictures_converted() const { return contents_.converted; }  // from colour to grey
+  const InputFolder& input() const { return contents_.input; }  // for run.json
+  std::uint64_t pictures_converted() const {
+    return contents_.converted;
+  }  // pictures converted from colour to grey
 
  private:
   struct Contents {
-    InputFolder input;  // files: left and right in turn
+    InputFolder input;  // its files are left and right in turn
     std::uint64_t converted = 0;
-    std::vector<kernels::GrayImage> kept;  // the first ones of the files
+    std::vector<kernels::GrayImage> kept;  // pictures of the first files
   };
   static Contents read(const std::string& folder, const platform::BoardConfig* board);
 

@@ -14,12 +14,12 @@ namespace stereotlm::runs {
 // The pairs of `--video F [F2] --video-layout L`.
 class VideoPairs : public PairSource {
  public:
-  // Decodes each video once. Throws std::runtime_error, without the name of the option, for the first one
-  // that cannot be decoded or whose frames are not as large as the layout needs, and if two differ in their
-  // number of frames. `board`: null if it is not known; the pairs are then of no use.
+  // Decodes each video once. Throws std::runtime_error, without the option's name, if a video cannot be decoded,
+  // if its frames have another size than the layout needs, or if two videos differ in their number of frames.
+  // `board`: null if unknown; the pairs are then not usable.
   VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board);
 
-  // For standard error: videos of which fewer frames can be decoded than their headers say.
+  // Notes for standard error: videos with fewer frames than their headers state.
   const std::vector<std::string>& notes() const { return contents_.notes; }
 
  private:

@@ -1,11 +1,12 @@
 """allocate: compared with all allocations, simulated one by one."""
 
+import contextlib
 import itertools
 import re
 import sqlite3
 
 import program
-from program import HEIGHT, WIDTH, ProgramTest, run
+from program import HEIGHT, PRELOADED, WIDTH, ProgramTest, run, sets
 
 BUFFERS = ["left_image", "right_image", "disparity", "left_lut", "right_lut"]
 # Five buffers, five banks, of which the last two are of another kind.
@@ -18,13 +19,14 @@ fpga: {{clock_mhz: 3.745}}
 ssram: {{banks: {{a: {{}}, b: {{}}, c: {{}}, d: {{kind: zbt_flow_through}}, e: {{kind: zbt_flow_through}}}}}}
 allocation: {{left_image: a, right_image: b, disparity: c, left_lut: d, right_lut: e}}
 """
-# As BOARD, with turnaround: a frame leaves something behind for the next.
-# Of one bank, or two, the captures lose pixels.
+# With turnaround: a frame leaves something behind for the next.
+BURST = BOARD.replace("zbt_flow_through", "sync_burst, turnaround_cycles: 2")
+# In one bank, and in most allocations to two, the captures lose pixels.
 LOSING = """
 extends: fpl2003
 name: losing
-image: {width: 128, height: 32}
-cameras: {frame_rate_hz: 200}
+image: {width: 64, height: 16}
+cameras: {frame_rate_hz: 800}
 capture: {fifo_words: 16, fifo_trigger_words: 4}
 bridge: {posted_words: 16}
 fpga: {clock_mhz: 4, priority: [result, left_pixel, right_pixel, left_lut, right_lut, host]}
@@ -42,19 +44,20 @@ ssram: {banks: {A: {}}}
 allocation: {left_image: A, right_image: A, disparity: A, left_lut: A, right_lut: A}
 matcher: {filter: none, window: 3, disparities: 4}
 """
-BURST = BOARD.replace("zbt_flow_through", "sync_burst, turnaround_cycles: 2")
+TOO_MANY = """
+extends: fpl2003
+name: many
+ssram: {{banks: {{{banks}}}}}
+allocation: {{left_image: [x0, x1], right_image: [x2, x3], disparity: [x4, x5], left_lut: x6, right_lut: x7}}
+""".format(banks=", ".join(f"x{depth}: {{words: {524288 + depth}}}" for depth in range(8)))
 
 
-def placements(most_banks):
+def placements():
     """Each allocation once: banks of one kind are taken in their order."""
     for banks in itertools.product("abcde", repeat=len(BUFFERS)):
-        for alike in ("abc", "de"):
-            first = [bank for bank in dict.fromkeys(banks) if bank in alike]
-            if first != list(alike[: len(first)]):
-                break
-        else:
-            if len(set(banks)) <= most_banks:
-                yield banks
+        taken = dict.fromkeys(banks)
+        if all(alike.startswith("".join(filter(alike.__contains__, taken))) for alike in ("abc", "de")):
+            yield banks
 
 
 class Allocate(ProgramTest):
@@ -63,154 +66,160 @@ class Allocate(ProgramTest):
         self.store = self.folder / "found.db"
 
     def board(self, text=BOARD):
-        return self.file("board.yaml", text.encode())
+        return self.file("board.yaml", text)
 
     def allocate(self, *more, board=None, banks=5):
         return run("allocate", board or self.board(), "--banks", banks, "--out", self.store, *more)
 
-    def all_of(self, text, source, frames, most_banks):
-        """By number of banks the rates of all allocations that lose no pixel, simulated as a plan."""
-        chosen = list(placements(most_banks))
-        keys = ", ".join(f"allocation.{name}: [{', '.join(banks[i] for banks in chosen)}]" for i, name in enumerate(BUFFERS))
-        plan = self.file("all.yaml", f"board: {self.board(text)}\nrun: {{source: {source}, frames: {frames}}}\nzip:\n  - {{{keys}}}\n".encode())
-        self.succeeds(run("sweep", plan, "--out", self.folder / "all.db"))
-        rate, lost = {
-            "camera": ('"frames_per_second.system"', '"cameras.left.dropped_pixels" + "cameras.right.dropped_pixels"'),
-            "preloaded": ('"frames_per_second.core"', "0"),
-        }[source]
-        columns = ", ".join(f'"allocation.{name}"' for name in BUFFERS)
-        connection = sqlite3.connect(self.folder / "all.db")
-        rates = {}
-        for row in connection.execute(f"SELECT {rate}, {lost}, {columns} FROM points WHERE status = 'ok'"):
-            if row[1] == 0:
-                rates.setdefault(len({bank.strip('[]') for bank in row[2:]}), []).append(row[0])
-        self.assertEqual(connection.execute("SELECT count(*) FROM points WHERE status = 'ok'").fetchone()[0], len(chosen))
-        connection.close()
-        return len(chosen), rates
+    def query(self, store, *statements):
+        """The rows of the last one."""
+        with contextlib.closing(sqlite3.connect(store)) as connection, connection:
+            return [connection.execute(sql).fetchall() for sql in statements][-1]
 
     def rows(self, text):
+        """The lines of the table by their number of banks."""
         found = {}
         for line in text.splitlines():
-            cells = re.match(r" *(\d+) +(\d+) +(\d+) +([\d.]+) +([\d.]+) +(?:([\d.]+) +)?(\d+)  (\w.*)$", line)
+            cells = re.match(r" *(\d+) +(\d+) +(\d+) +([\d.]+) +([\d.]+) +([\d.]+ +)?(\d+)  (\w.*)$", line)
             if cells:
                 found[int(cells[1])] = cells
         return found
 
-    def compare(self, text, source, frames, *more):
-        count, expected = self.all_of(text, source, frames, 5)
-        said = self.succeeds(self.allocate("--source", source, *more, board=self.board(text)))
-        self.assertIn(f"five: 5 buffers in at most 5 of 5 banks: {count} different allocations, {count} of them fit", said)
+    def rates_of_all(self, text, source, frames):
+        """The rates of all that lose no pixel, simulated as a plan, by number of banks; the number of all."""
+        chosen = list(placements())
+        lists = (", ".join(banks[place] for banks in chosen) for place in range(len(BUFFERS)))
+        keys = ", ".join(f"allocation.{name}: [{banks}]" for name, banks in zip(BUFFERS, lists))
+        how = f"run: {{source: {source}, frames: {frames}}}"
+        plan = f"board: {self.board(text)}\n{how}\nzip:\n  - {{{keys}}}\n"
+        store = self.folder / "all.db"
+        self.succeeds(run("sweep", self.file("all.yaml", plan), "--out", store))
+        dropped = " + ".join(f'"cameras.{side}.dropped_pixels"' for side in ("left", "right"))
+        lost, rate = ("0", "core") if source == "preloaded" else (dropped, "system")
+        columns = [lost, f'"frames_per_second.{rate}"', *(f'"allocation.{name}"' for name in BUFFERS)]
+        found = self.query(store, f"SELECT {', '.join(columns)} FROM points WHERE status = 'ok'")
+        self.assertEqual(len(found), len(chosen))
+        rates = {}
+        for dropped, rate, *banks in found:
+            if dropped == 0:
+                rates.setdefault(len({bank.strip("[]") for bank in banks}), []).append(rate)
+        return rates, len(chosen)
+
+    def compare(self, text, source, frames):
+        """What allocate says of a board is what all its allocations give."""
+        expected, count = self.rates_of_all(text, source, frames)
+        said = self.succeeds(self.allocate("--source", source, board=self.board(text)))
+        self.assertIn(f"in at most 5 of 5 banks: {count} different allocations, {count} of them fit", said)
         rows = self.rows(said)
         self.assertEqual(sorted(rows), sorted(expected))
-        for banks, rates in expected.items():
-            best = max(rates)
-            self.assertEqual(rows[banks][4], f"{best:.3f}")
-            self.assertEqual(int(rows[banks][7]), rates.count(best), banks)
-            self.assertGreaterEqual(float(rows[banks][5]), best - 0.001)
         best = {banks: max(rates) for banks, rates in expected.items()}
-        top = min(banks for banks in best if best[banks] == max(best.values()))
-        self.assertIn(f"The best of all is {max(best.values()):.3f} frames/s, and needs {top} banks", said)
+        for banks, rates in expected.items():
+            self.assertEqual(rows[banks][4], f"{best[banks]:.3f}")
+            self.assertEqual(int(rows[banks][7]), rates.count(best[banks]), banks)
+            self.assertGreaterEqual(float(rows[banks][5]), best[banks] - 0.001)
+        most = max(best.values())
+        top = min(banks for banks in best if best[banks] == most)
+        self.assertIn(f"The best of all is {most:.3f} frames/s, and needs {top} banks", said)
         self.assertIn("are the same, pixel by pixel, in 1 frames.", said)
         return said, rows, best
 
-    def test_of_the_core_is_the_best_of_all(self):
+    def test_finds_the_best_of_all_for_the_core(self):
         said, rows, _ = self.compare(BOARD, "preloaded", 1)
         self.assertIn("boards of one frame are all that has to be simulated", said)
         self.assertEqual([row[2] for row in rows.values()], [row[3] for row in rows.values()])
+        for row in rows.values():  # the allocation that is named gives the rate
+            named = (f"allocation.{buffer.replace(' ', '=', 1)}" for buffer in row[8].split(", "))
+            named = sets(*named)
+            self.succeeds(run("run", self.board(), *PRELOADED, "--timing-only", *named, "--out", self.out))
+            self.assertEqual(row[4], f"{self.stats()['frames_per_second']['core']:.3f}")
+        before = self.store.read_bytes()  # which is continued
+        self.succeeds(self.allocate(*PRELOADED))
+        self.assertEqual(self.store.read_bytes(), before)
 
-    def test_of_the_core_with_turnaround_is_the_best_of_all(self):
+    def test_finds_the_best_of_all_for_the_core_with_turnaround(self):
         said, _, _ = self.compare(BURST, "preloaded", 1)
         self.assertIn("each allocation is a run of the first turn of its lists", said)
 
     @program.slow
-    def test_of_the_computer_is_the_best_of_all(self):
+    def test_finds_the_best_of_all_for_the_computer(self):
         said, rows, best = self.compare(BOARD, "camera", 13)
-        self.assertIn("frames/s: 13 frames, from time 0 to the last delivery, without losing a pixel", said)
+        rule = "frames/s: 13 frames, from time 0 to the last delivery, without losing a pixel"
+        self.assertIn(rule, said)
         self.assertLess(sum(int(row[3]) for row in rows.values()), sum(int(row[2]) for row in rows.values()))
         kept = min(banks for banks in best if best[banks] >= max(best.values()) * 0.7)
         again = self.succeeds(self.allocate("--keep-fps", 70))
         self.assertIn(f"70 % of it is kept with {kept} banks ({best[kept]:.3f} frames/s", again)
 
-    def test_the_witness_gives_what_is_said(self):
-        said = self.succeeds(self.allocate("--source", "preloaded"))
-        for row in self.rows(said).values():
-            sets = [f"allocation.{buffer.strip().replace(' ', '=', 1)}" for buffer in row[8].split(",")]
-            arguments = [part for each in sets for part in ("--set", each)]
-            self.succeeds(run("run", self.board(), "--source", "preloaded", "--timing-only", *arguments, "--out", self.out))
-            self.assertEqual(row[4], f"{self.stats()['frames_per_second']['core']:.3f}")
-
-    def test_continues_its_database(self):
-        self.succeeds(self.allocate("--source", "preloaded"))
-        before = self.store.read_bytes()
-        self.succeeds(self.allocate("--source", "preloaded"))
-        self.assertEqual(self.store.read_bytes(), before)
-
     def test_leaves_out_what_does_not_fit_or_needs_more_banks(self):
-        said = self.succeeds(self.allocate("--source", "preloaded", banks=2))
+        said = self.succeeds(self.allocate(*PRELOADED, banks=2))
         self.assertEqual(sorted(self.rows(said)), [1, 2])
-        shallow = self.file("shallow.yaml", BOARD.replace("ssram: {", f"ssram: {{default: {{words: {WIDTH * HEIGHT}, kind: zbt_pipelined}}, ").encode())
-        said = self.succeeds(self.allocate("--source", "preloaded", board=shallow))
+        default = f"ssram: {{default: {{words: {WIDTH * HEIGHT}, kind: zbt_pipelined}}, "
+        shallow = self.file("shallow.yaml", BOARD.replace("ssram: {", default))
+        said = self.succeeds(self.allocate(*PRELOADED, board=shallow))
         self.assertEqual(min(self.rows(said)), 3)
         self.store.unlink()
-        refused = self.allocate("--source", "preloaded", board=shallow, banks=2)
+        process = self.allocate(*PRELOADED, board=shallow, banks=2)
+        self.refused_in_one_line(process, "--banks = 2: none of", "fits into so few banks; with 3 some do")
         self.assertFalse(self.store.exists())
-        self.refused_in_one_line(refused, "--banks = 2: none of", "fits into so few banks; with 3 some do")
 
     def test_all_of_the_best_rate_is_kept_by_the_best(self):
+        kept = r"100 % of it is kept with 1 banks \([\d.]+ frames/s, 100.00 %\), and not with fewer"
+        board = self.board(KEPT)
         for pipeline in range(16, 31):
-            said = self.succeeds(self.allocate("--source", "preloaded", "--keep-fps", "100", "--set", f"fpga.pipeline_latency_cycles={pipeline}", banks=1, board=self.board(KEPT)))
-            self.assertRegex(said, r"100 % of it is kept with 1 banks \([\d.]+ frames/s, 100.00 %\), and not with fewer")
+            options = ["--keep-fps", "100", *sets(f"fpga.pipeline_latency_cycles={pipeline}")]
+            said = self.succeeds(self.allocate(*PRELOADED, *options, banks=1, board=board))
+            self.assertRegex(said, kept)
 
     @program.slow
     def test_what_loses_pixels_does_not_count(self):
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=2))
-        self.assertRegex(said, r" 1 +\d+ +\d+ +all lose pixels\n")
-        self.assertIn("and needs 2 banks, the fewest of which an allocation counts.", said)
-        self.assertRegex(said, r"\d+ of those simulated to the end lose pixels, and do not count\.")
-        self.assertIn("The disparities of these 1 allocations are the same", said)
+        for line in (
+            r" 1 +\d+ +\d+ +all lose pixels\n",
+            r"and needs 2 banks, the fewest with an allocation that counts\.",
+            r"\d+ of those simulated to the end lose pixels, and do not count\.",
+            "The disparities of these 1 allocations are the same",
+        ):
+            self.assertRegex(said, line)
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=1))
         self.assertIn("No allocation counts.", said)
         self.assertNotIn("are the same", said)
 
     @program.slow
     def test_what_could_not_be_simulated_does_not_count(self):
+        in_a = " AND ".join(f'"allocation.{name}" LIKE \'%a%\'' for name in BUFFERS)
         for source in ("preloaded", "camera"):
-            before = self.succeeds(self.allocate("--source", source))
-            best = self.rows(before)[1]
-            connection = sqlite3.connect(self.store)
-            where = " AND ".join(f'"allocation.{name}" LIKE \'%a%\'' for name in BUFFERS)
-            connection.execute(f"DELETE FROM blame WHERE hash IN (SELECT hash FROM points WHERE {where})")
-            self.assertEqual(connection.execute(f"UPDATE points SET status = 'failed', reason = 'out of luck' WHERE {where}").rowcount, 1)
-            connection.commit()
-            connection.close()
-            said = self.succeeds(self.allocate("--source", source))
+            before = self.rows(self.succeeds(self.allocate("--source", source, banks=2)))[1]
+            self.query(self.store,
+                       f"DELETE FROM blame WHERE hash IN (SELECT hash FROM points WHERE {in_a})",
+                       f"UPDATE points SET status = 'failed', reason = 'out of luck' WHERE {in_a}")
+            said = self.succeeds(self.allocate("--source", source, banks=2))
             self.assertRegex(said, r" 1 +2 +2 +")
-            self.assertIn("1 could not be simulated, and do not count. The first:\n  left_image a, right_image a, disparity a, left_lut a, right_lut a: out of luck\nTo try again:\n", said)
+            where = ", ".join(f"{name} a" for name in BUFFERS)
+            first = f"1 could not be simulated, and do not count. The first:\n  {where}: out of luck"
+            self.assertIn(f"{first}\nTo try again:\n", said)
             again = re.search(r'sqlite3 (\S+) "(.*)"', said)
-            connection = sqlite3.connect(again[1])
-            connection.execute(again[2])
-            connection.commit()
-            connection.close()
-            self.assertEqual(self.rows(self.succeeds(self.allocate("--source", source)))[1][0], best[0])
+            self.query(again[1], again[2])
+            said = self.succeeds(self.allocate("--source", source, banks=2))
+            self.assertEqual(self.rows(said)[1][0], before[0])
             self.store.unlink()
+
 
     @program.slow
     def test_too_many_allocations_are_refused(self):
-        banks = ", ".join(f"x{depth}: {{words: {524288 + depth}}}" for depth in range(8))
-        many = self.board("extends: fpl2003\nname: many\nssram: {banks: {" + banks + "}}\n"
-                          "allocation: {left_image: [x0, x1], right_image: [x2, x3], disparity: [x4, x5], left_lut: x6, right_lut: x7}\n")
-        self.refused_in_one_line(self.allocate(board=many, banks=8), "--banks = 8: more than 5000000 different allocations")
+        process = self.allocate(board=self.board(TOO_MANY), banks=8)
+        self.refused_in_one_line(process, "--banks = 8: more than 5000000 different allocations")
         self.assertFalse(self.store.exists())
 
-    def test_wrong_usage(self):
+    def test_wrong_values_are_refused(self):
         board = self.board()
         lines = self.refused(run("allocate", board, "--source", "camra", "--keep-fps", "0"))
-        self.assertEqual(len(lines), 4)
-        for line, text in zip(lines, ("--source = camra", "--banks: missing", "--keep-fps = 0: must be", "--out: missing")):
+        wrong = ("--source = camra", "--banks: missing", "--keep-fps = 0: must be", "--out: missing")
+        for line, text in zip(lines, wrong, strict=True):
             self.assertIn(text, line)
-        for wrong in ("0", "x", "2.5"):
-            self.refused_in_one_line(self.allocate(banks=wrong), f"--banks = {wrong}: must be 1 or more")
-        self.refused_in_one_line(self.allocate(banks=6), "--banks = 6: must be 1..5, the banks of the board")
+        for banks in ("0", "x", "2.5"):
+            self.refused_in_one_line(self.allocate(banks=banks), f"--banks = {banks}: must be 1 or more")
+        process = self.allocate(banks=6)
+        self.refused_in_one_line(process, "--banks = 6: must be 1..5, the banks of the board")
         self.refused_in_one_line(self.allocate("--keep-fps", "101"), "--keep-fps = 101")
         self.store.write_bytes(b"not a database" * 100)
         self.refused_in_one_line(self.allocate(), f"--out {self.store}")

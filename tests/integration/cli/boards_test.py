@@ -1,7 +1,10 @@
-"""check, boards, keys and bounds."""
+"""check, boards, keys and bounds; explain: what each knob does, compared with runs."""
+
+import os
+import re
 
 import program
-from program import SMALL, ProgramTest, run
+from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
 
 PRESETS = [
     "fpl2003",
@@ -11,60 +14,57 @@ PRESETS = [
     "fpl2003-syncburst",
     "fpl2003-triple",
 ]
+SHARED = sets("allocation.left_lut=bank0")  # the bank of every second left picture
+LISTS = ("fpga.priority", "allocation.disparity")
 
 
 class Check(ProgramTest):
     def test_accepts_every_preset_in_one_line(self):
         for name in PRESETS:
-            text = self.succeeds(run("check", name))
-            self.assertRegex(text, rf"\A{name}: ok: [^\n]*\n\Z")
+            self.assertRegex(self.succeeds(run("check", name)), rf"\A{name}: ok: [^\n]*\n\Z")
 
     def test_sums_up_the_board_as_set(self):
-        text = self.succeeds(run("check", "fpl2003", *SMALL, "--set", "matcher.window=5"))
+        text = self.succeeds(run("check", "fpl2003", *SMALL, *sets("matcher.window=5")))
         self.assertEqual(text, "fpl2003: ok: 32x24, window 5x5, 80 disparities, 8 banks, 40 MHz\n")
 
     def test_takes_a_path(self):
-        for name in (b"", b"name: mine\n"):
-            path = self.file("mine.yaml", b"extends: fpl2003-qvga\n" + name)
+        for name in ("", "name: mine\n"):
+            path = self.file("mine.yaml", "extends: fpl2003-qvga\n" + name)
             self.assertTrue(self.succeeds(run("check", path)).startswith(f"{path}: ok: 320x240"))
 
-    def test_says_everything_that_is_wrong_with_its_place(self):
-        path = self.file("mine.yaml", b"extends: fpl2003\nimage: {width: 3, hight: 2}\n")
-        lines = self.refused(run("check", path, "--set", "matcher.window=4"))
-        self.assertEqual(len(lines), 3)
-        self.assertTrue(lines[0].startswith(f"{path}:2:16: image.width = 3: "), lines[0])
-        self.assertTrue(lines[1].startswith(f"{path}:2:19: image.hight = 2: unknown key"), lines[1])
-        self.assertTrue(lines[2].startswith("--set matcher.window: matcher.window = 4: "), lines[2])
-
-    def test_refuses_a_bank_that_is_too_small(self):
-        self.refused_in_one_line(
-            run("check", "fpl2003", "--set", "ssram.banks.bank6.words=307199"),
-            "--set ssram.banks.bank6.words: ssram.banks.bank6.words = 307199: 1 words missing",
-        )
-        self.succeeds(run("check", "fpl2003", "--set", "ssram.banks.bank6.words=307200"))
-
-    def test_refuses_boards_that_do_not_exist(self):
-        self.refused_in_one_line(run("check", "fpl2004"), "fpl2004: not a preset", "nearest: fpl2003")
-        self.refused_in_one_line(run("check", "./none.yaml"), "./none.yaml: cannot be read: No such file")
-        self.refused_in_one_line(run("check", ""), "(empty): not a preset")
-
-    def test_a_set_takes_one_value_each_time(self):
+    def test_takes_one_value_with_each_set(self):
         self.succeeds(run("check", "--set", "matcher.window=5", "fpl2003"))
         self.succeeds(run("check", "--set=allocation.disparity=[bank0, bank1]", "fpl2003"))
-        self.refused_in_one_line(run("check", "fpl2003", "--set", "x"), "--set x: x = (nothing)")
-        self.refused_in_one_line(run("check", "fpl2003", "--set", "[a,b]"), "--set [a,b]: [a,b] = (nothing)")
+
+    def test_says_everything_that_is_wrong_with_its_place(self):
+        path = self.file("mine.yaml", "extends: fpl2003\nimage: {width: 3, hight: 2}\n")
+        lines = self.refused(run("check", path, "--set", "matcher.window=4"))
+        for line, start in zip(lines, (
+            f"{path}:2:16: image.width = 3: ",
+            f"{path}:2:19: image.hight = 2: unknown key",
+            "--set matcher.window: matcher.window = 4: ",
+        ), strict=True):
+            self.assertTrue(line.startswith(start), line)
+
+    def test_refuses_boards_and_values_that_cannot_be(self):
+        words = "ssram.banks.bank6.words"
+        self.succeeds(run("check", "fpl2003", *sets(f"{words}=307200")))
+        self.all_refused([
+            (["check", "fpl2004"], "fpl2004: not a preset", "nearest: fpl2003"),
+            (["check", "./none.yaml"], "./none.yaml: cannot be read: No such file"),
+            (["check", ""], "(empty): not a preset"),
+            (["check", "fpl2003", *sets("x")], "--set x: x = (nothing)"),
+            (["check", "fpl2003", *sets("[a,b]")], "--set [a,b]: [a,b] = (nothing)"),
+            (["check", "fpl2003", *sets(f"{words}=307199")], f"{words} = 307199: 1 words missing"),
+            (["bounds", "fpl2003", *sets("image.width=3")], "image.width = 3"),
+        ])
 
 
 class Boards(ProgramTest):
-    def summary(self, board):
-        """What check says of it, without its name."""
-        return self.succeeds(run("check", board)).removeprefix(f"{board}: ")
-
     def test_lists_every_preset_with_what_it_is_for(self):
         text = self.succeeds(run("boards"))
         lines = text.splitlines()
-        for line in lines:
-            self.assertLessEqual(len(line), 100)
+        self.assertLessEqual(max(map(len, lines)), 100)
         self.assertEqual([line.split()[0] for line in lines if not line.startswith(" ")], PRESETS)
         self.assertIn("320x240", text)
         self.assertNotIn("#", text)
@@ -73,22 +73,21 @@ class Boards(ProgramTest):
         for name in PRESETS:
             text = self.succeeds(run("boards", "--show", name))
             self.assertTrue(text.startswith("# "), text)
-            copy = self.file("copy.yaml", text.encode())
-            self.assertEqual(self.summary(copy), self.summary(name))
+            copy = self.file("copy.yaml", text)
+            said = self.succeeds(run("check", copy)).replace(str(copy), name)
+            self.assertEqual(said, self.succeeds(run("check", name)))
 
     def test_refuses_an_unknown_name_with_the_nearest(self):
-        self.refused_in_one_line(run("boards", "--show", "fpl2003-trible"),
-                                 "--show = fpl2003-trible: not a preset; nearest: fpl2003-triple; presets: fpl2003, ")
-        for name in ("", "bumblebee"):
-            self.refused_in_one_line(run("boards", "--show", name), f"--show = {name}: not a preset; presets: fpl2003, ")
+        presets = "presets: fpl2003, "
+        for name, text in (("fpl2003-trible", "nearest: fpl2003-triple; "), ("", ""), ("bumblebee", "")):
+            text = f"--show = {name}: not a preset; {text}{presets}"
+            self.refused_in_one_line(run("boards", "--show", name), text)
 
 
 class Keys(ProgramTest):
     def test_lists_every_key_in_a_hundred_columns(self):
-        text = self.succeeds(run("keys"))
-        lines = text.splitlines()
-        for line in lines:
-            self.assertLessEqual(len(line), 100)
+        lines = self.succeeds(run("keys")).splitlines()
+        self.assertLessEqual(max(map(len, lines)), 100)
         keys = [line.split()[0] for line in lines if not line.startswith(" ")][1:]
         self.assertEqual(len(keys), len(set(keys)))
         for key in ("extends", "image.width", "ssram.banks.NAME.turnaround_cycles", "matcher.lr_tolerance"):
@@ -99,15 +98,15 @@ class Keys(ProgramTest):
 
 
 class Bounds(ProgramTest):
-    def parts(self, *arguments):
+    def parts(self, *assignments, board="fpl2003"):
         """The lines about the frame rate, and those about the FPGA."""
-        lines = self.succeeds(run("bounds", *arguments)).splitlines()
+        lines = self.succeeds(run("bounds", board, *sets(*assignments))).splitlines()
         at = lines.index("area of xc2v6000")
         return lines[:at], lines[at:]
 
-    def groups(self, *arguments):
-        """For each group of frames the line that heads it and its resources with their numbers; the core's bound."""
-        lines, _ = self.parts(*arguments)
+    def groups(self, *assignments, board="fpl2003"):
+        """For each group of frames the line above it and {resource: its numbers}; the bound of the core."""
+        lines, _ = self.parts(*assignments, board=board)
         groups = []
         for line in lines[: lines.index("around the board")]:
             if line.startswith("frame"):
@@ -117,32 +116,35 @@ class Bounds(ProgramTest):
                 groups[-1][1][" ".join(resource)] = (int(cycles), float(rate), float(headroom))
         return groups, lines[-2]
 
-    def around_the_board(self, *arguments):
-        """What each part of the computer allows, and the system's bound."""
-        lines, _ = self.parts(*arguments)
+    def around_the_board(self, *assignments):
+        """What each part of the computer allows, and the bound of the system."""
+        lines, _ = self.parts(*assignments)
         parts = [line.split() for line in lines[lines.index("around the board") + 2 : -2]]
         return {name: float(rate) for name, rate in parts}, lines[-1]
 
     def test_lists_each_resource(self):
-        ((head, rows),), last = self.groups("fpl2003")
-        self.assertEqual(
-            head, "frames 0-1: left_image in bank0, bank1; right_image in bank2, bank3; disparity in bank4, bank5"
-        )
+        ((head, rows),), last = self.groups()
+        buffers = "left_image in bank0, bank1; right_image in bank2, bank3; disparity in bank4, bank5"
+        self.assertEqual(head, f"frames 0-1: {buffers}")
         ports = [f"port {name}" for name in ("left_lut", "right_lut", "left_pixel", "right_pixel", "result")]
         banks = ["bank bank0, bank1", "bank bank2, bank3", "bank bank4, bank5", "bank bank6", "bank bank7"]
         self.assertEqual(list(rows), ports + banks + ["matcher"])
         self.assertEqual(rows["matcher"], (2151016, 18.596, 0.0))
         self.assertEqual(last, "bound of the core: 18.596 frames/s, limited by matcher")
+        ((_, rows),), _ = self.groups(board="fpl2003-no-calibration")
+        self.assertNotIn("port left_lut", rows)
 
     def test_headroom_is_what_the_limiting_resource_takes_longer(self):
-        ((_, rows),), _ = self.groups("fpl2003", *SMALL)
+        ((_, rows),), last = self.groups(*SMALL[1::2])
         most = max(cycles for cycles, _, _ in rows.values())
         for cycles, rate, headroom in rows.values():
             self.assertAlmostEqual(rate, 40e6 / cycles, places=3)
             self.assertAlmostEqual(headroom, 100 * (1 - cycles / most), places=2)
+        table = self.succeeds(self.run_small("--frames", "2"))  # reaches the bound
+        self.assertEqual(table.splitlines()[1].split()[2], last.split()[4])
 
     def test_names_the_bank_that_limits_when_two_buffers_share_it(self):
-        groups, last = self.groups("fpl2003", "--set", "allocation.left_lut=bank0")
+        groups, last = self.groups("allocation.left_lut=bank0")
         (first, shared), (second, alone) = groups
         self.assertEqual(first, "frame 0: left_image in bank0; right_image in bank2; disparity in bank4")
         self.assertEqual(second, "frame 1: left_image in bank1; right_image in bank3; disparity in bank5")
@@ -151,58 +153,131 @@ class Bounds(ProgramTest):
         self.assertTrue(last.endswith("limited by bank bank0"), last)
 
     def test_groups_the_frames_that_differ_in_the_names_of_banks_only(self):
-        ((head, rows),), _ = self.groups("fpl2003-triple")
+        ((head, rows),), _ = self.groups(board="fpl2003-triple")
         self.assertTrue(head.startswith("frames 0-5: left_image in bank0, bank1, bank8; "), head)
         self.assertIn("bank bank2, bank3, bank9", rows)
-        lists = ["--set", "allocation.left_lut=bank0", "--set", "allocation.disparity=[bank5, bank5, bank1]"]
-        groups, _ = self.groups("fpl2003", *lists)
-        self.assertEqual([head.split(":")[0] for head, _ in groups], ["frames 0, 2, 4", "frames 1, 3", "frame 5"])
+        groups, _ = self.groups("allocation.left_lut=bank0", "allocation.disparity=[bank5, bank5, bank1]")
+        frames = [head.split(":")[0] for head, _ in groups]
+        self.assertEqual(frames, ["frames 0, 2, 4", "frames 1, 3", "frame 5"])
         self.assertIn("bank bank5, bank1", groups[0][1])
 
-    def test_lists_no_port_that_does_not_exist(self):
-        ((_, rows),), _ = self.groups("fpl2003-no-calibration")
-        self.assertNotIn("port left_lut", rows)
-
-    def test_a_run_reaches_the_bound_that_is_printed(self):
-        _, last = self.groups("fpl2003", *SMALL)
-        table = self.succeeds(self.run_small("--frames", "2"))
-        self.assertEqual(table.splitlines()[1].split()[2], last.split()[4])
-
-    def test_lists_the_parts_of_the_computer(self):
-        parts, last = self.around_the_board("fpl2003")
-        self.assertEqual(list(parts), ["camera", "pci", "bridge"])
-        self.assertEqual(parts["camera"], 29.97)
-        self.assertEqual(last, "bound of the system: 18.596 frames/s, limited by matcher")
-
     def test_names_the_part_of_the_computer_that_limits(self):
-        fast = ["--set", "matcher.fetch=line_buffer"]
-        _, last = self.around_the_board("fpl2003", *fast)
-        self.assertEqual(last, "bound of the system: 29.970 frames/s, limited by camera")
-        for key, part in (("pci.clock_mhz=1", "pci"), ("bridge.local_clock_mhz=1", "bridge")):
-            parts, last = self.around_the_board("fpl2003", *fast, "--set", key)
+        parts, last = self.around_the_board()
+        self.assertEqual((list(parts), parts["camera"]), (["camera", "pci", "bridge"], 29.97))
+        self.assertEqual(last, "bound of the system: 18.596 frames/s, limited by matcher")
+        limits = {"name=fast": "camera", "pci.clock_mhz=1": "pci", "bridge.local_clock_mhz=1": "bridge"}
+        for key, part in limits.items():
+            parts, last = self.around_the_board("matcher.fetch=line_buffer", key)
             self.assertEqual(last, f"bound of the system: {parts[part]:.3f} frames/s, limited by {part}")
 
     def test_lists_what_the_core_takes_of_its_fpga(self):
-        _, (_, head, *items, whole, last) = self.parts("fpl2003")
+        _, lines = self.parts()
+        _, head, *items, whole, last = lines
         self.assertEqual(head.split(), "parts count LUTs flip-flops block RAMs multipliers".split())
         numbers = [list(map(int, line.split()[-4:])) for line in items]
         self.assertEqual(whole.split(), ["all", *(str(sum(column)) for column in zip(*numbers))])
         windows = next(line.split() for line in items if "window modules" in line)
         self.assertEqual(windows[2:], ["80", "2960", "1120", "0", "0"])
-        self.assertEqual(
-            last,
-            "area of the core: 7420 of 33792 slices (21.96 %), 17 of 144 block RAMs, 22 of 144 multipliers",
-        )
-        for line in (head, *items, whole, last):
-            self.assertLessEqual(len(line), 100)
+        area = "7420 of 33792 slices (21.96 %), 17 of 144 block RAMs, 22 of 144 multipliers"
+        self.assertEqual(last, f"area of the core: {area}")
+        self.assertLessEqual(max(map(len, lines[1:])), 100)
+        _, lines = self.parts("matcher.fetch=line_buffer", "matcher.disparities=254")
+        area = r"\d+ of 33792 slices \(1\d\d\.\d\d %\), .*: does not fit"
+        self.assertRegex(lines[-1], rf"^area of the core: {area}$")
 
-    def test_says_that_a_core_does_not_fit(self):
-        large = ["--set", "matcher.fetch=line_buffer", "--set", "matcher.disparities=254"]
-        _, lines = self.parts("fpl2003", *large)
-        self.assertRegex(lines[-1], r"^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), .*: does not fit$")
 
-    def test_refuses_wrong_boards(self):
-        self.refused_in_one_line(run("bounds", "fpl2003", "--set", "image.width=3"), "image.width = 3")
+class Explain(ProgramTest):
+    def explain(self, *options):
+        return self.succeeds(run("explain", "fpl2003", *SMALL, *options))
+
+    def rows(self, text):
+        """(rate, gained, knob, to) of the steps."""
+        pattern = r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+  (.+?)(?: \*)?: .* -> (.*?)(?:  loses pixels)?$"
+        return re.findall(pattern, text, re.M)
+
+    def rate(self, *options):
+        """That of a run with these options."""
+        frames = 2 if "preloaded" in options else 13
+        command = ["run", "fpl2003", *SMALL, "--timing-only", "--frames", frames, "--out", self.out]
+        self.succeeds(run(*command, *options))
+        rates = self.stats()["frames_per_second"]
+        return rates["core"] if "preloaded" in options else rates["steady"]
+
+    def compare(self, text, *options):
+        """What the steps of plain keys are said to give is what they give."""
+        now = self.rate(*options)
+        compared = 0
+        rows = self.rows(text)
+        for rate, gained, knob, to in rows:
+            if not re.fullmatch(r"[a-z_]+\.[a-z_]+", knob) or knob in LISTS or f"{knob}=" in "".join(options):
+                continue
+            found = self.rate(*options, *sets(f"{knob}={to}"))
+            self.assertEqual(rate, f"{found:.3f}", knob)
+            self.assertEqual(gained, f"{found - now:+.3f}", knob)
+            compared += 1
+        self.assertGreater(compared, 5)
+        rates = [float(row[0]) for row in rows]
+        self.assertEqual(rates, sorted(rates, reverse=True))
+
+    def test_of_the_core(self):
+        text = self.explain(*PRELOADED, *SHARED)
+        self.compare(text, *PRELOADED, *SHARED)
+        (bank_more,) = (row for row in self.rows(text) if row[2] == "a bank more")
+        self.assertEqual(bank_more[3], "in one of its own")
+        self.assertEqual(bank_more[0], f"{self.rate(*PRELOADED):.3f}", "as with bank6")
+        now = self.rate(*PRELOADED, *SHARED)
+        stats = self.stats()
+        bound = f"bound {stats['bound']['core']:.3f}, limited by {stats['bound']['core_limited_by']}"
+        self.assertIn(f"fpl2003, the core alone: {now:.3f} frames/s (2 frames); {bound}\n", text)
+        most = max(stats["blame"], key=lambda row: row["cycles"])
+        percent = f"{100 * most['cycles'] / stats['cycles']:.3f}"
+        self.assertRegex(text, rf"\n  {most['port']} +on {most['bank']} +for {most['by']} +{percent}\n")
+        self.assertNotIn("cameras.", text)
+        self.assertNotIn("pci", text)
+
+    def test_names_every_resource_with_its_headroom(self):
+        text = self.explain(*PRELOADED, *SHARED)
+        bounds = self.succeeds(run("bounds", "fpl2003", *SMALL, *SHARED))
+        found = {}
+        headrooms = []
+        resources = re.findall(r"^ +([\d.]+) +([\d.]+)  ((?:port|bank|matcher).*)$", text, re.M)
+        for headroom, rate, names in resources:
+            kind, _, names = re.sub(r", in frame \d of 2", "", names).partition(" ")
+            headrooms.append(float(headroom))
+            found.update({f"{kind} {name}".strip(): rate for name in names.split(", ")})
+        ports = [f"port {port}" for port in ("left_lut", "right_lut", "left_pixel", "right_pixel", "result")]
+        for port in ports:
+            self.assertRegex(bounds, rf"\n  {port} +\d+ +{found[port]}")
+        self.assertLessEqual({"matcher", *(f"bank bank{bank}" for bank in (0, 1, 2, 3, 4, 5, 7))}, set(found))
+        self.assertEqual(headrooms, sorted(headrooms))
+        # bank0 and all ports but result have the least in the even frames, the others in the odd ones.
+        self.rate(*PRELOADED, *SHARED)
+        limits = zip(self.stats()["frame_cycles"], ("bank bank0", "matcher"))
+        least = min(100 * (cycles / 40e6 * float(found[name]) - 1) for cycles, name in limits)
+        self.assertAlmostEqual(headrooms[0], least, delta=0.01)
+
+    def test_of_the_computer_names_its_parts_and_every_knob(self):
+        text = self.explain(*CAMERA_RATES)
+        rate = f"{self.rate(*CAMERA_RATES):.3f} frames/s between the first and the last delivery (13 frames)"
+        self.assertIn(f"the whole computer: {rate}", text)
+        self.compare(text, *CAMERA_RATES)
+        for resource in ("camera", "pci", "bridge"):
+            self.assertRegex(text, rf"(?m)^ +[\d.]+ +[\d.]+  {resource}$")
+        self.assertIn("no port waits for another", text)
+        text = re.sub(r"\n  (?=\w)", " ", text)
+        keys = re.findall(r"(?m)^([a-z_]+\.[a-z_.]+)", self.succeeds(run("keys")))
+        self.assertGreater(len(keys), 20)
+        no_knobs = {"image.width", "image.height", "fpga.device", "matcher.lr_tolerance"}
+        for key in set(keys) - no_knobs:
+            if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "allocation.")):
+                self.assertIn(key, text)
+
+    def test_wrong_usage(self):
+        self.refused(run("explain"), "BOARD: missing")
+        self.refused_in_one_line(run("explain", "fpl2003", "--source", "x"), "--source = x")
+        self.refused_in_one_line(run("explain", "fpl2003", *sets("matcher.window=4")), "matcher.window = 4")
+        process = run("explain", "fpl2003", env={**os.environ, "TMPDIR": str(self.left)})
+        self.refused_in_one_line(process, f"error: TMPDIR = {self.left}: must be a folder")
 
 
 if __name__ == "__main__":

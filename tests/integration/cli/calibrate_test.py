@@ -1,17 +1,17 @@
-"""calibrate, and --calibration: on a rig that is made up."""
+"""calibrate, and --calibration, on a rig that is made up."""
 
-import functools
-import json
-import pathlib
+import os
 import re
-import struct
-import tempfile
+import shutil
+import signal
+import time
 
 import program
-from program import PRELOADED, RESULT_FILES, ProgramTest, pgm, read_png, run
+from pictures import pgm, read_pfm, read_png, read_png_16
+from program import PRELOADED, RESULT_FILES, ProgramTest, made_rig, run, sets, wait_until
 
 GRID = ["--grid", "7x5", "--square-mm", "30"]
-DISPARITIES = 120
+SIDES = ("left", "right")
 
 
 def fields(text):
@@ -19,41 +19,34 @@ def fields(text):
     return {line[:16].strip(): line[17:] for line in text.splitlines() if line[:16].strip()}
 
 
-HOME = tempfile.TemporaryDirectory()  # of the calibration that all tests share
-
-
-@functools.lru_cache(maxsize=None)
-def made():
-    """The finished process that made it."""
-    return run("calibrate", "--synthetic", 3, *GRID, "--out", pathlib.Path(HOME.name) / "rig.yaml")
-
-
 class CalibrateTest(ProgramTest):
-    """With a calibration: self.rig, and its pictures: self.pictures."""
+    """With a calibration that all cases share, self.rig, and its pictures, self.pictures."""
 
     def setUp(self):
         super().setUp()
-        self.home = pathlib.Path(HOME.name)
-        self.rig = self.home / "rig.yaml"
+        self.rig, self.made = made_rig()
+        self.home = self.rig.parent
         self.pictures = self.home / "rig_pictures"
-        self.made = made()
+        self.new = self.folder / "new.yaml"
 
-    def copy_of_rig(self):
-        for path in (self.rig, self.home / "rig_left.lut", self.home / "rig_right.lut"):
-            (self.folder / path.name).write_bytes(path.read_bytes())
-        return self.folder / "rig.yaml"
+    def calibrate(self, *more, left="left_0[0-2].png", right="right_0[0-2].png"):
+        """A calibration from pictures of the rig: patterns, or lists of paths."""
+        options = []
+        for option, given in (("--left", left), ("--right", right)):
+            options += [option, *([self.pictures / given] if isinstance(given, str) else given)]
+        for option, value in (("--disparities", 120), ("--out", self.new)):
+            options += [] if option in more else [option, value]
+        return run("calibrate", *options, *GRID, *more)
 
-    def sources(self, left="left_*.png", right="right_*.png"):
-        return ["--left", self.pictures / left, "--right", self.pictures / right]
-
-    def scene(self, rig=None, *more):
+    def scene(self, *more, rig=None, left="scene_left.png", right="scene_right.png"):
         """A run of the scene with the tables of the rig."""
-        return ["run", "fpl2003", *PRELOADED, "--set", "matcher.disparities=80", "--calibration", rig or self.rig,
-                "--left", self.pictures / "scene_left.png", "--right", self.pictures / "scene_right.png", *more]
+        pair = ["--left", self.pictures / left, "--right", self.pictures / right]
+        board = ["fpl2003", *PRELOADED, *sets("matcher.disparities=80"), "--calibration", rig or self.rig]
+        return ["run", *board, *pair, *more]
 
 
 class Made(CalibrateTest):
-    def test_says_what_it_found_and_wrote(self):
+    def test_says_what_it_found_and_writes_tables_and_drawings(self):
         found = fields(self.succeeds(self.made))
         self.assertIn("9 of 9 with the grid", found["pairs"])
         self.assertRegex(found["reprojection"], r"^RMS 0\.[01]\d\d px")
@@ -63,141 +56,331 @@ class Made(CalibrateTest):
         self.assertLess(abs(baseline / known - 1), 0.01)
         for name in ("rig.yaml", "rig_left.lut", "rig_right.lut", "rig_drawings/"):
             self.assertIn(str(self.home / name), found["written"])
-
-    def test_writes_tables_of_one_word_a_pixel(self):
-        for side in ("left", "right"):
-            table = (self.home / f"rig_{side}.lut").read_bytes()
-            self.assertEqual(len(table), 4 * 640 * 480)
-            for (entry,) in struct.iter_unpack("<I", table):
-                if entry:
-                    self.assertEqual(entry & 0x7800F800, 0)
-                    self.assertTrue(entry >> 31 and (entry >> 16 & 0x7FF) < 480 and (entry & 0x7FF) < 640)
-
-    def test_draws(self):
-        names = sorted(path.name for path in (self.home / "rig_drawings").iterdir())
-        numbers = [f"{number:02}" for number in range(9)]
-        self.assertEqual(names, sorted([f"corners_{number}.png" for number in numbers]
-                                       + [f"rectified_{number}.png" for number in numbers]
-                                       + ["displacement.png", "source_lines.png"]))
-        self.assertEqual(len({path.read_bytes() for path in (self.home / "rig_drawings").iterdir()}), len(names))
+        for side in SIDES:
+            self.assertEqual((self.home / f"rig_{side}.lut").stat().st_size, 4 * 640 * 480)
+        drawings = [f"{name}_{number:02}.png" for name in ("corners", "rectified") for number in range(9)]
+        self.is_in(self.home / "rig_drawings", *drawings, "displacement.png", "source_lines.png")
+        self.assertEqual(len(set(self.result(self.home / "rig_drawings").values())), len(drawings) + 2)
 
     def test_of_the_pictures_it_wrote_gives_the_same_tables(self):
-        again = self.folder / "again.yaml"
-        said = self.succeeds(run("calibrate", *self.sources(), *GRID, "--disparity-offset", "0", "--out", again))
-        self.assertEqual(fields(said)["reprojection"], fields(self.made.stdout)["reprojection"])
-        for side in ("left", "right"):
-            self.assertEqual((self.folder / f"again_{side}.lut").read_bytes(),
-                             (self.home / f"rig_{side}.lut").read_bytes())
-        self.assertFalse((self.folder / "again_pictures").exists())
+        process = self.calibrate("--disparity-offset", "0", left="left_*.png", right="right_*.png")
+        found, expected = fields(self.succeeds(process)), fields(self.made.stdout)
+        self.assertEqual(found["reprojection"], expected["reprojection"])
+        for side in SIDES:
+            table = (self.folder / f"new_{side}.lut").read_bytes()
+            self.assertEqual(table, (self.home / f"rig_{side}.lut").read_bytes())
+        self.assertFalse((self.folder / "new_pictures").exists())
 
     def test_replaces_an_earlier_calibration(self):
-        new = self.folder / "new.yaml"
-        few = self.sources("left_0[0-2].png", "right_0[0-2].png")
-        command = ["calibrate", *few, *GRID, "--disparities", DISPARITIES, "--out", new]
-        self.succeeds(run(*command, "--disparity-offset", "70"))
+        self.succeeds(self.calibrate("--disparity-offset", "70"))
         self.assertEqual(len(list((self.folder / "new_drawings").iterdir())), 8)
-        first = new.read_bytes()
-        said = self.succeeds(run(*command))
-        self.assertRegex(fields(said)["disparities"], r"of the grid; offset \d+: 0 \.\. 119 of the board are")
-        self.assertNotIn("do not fit", fields(said)["disparities"])
-        self.assertNotEqual(new.read_bytes(), first)
-        self.assertEqual(sorted(path.name for path in self.folder.iterdir() if path.name.startswith("new")),
-                         ["new.yaml", "new_drawings", "new_left.lut", "new_right.lut"])
+        first = self.new.read_bytes()
+        found = fields(self.succeeds(self.calibrate()))["disparities"]
+        self.assertRegex(found, r"of the grid; offset \d+: 0 \.\. 119 of the board are")
+        self.assertNotIn("do not fit", found)
+        self.assertNotEqual(self.new.read_bytes(), first)
+        names = [path.name for path in self.folder.glob("new*")]
+        self.assertEqual(sorted(names), ["new.yaml", "new_drawings", "new_left.lut", "new_right.lut"])
+
+    def test_takes_pictures_whose_names_look_like_patterns(self):
+        folder = self.folder / "br[1]"
+        folder.mkdir()
+        pairs = {side: [folder / f"{side}_0{number}.png" for number in range(4)] for side in SIDES}
+        for path in [*pairs["left"], *pairs["right"]]:
+            shutil.copy(self.pictures / path.name, path)
+        self.succeeds(self.calibrate(**pairs))
+
+    def test_doubts_pictures_whose_names_do_not_go_together(self):
+        process = self.calibrate(left="left_0[01].png", right="right_0[02].png")
+        pair = f"'{self.pictures / 'left_01.png'}' with '{self.pictures / 'right_02.png'}'"
+        self.assertIn(f"{pair}: do they belong together?", process.stderr)
+
+    def test_writes_nothing_where_it_is_interrupted(self):
+        command = ["calibrate", "--synthetic", 3, *GRID, "--out", self.folder / "rig.yaml"]
+        for number, has_earlier, delay in (
+            (signal.SIGINT, False, 0), (signal.SIGTERM, True, 0), (signal.SIGINT, True, 0.1),
+        ):
+            if has_earlier:
+                self.copy_of_rig()
+            with self.unchanged(self.folder):
+                process = self.start(*command)
+                wait_until((self.folder / "rig.partial" / "new").exists)
+                time.sleep(delay)
+                process.send_signal(number)
+                self.ends(process, 130, errors="stereotlm: note: interrupted: nothing was written\n")
+            self.assertFalse((self.folder / "rig.partial").exists())
 
 
 class Run(CalibrateTest):
-    def test_finds_the_disparities_of_the_scene(self):
+    def test_finds_the_disparities_and_depths_of_the_scene(self):
         scale = re.search(r"--truth-scale (\d+)", self.made.stdout).group(1)
-        truth = self.pictures / "scene_truth.png"
-        process = run(*self.scene(None, "--truth", truth, "--truth-scale", scale, "--out", self.out))
+        truth = ["--truth", self.pictures / "scene_truth.png", "--truth-scale", scale]
+        process = run(*self.scene(*truth, "--out", self.out))
         self.succeeds(process)
-        self.assertRegex(process.stderr, r"note: .* \d+ are found in the right one; their rows differ by 0\.\d\d pixels on average\n")
+        rows = r"note: .* \d+ are found in the right one; their rows differ by 0\.\d\d pixels on average\n"
+        self.assertRegex(process.stderr, rows)
         accuracy = self.stats()["accuracy"]
         self.assertLess(accuracy["bad_1_percent"], 3)
         self.assertGreater(accuracy["answered_percent"], 60)
-        self.assertEqual(sorted(self.result()), sorted(RESULT_FILES + ["depth.ply", "depth.png"]))
+        self.is_in(self.out, *RESULT_FILES, "depth.ply", "depth.png")
         self.check_depths(self.rig, 0)
+        options = self.run_json()["calibration"]
+        self.assertEqual(options["path"], str(self.rig))
+        self.assertEqual(options["right_lut"]["path"], str(self.home / "rig_right.lut"))
+        with self.unchanged(self.out):
+            self.succeeds(run(*self.scene(*truth, "--out", self.out)))
 
-    def test_puts_the_offset_back_before_depths(self):
-        rig = self.folder / "far.yaml"
-        self.succeeds(run("calibrate", *self.sources("left_0[0-2].png", "right_0[0-2].png"), *GRID,
-                          "--disparity-offset", "11", "--out", rig))
-        self.succeeds(run(*self.scene(rig, "--out", self.out)))
-        self.check_depths(rig, 11)
+    def test_adds_the_offset_to_disparities_before_it_computes_depths(self):
+        self.succeeds(self.calibrate("--disparity-offset", "11"))
+        self.succeeds(run(*self.scene("--out", self.out, rig=self.new)))
+        self.check_depths(self.new, 11)
 
     def check_depths(self, rig, offset):
         """Depth by the text of the calibration, and one point for each answer."""
-        width, height, _, rows = read_png(self.out / "disparity.png")
-        q = [float(word) for word in re.search(r"Q:.*?data: \[(.*?)\]", rig.read_text(), re.S).group(1).split(",")]
-        depths = program.read_png_16(self.out / "depth.png")
+        width, height, rows = read_pfm(self.out / "disparity.pfm")
+        matrix = re.search(r"Q:.*?data: \[(.*?)\]", rig.read_text(), re.S).group(1)
+        q = [float(word) for word in matrix.split(",")]
+        depths = read_png_16(self.out / "depth.png")
+        no_depth = (float("inf"), -offset)
         for y in range(0, height, 7):
             for x in range(width):
                 expected = 0
-                if rows[y][x] not in (255, -offset):
+                if rows[y][x] not in no_depth:
                     expected = int(q[11] / (q[14] * (rows[y][x] + offset) + q[15]) + 0.5)
                 self.assertEqual(depths[y][x], expected, (x, y))
-        points = sum(1 for row in rows for disparity in row if disparity not in (255, -offset))
+        points = sum(1 for row in rows for disparity in row if disparity not in no_depth)
         self.assertIn(b"element vertex %d\n" % points, (self.out / "depth.ply").read_bytes())
 
-    def test_is_reproduced_from_what_it_was_given(self):
-        self.succeeds(run(*self.scene(None, "--out", self.out)))
-        options = json.loads((self.out / "run.json").read_text())["calibration"]
-        self.assertEqual(options["path"], str(self.rig))
-        self.assertEqual(options["right_lut"]["path"], str(self.home / "rig_right.lut"))
-        first = self.result()
-        self.succeeds(run(*self.scene(None, "--out", self.out)))
-        self.assertEqual(self.result(), first)
-
     def test_gives_the_same_disparities_through_the_whole_computer(self):
-        small = ["--set", "matcher.fetch=line_buffer", "--set", "matcher.window=3"]
-        self.succeeds(run(*self.scene(None, *small, "--out", self.out)))
+        small = sets("matcher.fetch=line_buffer", "matcher.window=3")
+        self.succeeds(run(*self.scene(*small, "--out", self.out)))
         whole = self.folder / "whole"
-        command = [word for word in self.scene(None, *small, "--out", whole) if word not in ("--source", "preloaded")]
+        command = [word for word in self.scene(*small, "--out", whole) if word not in PRELOADED]
         self.succeeds(run(*command))
         for name in ("disparity.png", "depth.png", "depth.ply"):
             self.assertEqual((whole / name).read_bytes(), (self.out / name).read_bytes())
 
-    def test_goes_with_every_command_that_takes_a_board(self):
-        rig = self.folder / "far.yaml"
-        self.succeeds(run("calibrate", *self.sources("left_0[0-2].png", "right_0[0-2].png"), *GRID,
-                          "--disparity-offset", "100", "--out", rig))
-        self.succeeds(run("check", "fpl2003", "--calibration", rig))
+    def test_tells_check_and_bounds_which_entries_have_no_source(self):
+        self.succeeds(self.calibrate("--disparity-offset", "100"))
+        self.succeeds(run("check", "fpl2003", "--calibration", self.new))
         plain = self.succeeds(run("bounds", "fpl2003")).splitlines()
-        with_tables = self.succeeds(run("bounds", "fpl2003", "--calibration", rig)).splitlines()
-        # Entries without source are not read.
+        with_tables = self.succeeds(run("bounds", "fpl2003", "--calibration", self.new)).splitlines()
+        # Such entries are not read.
         changed = [line.split()[:3] for line, other in zip(with_tables, plain) if line != other]
         self.assertEqual(changed, [["bank", "bank0,", "bank1"], ["bank", "bank2,", "bank3"]][: len(changed)])
         self.assertIn(["bank", "bank0,", "bank1"], changed)
 
-    def test_warns_where_the_pictures_are_of_another_rig(self):
+    def test_says_whether_the_pictures_are_of_the_rig(self):
         _, _, _, rows = read_png(self.pictures / "scene_right.png")
         lower = self.file("lower.pgm", pgm(640, 480, b"".join(rows[4:] + rows[:4])))
-        command = self.scene()
-        command[command.index("--right") + 1] = lower
-        process = run(*command)
-        self.succeeds(process)
-        self.assertRegex(process.stderr, r"warning: .* differ by \d\.\d\d pixels on average: is it of this rig\?")
-
-    def test_cannot_tell_where_the_pictures_show_nothing(self):
         flat = self.file("flat.pgm", pgm(640, 480, bytes(640 * 480)))
-        process = run("run", "fpl2003", *PRELOADED, "--calibration", self.rig, "--left", flat, "--right", flat)
-        self.succeeds(process)
-        self.assertIn("note: --calibration: of 0 conspicuous points", process.stderr)
-        self.assertIn("too few to see whether it is of this rig", process.stderr)
-
-    def test_warns_where_left_and_right_are_exchanged(self):
-        command = self.scene()
-        left, right = command.index("--left") + 1, command.index("--right") + 1
-        command[left], command[right] = command[right], command[left]
-        process = run(*command)
-        self.succeeds(process)
-        self.assertRegex(process.stderr, r"warning: --calibration: .* is it of this rig")
+        few = r"note: --calibration: of 0 conspicuous points .* too few to see whether it is of this rig"
+        for left, right, text in (
+            ("scene_left.png", lower, r"warning: .* differ by \d\.\d\d pixels on average: is it of this rig"),
+            ("scene_right.png", "scene_left.png", "warning: --calibration: .* is it of this rig"),
+            (flat, flat, few),
+        ):
+            process = run(*self.scene(left=left, right=right))
+            self.succeeds(process)
+            self.assertRegex(process.stderr, text)
 
     def test_says_that_the_board_has_fewer_disparities(self):
-        process = run("run", "fpl2003", *PRELOADED, "--synthetic", "1", "--set", "matcher.disparities=16",
-                      "--set", "matcher.window=3", "--calibration", self.rig)
+        board = sets("matcher.disparities=16", "matcher.window=3")
+        process = run("run", "fpl2003", *PRELOADED, "--synthetic", "1", *board, "--calibration", self.rig)
         self.assertNotIn("accuracy", self.succeeds(process))  # the scene is not one of this rig
-        self.assertIn("was made for 80 disparities: of this board's 16 the nearest things need more", process.stderr)
+        need = "was made for 80 disparities: of this board's 16 the nearest things need more"
+        self.assertIn(need, process.stderr)
+
+
+class RefusedCalibrations(CalibrateTest):
+    """tests/unit/calib/calibration_yaml_test.cpp has every way in which its text is wrong."""
+
+    def refused_with(self, rig, *texts, board=()):
+        process = run("check", "fpl2003", *board, "--calibration", rig)
+        self.refused(process, "stereotlm: error: --calibration", *texts)
+
+    def test_are_refused_by_each_command_that_takes_one(self):
+        rig = self.copy_of_rig()
+        text = rig.read_text()
+        rig.write_text(text[: text.index("P2:")])
+        problem = f"error: --calibration '{rig}': P2: missing: a calibration has this key"
+        self.refused(run(*self.scene("--out", self.out, rig=rig)), problem)
+        for command in ("check", "bounds", "explain"):
+            self.refused(run(command, "fpl2003", "--calibration", rig), problem)
+        self.assertFalse(self.out.exists())
+
+    def test_that_are_not_there_or_damaged(self):
+        rig = self.copy_of_rig()
+        text = rig.read_text()
+        other_offset = text.replace("disparity_offset: 0", "disparity_offset: 1")
+        for damaged, problem in (
+            (other_offset, "matrices and disparity_offset: must be those that its tables were made with"),
+            ("", "line 1: no OpenCV FileStorage"),
+            ("%YAML:1.0\n---\na: " + "1" * 2**20, "1048593 bytes: must be 1000000 at most"),
+        ):
+            rig.write_text(damaged)
+            self.refused_with(rig, f"--calibration '{rig}': {problem}")
+        self.refused_with(self.folder / "none.yaml", "none.yaml': no such file")
+        self.refused_with(self.folder / "rig.yml", "must end in .yaml")
+        self.refused_with(self.folder, "must end in .yaml")
+
+    def test_whose_tables_are_missing_too_long_or_others(self):
+        rig = self.copy_of_rig()
+        for side in SIDES:
+            table = self.folder / f"rig_{side}.lut"
+            whole = table.read_bytes()
+            table.write_bytes(whole[:1000] + bytes([whole[1000] ^ 1]) + whole[1001:])
+            written = "must be the table that the calibration was written with"
+            self.refused_with(rig, f"'{table}': SHA-256", written)
+            table.write_bytes(whole)
+        shutil.copy(self.folder / "rig_right.lut", self.folder / "rig_left.lut")
+        self.refused_with(rig, "rig_left.lut': SHA-256")
+        os.truncate(self.folder / "rig_left.lut", 2**40)
+        self.refused_with(rig, f"'{self.folder}/rig_left.lut': {2**40} bytes: must be 1228800 at most")
+        (self.folder / "rig_left.lut").unlink()
+        self.refused_with(rig, "rig_left.lut': no such file")
+
+    def test_for_another_board(self):
+        size = "image size = 640x480: must be that of the board's images, 320x480"
+        self.refused_with(self.rig, f"'{self.rig}': {size}", board=sets("image.width=320"))
+        for side in SIDES:
+            both = f"goes with a board that has both tables; allocation.{side}_lut = none"
+            self.refused_with(self.rig, both, board=sets(f"allocation.{side}_lut=none"))
+
+    def test_inside_the_result_folder(self):
+        self.copy_of_rig()
+        self.out.mkdir()
+        for path in self.folder.glob("rig*"):
+            path.rename(self.out / path.name)
+        with self.unchanged(self.out):
+            process = run(*self.scene("--out", self.out, rig=self.out / "rig.yaml"))
+            self.refused(process, "inside the result folder")
+
+
+class RefusedPictures(CalibrateTest):
+    def test_are_named_and_nothing_is_written(self):
+        large = self.file("large.pgm", "P5\n2052 2052\n255\n")
+        text = self.file("text.png", "no picture")
+        twice = shutil.copy(self.pictures / "left_02.png", self.folder / "twice.png")
+        later = max(str(twice), str(self.pictures / "left_02.png"))
+        tiny = {side: [self.file(f"{side}_{number}.pgm", pgm(4, 1, bytes([number, len(side), 0, 9])))
+                       for number in range(3)] for side in SIDES}
+        lefts = [self.pictures / f"left_0{number}.png" for number in range(4)]
+        sizes = [shutil.copy(lefts[0], self.folder), self.file("left_99.png", self.left.read_bytes())]
+        none = self.folder / "none*.png"
+        for left, right, *texts in (
+            ([none], "right_00.png", f"--left '{none}': no such file"),
+            ("left_*.png", "right_0[0-4].png", "9 left pictures", "5 right ones", "must be as many"),
+            (sizes, "right_0[01].png", f"'{sizes[1]}': 32x24 pixels: must be as large as", "640x480"),
+            ([large], "right_00.png", f"--left '{large}': 2052x2052 pixels: a board's images are 2048x2048"),
+            ([text], "right_00.png", f"--left '{text}'", "not a picture"),
+            ("left_0[01].png", "right_0[01].png", "in both pictures = 2 of 2: must be 3 or more"),
+            ([*lefts, twice], "right_0[0-4].png", f"'{later}': the same picture as"),
+            (*tiny.values(), "0 of 3", f"'{tiny['left'][0]}': no grid of 7x5 inner corners found"),
+            ("right_0[0-2].png", "left_0[0-2].png", "the cameras are swapped"),
+        ):
+            with self.subTest(texts[0]), self.unchanged(self.folder):
+                self.refused(self.calibrate(left=left, right=right), *texts)
+
+    def test_whose_disparities_do_not_fit(self):
+        lines = self.refused(self.calibrate("--disparities", "3"))
+        self.assertRegex(lines[0], r"disparities = 3: must be \d+ or more for the grid's own")
+
+    def test_in_the_folder_of_drawings(self):
+        self.succeeds(self.calibrate())
+        drawings = self.folder / "new_drawings"
+        left, right = ([drawings / f"{name}_0[0-2].png"] for name in ("corners", "rectified"))
+        process = self.calibrate(left=left, right=right)
+        self.refused(process, "new_drawings', which is replaced whole: a picture must lie elsewhere")
+
+
+class RefusedPlaces(CalibrateTest):
+    def refused_beside(self, name, text, data="precious"):
+        """A file of the user's is there, and stays."""
+        path = self.file(name, data)
+        with self.subTest(name), self.unchanged(self.folder):
+            self.refused(self.calibrate(), f"'{path}'", text)
+        path.unlink()
+
+    def test_are_files_and_folders_that_calibrate_has_not_made(self):
+        self.refused_beside("new.yaml", "exists and is no calibration", "precious: 1\n")
+        self.refused_beside("new_left.lut", "exists, without its calibration")
+        self.copy_of_rig().rename(self.new)
+        self.refused_beside("new_drawings/notes.txt", "must be moved away")
+        (self.folder / "new_left.lut").mkdir()
+        self.refused(self.calibrate(), "new_left.lut': must be a file that calibrate has made")
+        self.new.unlink()
+        aside = self.file("new.partial", "precious")
+        with self.unchanged(self.folder):
+            self.refused(self.calibrate(), "holds 'new.partial', which is no folder")
+        aside.unlink()
+        self.file("new.partial/thesis.txt", "precious")
+        self.new.symlink_to("new.yaml")
+        with self.unchanged(self.folder / "new.partial"):
+            self.refused(self.calibrate(), "holds 'new.partial/thesis.txt': no killed run has left that")
+
+    def test_are_pictures_that_synthetic_would_replace(self):
+        self.file("new_pictures/left_00.png", "mine")
+        command = ["calibrate", "--synthetic", 1, *GRID, "--out", self.new]
+        with self.unchanged(self.folder):
+            self.refused(run(*command), "new_pictures': exists, without its calibration")
+
+    def test_are_folders_that_are_none(self):
+        for folder in (self.folder / "none", self.left):
+            process = self.calibrate("--out", folder / "new.yaml")
+            self.refused(process, f"--out '{folder}': no such folder")
+
+
+class Usage(ProgramTest):
+    def test_everything_missing_is_named_at_once(self):
+        missing = [f"{option}: missing" for option in ("--grid", "--square-mm", "--left", "--right", "--out")]
+        lines = self.refused(run("calibrate"), *missing, "a complete command: stereotlm calibrate --left")
+        self.assertEqual(len(lines), 6)
+
+    def test_wrong_values(self):
+        good = {"--left": "l", "--right": "r", "--grid": "9x6", "--square-mm": "25", "--out": "rig.yaml"}
+        for option, value, problem in (
+            ("--grid", "9", "must be columns x rows"),
+            ("--grid", "9x", "must be columns x rows"),
+            ("--grid", "2x6", "columns = 2: must be 3..100"),
+            ("--square-mm", "wide", "--square-mm = wide: must be a number"),
+            ("--square-mm", "0", "square_mm = 0: must be"),
+            ("--square-mm", "nan", "square_mm = nan: must be"),
+            ("--disparities", "255", "--disparities = 255: must be an integer, 1..254"),
+            ("--disparity-offset", "1.5", "--disparity-offset = 1.5: must be auto or an integer"),
+            ("--synthetic", "1", "does not go with --left and --right"),
+            ("--out", "rig.yml", "--out 'rig.yml': must end in .yaml"),
+        ):
+            arguments = [word for pair in {**good, option: value}.items() for word in pair]
+            self.refused(run("calibrate", *arguments), problem)
+        seed = ["calibrate", "--synthetic", "-1", *GRID, "--out", "rig.yaml"]
+        self.refused(run(*seed), "--synthetic = -1: must be")
+
+
+class PrintGrid(ProgramTest):
+    def print_grid(self, name, *more, grid="9x6", size=("--square-mm", "25")):
+        return run("calibrate", "--print-grid", grid, *size, "--out", self.folder / name, *more)
+
+    def test_makes_a_sheet_and_replaces_it(self):
+        for name, beginning in (("grid.pdf", b"%PDF-"), ("grid.svg", b"<?xml")):
+            sheet = self.folder / name
+            said = f"{sheet}: 10x7 squares of 25 mm, 9x6 inner corners; print it at 100 %\n"
+            self.assertEqual(self.succeeds(self.print_grid(name)), said)
+            self.assertTrue(sheet.read_bytes().startswith(beginning))
+            with self.unchanged(self.folder):
+                self.succeeds(self.print_grid(name))
+
+    def test_refusals(self):
+        sheet = self.file("grid.pdf", "precious")
+        with self.unchanged(self.folder):
+            self.refused(self.print_grid("grid.pdf"), "exists and is another file")
+            self.refused(self.print_grid("grid.png"), "must end in .pdf or .svg")
+            process = self.print_grid("new.pdf", "--left", "x", "--disparities", "3")
+            rule = "does not go with --print-grid"
+            self.refused(process, f"--left: {rule}", f"--disparities: {rule}")
+            self.refused(self.print_grid("none/grid.pdf"), "cannot be written")
+            self.refused(self.print_grid("new.pdf", size=()), "--square-mm: missing")
+            self.refused(self.print_grid("new.pdf", grid="100x100", size=("--square-mm", "1000")), "5080")
 
 
 if __name__ == "__main__":

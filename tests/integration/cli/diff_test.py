@@ -1,14 +1,39 @@
 """diff: two runs, run again and compared frame by frame and row by row."""
 
 import csv
-import hashlib
+import functools
 import json
-import re
+import shutil
+import signal
 
 import program
-from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, noise, pgm, read_png, run
+from pictures import avi, noise, pgm, read_png
+from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH
+from program import ProgramTest, Terminal, run, sets, sha256, shared_folder
 
-SHARED = ["--set", "allocation.left_lut=bank0"]  # with every second left picture
+SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
+SCENE = [*SMALL, "--synthetic", "1"]
+TIMING = ["--timing-only", *sets("matcher.filter=none")]
+PARTING = "they part in frame "
+ONE_FRAME = "disparities: the same, pixel for pixel, in 1 frame"
+
+
+@functools.cache
+def shared_run(*arguments):
+    """The folder of a run of the board alone that cases only read."""
+    out = shared_folder() / str(len(list(shared_folder().iterdir())))
+    process = run("run", "fpl2003", *PRELOADED, *arguments, "--out", out)
+    assert process.returncode == 0, process.stderr
+    return out
+
+
+def stats_of(folder):
+    return json.loads((folder / "stats.json").read_text())
+
+
+def table_of(path):
+    with open(path) as file:
+        return list(csv.DictReader(file))
 
 
 class DiffTest(ProgramTest):
@@ -17,31 +42,12 @@ class DiffTest(ProgramTest):
         self.a = self.folder / "a"
         self.b = self.folder / "b"
 
-    def write(self, folder, *options):
-        """A small run into that folder."""
-        self.succeeds(self.run_small(*options, "--out", folder))
-
-    def write_timing(self, folder, *options):
-        """A run of the whole board without pixels."""
-        self.succeeds(run("run", "fpl2003", *PRELOADED, "--timing-only", *options, "--out", folder))
-
-    def diff(self, *more, a=None, b=None):
-        return run("diff", a or self.a, b or self.b, *more)
-
-    def lines(self, *more, **runs):
+    def lines(self, a, b, *more, **options):
         """What it prints, with one space between two words."""
-        process = self.diff(*more, **runs)
+        process = run("diff", a, b, *more, **options)
         text = self.succeeds(process)
         self.assertEqual(process.stderr, "")
         return [" ".join(line.split()) for line in text.splitlines()]
-
-    def failed(self, process, *texts):
-        """What went wrong once the runs had begun, in one line."""
-        self.assertEqual(process.returncode, 1, process.stderr)
-        self.assertEqual(process.stdout, "")
-        self.assertEqual(len(process.stderr.splitlines()), 1, process.stderr)
-        for text in texts:
-            self.assertIn(str(text), process.stderr)
 
     def change(self, path, old, new):
         text = path.read_text()
@@ -49,51 +55,36 @@ class DiffTest(ProgramTest):
         path.write_text(text.replace(old, new, 1))
 
 
-class Nothing(DiffTest):
-    def test_differs_of_a_run_and_its_repetition(self):
-        for folder in (self.a, self.b):
-            self.write(folder, "--frames", "3")
-        self.assertEqual(
-            self.lines(),
-            [f"A: {self.a}", f"B: {self.b}", "", "no difference", "", "disparities: the same, pixel for pixel, in 3 frames"],
-        )
+class Differences(DiffTest):
+    def test_none_of_a_run_and_its_repetition(self):
+        a = shared_run(*SCENE, "--frames", "3")
+        self.succeeds(self.run_with("--synthetic", "1", "--frames", "3", "--out", self.b))
+        with self.unchanged(self.folder):
+            lines = self.lines(a, self.b)
+        same = "disparities: the same, pixel for pixel, in 3 frames"
+        self.assertEqual(lines, [f"A: {a}", f"B: {self.b}", "", "no difference", "", same])
+        self.assertIn("no difference", self.lines(a, a))
 
-    def test_differs_of_a_run_and_itself(self):
-        self.write(self.a)
-        self.assertIn("no difference", self.lines(b=self.a))
-
-    def test_differs_where_a_key_has_no_effect(self):
-        self.write(self.a)
-        self.write(self.b, "--set", "cameras.frame_rate_hz=25")
-        lines = self.lines()
+    def test_of_a_key_without_effect_are_those_of_the_board(self):
+        lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *sets("cameras.frame_rate_hz=25")))
         self.assertEqual(lines[3:5], ["board A B", "cameras.frame_rate_hz 29.97 25"])
-        self.assertEqual(lines[6:], ["no figure and no row differs", "", "disparities: the same, pixel for pixel, in 1 frame"])
+        self.assertEqual(lines[6:], ["no figure and no row differs", "", ONE_FRAME])
 
-    def test_is_written_or_changed(self):
-        for folder in (self.a, self.b):
-            self.write(folder)
-        before = self.result(self.folder)
-        self.lines()
-        self.assertEqual(self.result(self.folder), before)
-
-    def test_differs_but_the_fidelity(self):
-        self.write(self.a, "--frames", "2")
-        self.write(self.b, "--frames", "2", *CYCLE)
-        lines = self.lines()
+    def test_of_the_fidelities_are_their_names(self):
+        lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *CYCLE))
         self.assertEqual(lines[3:5], ["run options A B", "fidelity fast cycle"])
         self.assertIn("no figure and no row differs", lines)
 
 
 class WorkedValues(DiffTest):
-    """Contract section 2."""
+    """Those of models/contract.md, section 2: what a shared bank costs."""
 
     def setUp(self):
         super().setUp()
-        for folder, options in ((self.a, []), (self.b, SHARED)):
-            self.write_timing(folder, "--set", "matcher.filter=none", *options)
+        self.alone, self.shared = shared_run(*TIMING), shared_run(*TIMING, *SHARED)
 
-    def test_say_what_a_shared_bank_costs_and_who_is_to_blame(self):
-        lines = self.lines()
+    def test_say_what_it_costs_and_who_is_to_blame(self):
+        lines = self.lines(self.alone, self.shared)
         for line in (
             "allocation.left_lut bank6 bank0",
             "cycles 2150979 4288581 +2137602",
@@ -107,42 +98,18 @@ class WorkedValues(DiffTest):
             "disparities: not compared: there are none in both",
         ):
             self.assertIn(line, lines)
-
-    def test_say_in_which_rows(self):
-        # 4 cycles of latency, 7 a column, 82 columns behind the first one, and the write.
-        lines = self.lines()
-        (parting,) = (line for line in lines if line.startswith("they part"))
-        self.assertRegex(parting, r"^they part in frame 0, row 0: whole after 5059 cycles in A, \d+ in B$")
-        rows = [re.fullmatch(r"(\d+)(?:\.\.(\d+))? (\S+) (\S+) (\S+) 0 0 0 0", line) for line in lines]
-        rows = [row.groups() for row in rows if row]
-        self.assertEqual(sum(int(row[2]) for row in rows), 2_137_602)
-        self.assertEqual(sum(int(row[4]) for row in rows), 2_137_602)
-        # 640 columns of 7 slots take twice as long.
-        (longest,) = (row for row in rows if int(row[1] or row[0]) - int(row[0]) > 400)
-        self.assertEqual(longest[3], "+4480")
-        self.assertEqual(int(rows[-1][1] or rows[-1][0]), 479)
-
-    def test_keep_rows_that_take_as_long_and_stall_at_another_port(self):
-        # Either table beside every left picture.
-        c = self.folder / "c"
-        self.write_timing(c, "--set", "matcher.filter=none", "--set", "allocation.right_lut=bank0")
-        rows = [re.fullmatch(r"(\d+)(?:\.\.(\d+))? (\S+) \S+ (\S+) (\S+) 0 0 0", line) for line in self.lines(a=self.b, b=c)]
-        rows = [row.groups() for row in rows if row]
-        (longest,) = (row for row in rows if int(row[1] or row[0]) - int(row[0]) > 400)
-        self.assertEqual(longest[2], "0")
-        b, c = (json.loads((folder / "stats.json").read_text()) for folder in (self.b, c))
-        self.assertEqual(sum(int(row[2]) for row in rows), c["cycles"] - b["cycles"])
-        for port in (0, 1):
-            stalls = c["ports"][port]["stall_cycles"] - b["ports"][port]["stall_cycles"]
-            self.assertEqual(sum(int(row[3 + port]) for row in rows), stalls)
-            self.assertGreater(abs(stalls), 2_000_000)
+        lines = self.lines(self.shared, self.alone)
+        self.assertIn("frame 0 4288597 2150995 -2137602", lines)
+        self.assertIn("left_lut on bank0 to left_pixel 2137602 0 -2137602", lines)
+        for line in self.succeeds(run("diff", self.alone, self.shared)).splitlines():
+            self.assertLessEqual(len(line), max(100, len(str(self.alone)) + 3), line)
 
     def test_are_in_the_table_for_other_programs(self):
         path = self.folder / "rows.csv"
-        self.lines("--csv", path)
-        with open(path) as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual([(row["frame"], row["row"]) for row in rows], [("0", str(row)) for row in range(480)])
+        self.lines(self.alone, self.shared, "--csv", path)
+        rows = table_of(path)
+        self.assertEqual([row["row"] for row in rows], list(map(str, range(480))))
+        self.assertEqual({row["frame"] for row in rows}, {"0"})
         self.assertEqual(rows[0]["a_cycles"], "5059")
         self.assertEqual({row["a_cycles"] for row in rows[1:]}, {"4480"})
         self.assertEqual(sum(int(row["a_cycles"]) for row in rows), 2_150_995 - 16)
@@ -150,158 +117,273 @@ class WorkedValues(DiffTest):
         self.assertEqual(sum(int(row["b_left_lut_stall_cycles"]) for row in rows), 2_137_602)
         self.assertEqual({row["a_left_lut_stall_cycles"] for row in rows}, {"0"})
 
-    def test_have_their_signs_turned_the_other_way_round(self):
-        lines = self.lines(a=self.b, b=self.a)
-        self.assertIn("frame 0 4288597 2150995 -2137602", lines)
-        self.assertIn("left_lut on bank0 to left_pixel 2137602 0 -2137602", lines)
-
-    def test_fit_into_a_hundred_columns(self):
-        for line in self.succeeds(self.diff()).splitlines():
-            self.assertLessEqual(len(line), max(100, len(str(self.a)) + 3), line)
-
 
 class Frames(DiffTest):
-    def test_with_the_same_cycles_are_put_together(self):
-        for folder, options in ((self.a, []), (self.b, SHARED)):
-            self.write_timing(folder, "--set", "matcher.filter=none", "--frames", "5", *options)
-        lines = self.lines()
-        self.assertIn("each of 3 frames, the first is 0 2150995 4288597 +2137602", lines)
-        self.assertIn("each of 2 frames, the first is 1 2150995 2150995 0", lines)
-
-    def test_part_where_the_first_one_is_contended(self):
-        self.write(self.a, "--frames", "4")
-        self.write(self.b, "--frames", "4", "--set", "allocation.disparity=[bank4, bank0]",
-                   "--set", "allocation.left_image=[bank1, bank0]")
-        lines = self.lines()
-        (parting,) = (line for line in lines if line.startswith("they part"))
-        self.assertTrue(parting.startswith("they part in frame 1, row "), parting)
-
     def test_of_different_numbers_are_compared_as_far_as_both_go(self):
-        self.write(self.a, "--frames", "2")
-        self.write(self.b, "--frames", "4")
-        lines = self.lines()
-        self.assertIn("frames 2 4", lines)
-        self.assertIn("frames 2 4 +2", lines)
-        self.assertIn("figures are of all 2 frames of A and all 4 of B, cycles and rows of the first 2", lines)
-        self.assertIn("disparities: the same, pixel for pixel, in 2 frames", lines)
-        self.assertFalse([line for line in lines if line.startswith("they part")])
+        lines = self.lines(*(shared_run(*SCENE, "--frames", frames) for frames in ("3", "4")))
+        self.assertIn("frames 3 4", lines)
+        self.assertIn("frames 3 4 +1", lines)
+        parts = "figures are of all 3 frames of A and all 4 of B, cycles and rows of the first 3"
+        self.assertIn(parts, lines)
+        self.assertIn("disparities: the same, pixel for pixel, in 3 frames", lines)
+        self.assertFalse([line for line in lines if line.startswith(PARTING)])
 
-    def test_of_another_fetch_have_the_same_rows(self):
-        self.write(self.a)
-        self.write(self.b, "--set", "matcher.fetch=line_buffer")
-        lines = self.lines()
-        ours = self.result(self.a)
-        self.assertEqual(ours["disparity.png"], self.result(self.b)["disparity.png"])
-        self.assertIn("disparities: the same, pixel for pixel, in 1 frame", lines)
-        self.assertTrue([line for line in lines if line.startswith("they part in frame 0, row 0: ")])
+    def test_of_another_fetch_have_the_same_pictures(self):
+        a, b = shared_run(*SCENE), shared_run(*SCENE, *sets("matcher.fetch=line_buffer"))
+        self.assertEqual((a / "disparity.png").read_bytes(), (b / "disparity.png").read_bytes())
+        lines = self.lines(a, b)
+        self.assertIn(ONE_FRAME, lines)
+        self.assertTrue([line for line in lines if line.startswith(f"{PARTING}0, row 0: ")])
 
     def test_of_another_size_are_compared_as_a_whole(self):
-        self.write(self.a)
-        small = ["--set", "image.width=16", "--timing-only"]
-        self.succeeds(run("run", "fpl2003", *PRELOADED, "--set", f"image.height={HEIGHT}", *small, "--out", self.b))
-        lines = self.lines()
+        narrow = sets("image.width=16", f"image.height={HEIGHT}")
+        a, b = shared_run(*SCENE), shared_run(*narrow, "--timing-only")
+        lines = self.lines(a, b)
         sizes = f"images of {WIDTH}x{HEIGHT} in A, of 16x{HEIGHT} in B"
         self.assertIn(f"rows: not compared: {sizes}", lines)
         self.assertIn(f"disparities: not compared: {sizes}", lines)
         self.assertIn("image.width 32 16", lines)
         self.assertTrue([line for line in lines if line.startswith("frame 0 ")])
-        self.assertFalse([line for line in lines if line.startswith("they part")])
-        path = self.folder / "rows.csv"
-        self.refused_in_one_line(self.diff("--csv", path), f"--csv: rows cannot be compared: {sizes}")
-        self.assertEqual({p.name for p in self.folder.iterdir()}, {"a", "b", "left.pgm", "right.pgm"})
+        self.assertFalse([line for line in lines if line.startswith(PARTING)])
+        with self.unchanged(self.folder):
+            process = run("diff", a, b, "--csv", self.folder / "rows.csv")
+            self.refused_in_one_line(process, f"--csv: rows cannot be compared: {sizes}")
 
 
 class Disparities(DiffTest):
-    def test_that_differ_are_counted(self):
-        self.write(self.a, "--set", "matcher.disparities=8")
-        self.write(self.b, "--set", "matcher.disparities=8", "--set", "matcher.lr_tolerance=off")
-        (line,) = (line for line in self.lines() if line.startswith("disparities"))
-        ours, theirs = (read_png(folder / "disparity.png")[3] for folder in (self.a, self.b))
-        other = [(x, y) for y in range(HEIGHT) for x in range(WIDTH) if ours[y][x] != theirs[y][x]]
-        self.assertGreater(len(other), 1)
-        x, y = other[0]
-        self.assertEqual(
-            line,
-            f"disparities: {len(other)} pixels differ, in 1 of 1 frame; the first in frame 0 at ({x}, {y}): "
-            f"{ours[y][x]} in A, {theirs[y][x]} in B",
-        )
-
     def test_are_not_compared_where_one_run_has_none(self):
-        self.write(self.a)
-        self.write(self.b, "--timing-only")
-        self.assertIn("disparities: not compared: there are none in B", self.lines())
-        self.assertIn("disparities: not compared: there are none in A", self.lines(a=self.b, b=self.a))
+        a, b = shared_run(*SCENE), shared_run(*SMALL, "--timing-only")
+        self.assertIn("disparities: not compared: there are none in B", self.lines(a, b))
+        self.assertIn("disparities: not compared: there are none in A", self.lines(b, a))
 
     def test_of_other_pictures_differ(self):
-        self.write(self.a)
         other = self.file("other.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 3)))
+        self.succeeds(self.run_small("--out", self.a))
         self.succeeds(self.run_small("--out", self.b, right=other))
-        lines = self.lines()
+        lines = self.lines(self.a, self.b)
         for path in (self.right, other):
             self.assertIn(str(path), " ".join(lines))
-            self.assertIn(hashlib.sha256(path.read_bytes()).hexdigest(), " ".join(lines))
+            self.assertIn(sha256(path), " ".join(lines))
         self.assertIn("no figure and no row differs", lines)
-        self.assertRegex(lines[-1], r"^disparities: \d+ pixels? differs?, in 1 of 1 frame; the first in frame 0 at ")
+        ours, theirs = (read_png(folder / "disparity.png")[3] for folder in (self.a, self.b))
+        pixels = [(x, y) for y in range(HEIGHT) for x in range(WIDTH) if ours[y][x] != theirs[y][x]]
+        x, y = pixels[0]
+        first = f"in frame 0 at ({x}, {y}): {ours[y][x]} in A, {theirs[y][x]} in B"
+        differ = f"{len(pixels)} pixels differ, in 1 of 1 frame; the first {first}"
+        self.assertEqual(lines[-1], f"disparities: {differ}")
 
 
-class Camera(DiffTest):
-    def camera(self, folder, *options):
-        self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, "--sequence", self.pairs, *options, "--out", folder))
+class Computer(DiffTest):
+    """The whole computer, whose cameras drop frames."""
 
     def setUp(self):
         super().setUp()
         self.pairs = self.sequence(5)
 
-    def test_has_the_figures_of_the_computer(self):
-        self.camera(self.a, "--frames", "8")
-        self.camera(self.b, "--frames", "8", "--set", "allocation.left_image=bank0", "--set", "allocation.right_image=bank2")
-        lines = self.lines()
-        for head in ("pci A B difference", "bridge A B difference", "cameras A B difference", "latency_ms A B difference"):
-            self.assertIn(head, lines)
-        dropped = [json.loads((folder / "stats.json").read_text())["cameras"][0]["dropped_frames"] for folder in (self.a, self.b)]
-        self.assertGreater(dropped[1], dropped[0])
-        self.assertIn(f"left dropped_frames {dropped[0]} {dropped[1]} +{dropped[1] - dropped[0]}", lines)
+    def write(self, folder, *options):
+        source = [*CAMERA_RATES, "--sequence", self.pairs]
+        self.succeeds(run("run", "fpl2003", *SMALL, *source, *options, "--out", folder))
+
+    def test_has_figures_of_its_own_and_disparities_of_the_same_camera_frame(self):
+        # With one buffer for each input the cameras' frames are others.
+        one_buffer = sets("allocation.left_image=bank0", "allocation.right_image=bank2")
+        for folder, options in ((self.a, []), (self.b, one_buffer)):
+            self.write(folder, "--frames", "8", "--save-frames", *options)
+        lines = self.lines(self.a, self.b)
+        for head in ("pci", "bridge", "cameras", "latency_ms"):
+            self.assertIn(f"{head} A B difference", lines)
+        a, b = (stats_of(folder)["cameras"][0]["dropped_frames"] for folder in (self.a, self.b))
+        self.assertGreater(b, a)
+        self.assertIn(f"left dropped_frames {a} {b} +{b - a}", lines)
         for start in ("frames_per_second.system ", "frames_per_second.steady "):
             self.assertTrue([line for line in lines if line.startswith(start)])
-
-    def test_compares_disparities_of_the_same_camera_frame(self):
-        # With one input buffer the cameras' frames are others.
-        self.camera(self.a, "--frames", "8", "--save-frames")
-        self.camera(self.b, "--frames", "8", "--save-frames", "--set", "allocation.left_image=bank0",
-                    "--set", "allocation.right_image=bank2")
         ours, theirs = ({path.name for path in (folder / "frames").iterdir()} for folder in (self.a, self.b))
         self.assertNotEqual(ours, theirs)
         both = len(ours & theirs)
         self.assertGreater(both, 1)
-        self.assertEqual(self.lines()[-1], f"disparities: the same, pixel for pixel, in {both} frames")
+        self.assertEqual(lines[-1], f"disparities: the same, pixel for pixel, in {both} frames")
 
     def test_blames_the_host_row_by_row(self):
-        self.camera(self.a, "--frames", "4")
-        self.camera(self.b, "--frames", "4", "--set", "allocation.left_image=[bank0, bank0]")
+        self.write(self.a, "--frames", "4")
+        self.write(self.b, "--frames", "4", *sets("allocation.left_image=[bank0, bank0]"))
         path = self.folder / "rows.csv"
-        self.lines("--csv", path)
-        with open(path) as file:
-            stalls = sum(int(row["b_left_pixel_stall_cycles"]) for row in csv.DictReader(file))
-        stats = json.loads((self.b / "stats.json").read_text())
-        (row,) = stats["blame"]
+        self.lines(self.a, self.b, "--csv", path)
+        (row,) = stats_of(self.b)["blame"]
         self.assertEqual((row["port"], row["by"]), ("left_pixel", "host"))
-        self.assertEqual(stalls, row["cycles"])
+        self.assertEqual(sum(int(row["b_left_pixel_stall_cycles"]) for row in table_of(path)), row["cycles"])
 
     def test_is_compared_with_the_board_alone(self):
-        self.camera(self.a, "--frames", "3")
-        self.write_small_sequence(self.b)
-        for a, b, name in ((self.a, self.b, "A"), (self.b, self.a, "B")):
-            lines = self.lines(a=a, b=b)
-            self.assertIn(f"pci, bridge, cameras and latency: only in {name}", lines)
-            self.assertIn("source camera preloaded" if name == "A" else "source preloaded camera", lines)
+        self.write(self.a, "--frames", "3")
+        self.write(self.b, "--frames", "1", *PRELOADED)
+        only = "pci, bridge, cameras and latency: only in"
+        for a, b, line, source in ((self.a, self.b, f"{only} A", "source camera preloaded"),
+                                   (self.b, self.a, f"{only} B", "source preloaded camera")):
+            lines = self.lines(a, b)
+            self.assertIn(line, lines)
+            self.assertIn(source, lines)
+        self.write(self.a, "--frames", "1")
+        nothing = "disparities: not compared: no camera frame is in both"
+        self.assertEqual(self.lines(self.a, self.b)[-1], nothing)
 
-    def test_says_that_no_frame_is_in_both(self):
-        self.camera(self.a, "--frames", "1")
-        self.write_small_sequence(self.b, "--frames", "1")
-        self.assertEqual(self.lines()[-1], "disparities: not compared: no camera frame is in both")
 
-    def write_small_sequence(self, folder, *options):
-        self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, *PRELOADED, "--sequence", self.pairs, *options, "--out", folder))
+class Sources(DiffTest):
+    def test_of_every_kind_are_found_again(self):
+        wide = [noise(2 * WIDTH, HEIGHT, seed) for seed in range(3)]
+        video = self.file("v.avi", avi(2 * WIDTH, HEIGHT, wide))
+        sides = [[noise(WIDTH, HEIGHT, side + frame) for frame in (0, 10)] for side in (1, 2)]
+        videos = [self.file(f"{side}.avi", avi(WIDTH, HEIGHT, frames)) for side, frames in enumerate(sides)]
+        for options in (
+            [*self.pair, "--truth", self.left, "--truth-scale", "0.5"],
+            ["--sequence", self.sequence(3), "--save-frames"],
+            ["--video", video, "--video-layout", "side_by_side"],
+            ["--video", *videos, "--video-layout", "two"],
+            ["--synthetic", "18446744073709551615", "--frames", "2"],
+            ["--synthetic", "1", "--verify"],
+        ):
+            with self.subTest(options=options):
+                self.succeeds(self.run_with(*options, "--out", self.a))
+                self.assertIn("no difference", self.lines(self.a, self.a))
+        self.assertIn("no difference", self.lines("a", "./a/", cwd=self.folder))
+
+    @program.slow
+    def test_with_a_calibration_are_found_again(self):
+        pictures = program.made_rig()[0].parent / "rig_pictures"
+        pair = ["--left", pictures / "scene_left.png", "--right", pictures / "scene_right.png"]
+        command = ["run", "fpl2003", *PRELOADED, "--calibration", self.copy_of_rig(), *pair]
+        self.succeeds(run(*command, "--out", self.a))
+        self.succeeds(run(*command, *SHARED, "--out", self.b))
+        self.assertIn(ONE_FRAME, self.lines(self.a, self.b))
+        table = self.folder / "rig_left.lut"
+        recorded = sha256(table)
+        table.write_bytes(bytes(4) + table.read_bytes()[4:])
+        rule = f"SHA-256 {sha256(table)}: must be that of the file of the run, {recorded}"
+        for line in self.refused(run("diff", self.a, self.b)):
+            self.assertIn(f"--calibration '{table}': {rule}", line)
+
+    def refused_in_both(self, *texts):
+        """Of the run in self.a: a line for each text, once as A and once as B."""
+        lines = self.refused(run("diff", self.a, self.a))
+        for (name, text), line in zip([(name, text) for name in "AB" for text in texts], lines, strict=True):
+            self.assertIn(f"error: {name} '{self.a}': {text}", line)
+
+    def test_that_have_changed_are_refused_with_both_sums(self):
+        self.succeeds(self.run_small("--out", self.a))
+        recorded = sha256(self.left)
+        self.left.write_bytes(pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 9)))
+        rule = f"SHA-256 {sha256(self.left)}: must be that of the file of the run, {recorded}"
+        self.refused_in_both(f"--left '{self.left}': {rule}")
+
+    def test_that_are_missing_or_more_are_refused(self):
+        self.succeeds(self.run_small("--truth", self.right, "--out", self.a))
+        self.right.unlink()
+        missing = f"'{self.right}': cannot be read: No such file or directory"
+        self.refused_in_both(f"--right {missing}", f"--truth {missing}")
+        pairs = self.sequence(2)
+        self.succeeds(self.run_with("--sequence", pairs, "--out", self.a))
+        for side in ("left", "right"):
+            shutil.copy(pairs / f"{side}_000.png", pairs / f"{side}_100.png")
+        self.refused_in_both(f"--sequence '{pairs}': 3 pairs: must be those of the run, 2")
+
+    def test_that_do_not_fit_the_board_any_more_are_refused(self):
+        self.succeeds(self.run_small("--out", self.a))
+        self.change(self.a / "config.yaml", f"width: {WIDTH}", "width: 64")
+        size = f"{WIDTH}x{HEIGHT} pixels: must be as large as the board's images, 64x{HEIGHT}"
+        self.refused_in_both(f"--left '{self.left}': {size}")
+
+
+class Folders(DiffTest):
+    """A run, and a copy of it that is changed."""
+
+    def setUp(self):
+        super().setUp()
+        self.a = shared_run(*SCENE)
+        shutil.copytree(self.a, self.b)
+
+    def diff(self, name, old, new):
+        self.change(self.b / name, old, new)
+        return run("diff", self.a, self.b)
+
+    def test_that_are_none_are_refused(self):
+        rule = "A and B must be folders that run --out has written"
+        none = self.folder / "none"
+        rows = [(none, f"error: {rule}: '{none}': no such folder"),
+                (self.left, f"error: {rule}: '{self.left}': not a folder")]
+        for name in ("run.json", "config.yaml", "stats.json"):
+            copy = shutil.copytree(self.b, self.folder / f"without_{name}")
+            (copy / name).unlink()
+            rows.append((copy, f"{rule}: '{copy}/{name}': no such file"))
+        self.all_refused((["diff", self.a, folder], text) for folder, text in rows)
+
+    def test_with_other_figures_fail(self):
+        other = f"B '{self.b}': run again it has other figures: "
+        process = self.diff("stats.json", '"frames": 1', '"frames": 2')
+        self.fails(process, f"{other}/frames: recorded 2, again 1\n")
+        process = self.diff("stats.json", '"cycles": ', '"cycles": 1')
+        self.fails(process, f"{other}/cycles: recorded 1", ", and 1 more\n")
+
+    def test_with_another_board_fail(self):
+        process = self.diff("config.yaml", "window: 7", "window: 5")
+        self.fails(process, f"B '{self.b}': run again it has other figures: ")
+
+    def test_of_another_version_name_both(self):
+        version = json.loads((self.b / "run.json").read_text())["version"]
+        said = self.succeeds(self.diff("run.json", f'"version": "{version}"', '"version": "0.0.9"'))
+        self.assertIn("no figure and no row differs", said)
+        process = self.diff("stats.json", '"frames": 1', '"frames": 2')
+        self.fails(process, f"again 1; it is of version 0.0.9, this is {version}\n")
+
+    def test_that_run_has_not_written_so_are_refused(self):
+        self.fails(self.diff("stats.json", '"schema": 1', '"schema":  1'),
+                   f"B '{self.b}': its stats.json is not as run has written it\n")
+        process = self.diff("stats.json", '"schema":  1,', '"schema": 1, "failed": ["1 = 2"],')
+        rule = 'failed = ["1 = 2"]: must be a run in which nothing failed'
+        self.refused_in_one_line(process, f"'{self.b}/stats.json': {rule}")
+        for text in ("{", "[]", '"x"', ""):
+            (self.b / "stats.json").write_text(text)
+            process = run("diff", self.a, self.b)
+            self.refused_in_one_line(process, f"'{self.b}/stats.json': must be as run writes it")
+        self.file("b/run.json", "{}")
+        self.file("b/config.yaml", "image: 3\nextra: 1\n")
+        process = run("diff", self.a, self.b)
+        texts = (f"'{self.b}/run.json': must be as run writes it", "config.yaml:2:1: extra")
+        self.assertGreater(len(self.refused(process, *texts)), 3)
+
+    def test_of_a_layout_that_does_not_go_with_its_videos_are_refused(self):
+        video = self.file("v.avi", avi(2 * WIDTH, HEIGHT, [noise(2 * WIDTH, HEIGHT, 1)]))
+        self.succeeds(self.run_with("--video", video, "--video-layout", "side_by_side", "--out", self.b))
+        for before, layout in (("side_by_side", "two"), ("two", "three")):
+            process = self.diff("run.json", before, layout)
+            rule = f"video_layout = {layout}: must be that of 1 file"
+            self.refused_in_one_line(process, f"'{self.b}/run.json': {rule}")
+
+
+class Usage(DiffTest):
+    def test_everything_missing_is_named_at_once(self):
+        lines = self.refused(run("diff"))
+        rule = "missing: a folder that run --out has written"
+        self.assertEqual(lines, [f"stereotlm: error: {name}: {rule}" for name in ("A", "B")])
+
+    def test_wrong_values(self):
+        a = shared_run(*SCENE)
+        none, folder = self.folder / "none" / "rows.csv", self.folder / "folder.csv"
+        folder.mkdir()
+        self.all_refused([
+            (["diff", a], "B: missing"),
+            (["diff", a, ""], "B: missing"),
+            (["diff", a, a, "third"], "third"),
+            (["diff", a, a, "--csv", "rows.txt"], "--csv 'rows.txt': must end in .csv"),
+            (["diff", a, a, "--csv", ""], "--csv '': must end in .csv"),
+            (["diff", a, a, "--csv", none], f"--csv '{none}': cannot be written: No such file"),
+            (["diff", a, a, "--csv", folder], f"--csv '{folder}': is a folder"),
+        ])
+
+    def test_an_interrupt_compares_nothing(self):
+        a = shared_run("--timing-only", "--frames", "20000", *sets("image.height=1"))
+        with self.unchanged(self.folder):
+            terminal = Terminal(["diff", a, a, "--csv", self.folder / "rows.csv"])
+            status, out = terminal.interrupt(r"\d+/20000 frames compared", signal.SIGINT)
+            self.assertEqual((status, out), (130, ""))
+            self.assertEqual(terminal.shown(), ["stereotlm: note: interrupted: nothing is compared", ""])
 
 
 if __name__ == "__main__":

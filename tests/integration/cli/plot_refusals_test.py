@@ -1,116 +1,122 @@
-"""plot: what is refused, and what an earlier or a killed run has left."""
+"""plot: what is refused, and what an earlier, a failed, an interrupted or a killed run leaves."""
 
 import os
 import pathlib
 import shutil
 import signal
-import sqlite3
 import subprocess
-import time
 
 import program
-from plot_test import ALLOCATIONS, ENDINGS, LAYOUT, SMALL_BOARD, PlotTest, make_database, reader
-from program import run
+from plots import ALLOCATIONS, ENDINGS, LAYOUT, WINDOWS
+from plots import PlotTest, change, make_database, reader, script, script_with
+from program import run, wait_until
+
+HEADER = "name run.source matcher.window matcher.fetch frames_per_second.core bound.core pci.clocks".split()
+FOLDER = "must be empty or hold only files that plot writes"
+ALL = "plot_all.py"
 
 
-class Replaced(PlotTest):
-    """The files of an earlier result."""
+class Earlier(PlotTest):
+    """Files that are in the folder."""
 
-    def test_stay_when_a_new_one_cannot_be_moved_into_place(self):
+    def begin(self, **earlier):
+        """A process that draws all figures, once it has begun."""
         store = self.sweep(ALLOCATIONS)
-        self.out.mkdir()
-        earlier = {name: name.encode() for name in ("banks.csv", "banks.png", "states.svg", "window.csv")}
-        for name, data in earlier.items():
-            (self.out / name).write_bytes(data)
-        process = subprocess.Popen([program.PROGRAM, "plot", str(store), "--out", str(self.out)], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        end = time.monotonic() + 60
-        while not (self.out / ".partial" / "new").exists() and time.monotonic() < end:
-            time.sleep(0.005)
-        (self.out / "use.png").mkdir()
-        out, errors = process.communicate(timeout=120)
-        self.assertEqual((process.returncode, out), (1, ""))
-        self.assertEqual(errors, f"stereotlm: error: --out {self.out}: the figures cannot be moved into place: Is a directory: "
-                                 f"'{self.out}/use.png'\n")
-        self.assertEqual(self.result(), earlier)
-        self.assertEqual(sorted(os.listdir(self.out)), sorted([*earlier, "use.png"]))
+        for name, text in earlier.items():
+            self.file(f"out/{name.replace('_', '.')}", text)
+        process = self.start("plot", store, "--out", self.out)
+        wait_until((self.out / ".partial" / "new").exists)
+        return process
 
-    def test_what_a_killed_process_has_left_goes(self):
-        store = self.sweep(SMALL_BOARD + "vary: {matcher.window: [3, 5]}\n")
+    def test_stay_when_new_ones_cannot_be_moved_into_place(self):
+        process = self.begin(banks_csv="a", banks_png="b", states_svg="c", window_csv="d")
+        (self.out / "use.png").mkdir()
+        problem = f"the figures cannot be moved into place: Is a directory: '{self.out}/use.png'"
+        self.ends(process, 1, errors=f"stereotlm: error: --out {self.out}: {problem}\n")
+        texts = {"banks.csv": b"a", "banks.png": b"b", "states.svg": b"c", "window.csv": b"d"}
+        self.assertEqual(self.result(), texts)
+        self.is_in(self.out, *texts, "use.png")
+
+    def test_stay_when_it_is_interrupted(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.begin(banks_csv="earlier")
+            process.send_signal(number)
+            self.ends(process, 130, errors="stereotlm: note: interrupted: nothing was written\n")
+            self.assertEqual(self.result(), {"banks.csv": b"earlier"})
+            self.is_in(self.out, "banks.csv")
+
+    def test_of_a_killed_process_go(self):
         for name in ("new", "earlier"):
-            (self.out / ".partial" / name).mkdir(parents=True)
-            (self.out / ".partial" / name / "window.png").write_bytes(b"")
-        self.succeeds(self.script("plot_window.py", store, "--out", self.out))
-        self.assertEqual(sorted(os.listdir(self.out)), sorted("window" + ending for ending in ENDINGS))
+            self.file(f"out/.partial/{name}/window.png")
+        self.plot("window", self.sweep(WINDOWS))
+        self.is_in(self.out, *("window" + ending for ending in ENDINGS))
 
 
 class Refusals(PlotTest):
     def setUp(self):
         super().setUp()
-        self.store = self.folder / "made.db"
-        header = ["name", "run.source", "matcher.window", "matcher.fetch", "frames_per_second.core", "bound.core",
-                  "pci.clocks"]
-        make_database(self.store, header, [("made", "preloaded", window, kind, 90 / window, 90 / window, None)
-                                           for window, kind in ((3, "column"), (5, "line_buffer"))])
+        rows = [("made", "preloaded", window, kind, 90 / window, 90 / window, None)
+                for window, kind in ((3, "column"), (5, "line_buffer"))]
+        self.store = make_database(self.folder / "made.db", HEADER, rows)
 
-    def refused_at(self, *arguments):
-        lines = self.refused(run("plot", *arguments))
+    def refused_plot(self, store, *options):
+        """The lines, without what stands before each."""
+        lines = self.refused(script(ALL, store, "--out", self.out, *options))
         self.assertFalse(self.out.exists())
         return [line.removeprefix("stereotlm: error: ") for line in lines]
 
-    def test_of_everything_at_once(self):
-        self.assertEqual(self.refused_at("--pareto", "a:max", "--only", "b"), [
+    def test_of_the_command_line_are_said_at_once(self):
+        axes = "must be two columns, each with min or max: area.slices:min,frames_per_second.core:max"
+        lines = self.refused(run("plot", "--pareto", "a:max", "--only", "b"))
+        self.assertEqual([line.removeprefix("stereotlm: error: ") for line in lines], [
             "DB: missing: a database of stereotlm sweep",
-            "--pareto = a:max: must be two columns, each with min or max: area.slices:min,frames_per_second.core:max",
+            f"--pareto = a:max: {axes}",
             "--out: missing: the folder of the figures",
         ])
+        window = "matcher.window:max"
+        for wrong in ("", "matcher.window", window, "matcher.window:least,bound.core:max",
+                      f"{window},matcher.window:min", f"{window},bound.core:max,run.source:min"):
+            process = run("plot", self.store, "--out", self.out, "--pareto", wrong)
+            self.refused_in_one_line(process, f"--pareto = {wrong}: must be two columns")
 
     @program.slow
-    def test_of_options_name_the_nearest(self):
-        self.assertEqual(
-            self.refused_at(self.store, "--out", self.out, "--only", "matcher.widow=3", "--only", "matcher.fetch=row",
-                            "--only", "frames_per_second.core=3", "--pareto", "frames_per_sec.core:max,matcher.fetch:min"),
-            ["--only = matcher.widow=3: unknown key matcher.widow; nearest: matcher.window, matcher.fetch",
-             "--only = matcher.fetch=row: no point has that value; there are: column, line_buffer",
-             "--only = frames_per_second.core=3: unknown key frames_per_second.core",
-             "--pareto = frames_per_sec.core:max,matcher.fetch:min: unknown column frames_per_sec.core; nearest: "
-             "frames_per_second.core",
-             f"--pareto = frames_per_sec.core:max,matcher.fetch:min: point {0:064}: matcher.fetch = column: "
-             + reader.NUMBER])
-        self.assertEqual(
-            self.refused_at(self.store, "--out", self.out, "--only", "matcher.window=3", "--only",
-                            "matcher.fetch=line_buffer"),
-            ["--only matcher.window=3 matcher.fetch=line_buffer: no point with figures has all these values"])
-        self.assertEqual(self.refused_at(self.store, "--out", self.out, "--pareto", "pci.clocks:min,matcher.window:min"),
-                         ["--pareto = pci.clocks:min,matcher.window:min: column pci.clocks is empty"])
-        for wrong in ("matcher.window", "matcher.window:max", "matcher.window:least,bound.core:max", "",
-                      "matcher.window:max,matcher.window:min", "matcher.window:max,bound.core:max,run.source:min"):
-            (line,) = self.refused_at(self.store, "--out", self.out, "--pareto", wrong)
-            self.assertIn(f"--pareto = {wrong}: must be two columns", line)
+    def test_of_keys_and_columns_name_the_nearest(self):
+        only = ("matcher.widow=3", "matcher.fetch=row", "frames_per_second.core=3")
+        options = [word for each in only for word in ("--only", each)]
+        axes = "frames_per_sec.core:max,matcher.fetch:min"
+        self.assertEqual(self.refused_plot(self.store, *options, "--pareto", axes), [
+            "--only = matcher.widow=3: unknown key matcher.widow; nearest: matcher.window, matcher.fetch",
+            "--only = matcher.fetch=row: no point has that value; there are: column, line_buffer",
+            "--only = frames_per_second.core=3: unknown key frames_per_second.core",
+            f"--pareto = {axes}: unknown column frames_per_sec.core; nearest: frames_per_second.core",
+            f"--pareto = {axes}: point {0:064}: matcher.fetch = column: {reader.NUMBER}",
+        ])
+        both = ("matcher.window=3", "matcher.fetch=line_buffer")
+        lines = self.refused_plot(self.store, *(word for each in both for word in ("--only", each)))
+        self.assertEqual(lines, [f"--only {' '.join(both)}: no point with figures has all these values"])
+        axes = "pci.clocks:min,matcher.window:min"
+        lines = self.refused_plot(self.store, "--pareto", axes)
+        self.assertEqual(lines, [f"--pareto = {axes}: column pci.clocks is empty"])
 
     @program.slow
     def test_of_databases(self):
-        for path, reason in ((self.folder / "none.db", "cannot be opened: No such file or directory"),
-                             (self.folder, "cannot be opened: Is a directory"), (self.left, "not a database")):
-            self.assertEqual(self.refused_at(path, "--out", self.out), [f"{path}: {reason}"])
-        other = self.folder / "other.db"
-        connection = sqlite3.connect(other)
-        connection.execute("CREATE TABLE points(a)")
-        connection.commit()
-        self.assertEqual(self.refused_at(other, "--out", self.out), [f"{other}: not a database of stereotlm sweep"])
-        connection.execute(f"PRAGMA application_id = {0x53544C4D}")
-        connection.execute("PRAGMA user_version = 1")
-        connection.close()
-        self.assertEqual(self.refused_at(other, "--out", self.out),
-                         [f"{other}: its layout is 1, of another version; this version reads {LAYOUT}"])
-        empty = self.folder / "empty.db"
-        make_database(empty, ["name", "run.source"], [])
-        self.assertEqual(self.refused_at(empty, "--out", self.out), [f"{empty}: no point to draw: it is empty"])
-        make = sqlite3.connect(empty)
-        make.execute("INSERT INTO points VALUES('0', 'failed', 'why', '0.1.0', '', 'a', 'preloaded')")
-        make.commit()
-        make.close()
-        self.assertEqual(self.refused_at(empty, "--out", self.out), [f"{empty}: no point to draw: 1 failed"])
+        none, foreign = self.folder / "none.db", self.folder / "foreign.db"
+        change(foreign, "CREATE TABLE points(a)")
+        early = make_database(self.folder / "early.db", HEADER, [])
+        change(early, "PRAGMA user_version = 1")
+        empty = make_database(self.folder / "empty.db", ["name"], [])
+        failed = shutil.copy(empty, self.folder / "failed.db")
+        change(failed, "INSERT INTO points VALUES('0', 'failed', 'why', '0.1.0', '', 'a')")
+        for path, reason in (
+            (none, "cannot be opened: No such file or directory"),
+            (self.folder, "cannot be opened: Is a directory"),
+            (self.left, "not a database"),
+            (foreign, "not a database of stereotlm sweep"),
+            (early, f"its layout is 1, of another version; this version reads {LAYOUT}"),
+            (empty, "no point to draw: it is empty"),
+            (failed, "no point to draw: 1 failed"),
+        ):
+            self.assertEqual(self.refused_plot(path), [f"{path}: {reason}"])
 
     @program.slow
     def test_of_folders_with_files_that_it_does_not_write(self):
@@ -120,79 +126,57 @@ class Refusals(PlotTest):
         def link(path):
             path.symlink_to(self.left)
 
-        for make, name in ((file, "notes.txt"), (file, "window.pdf"), (file, ".partial"), (pathlib.Path.mkdir, "window.png"),
-                           (pathlib.Path.mkdir, "frames"), (link, "window.png"), (link, ".partial")):
-            out = self.folder / "given"
-            out.mkdir()
-            make(out / name)
-            self.refused_in_one_line(run("plot", self.store, "--out", out),
-                                     f"--out {out}: holds '{name}': must be empty or hold only files that plot writes")
-            self.assertEqual(os.listdir(out), [name])
-            shutil.rmtree(out)
-        (self.out / ".partial").mkdir(parents=True)
-        (self.out / ".partial" / "mine").touch()
-        self.refused_in_one_line(run("plot", self.store, "--out", self.out), f"--out {self.out}: holds '.partial/mine'")
-        self.refused_in_one_line(run("plot", self.store, "--out", self.left), f"--out {self.left}: not a folder")
-        self.refused_in_one_line(run("plot", self.store, "--out", "/proc/none/out"),
-                                 "--out /proc/none/out: cannot be written to")
+        folder = pathlib.Path.mkdir
+        for make, name in ((file, "notes.txt"), (file, "window.pdf"), (file, ".partial"), (folder, "frames"),
+                           (folder, "window.png"), (link, "window.png"), (link, ".partial")):
+            given = self.folder / "given"
+            given.mkdir()
+            make(given / name)
+            process = script(ALL, self.store, "--out", given)
+            self.refused_in_one_line(process, f"--out {given}: holds '{name}': {FOLDER}")
+            self.is_in(given, name)
+            shutil.rmtree(given)
+        self.file("out/.partial/mine")
+        for out, problem in ((self.out, "holds '.partial/mine'"), (self.left, "not a folder"),
+                             ("/proc/none/out", "cannot be written to")):
+            self.refused_in_one_line(script(ALL, self.store, "--out", out), f"--out {out}: {problem}")
 
     def test_of_figures_that_do_not_apply(self):
-        process = self.script("plot_disparities.py", self.store, "--out", self.out)
-        self.refused_in_one_line(process, "plot_disparities.py: error: disparities not drawn: all points have "
-                                          "matcher.disparities = absent")
+        process = script("plot_disparities.py", self.store, "--out", self.out)
+        reason = "disparities not drawn: all points have matcher.disparities = absent"
+        self.refused_in_one_line(process, f"plot_disparities.py: error: {reason}")
+        process = script("plot_window.py", self.store, "--out", self.out, "--pareto", "a")
+        reason = "unrecognized arguments: --pareto a (see plot_window.py --help)"
+        self.refused_in_one_line(process, f"plot_window.py: error: {reason}")
         self.assertFalse(self.out.exists())
-        self.refused_in_one_line(self.script("plot_window.py", self.store, "--out", self.out, "--pareto", "a"),
-                                 "plot_window.py: error: unrecognized arguments: --pareto a (see plot_window.py --help)")
 
-    def test_without_matplotlib(self):
-        self.file("matplotlib.py", b"raise ImportError('not there')\n")
-        process = self.script("plot_all.py", self.store, "--out", self.out, PYTHONPATH=str(self.folder))
-        self.refused_in_one_line(process, "stereotlm: error: needs matplotlib, which ./setup installs: not there")
-        self.file("matplotlib.py", b"raise ValueError('no such setting')\n")
-        process = self.script("plot_all.py", self.store, "--out", self.out, PYTHONPATH=str(self.folder))
-        self.refused_in_one_line(process, "stereotlm: error: matplotlib cannot be loaded: no such setting")
-
-    def test_without_scripts(self):
+    def test_without_matplotlib_or_scripts(self):
+        for error, text in (("ImportError", "needs matplotlib, which ./setup installs"),
+                            ("ValueError", "matplotlib cannot be loaded")):
+            self.file("matplotlib.py", f"raise {error}('no such thing')\n")
+            process = script_with(ALL, self.store, "--out", self.out, PYTHONPATH=str(self.folder))
+            self.refused_in_one_line(process, f"stereotlm: error: {text}: no such thing")
         (self.folder / "bin").mkdir()
         alone = shutil.copy(program.PROGRAM, self.folder / "bin" / "stereotlm")
-        process = subprocess.run([alone, "plot", str(self.store), "--out", str(self.out)], capture_output=True, text=True,
-                                 timeout=60, check=False)
-        self.refused_in_one_line(process, f"'{self.folder}/share/stereotlm/plots/plot_all.py': not found")
+        command = [alone, "plot", self.store, "--out", self.out]
+        process = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        self.refused_in_one_line(process, f"'{self.folder}/share/stereotlm/plots/{ALL}': not found")
 
 
 class Environment(PlotTest):
     @program.slow
     def test_has_no_effect(self):
-        store = self.sweep(SMALL_BOARD + "vary: {matcher.window: [3, 5]}\n")
-        self.file("matplotlib.py", b"raise ImportError('another one')\n")
-        expected = None
-        for variables in ({}, {"MPLBACKEND": "nonsense"}, {"PYTHONSAFEPATH": "1"}, {"PYTHONPATH": str(self.folder)},
-                          {"PYTHONHOME": str(self.folder)}, {"PYTHONOPTIMIZE": "2"}):
-            process = run("plot", store, "--out", self.out, env={**os.environ, **variables})
-            self.assertEqual((process.returncode, process.stderr), (0, ""), variables)
-            expected = expected or self.result()
-            self.assertEqual(self.result(), expected, variables)
-        for name in ("plot_window.py", "plot_all.py"):
-            self.succeeds(self.script(name, store, "--out", self.out, MPLBACKEND="nonsense", PYTHONSAFEPATH="1"))
-
-
-class Interrupted(PlotTest):
-    def test_leaves_what_was_there(self):
-        store = self.sweep(ALLOCATIONS)
-        self.out.mkdir()
-        (self.out / "banks.csv").write_text("earlier")
-        for number in (signal.SIGINT, signal.SIGTERM):
-            process = subprocess.Popen([program.PROGRAM, "plot", str(store), "--out", str(self.out)],
-                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            end = time.monotonic() + 60
-            while not (self.out / ".partial").exists() and time.monotonic() < end:
-                time.sleep(0.005)
-            process.send_signal(number)
-            out, errors = process.communicate(timeout=60)
-            self.assertEqual((process.returncode, out), (130, ""))
-            self.assertEqual(errors, "stereotlm: note: interrupted: nothing was written\n")
-            self.assertEqual(self.result(), {"banks.csv": b"earlier"})
-            self.assertEqual(os.listdir(self.out), ["banks.csv"])
+        store = self.sweep(WINDOWS)
+        self.file("matplotlib.py", "raise ImportError('another one')\n")
+        self.succeeds(run("plot", store, "--out", self.out))
+        harmless = {"MPLBACKEND": "nonsense", "PYTHONSAFEPATH": "1"}
+        with self.unchanged(self.out):
+            for variables in ({"PYTHONPATH": str(self.folder), **harmless},
+                              {"PYTHONHOME": str(self.folder), "PYTHONOPTIMIZE": "2"}):
+                process = run("plot", store, "--out", self.out, env={**os.environ, **variables})
+                self.assertEqual((process.returncode, process.stderr), (0, ""), variables)
+            for name in ("plot_window.py", ALL):
+                self.succeeds(script_with(name, store, "--out", self.out, **harmless))
 
 
 if __name__ == "__main__":

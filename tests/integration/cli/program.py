@@ -1,133 +1,112 @@
-"""Drives the program stereotlm from the outside; what the tests of this folder share.
+"""Runs the program stereotlm as its users do: what the test scripts of this folder share.
 
-The path of the program is the first argument of each test script.
+The path of the program is the first argument of each script.
 """
 
+import concurrent.futures
+import contextlib
+import ctypes
+import fcntl
 import functools
+import hashlib
 import json
 import os
 import pathlib
-import random
+import pty
+import re
+import select
+import shutil
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import termios
+import time
 import unittest
-import zlib
 
-PROGRAM = None  # set by main()
-PYTHON = "/usr/bin/python3"  # Debian's, which has matplotlib
+from pictures import noise, pgm
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+
+
+def sets(*assignments):
+    """The option --set with each of them."""
+    return [word for assignment in assignments for word in ("--set", assignment)]
+
 
 WIDTH = 32
 HEIGHT = 24
-SMALL = ["--set", f"image.width={WIDTH}", "--set", f"image.height={HEIGHT}"]
+SMALL = sets(f"image.width={WIDTH}", f"image.height={HEIGHT}")
 PRELOADED = ["--source", "preloaded"]
-# Of the whole computer: a frame of the small core takes 1.6 of the cameras', as on the paper's board at 7x7.
-CAMERA_RATES = ["--set", "cameras.frame_rate_hz=1000", "--set", f"fpga.clock_mhz={5992 / 1600}"]
+# A frame of the small core takes 1.6 times as long as one of the cameras, as on the paper's board at 7x7.
+CAMERA_RATES = sets("cameras.frame_rate_hz=1000", f"fpga.clock_mhz={5992 / 1600}")
 CYCLE = ["--fidelity", "cycle"]  # also for runs that have to take a while
-RESULT_FILES = ["config.yaml", "disparity.pfm", "disparity.png", "disparity_color.png", "run.json", "stats.json"]
+RESULT_FILES = "config.yaml disparity.pfm disparity.png disparity_color.png run.json stats.json".split()
+
+PROGRESS = re.compile(
+    r"(\d+\.\d\d)/(\d+) frames   (\d+\.\d) %   (\d+\.\d\d) M cycles/s   (\d+\.\d\d) frames/s   (\S+) left"
+)
+
+
+def words(arguments):
+    return [PROGRAM, *map(str, arguments)]
 
 
 def run(*arguments, **options):
     """The finished process, with text output."""
-    command = [PROGRAM] + [str(argument) for argument in arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+    pipes = {"capture_output": True, "text": True, "timeout": 300, "check": False}
+    return subprocess.run(words(arguments), **pipes, **options)
 
 
-def has_address_sanitizer():
-    return b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()
+def wait_until(is_so, seconds=60):
+    end = time.monotonic() + seconds
+    while not is_so():
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {seconds} s")
+        time.sleep(0.01)
 
 
-def slow(test):
-    """A test that is left out under the sanitizers: it takes seconds there, and others run the same code."""
-    @functools.wraps(test)
-    def wrapper(self):
-        if has_address_sanitizer():
-            self.skipTest("slow under the sanitizers")
-        test(self)
-    return wrapper
+def of_plain_user():
+    """For preexec_fn: permissions of files bind the process, also where root runs the tests."""
+    drop_from_bounding_set, override, search = 24, 1, 2
+    if os.geteuid() == 0:
+        for capability in (override, search):
+            if ctypes.CDLL(None, use_errno=True).prctl(drop_from_bounding_set, capability, 0, 0, 0) != 0:
+                raise OSError(ctypes.get_errno(), "prctl")
 
 
-def pgm(width, height, pixels):
-    return b"P5\n%d %d\n255\n" % (width, height) + bytes(pixels)
+HAS_ADDRESS_SANITIZER = b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()
+
+# Marks a case, or a class of cases, that is left out under the sanitizers because it would take too long. The
+# release build runs it; under the sanitizers other cases run the same code.
+slow = unittest.skipIf(HAS_ADDRESS_SANITIZER, "too slow under the sanitizers")
 
 
-def noise(width, height, seed):
-    generator = random.Random(seed)
-    return bytes(generator.randrange(256) for _ in range(width * height))
+def sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def png_chunks(data):
-    at = 8
-    while at < len(data):
-        (length,) = struct.unpack(">I", data[at : at + 4])
-        yield data[at + 4 : at + 8], data[at + 8 : at + 8 + length]
-        at += 12 + length
+@functools.cache
+def shared_folder():
+    """A folder that stays until the script ends, for what several cases only read."""
+    scratch = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(scratch.cleanup)
+    return pathlib.Path(scratch.name)
 
 
-def read_png(path, bits=8):
-    """(width, height, channels, rows of bytes) of a PNG, not interlaced."""
-    chunks = list(png_chunks(pathlib.Path(path).read_bytes()))
-    width, height, depth, kind, _, _, interlaced = struct.unpack(">IIBBBBB", chunks[0][1])
-    assert depth == bits and interlaced == 0 and kind in (0, 2, 6)
-    channels = {0: 1, 2: 3, 6: 4}[kind]
-    raw = zlib.decompress(b"".join(data for name, data in chunks if name == b"IDAT"))
-    bytes_per_pixel = channels * bits // 8
-    stride = width * bytes_per_pixel
-    rows = []
-    above = bytes(stride)
-    for y in range(height):
-        start = y * (stride + 1)
-        row = bytearray(raw[start + 1 : start + 1 + stride])
-        unfilter(raw[start], row, above, bytes_per_pixel)
-        above = bytes(row)
-        rows.append(above)
-    return width, height, channels, rows
-
-
-def drawn(path):
-    """(width, height, part of it that is white, number of colours) of a figure."""
-    script = """
-import sys
-import numpy
-from matplotlib import image
-pixels = (image.imread(sys.argv[1])[:, :, :3] * 255).round().astype(int) @ [65536, 256, 1]
-print(pixels.shape[1], pixels.shape[0], numpy.mean(pixels == 0xFFFFFF), len(numpy.unique(pixels)))
-"""
-    process = subprocess.run([PYTHON, "-c", script, str(path)], capture_output=True, text=True, timeout=300, check=True)
-    width, height, white, colors = process.stdout.split()
-    return int(width), int(height), float(white), int(colors)
-
-
-def read_png_16(path):
-    """The rows of a 16-bit grey PNG."""
-    width, _, channels, rows = read_png(path, 16)
-    assert channels == 1
-    return [struct.unpack(f">{width}H", row) for row in rows]
-
-
-def unfilter(method, row, above, bytes_per_pixel):
-    for i, value in enumerate(row):
-        left = row[i - bytes_per_pixel] if i >= bytes_per_pixel else 0
-        up = above[i]
-        corner = above[i - bytes_per_pixel] if i >= bytes_per_pixel else 0
-        estimate = left + up - corner
-        nearest = min((left, up, corner), key=lambda candidate: abs(estimate - candidate))
-        row[i] = (value + (0, left, up, (left + up) // 2, nearest)[method]) & 0xFF
-
-
-def read_pfm(path):
-    """(width, height, rows of floats from the top)."""
-    kind, size, scale, data = pathlib.Path(path).read_bytes().split(b"\n", 3)
-    assert kind == b"Pf" and float(scale) == -1.0
-    width, height = map(int, size.split())
-    values = struct.unpack(f"<{width * height}f", data)
-    rows = [list(values[y * width : (y + 1) * width]) for y in range(height)]
-    return width, height, rows[::-1]
+@functools.cache
+def made_rig():
+    """A calibration of a made-up rig, rig.yaml in shared_folder(), and the process that has made it."""
+    rig = shared_folder() / "rig.yaml"
+    return rig, run("calibrate", "--synthetic", 3, "--grid", "7x5", "--square-mm", 30, "--out", rig)
 
 
 class ProgramTest(unittest.TestCase):
-    """A test with a folder of its own, and a small pair in it: self.left, self.right."""
+    """A case with a folder of its own, self.folder, with a small pair in it, self.left and self.right.
+
+    self.out is a folder for results that is not there yet.
+    """
 
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -135,11 +114,16 @@ class ProgramTest(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
         self.left = self.file("left.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 1)))
         self.right = self.file("right.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 2)))
+        self.pair = ["--left", self.left, "--right", self.right]
         self.out = self.folder / "out"
 
-    def file(self, name, data):
+    # Files.
+
+    def file(self, name, data=b""):
+        """A file of these bytes, or of this text, in the folder."""
         path = self.folder / name
-        path.write_bytes(data)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data.encode() if isinstance(data, str) else data)
         return path
 
     def side(self, number, side):
@@ -148,48 +132,180 @@ class ProgramTest(unittest.TestCase):
 
     def sequence(self, length, name="sequence"):
         """A folder of pairs that all differ."""
-        folder = self.folder / name
-        folder.mkdir()
+        (self.folder / name).mkdir()
         for number in range(length):
             for side in ("left", "right"):
-                (folder / f"{side}_{number:03}.png").write_bytes(pgm(WIDTH, HEIGHT, self.side(number, side)))
-        return folder
+                self.file(f"{name}/{side}_{number:03}.png", pgm(WIDTH, HEIGHT, self.side(number, side)))
+        return self.folder / name
+
+    def copy_of_rig(self):
+        """The calibration of made_rig(), to be changed."""
+        for name in ("rig.yaml", "rig_left.lut", "rig_right.lut"):
+            shutil.copy(made_rig()[0].parent / name, self.folder)
+        return self.folder / "rig.yaml"
+
+    def result(self, folder=None):
+        """The bytes of all files of a result folder, by name."""
+        folder = folder or self.out
+        files = (path for path in folder.rglob("*") if path.is_file())
+        return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+    def stats(self, folder=None):
+        return json.loads(((folder or self.out) / "stats.json").read_text())
+
+    def run_json(self):
+        return json.loads((self.out / "run.json").read_text())
+
+    @contextlib.contextmanager
+    def unchanged(self, path):
+        """The file, or each file of the folder, stays as it is meanwhile, and none is added."""
+        of = lambda: self.result(path) if path.is_dir() else path.read_bytes()
+        before = of()
+        yield
+        self.assertTrue(of() == before, f"{path} has changed")
+
+    def is_in(self, folder, *names):
+        """These are all entries of the folder."""
+        self.assertEqual(sorted(os.listdir(folder)), sorted(names))
+
+    # Commands.
 
     def run_arguments(self, *more, board="fpl2003", left=None, right=None):
-        pair = ["--left", self.left if left is None else left, "--right", self.right if right is None else right]
-        return ["run", board, *SMALL, *PRELOADED, *pair, *more]
-
-    def run_with(self, *source, board="fpl2003"):
-        """A small run with these options instead of a pair."""
-        return run("run", board, *SMALL, *PRELOADED, *source)
+        left, right = self.left if left is None else left, self.right if right is None else right
+        return ["run", board, *SMALL, *PRELOADED, "--left", left, "--right", right, *more]
 
     def run_small(self, *more, **pair):
+        """A small run of a pair."""
         return run(*self.run_arguments(*more, **pair))
 
+    def run_with(self, *source):
+        """A small run with these options instead of a pair."""
+        return run("run", "fpl2003", *SMALL, *PRELOADED, *source)
+
+    def start(self, *arguments, **options):
+        """A process under way, with text output; the case ends it."""
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        process = subprocess.Popen(words(arguments), **{**pipes, **options})
+        self.addCleanup(self.close, process)
+        return process
+
+    @staticmethod
+    def close(process):
+        process.kill()
+        process.communicate()
+
+    # How a command has ended.
+
+    def ends(self, process, status, out="", errors=""):
+        """A process that was started ends so."""
+        said = process.communicate(timeout=120)
+        self.assertEqual((process.returncode, *said), (status, out, errors))
+
     def succeeds(self, process):
+        """Its standard output."""
         self.assertEqual(process.returncode, 0, process.stderr)
         return process.stdout
 
-    def refused(self, process, *texts):
-        """Refused before the first cycle: the lines on standard error, with nothing on standard output."""
-        self.assertEqual(process.returncode, 2, process.stderr)
+    def ended(self, process, status, *texts):
+        """With nothing on standard output; the lines on standard error, among which are these texts."""
+        self.assertEqual(process.returncode, status, process.stderr)
         self.assertEqual(process.stdout, "")
         for text in texts:
             self.assertIn(str(text), process.stderr)
         return process.stderr.splitlines()
 
+    def refused(self, process, *texts):
+        """Before it began."""
+        return self.ended(process, 2, *texts)
+
     def refused_in_one_line(self, process, *texts):
         self.assertEqual(len(self.refused(process, *texts)), 1, process.stderr)
 
-    def result(self, folder=None):
-        """The bytes of all files of a result folder, by name."""
-        folder = folder or self.out
-        return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    def all_refused(self, rows, command=run):
+        """Rows of arguments of a command, and of what the one line says in which it refuses them."""
+        for arguments, *texts in rows:
+            with self.subTest(arguments=arguments):
+                self.refused_in_one_line(command(*arguments), *texts)
 
-    def stats(self):
-        return json.loads((self.out / "stats.json").read_text())
+    def fails(self, process, *texts):
+        """In one line, once it had begun."""
+        self.assertEqual(len(self.ended(process, 1, *texts)), 1, process.stderr)
 
 
-def main():
-    sys.modules["program"].PROGRAM = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+class Terminal:
+    """A process whose standard error is a terminal of its own."""
+
+    def __init__(self, arguments, columns=100, **options):
+        self.master, slave = pty.openpty()
+        os.set_blocking(self.master, False)
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        command = words(arguments)
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=slave, text=True, **options)
+        os.close(slave)
+        self.text = ""
+
+    def read_until(self, pattern, seconds=60):
+        """Reads until the pattern is there; its matches."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            found = re.findall(pattern, self.text)
+            if found:
+                return found
+            if self.read(0.1) is None:
+                raise AssertionError(f"ended without {pattern}: {self.text!r}")
+        raise AssertionError(f"not within {seconds} s: {pattern} in {self.text!r}")
+
+    def read(self, seconds):
+        """Whether there was anything to read within this time; None where nothing will come any more."""
+        if not select.select([self.master], [], [], seconds)[0]:
+            return False
+        try:
+            self.text += os.read(self.master, 65536).decode()
+        except OSError:
+            return None
+        return True
+
+    def interrupt(self, pattern, number):
+        """Sends the signal once the pattern is shown; (exit status, standard output)."""
+        self.read_until(pattern)
+        self.process.send_signal(number)
+        return self.finish()
+
+    def finish(self):
+        """(exit status, standard output)."""
+        out, _ = self.process.communicate(timeout=60)
+        while self.read(0.1):
+            pass
+        os.close(self.master)
+        return self.process.returncode, out
+
+    def shown(self):
+        """What the terminal shows, line by line."""
+        lines = []
+        for line in self.text.replace("\r\n", "\n").split("\n"):
+            screen = []
+            column = 0
+            for character in line:
+                if character == "\r":
+                    column = 0
+                    continue
+                screen[column : column + 1] = [character]
+                column += 1
+            lines.append("".join(screen).rstrip())
+        return lines
+
+
+class AtOnce(unittest.TestSuite):
+    """Runs its cases in threads, for scripts whose cases wait most of the time."""
+
+    def run(self, result, debug=False):
+        with concurrent.futures.ThreadPoolExecutor() as threads:
+            list(threads.map(lambda case: case.run(result), self))
+        return result
+
+
+def main(suite=unittest.TestSuite):
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
+    loader = unittest.TestLoader()
+    loader.suiteClass = suite
+    unittest.main(testLoader=loader)

@@ -1,26 +1,35 @@
-"""Runs that succeed: what they print and write."""
+"""Runs: what they print and write, saved frames, the progress line, interrupts."""
 
-import hashlib
-import json
 import os
+import re
+import resource
+import signal
+import subprocess
 import unittest
 
 import program
-from program import HEIGHT, PRELOADED, RESULT_FILES, SMALL, WIDTH, ProgramTest, noise, pgm, read_pfm, read_png, run
+from pictures import noise, pgm, ppm, read_pfm, read_png
+from program import CYCLE, HEIGHT, PRELOADED, PROGRESS, RESULT_FILES, SMALL, WIDTH
+from program import ProgramTest, Terminal, run, sets, sha256, wait_until
+
+DISPARITY_FILES = ("disparity.png", "disparity.pfm", "disparity_color.png")
+MOST = "18446744073709551615"
+
+
+def frame_names(count):
+    return [f"{frame:06}.png" for frame in range(count)]
 
 
 class ResultFiles(ProgramTest):
     def test_are_all_there_and_agree(self):
-        self.succeeds(self.run_small("--out", self.out, "--frames", "3", "--set", "matcher.disparities=8"))
-        self.assertEqual(sorted(os.listdir(self.out)), RESULT_FILES)
+        self.succeeds(self.run_small("--out", self.out, "--frames", "3", *sets("matcher.disparities=8")))
+        self.is_in(self.out, *RESULT_FILES)
         width, height, channels, rows = read_png(self.out / "disparity.png")
         self.assertEqual((width, height, channels), (WIDTH, HEIGHT, 1))
-        floats = read_pfm(self.out / "disparity.pfm")
-        self.assertEqual(floats[:2], (WIDTH, HEIGHT))
-        as_floats = [[float("inf") if d == 255 else float(d) for d in row] for row in rows]
-        self.assertEqual(floats[2], as_floats)
         self.assertTrue(any(d != 255 for row in rows for d in row))
         self.assertTrue(all(d == 255 or d < 8 for row in rows for d in row))
+        as_floats = [[float("inf") if d == 255 else float(d) for d in row] for row in rows]
+        self.assertEqual(read_pfm(self.out / "disparity.pfm"), (WIDTH, HEIGHT, as_floats))
         width, height, channels, colours = read_png(self.out / "disparity_color.png")
         self.assertEqual((width, height, channels), (WIDTH, HEIGHT, 3))
         for row, colour_row in zip(rows, colours):
@@ -35,84 +44,59 @@ class ResultFiles(ProgramTest):
         self.assertEqual(stats["cycles"], sum(stats["frame_cycles"]) - 3 * 16)
         self.assertEqual(stats["frames_per_second"]["core"], 40e6 * 3 / sum(stats["frame_cycles"]))
         self.assertLessEqual(stats["frames_per_second"]["core"], stats["bound"]["core"])
-        self.assertEqual([port["name"] for port in stats["ports"]][-1], "host")
+        self.assertEqual(stats["ports"][-1]["name"], "host")
         for port in stats["ports"]:
             self.assertEqual(sum(v for k, v in port.items() if k != "name"), stats["cycles"])
-        self.assertEqual([bank["name"] for bank in stats["banks"]], [f"bank{i}" for i in range(8)])
-        self.assertEqual(
-            sum(bank["reads"] + bank["writes"] for bank in stats["banks"]),
-            sum(port["grants"] for port in stats["ports"]),
-        )
+        banks = {bank["name"]: bank for bank in stats["banks"]}
+        self.assertEqual(list(banks), [f"bank{i}" for i in range(8)])
+        accesses = sum(bank["reads"] + bank["writes"] for bank in stats["banks"])
+        self.assertEqual(accesses, sum(port["grants"] for port in stats["ports"]))
         self.assertNotIn("failed", stats)
         self.assertNotIn("accuracy", stats)
-
-    def test_area_is_that_of_the_board(self):
-        self.succeeds(self.run_small("--out", self.out))
-        area = self.stats()["area"]
-        self.assertEqual(
-            list(area),
-            "slices slices_percent luts flip_flops block_rams block_rams_percent multipliers multipliers_percent".split(),
-        )
-        self.assertEqual(area["slices_percent"], 100 * area["slices"] / 33792)
         bounds = self.succeeds(run("bounds", "fpl2003", *SMALL)).splitlines()[-1]
-        self.assertTrue(bounds.startswith(f"area of the core: {area['slices']} of 33792 slices"), bounds)
-        self.assertIn(f", {area['block_rams']} of 144 block RAMs, ", bounds)
-
-    def test_frames_take_the_banks_of_a_list_in_turn(self):
-        self.succeeds(self.run_small("--out", self.out, "--frames", "3"))
-        banks = {bank["name"]: bank for bank in self.stats()["banks"]}
+        self.assertIn(f"area of the core: {stats['area']['slices']} of 33792 slices", bounds)
+        # Frames take the banks of a list in turn.
         words = WIDTH * HEIGHT // 4
-        self.assertEqual([banks[f"bank{i}"]["writes"] for i in range(8)], [0, 0, 0, 0, 2 * words, words, 0, 0])
+        writes = [bank["writes"] for bank in stats["banks"]]
+        self.assertEqual(writes, [0, 0, 0, 0, 2 * words, words, 0, 0])
         for first, second in (("bank0", "bank1"), ("bank2", "bank3")):
             self.assertEqual(banks[first]["reads"], 2 * banks[second]["reads"])
 
-    def test_frames_do_not_change_the_disparities(self):
-        self.succeeds(self.run_small("--out", self.out))
-        self.succeeds(self.run_small("--out", self.folder / "three", "--frames", "3"))
-        for name in ("disparity.png", "disparity.pfm", "disparity_color.png"):
-            self.assertEqual((self.out / name).read_bytes(), (self.folder / "three" / name).read_bytes())
-
-    def test_are_byte_identical_when_run_again(self):
-        options = ["--out", self.out, "--frames", "2", "--truth", self.left, "--truth-scale", "4"]
+    def test_are_byte_identical_again_and_disparities_for_any_number_of_frames(self):
+        options = ["--out", self.out, "--truth", self.left, "--truth-scale", "4"]
         self.succeeds(self.run_small(*options))
-        first = self.result()
-        again = self.run_small(*options)
-        self.succeeds(again)
-        self.assertEqual(self.result(), first)
+        with self.unchanged(self.out):
+            self.succeeds(self.run_small(*options))
+        one = self.result()
+        self.succeeds(self.run_small("--out", self.out, "--frames", "3"))
+        for name in DISPARITY_FILES:
+            self.assertEqual((self.out / name).read_bytes(), one[name])
 
     def test_config_loads_back(self):
-        self.succeeds(self.run_small("--out", self.out, "--set", "matcher.lr_tolerance=off"))
+        self.succeeds(self.run_small("--out", self.out, *sets("matcher.lr_tolerance=off")))
         config = self.out / "config.yaml"
         small = self.succeeds(run("check", "fpl2003", *SMALL))
         self.assertEqual(self.succeeds(run("check", config)), small.replace("fpl2003", str(config)))
         self.assertIn("lr_tolerance: \"off\"", config.read_text())
-        pair = ["--left", self.left, "--right", self.right]
-        self.succeeds(run("run", config, *PRELOADED, *pair, "--out", self.folder / "again"))
-        self.assertEqual(self.result(self.folder / "again"), self.result())
+        again = self.folder / "again"
+        self.succeeds(run("run", config, *PRELOADED, *self.pair, "--out", again))
+        self.assertEqual(self.result(again), self.result())
 
     def test_run_json_has_the_options_and_what_was_read(self):
         options = ["--frames", "2", "--truth", self.right, "--truth-scale", "0.5"]
         self.succeeds(run(*self.run_arguments("--out", "out", *options, left="left.pgm"), cwd=self.folder))
-        run_json = json.loads((self.out / "run.json").read_text())
-        self.assertEqual((run_json["source"], run_json["fidelity"], run_json["frames"]), ("preloaded", "fast", 2))
+        said = self.run_json()
+        self.assertEqual((said["source"], said["fidelity"], said["frames"]), ("preloaded", "fast", 2))
         for name, path in (("left", self.left), ("right", self.right), ("truth", self.right)):
-            self.assertEqual(os.path.realpath(run_json[name]["path"]), os.path.realpath(path))
-            self.assertTrue(os.path.isabs(run_json[name]["path"]))
-            self.assertEqual(run_json[name]["sha256"], hashlib.sha256(path.read_bytes()).hexdigest())
-        self.assertEqual(run_json["truth_scale"], 0.5)
-        self.assertEqual("stereotlm " + run_json["version"], self.succeeds(run("--version")).strip())
+            self.assertEqual(os.path.realpath(said[name]["path"]), os.path.realpath(path))
+            self.assertTrue(os.path.isabs(said[name]["path"]))
+            self.assertEqual(said[name]["sha256"], sha256(path))
+        self.assertEqual(said["truth_scale"], 0.5)
+        self.assertEqual("stereotlm " + said["version"], self.succeeds(run("--version")).strip())
 
-    def test_replace_an_earlier_result_whole(self):
-        self.out.mkdir()
-        for name in ("run.json", "depth.ply"):
-            (self.out / name).write_text("old")
-        self.succeeds(self.run_small("--out", self.out))
-        self.assertEqual(sorted(os.listdir(self.out)), RESULT_FILES)
-
-    def test_without_out_nothing_is_written(self):
-        before = sorted(os.listdir(self.folder))
-        self.succeeds(run(*self.run_arguments(), cwd=self.folder))
-        self.assertEqual(sorted(os.listdir(self.folder)), before)
+    def test_are_not_written_without_out(self):
+        with self.unchanged(self.folder):
+            self.succeeds(run(*self.run_arguments(), cwd=self.folder))
 
 
 class Matching(ProgramTest):
@@ -123,10 +107,9 @@ class Matching(ProgramTest):
         right = self.file("r.pgm", pgm(WIDTH, HEIGHT, b"".join(row[shift : shift + WIDTH] for row in rows)))
         left = self.file("l.pgm", pgm(WIDTH, HEIGHT, b"".join(row[:WIDTH] for row in rows)))
         truth = self.file("t.pgm", pgm(WIDTH, HEIGHT, bytes([2 * shift]) * (WIDTH * HEIGHT)))
-        small = ["--set", "matcher.disparities=8", "--set", "matcher.filter=none"]
-        table = self.succeeds(
-            self.run_small(*small, "--truth", truth, "--truth-scale", "2", "--out", self.out, left=left, right=right)
-        )
+        options = [*sets("matcher.disparities=8", "matcher.filter=none"), "--out", self.out]
+        known = ["--truth", truth, "--truth-scale", "2"]
+        table = self.succeeds(self.run_small(*options, *known, left=left, right=right))
         answered = {d for row in read_png(self.out / "disparity.png")[3] for d in row if d != 255}
         self.assertEqual(answered, {shift})
         accuracy = self.stats()["accuracy"]
@@ -135,16 +118,10 @@ class Matching(ProgramTest):
         self.assertIn("off by more than 1: 0.00 %", table)
 
     def test_converts_colour_and_says_so(self):
-        grey = noise(WIDTH, HEIGHT, 1)
-        colour = b"P6\n%d %d\n255\n" % (WIDTH, HEIGHT) + b"".join(bytes([v, v, v]) for v in grey)
-        left = self.file("colour.ppm", colour)
-        process = self.run_small("--out", self.out, left=left)
+        left = self.file("colour.ppm", ppm(WIDTH, HEIGHT, noise(3 * WIDTH, HEIGHT, 1)))
+        process = self.run_small(left=left)
         self.succeeds(process)
         self.assertEqual(process.stderr, f"stereotlm: note: --left '{left}': colour, converted to grey\n")
-        self.succeeds(self.run_small("--out", self.folder / "grey"))
-        self.assertEqual(
-            (self.out / "disparity.png").read_bytes(), (self.folder / "grey" / "disparity.png").read_bytes()
-        )
 
 
 class Output(ProgramTest):
@@ -153,34 +130,157 @@ class Output(ProgramTest):
         text = self.succeeds(process)
         for word in ("core", "bound", "bank7", "worst stall"):
             self.assertIn(word, text)
-        self.assertEqual(process.stderr, "")
         self.assertNotIn("SystemC", text)
+        self.assertEqual(process.stderr, "")
 
-    def test_a_closed_pipe_does_not_cost_the_results(self):
+    def test_to_a_closed_pipe_does_not_cost_the_results(self):
         read_end, write_end = os.pipe()
         os.close(read_end)
-        command = [program.PROGRAM] + [str(a) for a in self.run_arguments("--out", self.out)]
-        process = program.subprocess.run(command, stdout=write_end, stderr=-1, timeout=60, check=False)
+        process = self.start(*self.run_arguments("--out", self.out), stdout=write_end)
         os.close(write_end)
-        self.assertEqual((process.returncode, process.stderr), (0, b""))
-        self.assertEqual(sorted(os.listdir(self.out)), RESULT_FILES)
+        self.ends(process, 0, out=None)
+        self.is_in(self.out, *RESULT_FILES)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
-    def test_a_full_disk_behind_standard_output_is_an_error(self):
+    def test_to_a_full_disk_is_an_error(self):
         with open("/dev/full", "w") as full:
-            command = [program.PROGRAM, "keys"]
-            process = program.subprocess.run(command, stdout=full, stderr=-1, text=True, timeout=60, check=False)
-        self.assertEqual(process.returncode, 1)
-        self.assertEqual(process.stderr, "stereotlm: error: standard output: No space left on device\n")
+            process = self.start("keys", stdout=full)
+        self.ends(process, 1, out=None, errors="stereotlm: error: standard output: No space left on device\n")
 
-    def test_closed_standard_streams_do_not_get_into_the_results(self):
-        command = [program.PROGRAM] + [str(a) for a in self.run_arguments("--out", self.out)]
+    def test_to_closed_standard_streams_does_not_get_into_the_results(self):
+        command = program.words(self.run_arguments("--out", self.out))
         shell = ["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh"]
-        process = program.subprocess.run(shell + command, timeout=60, check=False)
+        process = subprocess.run(shell + command, timeout=60, check=False)
         self.assertEqual(process.returncode, 1, "the table cannot be printed")
-        closed = self.result()
+        with self.unchanged(self.out):
+            self.succeeds(self.run_small("--out", self.out))
+
+
+class SaveFrames(ProgramTest):
+    def save(self, *more):
+        self.succeeds(self.run_small("--save-frames", "--out", self.out, *more))
+
+    def test_writes_the_disparities_of_each_frame(self):
+        self.save("--frames", "100")
+        self.is_in(self.out, *RESULT_FILES, "frames")
+        self.is_in(self.out / "frames", *frame_names(100))
+        last = (self.out / "disparity.png").read_bytes()
+        self.assertEqual(set(self.result(self.out / "frames").values()), {last})
+        self.assertEqual(read_png(self.out / "disparity.png")[:3], (WIDTH, HEIGHT, 1))
+
+    def test_on_a_full_disk_is_an_error_that_keeps_the_earlier_result(self):
         self.succeeds(self.run_small("--out", self.out))
-        self.assertEqual(self.result(), closed)
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+        with self.unchanged(self.out):
+            command = self.run_arguments("--save-frames", "--frames", "3", "--out", self.out)
+            process = run(*command, preexec_fn=limit)
+            self.fails(process, "'frames/000000.png' cannot be written: File too large")
+
+
+class SavingInterrupted(ProgramTest):
+    """A run of many frames that has saved some aside."""
+
+    def begin(self, *source):
+        command = ["run", "fpl2003", *SMALL, *PRELOADED, *source, "--save-frames", "--out", self.out]
+        process = self.start(*command)
+        some = self.out / ".partial" / "new" / "frames" / "000010.png"
+        wait_until(lambda: some.exists() or process.poll() is not None)
+        return process
+
+    def interrupt(self, process):
+        """What it says."""
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        return errors
+
+    def test_an_interrupt_keeps_the_frames_that_are_finished(self):
+        self.succeeds(self.run_small("--frames", "2", "--save-frames", "--out", self.out))
+        earlier = self.result()
+        process = self.begin(*self.pair, "--frames", "1000000000")
+        now = self.result()
+        self.assertEqual({name: now.get(name) for name in earlier}, earlier)  # until the run ends
+        done = int(re.search(r"interrupted after (\d+) of", self.interrupt(process))[1])
+        self.is_in(self.out / "frames", *frame_names(done))
+        self.assertEqual(self.stats()["frames"], done)
+        with self.unchanged(self.out):
+            self.succeeds(self.run_small("--frames", done, "--save-frames", "--out", self.out))
+
+    def test_an_interrupt_leaves_out_the_truth_of_a_pair_that_was_not_reached(self):
+        errors = self.interrupt(self.begin("--sequence", self.sequence(1000), "--truth", self.left))
+        note = "note: --truth is of the pair of frame 999, which was not reached: no accuracy\n"
+        self.assertIn(note, errors)
+        self.assertNotIn("accuracy", self.stats())
+        self.assertNotIn("truth", self.run_json())
+
+
+class ProgressLine(ProgramTest):
+    def start_slow(self, **options):
+        """At a terminal, a run of a thousand frames that takes a while."""
+        return Terminal(self.run_arguments(*CYCLE, "--frames", "1000"), **options)
+
+    def test_shows_rate_and_remaining_time_and_is_erased(self):
+        terminal = self.start_slow()
+        done, total, percent, _, rate, left = terminal.read_until(PROGRESS)[0]
+        status, out = terminal.finish()
+        self.assertEqual(status, 0, terminal.text)
+        self.assertIn("1000 frames", out)
+        self.assertEqual(total, "1000")
+        self.assertAlmostEqual(float(percent), float(done) / 10, delta=0.1)
+        self.assertGreater(float(rate), 0)
+        self.assertRegex(left, r"^\d+:\d\d$")
+        self.assertEqual(terminal.shown(), [""])
+
+    def test_fits_into_a_narrow_terminal_where_a_signal_that_the_caller_ignores_changes_nothing(self):
+        ignore = lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
+        terminal = self.start_slow(columns=20, preexec_fn=ignore)
+        status, out = terminal.interrupt(r"/1000 fra", signal.SIGINT)
+        self.assertLess(max(len(part) for part in terminal.text.split("\r")), 20)
+        self.assertEqual(status, 0)
+        self.assertIn("1000 frames", out)
+
+    def test_is_not_there_without_a_terminal(self):
+        process = self.run_small("--frames", "1000")
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
+
+
+class Interrupted(ProgramTest):
+    def interrupt(self, *arguments, number=signal.SIGINT):
+        """An endless run that this signal ends: the terminal, and the table that it prints."""
+        terminal = Terminal(self.run_arguments("--frames", MOST, *arguments))
+        status, out = terminal.interrupt(PROGRESS, number)
+        self.assertEqual(status, 130)
+        return terminal, out
+
+    def test_has_the_result_of_a_whole_run_of_the_frames_that_were_finished(self):
+        terminal, out = self.interrupt("--out", self.out)
+        self.is_in(self.out, *RESULT_FILES)
+        stats = self.stats()
+        frames = stats["frames"]
+        self.assertGreater(frames, 0)
+        self.assertEqual(len(stats["frame_cycles"]), frames)
+        self.assertNotIn("failed", stats)
+        self.assertIn(f"{frames} frame", out)
+        note = f"stereotlm: note: interrupted after {frames} of {MOST} frames"
+        self.assertIn(note, terminal.shown()[0])
+        whole = self.folder / "whole"
+        self.succeeds(self.run_small("--out", whole, "--frames", frames))
+        self.assertTrue(self.result() == self.result(whole))
+
+    def test_prints_the_table_without_out_too(self):
+        self.assertIn("worst stall", self.interrupt(number=signal.SIGTERM)[1])
+
+    def test_before_the_first_frame_is_finished_leaves_the_earlier_result(self):
+        self.succeeds(self.run_small("--out", self.out))
+        size = 2048
+        big = self.file("big.pgm", pgm(size, size, bytes(size * size)))
+        board = sets(f"image.width={size}", f"image.height={size}", "matcher.window=31",
+                     "ssram.default.words=4194304")
+        with self.unchanged(self.out):
+            pair = ["--left", big, "--right", big]
+            terminal = Terminal(["run", "fpl2003", *PRELOADED, *CYCLE, *pair, *board, "--out", self.out])
+            self.assertEqual(terminal.interrupt(PROGRESS, signal.SIGINT), (130, ""))
+            self.assertIn("interrupted after 0 of 1 frames: there is no result", terminal.text)
 
 
 if __name__ == "__main__":

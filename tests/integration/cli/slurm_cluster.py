@@ -1,6 +1,6 @@
-"""A Slurm of one node for tests: munged, slurmctld and slurmd with files, key and ports of their own.
+"""A Slurm of one node for tests: munged, slurmctld and slurmd with files, a key and ports of their own.
 
-They run as whoever runs the tests; services of the machine are neither needed nor touched.
+They run as the user who runs the tests. Services of the machine are neither needed nor touched.
 """
 
 import os
@@ -14,7 +14,7 @@ import subprocess
 import tempfile
 import time
 
-CPUS = 2  # that the node says to have, however many there are
+CPUS = 2  # that the node has for Slurm, however many the machine has
 
 CONFIG = """\
 ClusterName=test
@@ -25,7 +25,6 @@ SlurmUser={user}
 SlurmdUser={user}
 AuthType=auth/munge
 AuthInfo=socket={folder}/munge.socket
-CredType=cred/munge
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool
 SlurmctldPidFile={folder}/slurmctld.pid
@@ -34,15 +33,12 @@ SlurmctldLogFile={folder}/slurmctld.log
 SlurmdLogFile={folder}/slurmd.log
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
-SwitchType=switch/none
-MpiDefault=none
-JobAcctGatherType=jobacct_gather/none
-AccountingStorageType=accounting_storage/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SchedulerParameters=batch_sched_delay=0,sched_interval=1
 ReturnToService=2
 KillWait=2
+MessageTimeout=2
 MaxArraySize=101
 NodeName=localhost CPUs={cpus} State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
@@ -61,7 +57,7 @@ def free_ports(count):
 
 
 class Cluster:
-    """Started by start(), ended by stop(). `environment` makes Slurm's commands speak to it."""
+    """start() starts its daemons, stop() ends them. Slurm's commands reach it through `environment`."""
 
     def __init__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="slurm_"))
@@ -100,7 +96,8 @@ class Cluster:
 
     def say(self, *command):
         """What a command of Slurm prints; empty if it fails."""
-        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=60).stdout
+        pipes = {"capture_output": True, "text": True, "timeout": 60}
+        return subprocess.run(command, env=self.environment, **pipes).stdout
 
     def jobs(self):
         """[job, index in its array, state] of each that has not come to its end."""
@@ -119,18 +116,20 @@ class Cluster:
         key.chmod(0o600)
 
     def _start_munge(self):
-        of = lambda name: str(self.folder / name)
+        names = {name: f"munge.{name}" for name in ("key", "socket", "pid", "log", "seed")}
+        options = [f"--{name}-file={self.folder / path}" for name, path in names.items() if name != "socket"]
+        options.append(f"--socket={self.folder / names['socket']}")
         # --force: the folders above are not checked for who else may write there.
-        self._spawn("munged", "--foreground", "--force", "--key-file", of("munge.key"), "--socket", of("munge.socket"),
-                    "--pid-file", of("munged.pid"), "--log-file", of("munged.log"), "--seed-file", of("munged.seed"))
+        self._spawn("munged", "--foreground", "--force", *options)
         self._wait_for("munged", lambda: (self.folder / "munge.socket").exists())
 
     def _spawn(self, *command):
         path = shutil.which(command[0], path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
         assert path, f"{command[0]}: not found; ./setup installs it"
         with open(self.folder / f"{command[0]}.out", "ab") as out:
-            daemon = subprocess.Popen([path, *command[1:]], env=self.environment, stdin=subprocess.DEVNULL, stdout=out,
-                                      stderr=out, start_new_session=True)
+            pipes = {"stdin": subprocess.DEVNULL, "stdout": out, "stderr": out}
+            command = [path, *command[1:]]
+            daemon = subprocess.Popen(command, env=self.environment, start_new_session=True, **pipes)
         self.daemons.append(daemon)
         return daemon
 

@@ -1,16 +1,15 @@
-"""sweep --launcher slurm where Slurm's commands fail, or what they submit does: with commands made for that."""
+"""sweep --launcher slurm with commands in place of Slurm's that fail, or whose jobs do."""
 
 import os
 import re
 import signal
-import subprocess
 
 import program
 from program import run
 from sweep_test import SweepTest
 
-# A job has come to its $END as soon as it is submitted, with what the commands $TASK or $MERGE do in $FOLDER, that of the
-# shards.
+# Each job is in its state $END as soon as it is submitted. Then the shards have run the command $TASK, or the
+# merge $MERGE, with the folder of the shards as $FOLDER.
 SBATCH = """#!/bin/sh
 echo "$@" >>"$FAKE/submitted"
 job=$(wc -l <"$FAKE/submitted")
@@ -23,36 +22,37 @@ echo "$job;cluster"
 SQUEUE = """#!/bin/sh
 [ ! -e "$FAKE/queue" ] || cat "$FAKE/queue"
 """
+JOBS_CONTINUE = "the jobs continue; run the same command to wait for them"
+LOST = "has been lost 3 times without a further point"
 
 
 class SlurmCommands(SweepTest):
     def setUp(self):
         super().setUp()
         self.commands = self.folder / "commands"
-        self.commands.mkdir()
+        self.shards = self.folder / "points.db.shards"
         self.write("squeue", SQUEUE)
         self.write("sbatch", SBATCH)
         self.write("scancel", '#!/bin/sh\necho "$@" >>"$FAKE/cancelled"\n')
-        self.shards = self.folder / "points.db.shards"
-        self.environment = dict(os.environ, PATH=f"{self.commands}:/usr/bin:/bin", FAKE=str(self.commands),
-                                FOLDER=str(self.shards), END="FAILED", TASK="", MERGE="")
+        folders = {"FAKE": str(self.commands), "FOLDER": str(self.shards)}
+        path = {"PATH": f"{self.commands}:/usr/bin:/bin"}
+        self.environment = {**os.environ, **path, **folders, "END": "FAILED", "TASK": "", "MERGE": ""}
 
     def write(self, name, text):
-        path = self.commands / name
-        path.write_text(text)
-        path.chmod(0o755)
+        self.file(f"commands/{name}", text).chmod(0o755)
 
-    def launch(self, *more, **variables):
-        return run("sweep", self.plan, "--out", self.store, "--launcher", "slurm", "--shards", 1, *more,
-                   env=dict(self.environment, **variables))
+    def command(self, *more, store=None):
+        return ["sweep", self.plan, "--out", store or self.store, "--launcher", "slurm", "--shards", 1, *more]
+
+    def launch(self, *more, store=None, **variables):
+        return run(*self.command(*more, store=store), env={**self.environment, **variables})
 
     def submitted(self):
         return (self.commands / "submitted").read_text().splitlines()
 
     def failed(self, process, text):
         """After something was submitted; the notes before the error."""
-        self.assertEqual(process.returncode, 1, process.stderr)
-        *notes, error = process.stderr.splitlines()
+        *notes, error = self.ended(process, 1)
         self.assertIn(text, error)
         return [note.replace("stereotlm: note: ", "") for note in notes]
 
@@ -62,91 +62,90 @@ class Options(SlurmCommands):
         self.refused_in_one_line(self.sweep("--shards", 2), "--shards: goes with --launcher slurm")
         self.refused_in_one_line(self.sweep("--sbatch", "exclusive"), "--sbatch: goes with --launcher slurm")
         for shards in (0, 1001, "x", ""):
-            self.refused_in_one_line(self.sweep("--launcher", "slurm", "--shards", shards),
-                                     f"--shards = {shards}: must be 1..1000")
+            process = self.sweep("--launcher", "slurm", "--shards", shards)
+            self.refused_in_one_line(process, f"--shards = {shards}: must be 1..1000")
         for option, value in (("--jobs", 2), ("--shard", "0/2"), ("--known", "a.db"), ("--progress", "a")):
             self.refused_in_one_line(self.launch(option, value), f"{option}: not with --launcher slurm")
 
     def test_of_sbatch(self):
-        for option in ("--partition=long", "p long", "", "=3", "-n"):
-            self.refused_in_one_line(self.launch("--sbatch", option),
-                                     f"--sbatch = {option}: must be a long option of sbatch without its dashes")
-        for option in ("array=0-3", "wrap=true", "wait"):
-            self.refused_in_one_line(self.launch("--sbatch", option), f"--sbatch = {option}: given by the launcher")
+        long_option = "must be a long option of sbatch without its dashes"
+        given = "given by the launcher"
+        for rule, *options in ((long_option, "--partition=long", "p long", "", "=3", "-n"),
+                               (given, "array=0-3", "wrap=true", "wait")):
+            for option in options:
+                self.refused_in_one_line(self.launch("--sbatch", option), f"--sbatch = {option}: {rule}")
         self.launch("--sbatch", "exclusive", "--sbatch", "comment=a b")
         for line in self.submitted():
             self.assertTrue(line.startswith("--exclusive --comment=a b --job-name=sweep-"), line)
 
 
 class Commands(SlurmCommands):
-    def test_that_are_missing_are_named(self):
+    def test_that_are_missing_or_say_something_else_are_named(self):
+        needed = "not found in PATH; Slurm's commands sbatch, squeue and scancel are needed"
         for name in ("sbatch", "squeue"):
             (self.commands / name).unlink()
-            self.refused_in_one_line(self.launch(PATH=str(self.commands)),
-                                     f"error: --launcher slurm: {name}: not found in PATH; Slurm's commands sbatch, squeue "
-                                     "and scancel are needed")
-            self.assertEqual(list(self.folder.glob("points.db*")), [])
-
-    def test_that_say_something_else(self):
-        self.write("sbatch", "#!/bin/sh\necho usage\n")
-        self.refused_in_one_line(self.launch(), "sbatch: has not said the number of a job: usage")
-        self.write("squeue", "#!/bin/sh\necho JOBID PARTITION\n")
-        self.refused_in_one_line(self.launch(), "squeue: not what it was asked for: JOBID PARTITION")
-        self.write("squeue", "#!/bin/sh\nexit 3\n")
-        self.refused_in_one_line(self.launch(), "squeue: has ended with status 3")
+            process = self.launch(PATH=str(self.commands))
+            self.refused_in_one_line(process, f"error: --launcher slurm: {name}: {needed}")
+        self.write("squeue", SQUEUE)
+        for name, script, problem in (
+            ("sbatch", "echo usage", "no job number in its output: usage"),
+            ("squeue", "echo JOBID PARTITION", "unexpected output: JOBID PARTITION"),
+            ("squeue", "exit 3", "has ended with status 3"),
+        ):
+            self.write(name, f"#!/bin/sh\n{script}\n")
+            self.refused_in_one_line(self.launch(), f"{name}: {problem}")
         self.assertEqual(list(self.folder.glob("points.db*")), [])
 
-    def test_do_not_see_what_is_for_the_eyes(self):
+    def test_do_not_see_variables_that_change_what_they_print(self):
         self.write("squeue", '#!/bin/sh\nenv | grep -e ^SQUEUE_ -e ^SBATCH_ >"$FAKE/variables"\nexit 1\n')
         self.launch(SQUEUE_PARTITION="other", SBATCH_PARTITION="long")
         self.assertEqual((self.commands / "variables").read_text(), "SBATCH_PARTITION=long\n")
 
-    def test_a_merge_that_is_refused_takes_the_shards_along(self):
-        self.write("sbatch", SBATCH.replace('echo "$job|N/A', 'echo "sbatch: error: too many jobs" >&2; exit 1 #'))
+    def test_that_refuse_the_merge_have_the_shards_cancelled(self):
+        refuse = 'echo "sbatch: error: too many jobs" >&2; exit 1 #'
+        self.write("sbatch", SBATCH.replace('echo "$job|N/A', refuse))
         lines = self.refused(self.launch(END="PENDING"), "error: --launcher slurm: sbatch: too many jobs")
         self.assertEqual(lines[:-1], ["stereotlm: note: job 1: shard 0 of 1"])
         self.assertEqual((self.commands / "cancelled").read_text(), "1\n")
         self.assertFalse(self.shards.exists())
 
     def test_that_keep_failing_end_the_waiting(self):
-        self.write("squeue", SQUEUE + '[ ! -e "$FAKE/queue" ] || { echo "squeue: error: no answer" >&2; exit 1; }\n')
-        notes = self.failed(self.launch(END="RUNNING"),
-                            "error: squeue: no answer; the jobs go on, and the same command waits for them")
+        fail = '[ ! -e "$FAKE/queue" ] || { echo "squeue: error: no answer" >&2; exit 1; }\n'
+        self.write("squeue", SQUEUE + fail)
+        notes = self.failed(self.launch(END="RUNNING"), f"error: squeue: no answer; {JOBS_CONTINUE}")
         self.assertEqual(notes[2:], ["squeue: no answer: asking again"])
         self.assertTrue(self.shards.exists())
 
-
     def test_that_cannot_cancel_leave_the_jobs(self):
         self.write("scancel", "#!/bin/sh\necho 'scancel: error: no answer' >&2\nexit 1\n")
-        command = [program.PROGRAM, "sweep", self.plan, "--out", self.store, "--launcher", "slurm"]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env=dict(self.environment, END="PENDING"))
+        process = self.start(*self.command(), env={**self.environment, "END": "PENDING"})
         for _ in range(2):
             self.assertIn("note: job ", process.stderr.readline())
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-        self.assertEqual(errors, "stereotlm: error: scancel: no answer; the jobs go on, and the same command waits for them\n")
-        self.assertEqual(process.returncode, 1)
+        self.ends(process, 1, errors=f"stereotlm: error: scancel: no answer; {JOBS_CONTINUE}\n")
         self.assertTrue(self.shards.exists())
 
 
 class LostWork(SlurmCommands):
     def test_is_submitted_three_times(self):
-        notes = self.failed(self.launch(TASK='echo no such thing >>"$FOLDER/shard_0.log"', END="OUT_OF_MEMORY"),
-                            "error: shard 0 has been lost 3 times without a further point (OUT_OF_MEMORY); its log "
-                            f"{self.shards}/shard_0.log ends with: no such thing; what is done is kept in {self.shards}: "
-                            "the same command goes on with it")
-        self.assertEqual([re.sub(r"into .*", "", note) for note in notes], [
-            "job 1: shard 0 of 1", "job 2: the merge ", "lost: shard 0 (OUT_OF_MEMORY); submitting again",
-            "job 3: shard 0 of 1", "job 4: the merge ", "lost: shard 0 (OUT_OF_MEMORY); submitting again",
-            "job 5: shard 0 of 1", "job 6: the merge ", "lost: shard 0 (OUT_OF_MEMORY); submitting no more"])
+        process = self.launch(TASK='echo no such thing >>"$FOLDER/shard_0.log"', END="OUT_OF_MEMORY")
+        kept = f"finished points are kept in {self.shards}: run the same command to resume"
+        log = f"its log {self.shards}/shard_0.log ends with: no such thing"
+        notes = self.failed(process, f"error: shard 0 {LOST} (OUT_OF_MEMORY); {log}; {kept}")
+        expected = []
+        for job, end in ((1, "again"), (3, "again"), (5, "no more")):
+            expected += [f"job {job}: shard 0 of 1", f"job {job + 1}: the merge "]
+            expected.append(f"lost: shard 0 (OUT_OF_MEMORY); submitting {end}")
+        self.assertEqual([re.sub(r"into .*", "", note) for note in notes], expected)
 
     def test_without_a_log_says_what_must_be_shared(self):
-        self.failed(self.launch(END="COMPLETED"), f"(COMPLETED); there is no {self.shards}/shard_0.log: the nodes must share")
+        no_log = f"there is no {self.shards}/shard_0.log: the nodes must share"
+        self.failed(self.launch(END="COMPLETED"), f"(COMPLETED); {no_log}")
 
     def test_that_gets_further_is_not_given_up(self):
         further = 'echo "ok $job" >"$FOLDER/shard_0.progress"; [ "$job" -le 8 ] || touch "$FOLDER/shard_0.db"'
-        done = '[ "$job" -le 8 ] || cp "$FOLDER/../other.db" "$FOLDER/../points.db"; touch "$FOLDER/merged"'
+        copy = 'cp "$FOLDER/../other.db" "$FOLDER/../points.db"'
+        done = f'[ "$job" -le 8 ] || {copy}; touch "$FOLDER/merged"'
         self.succeeds(self.sweep(store=self.folder / "other.db"))
         process = self.launch(TASK=further, MERGE=done)
         self.assertIn("12 points: 9 ok", process.stdout)
@@ -154,36 +153,28 @@ class LostWork(SlurmCommands):
         self.assertFalse(self.shards.exists())
 
     def test_may_be_the_merge(self):
-        done = 'touch "$FOLDER/shard_0.db"'
-        notes = self.failed(self.launch(TASK=done, MERGE='echo disk full >"$FOLDER/merge.log"'),
-                            "error: the merge has been lost 3 times without a further point (FAILED); its log "
-                            f"{self.shards}/merge.log ends with: disk full;")
+        process = self.launch(TASK='touch "$FOLDER/shard_0.db"', MERGE='echo disk full >"$FOLDER/merge.log"')
+        log = f"its log {self.shards}/merge.log ends with: disk full;"
+        notes = self.failed(process, f"error: the merge {LOST} (FAILED); {log}")
         self.assertEqual([note.split()[1] for note in notes], ["1:", "2:", "3:", "4:"])
         self.assertEqual([line.count("--array") for line in self.submitted()], [1, 0, 0, 0])
 
 
 class Folders(SlurmCommands):
-    def test_that_are_not_of_a_sweep_are_left_alone(self):
-        self.shards.mkdir()
-        (self.shards / "mine").touch()
-        self.refused_in_one_line(self.launch(), f"{self.shards}: is there, and not as a folder of shards")
-        self.assertEqual([path.name for path in self.shards.iterdir()], ["mine"])
-
-    def test_that_cannot_be_made(self):
-        self.refused_in_one_line(
-            run("sweep", self.plan, "--out", self.folder / "none" / "a.db", "--launcher", "slurm", env=self.environment),
-            f"{self.folder}/none/a.db.shards: cannot be made: No such file or directory")
-        loop = self.folder / "loop.db"
+    def test_that_are_not_of_a_sweep_or_cannot_be_made_are_refused(self):
+        self.file("points.db.shards/mine")
+        loop, none = self.folder / "loop.db", self.folder / "none" / "a.db"
         loop.symlink_to(loop.name)
-        self.refused_in_one_line(
-            run("sweep", self.plan, "--out", loop, "--launcher", "slurm", env=self.environment),
-            f"--out {loop}: cannot be opened: Too many levels of symbolic links")
-
-    def test_beside_what_is_no_database(self):
-        self.store.write_bytes(b"x" * 5000)
-        self.refused_in_one_line(self.launch(), f"--out {self.store}: not a database")
-        self.assertFalse(self.shards.exists())
+        text = self.file("text.db", "x" * 5000)
+        with self.unchanged(self.folder):
+            for store, problem in (
+                (self.store, f"{self.shards}: exists, and is not a folder of shards"),
+                (none, f"{none}.shards: cannot be made: No such file or directory"),
+                (loop, f"--out {loop}: cannot be opened: Too many levels of symbolic links"),
+                (text, f"--out {text}: not a database"),
+            ):
+                self.refused_in_one_line(self.launch(store=store), problem)
 
 
 if __name__ == "__main__":
-    program.main()
+    program.main(program.AtOnce)

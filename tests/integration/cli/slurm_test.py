@@ -5,17 +5,13 @@ import pathlib
 import re
 import signal
 import socket
-import sqlite3
 import subprocess
-import time
 
 import program
-from interrupt_test import Terminal
-from program import run
+from program import Terminal, run, wait_until
 from slurm_cluster import Cluster
-from sweep_test import PLAN, POINTS, SweepTest
+from sweep_test import MORE, PLAN, SweepTest
 
-SHARDS = 3
 # Long enough to do something while it runs.
 SLOW = """
 board: fpl2003
@@ -25,6 +21,7 @@ vary:
   matcher.disparities: {from: 10, to: 19, step: 1}
 """
 SLOW_POINTS = 20
+ALL_DONE = f"{SLOW_POINTS} points: {SLOW_POINTS} ok, 0 impossible"
 
 cluster = Cluster()
 
@@ -43,39 +40,31 @@ class SlurmTest(SweepTest):
     def setUp(self):
         super().setUp()
         self.shards = pathlib.Path(f"{self.store}.shards")
-        self.slow = self.file("slow.yaml", SLOW.encode())
+        self.slow = self.file("slow.yaml", SLOW)
         self.addCleanup(self.end_jobs)
 
     def end_jobs(self):
-        cluster.say("scancel", "--state=PENDING", "--state=RUNNING", f"--user={os.getuid()}")
-        self.wait_until(lambda: not cluster.jobs())
-
-    def wait_until(self, is_so, seconds=60):
-        end = time.monotonic() + seconds
-        while not is_so():
-            self.assertLess(time.monotonic(), end, "not in time")
-            time.sleep(0.05)
+        cluster.say("scancel", f"--user={os.getuid()}")
+        wait_until(lambda: not cluster.jobs())
 
     def command(self, *more, plan=None):
-        shards = [] if "--shards" in more else ["--shards", SHARDS]
+        shards = [] if "--shards" in more else ["--shards", 3]
         return ["sweep", plan or self.plan, "--out", self.store, "--launcher", "slurm", *shards, *more]
 
     def launch(self, *more, plan=None, environment=None):
         """The finished command."""
         return run(*self.command(*more, plan=plan), env=environment or cluster.environment)
 
-    def start(self, *more, plan=None):
+    def begin(self, *more, plan=None):
         """The command, under way in a session of its own."""
-        command = [program.PROGRAM] + [str(word) for word in self.command(*more, plan=plan)]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env=cluster.environment, start_new_session=True)
-        self.addCleanup(self.close, process)
-        return process
+        command = self.command(*more, plan=plan or self.slow)
+        return self.start(*command, env=cluster.environment, start_new_session=True)
 
-    @staticmethod
-    def close(process):
-        process.kill()
-        process.communicate()
+    def begin_points(self, *more, shard=0):
+        """The slow sweep, once a shard has a point."""
+        process = self.begin(*more)
+        wait_until(lambda: self.points(self.shards / f"shard_{shard}.work") > 0)
+        return process
 
     def finishes(self, process):
         """(standard output, standard error)."""
@@ -87,14 +76,10 @@ class SlurmTest(SweepTest):
         """The running tasks, {shard: job}."""
         return {shard: job for job, shard, state in cluster.jobs() if state == "RUNNING" and shard != "N/A"}
 
-    def wait_for_points(self, shard=0):
-        """Until a shard has a point."""
-        def has_points():
-            try:
-                return self.query("SELECT count(*) FROM points", self.shards / f"shard_{shard}.work")[0][0] > 0
-            except sqlite3.OperationalError:
-                return False  # not there yet
-        self.wait_until(has_points)
+    def programs(self, pattern):
+        """The processes of the tasks whose command line has this behind the plan."""
+        command = ["pgrep", "--full", f"{self.shards}/plan.yaml.*{pattern}"]
+        return [int(pid) for pid in subprocess.run(command, capture_output=True, text=True).stdout.split()]
 
     def local(self, plan):
         """The bytes of a sweep on this machine alone."""
@@ -105,8 +90,9 @@ class SlurmTest(SweepTest):
             self.local_stores[text] = store.read_bytes()
         return self.local_stores[text]
 
-    def assert_whole(self, plan):
-        self.assertEqual(self.store.read_bytes(), self.local(plan))
+    def assert_whole(self, plan=None):
+        """The database is that of a local sweep."""
+        self.assertTrue(self.store.read_bytes() == self.local(plan or self.slow))
         self.assertFalse(self.shards.exists())
 
 
@@ -114,189 +100,153 @@ class Results(SlurmTest):
     def test_are_those_of_a_local_sweep(self):
         process = self.launch()
         said = self.succeeds(process)
-        self.assertEqual(said, self.succeeds(self.sweep(store=self.folder / "local.db")).replace("local.db", "points.db"))
-        self.assertRegex(process.stderr, r"^stereotlm: note: job \d+: shards 0-2 of 3\n"
-                                         r"stereotlm: note: job \d+: the merge into \S+/points.db\n$")
+        local = self.succeeds(self.sweep(store=self.folder / "local.db"))
+        self.assertEqual(said, local.replace("local.db", "points.db"))
+        job = r"stereotlm: note: job \d+: "
+        self.assertRegex(process.stderr, rf"^{job}shards 0-2 of 3\n{job}the merge into \S+/points.db\n$")
         self.assert_whole(self.plan)
+        more = self.file("more.yaml", MORE)  # is added, in more shards than there are points
+        process = self.launch("--shards", 50, plan=more)
+        self.assertIn("8 points: 2 ok, 2 impossible, 0 failed, 4 there already\n", self.succeeds(process))
+        self.assertIn("shards 0-7 of 8\n", process.stderr)
+        self.succeeds(self.sweep(plan=more, store=self.folder / "local.db"))
+        self.assertTrue(self.store.read_bytes() == (self.folder / "local.db").read_bytes())
 
-    def test_are_added_to_a_database(self):
-        self.succeeds(self.sweep())
-        more = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[3, 5, 7, 9]").encode())
-        said = self.succeeds(self.launch(plan=more))
-        self.assertIn(f"16 points: 2 ok, 2 impossible, 0 failed, {POINTS} there already\n", said)
-        self.assert_whole(more)
-
-    def test_of_fewer_points_than_shards(self):
-        few = self.file("few.yaml", PLAN.replace("[3, 5, 7]", "[3]").encode())
-        self.assertIn("shards 0-3 of 4\n", self.launch("--shards", 50, plan=few).stderr)
-        self.assert_whole(few)
-
-    def test_are_of_what_was_submitted(self):
-        board = self.file("board.yaml", b"extends: fpl2003\nfpga: {clock_mhz: 50}\n")
-        text = SLOW.replace("board: fpl2003", f"board: {board}")
-        plan = self.file("mine.yaml", text.encode())
-        process = self.start(plan=plan)
-        self.wait_until(lambda: cluster.jobs())
-        board.write_text("extends: fpl2003\nfpga: {clock_mhz: 60}\n")
-        plan.write_text("nonsense")
-        out, _ = self.finishes(process)
-        self.assertIn(f"{SLOW_POINTS} points: {SLOW_POINTS} ok", out)
-        self.assertEqual(self.query('SELECT DISTINCT "fpga.clock_mhz" FROM points'), [(50,)])
-        board.write_text("extends: fpl2003\nfpga: {clock_mhz: 50}\n")
-        plan.write_text(text)
-        self.assert_whole(plan)
-
-    def test_are_of_a_calibration_as_it_was_submitted(self):
-        rig = self.folder / "rig.yaml"
-        self.succeeds(run("calibrate", "--synthetic", 3, "--grid", "9x6", "--square-mm", 25, "--out", rig))
-        text = f"board: fpl2003\nrun: {{calibration: {rig}}}\nvary: {{matcher.disparities: {{from: 10, to: 19, step: 1}}}}\n"
-        plan = self.file("rig_plan.yaml", text.encode())
+    def test_are_of_plan_board_and_tables_as_they_were_submitted(self):
+        rig = self.copy_of_rig()
+        board = self.file("board.yaml", "extends: fpl2003\nfpga: {clock_mhz: 50}\n")
+        text = f"board: {board}\nrun: {{calibration: {rig}}}\nvary: {{matcher.disparities: [10, 19]}}\n"
+        plan = self.file("mine.yaml", text)
         expected = self.local(plan)
-        process = self.start(plan=plan)
-        self.wait_until(lambda: cluster.jobs())
-        table = self.folder / "rig_left.lut"
-        before = table.read_bytes()
-        table.write_bytes(b"damaged")
+        process = self.begin("--sbatch", "hold", plan=plan)
+        wait_until(lambda: len({job for job, _, _ in cluster.jobs()}) == 2)
+        for path in (plan, board, rig, self.folder / "rig_left.lut"):
+            path.write_text("nonsense")
+        for job in {job for job, _, _ in cluster.jobs()}:
+            cluster.say("scontrol", "release", job)
         self.finishes(process)
-        self.assertEqual(self.store.read_bytes(), expected)
+        self.assertTrue(self.store.read_bytes() == expected)
         self.assertFalse(self.shards.exists())
-        table.write_bytes(before)
-
-    def test_use_the_processors_of_their_jobs(self):
-        process = self.start("--sbatch", "cpus-per-task=2", plan=self.slow)
-        self.wait_for_points()
-        (shard,) = self.running()  # of two processors
-        workers = subprocess.run(["pgrep", "--full", f"{self.shards}/plan.yaml.* --jobs 2 "], capture_output=True, text=True)
-        self.assertGreaterEqual(len(workers.stdout.split()), 3)  # shell or not: the program and two workers
-        self.finishes(process)
-        self.assert_whole(self.slow)
 
 
 class Progress(SlurmTest):
     def test_is_shown(self):
         terminal = Terminal(self.command(plan=self.slow), columns=120, env=cluster.environment)
-        terminal.read_until(re.compile(r"/20 points   .* left   2 running, 1 waiting \(\w+\)"), seconds=60)
-        terminal.read_until(re.compile(r"[1-9]\d*/20 points   \d+\.\d %   \d+\.\d points/s   \d+:\d\d left   \d running"),
-                            seconds=60)
+        terminal.read_until(r"/20 points   .* left   2 running, 1 waiting \(\w+\)")
+        terminal.read_until(r"[1-9]\d*/20 points   \d+\.\d %   \d+\.\d points/s   \d+:\d\d left   \d running")
         status, out = terminal.finish()
         self.assertEqual(status, 0)
-        self.assertIn("20 points: 20 ok, 0 impossible", out)
+        self.assertIn(ALL_DONE, out)
+        self.assert_whole()
+
+    def test_uses_the_processors_of_the_jobs(self):
+        process = self.begin_points("--sbatch", "cpus-per-task=2")
+        self.assertEqual(len(self.running()), 1)  # of two processors
+        self.assertGreaterEqual(len(self.programs(" --jobs 2 ")), 3)  # the program and two workers
+        self.close(process)
 
 
 class LostShards(SlurmTest):
     def submitted_again(self, process, shard, end):
         _, errors = self.finishes(process)
-        self.assertRegex(errors, rf"note: lost: shard {shard} \({end}\); submitting again\n"
-                                 rf"stereotlm: note: job \d+: shard {shard} of 3\n"
-                                 r"stereotlm: note: job \d+: the merge into")
-        self.assert_whole(self.slow)
+        job = r"stereotlm: note: job \d+: "
+        lost = rf"note: lost: shard {shard} \({end}\); submitting again\n"
+        self.assertRegex(errors, rf"{lost}{job}shard {shard} of 3\n{job}the merge into")
+        self.assert_whole()
 
-    def test_cancelled(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points(shard=0)
+    def test_that_were_cancelled_are_submitted_again(self):
+        process = self.begin_points()
         cluster.say("scancel", f"{self.running()['0']}_0")
         self.submitted_again(process, 0, "CANCELLED")
 
-    def test_killed(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points(shard=1)
-        found = subprocess.run(["pgrep", "--full", "--oldest", f"sweep {self.shards}/plan.yaml .*--shard 1/3"],
-                               capture_output=True, text=True)
-        os.kill(int(found.stdout), signal.SIGKILL)
+    def test_that_were_killed_are_submitted_again(self):
+        process = self.begin_points(shard=1)
+        os.kill(min(self.programs("--shard 1/3")), signal.SIGKILL)
         self.submitted_again(process, 1, "FAILED")
 
 
 class Refusals(SlurmTest):
-    def refused_and_left_nothing(self, process, *texts):
-        self.refused_in_one_line(process, *texts)
-        self.assertEqual([path.name for path in self.folder.glob("points.db*")], [])
-        self.assertEqual(cluster.jobs(), [])
-
-    def test_in_the_words_of_slurm(self):
-        self.refused_and_left_nothing(
-            self.launch("--sbatch", "partition=nope"),
-            "error: --launcher slurm: sbatch: invalid partition specified: nope; Batch job submission failed: Invalid "
-            "partition name specified")
-        many = self.file("many.yaml", PLAN.replace("[3, 5, 7]", "[3]\n  matcher.disparities: {from: 1, to: 50, step: 1}").encode())
-        self.refused_and_left_nothing(self.launch("--shards", 200, plan=many), "sbatch: ", "Invalid job array specification")
-
-    def test_keep_the_database(self):
-        self.succeeds(self.sweep())
-        before = self.store.read_bytes()
-        self.refused(self.launch("--sbatch", "partition=nope"), "nope")
-        self.assertEqual(self.store.read_bytes(), before)
-        self.assertFalse(self.shards.exists())
-
-    def test_without_a_controller(self):
+    def test_in_the_words_of_slurm_leave_nothing(self):
+        disparities = "matcher.disparities: {from: 1, to: 50, step: 1}"
+        many = self.file("many.yaml", PLAN.replace("[3, 5, 7]", f"[3]\n  {disparities}"))
+        slurm = "error: --launcher slurm: sbatch: "
+        failed = "Batch job submission failed: Invalid partition name specified"
+        partition = f"invalid partition specified: nope; {failed}"
         with socket.socket() as unused:
             unused.bind(("127.0.0.1", 0))
-            text = re.sub("SlurmctldPort=.*", f"SlurmctldPort={unused.getsockname()[1]}",
-                          (cluster.folder / "slurm.conf").read_text())
-            config = self.file("slurm.conf", text.encode())
-            self.refused_and_left_nothing(self.launch(environment=dict(cluster.environment, SLURM_CONF=str(config))),
-                                          "squeue: ", "Unable to contact slurm controller")
+            text = (cluster.folder / "slurm.conf").read_text()
+            port = f"SlurmctldPort={unused.getsockname()[1]}"
+            config = self.file("slurm.conf", re.sub("SlurmctldPort=.*", port, text))
+            environment = {**cluster.environment, "SLURM_CONF": str(config)}
+            no_controller = self.launch(environment=environment)
+        for process, *texts in (
+            (no_controller, "squeue: ", "Unable to contact slurm controller"),
+            (self.launch("--sbatch", "partition=nope"), f"{slurm}{partition}"),
+            (self.launch("--shards", 200, plan=many), slurm, "Invalid job array specification"),
+        ):
+            self.refused_in_one_line(process, *texts)
+        self.assertEqual(list(self.folder.glob("points.db*")), [])
+        self.assertEqual(cluster.jobs(), [])
+        self.succeeds(self.sweep())
+        with self.unchanged(self.folder):
+            self.refused(self.launch("--sbatch", "partition=nope"), "nope")
 
 
 class Interrupted(SlurmTest):
     def test_by_the_keyboard_it_cancels_and_goes_on_later(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points()
+        process = self.begin_points()
         os.killpg(process.pid, signal.SIGINT)
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"20 points: [1-9]\d* ok, 0 impossible, 0 failed, \d+ not begun\n")
-        self.assertTrue(errors.endswith("note: interrupted: the same command goes on where this one has ended\n"), errors)
+        note = "note: interrupted: run the same command to resume\n"
+        self.assertTrue(errors.endswith(note), errors)
         self.assertEqual(cluster.jobs(), [])
         self.assertFalse(self.shards.exists())
-        kept = self.query("SELECT count(*) FROM points")[0][0]
+        kept = self.points()
         self.assertGreater(kept, 0)
         self.assertIn(f"{kept} there already", self.succeeds(self.launch(plan=self.slow)))
-        self.assert_whole(self.slow)
+        self.assert_whole()
 
     def test_when_killed_the_same_command_waits_for_the_jobs(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points()
+        process = self.begin_points()
         self.refused_in_one_line(self.launch(plan=self.slow), "points.db.shards: another process waits")
         self.close(process)
-        self.refused_in_one_line(self.launch(), "points.db: jobs of another plan,", "scancel --name=sweep-")
+        texts = ("points.db: jobs of another plan,", "scancel --name=sweep-")
+        self.refused_in_one_line(self.launch(), *texts)
         before = {job for job, _, _ in cluster.jobs()}
         said = self.launch(plan=self.slow)
-        self.assertIn("20 points: 20 ok, 0 impossible", self.succeeds(said))
-        self.assertEqual(said.stderr, f"stereotlm: note: the jobs are there already: {', '.join(sorted(before))}\n")
-        self.assert_whole(self.slow)
+        self.assertIn(ALL_DONE, self.succeeds(said))
+        jobs = ", ".join(sorted(before))
+        self.assertEqual(said.stderr, f"stereotlm: note: the jobs are there already: {jobs}\n")
+        self.assert_whole()
 
     def test_when_killed_the_jobs_do_it_all(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points()
-        self.close(process)
-        self.wait_until(lambda: not cluster.jobs())
-        self.assertEqual(self.store.read_bytes(), self.local(self.slow))
+        self.close(self.begin_points())
+        wait_until(lambda: not cluster.jobs())
+        self.assertTrue(self.store.read_bytes() == self.local(self.slow))
         said = self.launch(plan=self.slow)
-        self.assertIn("20 points: 20 ok, 0 impossible", self.succeeds(said))
+        self.assertIn(ALL_DONE, self.succeeds(said))
         self.assertEqual(said.stderr, "")
-        self.assert_whole(self.slow)
+        self.assert_whole()
 
     def test_when_all_is_killed_another_plan_keeps_the_points(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points()
-        self.close(process)
+        self.close(self.begin_points())
         self.end_jobs()
         self.assertFalse(self.store.exists())
-        other = self.file("other.yaml", SLOW.replace("[5, 7]", "[5]").encode())
-        self.assertRegex(self.succeeds(self.launch(plan=other)), r"10 points: \d+ ok, .*, [1-9]\d* there already")
-        self.assertIn("20 points", self.succeeds(self.launch(plan=self.slow)))
-        self.assert_whole(self.slow)
+        one = self.file("one.yaml", SLOW.replace("[5, 7]", "[5]").replace("to: 19", "to: 10"))
+        self.assertRegex(self.succeeds(self.launch(plan=one)), "1 points: .* 1 there already")
+        self.assertGreaterEqual(self.points(), 1)
 
     def test_a_restart_of_the_controller_is_waited_for(self):
-        process = self.start(plan=self.slow)
-        self.wait_for_points()
+        process = self.begin_points()
         cluster.end(cluster.daemons[1])
-        self.assertEqual(process.stderr.readline()[:20], "stereotlm: note: job")
-        self.assertEqual(process.stderr.readline()[:20], "stereotlm: note: job")
+        for _ in range(2):
+            self.assertTrue(process.stderr.readline().startswith("stereotlm: note: job"))
         self.assertRegex(process.stderr.readline(), "note: squeue: .*: asking again")
         cluster.start_controller()
         self.finishes(process)
-        self.assert_whole(self.slow)
+        self.assert_whole()
 
 
 if __name__ == "__main__":

@@ -1,15 +1,12 @@
-"""sweep and merge: plans, their databases, what is continued."""
+"""sweep and merge: plans, their databases, what is continued and what is refused."""
 
 import os
-import re
+import pathlib
 import signal
 import sqlite3
-import subprocess
-import time
 
 import program
-from interrupt_test import Terminal
-from program import HEIGHT, WIDTH, ProgramTest, run
+from program import HEIGHT, WIDTH, ProgramTest, Terminal, run, wait_until
 
 PLAN = f"""
 board: fpl2003
@@ -22,12 +19,18 @@ vary:
 """
 POINTS = 12
 IMPOSSIBLE = 6  # the two image lists of different lengths
+OK = POINTS - IMPOSSIBLE
+MORE = PLAN.replace("[3, 5, 7]", "[7, 9]")  # 4 points that PLAN has, and 4 others
+
+RESULTS = pathlib.Path(__file__).resolve().parents[3] / "results"
+# results/demo is where ./demo and the README write.
+STUDIES = sorted(plan for plan in RESULTS.glob("*/*.yaml") if plan.parent.name != "demo")
 
 
 class SweepTest(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.plan = self.file("plan.yaml", PLAN.encode())
+        self.plan = self.file("plan.yaml", PLAN)
         self.store = self.folder / "points.db"
 
     def sweep(self, *more, plan=None, store=None):
@@ -40,39 +43,58 @@ class SweepTest(ProgramTest):
         finally:
             connection.close()
 
+    def points(self, store=None):
+        """How many there are; 0 where there is no database yet."""
+        try:
+            return self.query("SELECT count(*) FROM points", store)[0][0]
+        except sqlite3.OperationalError:
+            return 0
+
+    def run_point(self, config, *more):
+        """stats.json of a run of this board."""
+        board = self.file("board.yaml", config)
+        self.succeeds(run("run", board, "--timing-only", *more, "--out", self.out))
+        return self.stats()
+
 
 class Sweep(SweepTest):
     def test_keeps_what_each_run_says(self):
         said = self.succeeds(self.sweep())
-        self.assertIn(f"{POINTS} points: {POINTS - IMPOSSIBLE} ok, {IMPOSSIBLE} impossible, 0 failed", said)
+        self.assertIn(f"{POINTS} points: {OK} ok, {IMPOSSIBLE} impossible, 0 failed", said)
         self.assertIn(f"points.db: {POINTS} points\n", said)
         reasons = said[said.index("points.db: "):]  # of all that the database holds
-        self.assertIn(f"  {IMPOSSIBLE // 2} impossible: allocation.right_image = [bank3]: must be as long as", reasons)
-        rows = self.query("SELECT config, cycles, \"banks.bank6.reads\", \"frames_per_second.core\", \"run.frames\", "
-                          "\"bound.core_limited_by\", hash FROM points WHERE status = 'ok'")
-        self.assertEqual(len(rows), POINTS - IMPOSSIBLE)
-        for config, cycles, reads, rate, frames, limited_by, key in rows:
-            board = self.file("board.yaml", config.encode())
-            self.succeeds(run("run", board, "--source", "preloaded", "--timing-only", "--frames", frames, "--out", self.out))
-            stats = self.stats()
-            self.assertEqual(cycles, stats["cycles"])
-            self.assertEqual(reads, [bank["reads"] for bank in stats["banks"] if bank["name"] == "bank6"][0])
-            self.assertEqual(rate, stats["frames_per_second"]["core"])
-            self.assertEqual(limited_by, stats["bound"]["core_limited_by"])
+        reason = "allocation.right_image = [bank3]: must be as long as"
+        self.assertIn(f"  {IMPOSSIBLE // 2} impossible: {reason}", reasons)
+        columns = 'cycles, "banks.bank6.reads", "frames_per_second.core", "bound.core_limited_by"'
+        rows = self.query(f'SELECT config, hash, "run.frames", {columns} FROM points WHERE status = "ok"')
+        self.assertEqual(len(rows), OK)
+        for config, key, frames, *figures in rows:
+            stats = self.run_point(config, "--source", "preloaded", "--frames", frames)
+            (reads,) = (bank["reads"] for bank in stats["banks"] if bank["name"] == "bank6")
+            bound = stats["bound"]["core_limited_by"]
+            self.assertEqual(figures, [stats["cycles"], reads, stats["frames_per_second"]["core"], bound])
             blame = self.query(f"SELECT port, bank, by, cycles FROM blame WHERE hash = '{key}'")
             self.assertEqual(sorted(blame), sorted(tuple(row.values()) for row in stats["blame"]))
             self.assertEqual((self.out / "config.yaml").read_text(), config)
         self.assertGreater(self.query("SELECT count(*) FROM blame")[0][0], 0)
-
-    def test_keeps_what_was_asked_for_where_it_is_impossible(self):
-        self.succeeds(self.sweep())
-        rows = self.query("SELECT config, reason, \"allocation.right_image\" FROM points WHERE status = 'impossible'")
+        columns = 'config, reason, "allocation.right_image"'
+        rows = self.query(f"SELECT {columns} FROM points WHERE status = 'impossible'")
         self.assertEqual(len(rows), IMPOSSIBLE)
         for config, reason, banks in rows:
-            board = self.file("board.yaml", config.encode())
-            self.assertIn(f"right_image: {banks}\n", config.replace("right_image: bank3", "right_image: [bank3]"))
-            process = run("run", board, "--source", "preloaded", "--timing-only")
-            self.assertEqual([line.split(": ", 1)[1] for line in self.refused(process)], [reason])
+            board = self.file("board.yaml", config)
+            asked = banks.replace("[bank3]", "bank3")
+            self.assertIn(f"right_image: {asked}\n", config)
+            lines = self.refused(run("run", board, "--timing-only"))
+            self.assertEqual([line.split(": ", 1)[1] for line in lines], [reason])
+
+    def test_of_the_whole_computer_keeps_its_figures(self):
+        plan = self.file("computer.yaml", "board: fpl2003\nrun: {source: camera, frames: 3}\n")
+        self.succeeds(self.sweep(plan=plan))
+        columns = '"frames_per_second.steady", "pci.busy_clocks", "cameras.left.frames"'
+        ((config, *figures),) = self.query(f"SELECT config, {columns} FROM points")
+        stats = self.run_point(config, "--frames", 3)
+        frames = stats["cameras"][0]["frames"]
+        self.assertEqual(figures, [stats["frames_per_second"]["steady"], stats["pci"]["busy_clocks"], frames])
 
     def test_gives_the_same_bytes_for_jobs_and_shards(self):
         self.succeeds(self.sweep("--jobs", 1))
@@ -88,294 +110,250 @@ class Sweep(SweepTest):
         said = self.succeeds(run("merge", merged, *reversed(shards)))
         self.assertEqual(said, f"{merged}: {POINTS} points of 3 databases\n")
         self.assertEqual(merged.read_bytes(), expected)
-        self.assertEqual(sorted(path.name for path in self.folder.iterdir() if "wal" in path.name), [])
+        self.assertEqual(list(self.folder.glob("*wal*")), [])
 
-    def test_continues_its_database(self):
-        self.succeeds(self.sweep())
-        expected = self.store.read_bytes()
-        self.assertIn(f"0 ok, 0 impossible, 0 failed, {POINTS} there already", self.succeeds(self.sweep()))
-        self.assertEqual(self.store.read_bytes(), expected)
-        more = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[7, 9]").encode())
+    def test_leaves_out_the_points_of_its_database_and_of_another(self):
+        more = self.file("more.yaml", MORE)
+        other = self.folder / "other.db"
+        progress = self.folder / "progress"  # which is replaced
+        counts = "total {}\nexcluded 0\nknown {}\nok {}\nimpossible {}\nfailed 0\ngiven_up 0\n"
+        self.succeeds(self.sweep("--progress", progress))
+        self.assertEqual(progress.read_text(), counts.format(POINTS, 0, OK, IMPOSSIBLE))
+        with self.unchanged(self.store):
+            said = self.succeeds(self.sweep("--progress", progress))
+            self.assertIn(f"0 ok, 0 impossible, 0 failed, {POINTS} there already", said)
+            self.assertEqual(progress.read_text(), counts.format(POINTS, POINTS, 0, 0))
+            said = self.succeeds(self.sweep("--known", self.store, plan=more, store=other))
+            self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already", said)
+        self.assertEqual(self.query('SELECT DISTINCT "matcher.window" FROM points', other), [(9,)])
+        self.assertEqual(list(self.folder.glob("*.db-*")), [])
         said = self.succeeds(self.sweep(plan=more))
         self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already", said)
         self.assertIn(f"points.db: {POINTS + 4} points", said)
 
-    def test_leaves_out_what_another_database_has(self):
-        self.succeeds(self.sweep())
-        before = self.store.read_bytes()
-        plan = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[7, 9]").encode())
-        more = self.folder / "more.db"
-        self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already",
-                      self.succeeds(self.sweep("--known", self.store, plan=plan, store=more)))
-        self.assertEqual(self.query("SELECT DISTINCT \"matcher.window\" FROM points", more), [(9,)])
-        self.assertEqual(self.store.read_bytes(), before)
-        self.assertEqual(list(self.folder.glob("*.db-*")), [])
-
-    def test_keeps_a_file_with_its_progress(self):
-        progress = self.folder / "progress"
-        for known in (0, POINTS):  # the second time it replaces its file
-            self.succeeds(self.sweep("--progress", progress))
-            new = POINTS - IMPOSSIBLE, IMPOSSIBLE
-            ok, impossible = new if known == 0 else (0, 0)
-            self.assertEqual(progress.read_text(), f"total {POINTS}\nexcluded 0\nknown {known}\nok {ok}\n"
-                                                   f"impossible {impossible}\nfailed 0\ngiven_up 0\n")
-
     def test_of_another_board_than_the_plan_names(self):
-        board = self.file("board.yaml", b"extends: fpl2003\nfpga: {clock_mhz: 50}\n")
+        board = self.file("board.yaml", "extends: fpl2003\nfpga: {clock_mhz: 50}\n")
         self.succeeds(self.sweep("--board", board))
-        self.assertEqual(self.query("SELECT DISTINCT \"fpga.clock_mhz\" FROM points"), [(50,)])
-
-    def test_of_the_whole_computer(self):
-        plan = self.file("computer.yaml", (PLAN.replace("preloaded", "camera, frames: 3").replace("[3, 5, 7]", "[3]")
-                                           + f"where: allocation.left_image = '[bank0, bank1]'\n").encode())
-        self.succeeds(self.sweep(plan=plan))
-        (row,) = self.query("SELECT config, \"frames_per_second.steady\", \"pci.busy_clocks\", \"cameras.left.frames\" "
-                            "FROM points WHERE status = 'ok'")
-        board = self.file("board.yaml", row[0].encode())
-        self.succeeds(run("run", board, "--timing-only", "--frames", 3, "--out", self.out))
-        stats = self.stats()
-        self.assertEqual(row[1:], (stats["frames_per_second"]["steady"], stats["pci"]["busy_clocks"],
-                                   stats["cameras"][0]["frames"]))
+        self.assertEqual(self.query('SELECT DISTINCT "fpga.clock_mhz" FROM points'), [(50,)])
 
 
-class Links(SweepTest):
-    """A link to a file is the name of that file, for whatever writes one."""
+class Studies(SweepTest):
+    """The plans in results/, which are examples too."""
+
+    @program.slow
+    def test_are_plans_whose_first_points_are_boards_that_run(self):
+        names = {plan.parent.name for plan in STUDIES}
+        self.assertLessEqual({"arbitration", "bank_kinds", "banks", "buffers", "fetch"}, names)
+        for plan in STUDIES:
+            with self.subTest(plan=plan.relative_to(RESULTS)):
+                store = self.folder / f"{plan.parent.name}_{plan.stem}.db"
+                said = self.succeeds(self.sweep("--shard", "0/1000000", plan=plan, store=store))
+                self.assertIn("1 ok, 0 impossible, 0 failed", said)
+
+
+@program.slow
+class Calibration(SweepTest):
+    """Six points with the tables of a rig, of which two lack one: they are impossible."""
+
+    TEXT = """
+board: fpl2003
+run: {source: preloaded, calibration: RIG}
+set: {matcher.filter: none}
+vary:
+  matcher.window: [5, 7]
+  allocation.left_lut: [bank6, bank0, none]
+"""
 
     def setUp(self):
         super().setUp()
-        (self.folder / "real").mkdir()
-        self.store.symlink_to("real/points.db")
-        self.real = self.folder / "real" / "points.db"
+        self.rig = self.copy_of_rig()
+        self.plan = self.plan_of(self.rig)
 
-    def of_link(self, count, process):
-        self.succeeds(process)
-        self.assertTrue(self.store.is_symlink())
-        self.assertEqual(self.query("SELECT count(*) FROM points", self.real), [(count,)])
-        self.assertEqual([path.name for path in self.real.parent.iterdir()], ["points.db"])
+    def plan_of(self, rig, name="plan.yaml", text=TEXT):
+        return self.file(name, text.replace("RIG", str(rig)))
 
-    def test_to_databases_and_their_modes_stay(self):
-        self.of_link(POINTS, self.sweep())
-        self.real.chmod(0o640)
-        more = self.file("more.yaml", PLAN.replace("[3, 5, 7]", "[7, 9]").encode())
-        self.of_link(POINTS + 4, self.sweep(plan=more))
-        other = self.folder / "other.db"
-        self.succeeds(self.sweep(plan=self.file("last.yaml", PLAN.replace("[3, 5, 7]", "[11]").encode()), store=other))
-        self.of_link(POINTS + 8, run("merge", self.store, other, self.store))
-        self.succeeds(run("allocate", "fpl2003", "--source", "preloaded", "--banks", 4, "--out", self.store,
-                          *program.SMALL))
-        self.assertTrue(self.store.is_symlink())
-        self.assertEqual([path.name for path in self.real.parent.iterdir()], ["points.db"])
-        self.assertEqual(self.real.stat().st_mode & 0o7777, 0o640)
+    def test_gives_what_each_run_says(self):
+        said = self.succeeds(self.sweep())
+        reason = "run.calibration: goes with a board that has both tables; allocation.left_lut = none"
+        self.assertIn("6 points: 4 ok, 2 impossible, 0 failed", said)
+        self.assertIn(f"  2 impossible: {reason}\n", said)
+        columns = 'config, "run.frames", cycles, "banks.bank0.reads", "ports.left_pixel.grants"'
+        for config, frames, *figures in self.query(f"SELECT {columns} FROM points WHERE status = 'ok'"):
+            options = ["--source", "preloaded", "--calibration", self.rig, "--frames", frames]
+            stats = self.run_point(config, *options)
+            (grants,) = (port["grants"] for port in stats["ports"] if port["name"] == "left_pixel")
+            self.assertEqual(figures, [stats["cycles"], stats["banks"][0]["reads"], grants])
+        text = "board: fpl2003\nrun: {source: camera, frames: 2, calibration: RIG}\n"
+        plan = self.plan_of(self.rig, "camera.yaml", text)
+        store = self.folder / "camera.db"
+        self.succeeds(self.sweep(plan=plan, store=store))
+        columns = 'config, "frames_per_second.system", "pci.busy_clocks"'
+        ((config, *figures),) = self.query(f"SELECT {columns} FROM points", store)
+        stats = self.run_point(config, "--frames", 2, "--calibration", self.rig)
+        self.assertEqual(figures, [stats["frames_per_second"]["system"], stats["pci"]["busy_clocks"]])
 
-    def test_to_files_of_progress_stay(self):
-        progress = self.folder / "progress"
-        target = self.file("counts", b"")
-        target.chmod(0o640)
-        progress.symlink_to(target)
-        self.succeeds(self.sweep("--progress", progress))
-        self.assertTrue(progress.is_symlink())
-        self.assertIn(f"total {POINTS}\n", target.read_text())
-        self.assertEqual(target.stat().st_mode & 0o7777, 0o640)
+    def test_is_found_from_the_working_directory_and_replaced_by_the_option(self):
+        self.succeeds(self.sweep())
+        relative = self.plan_of("rig.yaml", "relative.yaml")
+        none = self.plan_of("none.yaml", "none.yaml")
+        without = self.plan_of("", "without.yaml", self.TEXT.replace(", calibration: RIG", ""))
+        option = ["--calibration", self.rig]
+        for plan, *option in ((relative,), (none, *option), (without, *option)):
+            store = self.folder / f"{plan.stem}.db"
+            self.succeeds(run("sweep", plan, "--out", store, *option, cwd=self.folder))
+            self.assertEqual(store.read_bytes(), self.store.read_bytes())
+        process = self.sweep(plan=relative)
+        self.refused_in_one_line(process, f"{relative}:3:39: run.calibration 'rig.yaml': no such file")
 
-
-class Names(SweepTest):
-    def test_that_sqlite_would_take_for_no_file_are_files(self):
-        for name in (":memory:", "file:x.db", "file::memory:?cache=shared"):
-            process = run("sweep", self.plan, "--out", name, cwd=self.folder)
-            self.assertIn(f"\n{name}: {POINTS} points\n", self.succeeds(process))
-            self.assertEqual(self.query_file(name), POINTS)
-            self.assertIn(f"{POINTS} there already", self.succeeds(
-                run("sweep", self.plan, "--out", "known.db", "--known", name, cwd=self.folder)))
-            self.succeeds(run("merge", "file:merged.db", name, cwd=self.folder))
-            self.assertEqual(self.query_file("file:merged.db"), POINTS)
-
-    def query_file(self, name):
-        connection = sqlite3.connect(self.folder / name)
-        self.addCleanup(connection.close)
-        return connection.execute("SELECT count(*) FROM points").fetchone()[0]
+    def test_is_for_images_of_its_size(self):
+        sizes = "zip:\n  - {image.width: [640, 320], image.height: [480, 240]}\n"
+        said = self.succeeds(self.sweep(plan=self.plan_of(self.rig, "sizes.yaml", self.TEXT + sizes)))
+        self.assertIn("12 points: 4 ok, 8 impossible, 0 failed", said)
+        rule = "image size = 640x480: must be that of the board's images, 320x240"
+        self.assertIn(f"  6 impossible: run.calibration: {rule}\n", said)
+        self.store.unlink()
+        small = ["--board", "fpl2003-qvga"]
+        process = self.sweep(*small)
+        self.refused_in_one_line(process, f"{self.plan}:3:39: run.calibration '{self.rig}': {rule}")
+        process = self.sweep(*small, "--calibration", self.rig)
+        self.refused_in_one_line(process, f"--calibration '{self.rig}': {rule}")
+        table = self.folder / "rig_left.lut"
+        table.write_bytes(bytes(4) + table.read_bytes()[4:])
+        texts = (f"{self.plan}:3:39: run.calibration '{table}': SHA-256 ", "must be the table that")
+        self.refused_in_one_line(self.sweep(), *texts)
+        self.refused_in_one_line(self.sweep("--calibration", ""), "--calibration: empty")
+        self.assertFalse(self.store.exists())
 
 
 class Refusals(SweepTest):
-    def test_of_plans_name_place_value_and_rule(self):
-        plan = self.file("wrong.yaml", PLAN.replace("[3, 5, 7]", "[3, 4, 7]").encode())
-        lines = self.refused(self.sweep(plan=plan), f"{plan}:6:23: matcher.window = 4: ")
-        self.assertEqual(lines[-1], f"{plan}: the plan would have {POINTS} points")
-        self.assertFalse(self.store.exists())
+    """tests/unit/sw/explore has every way in which a plan or a condition is wrong."""
 
-    def test_of_conditions_name_their_place_and_leave_out_nothing_in_silence(self):
-        for condition, reason in (
-            ("abs(-9223372036854775808) > 0", "integer overflow"),
-            ("name MATCH 'fpl*'", "not an SQL expression over keys: match() depends on more than its arguments"),
-            ("random() > 0", "not an SQL expression over keys: random() depends on more than its arguments"),
-            ("image.width > ?1", "not an SQL expression over keys: parameters such as ? and :x have no value"),
-            ("1)) /*", 'not an SQL expression over keys: near ")": syntax error'),
-            ("board.name = 'fpl", "not an SQL expression over keys: unrecognized token: \"'fpl\""),
+    def test_of_plans_name_place_value_and_rule(self):
+        for text, where, rule in (
+            (PLAN.replace("[3, 5, 7]", "[3, 4, 7]"), "6:23", "matcher.window = 4: "),
+            (f"{PLAN}where:\n  - random() > 0\n", "10:5",
+             "where = random() > 0: not an SQL expression over keys: random() depends on more than"),
         ):
-            plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
-            lines = self.refused(self.sweep(plan=plan))
-            self.assertEqual(lines, [f"{plan}:10:5: where = {condition}: {reason}",
-                                     f"{plan}: the plan would have {POINTS} points"])
+            plan = self.file("wrong.yaml", text)
+            lines = self.refused(self.sweep(plan=plan), f"{plan}:{where}: {rule}")
+            self.assertEqual(lines[-1], f"{plan}: the plan would have {POINTS} points")
         self.assertFalse(self.store.exists())
 
     def test_of_a_condition_that_one_point_shows_to_be_wrong_do_not_advise_to_repeat_it(self):
         condition = "iif(matcher.window = 5, json('{' || image.width), 1)"
-        plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n".encode())
-        process = self.sweep(plan=plan)
-        self.assertEqual(process.returncode, 1, process.stderr)
-        self.assertEqual(process.stderr, f"stereotlm: error: {plan}:10:5: where = {condition}: malformed JSON; what is done "
-                                         "is kept: correct the plan\n")
+        plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n")
+        problem = f"where = {condition}: malformed JSON; finished points are kept: correct the plan\n"
+        self.fails(self.sweep(plan=plan), f"stereotlm: error: {plan}:10:5: {problem}")
 
-    def test_of_options(self):
-        self.refused_in_one_line(self.sweep("--jobs", 0), "--jobs = 0: must be 1..1024")
-        for shard in ("3/3", "1", "x/2", "-1/2", "1/0"):
-            self.refused_in_one_line(self.sweep("--shard", shard), f"--shard = {shard}: must be I/N")
-        self.refused_in_one_line(self.sweep("--launcher", "pbs"), "--launcher = pbs: must be local or slurm")
-        self.refused_in_one_line(self.sweep("--known", self.left), f"--known {self.left}: not a database")
-        self.refused_in_one_line(self.sweep("--known", self.folder / "none.db"), "--known ", "No such file or directory")
-        self.assertFalse(self.store.exists(), "nothing was to be made")
-        none = self.folder / "none" / "progress"
-        self.refused_in_one_line(self.sweep("--progress", none), f"--progress {none}: No such file or directory")
-        self.assertFalse(self.store.exists(), "nothing was to be made")
-        self.refused(self.sweep("--board", "fpl2004"), "fpl2004: not a preset")
-        self.refused(self.sweep("--known", "", "--progress", "", "--board", ""), "--known: empty", "--progress: empty",
-                     "--board: empty")
-        self.refused(run("sweep"), "PLAN: missing", "--out: missing")
-        self.refused(run("merge"), "OUT: missing", "DB: missing")
+    def test_of_options_and_databases(self):
+        sweep = ["sweep", self.plan, "--out", self.store]
+        none = self.folder / "none" / "file"
+        shards = ("3/3", "1", "x/2", "-1/2", "1/0")
+        with self.unchanged(self.folder):
+            self.all_refused([([*sweep, *options], *texts) for options, *texts in (
+                (["--jobs", 0], "--jobs = 0: must be 1..1024"),
+                *((["--shard", shard], f"--shard = {shard}: must be I/N") for shard in shards),
+                (["--launcher", "pbs"], "--launcher = pbs: must be local or slurm"),
+                (["--known", self.left], f"--known {self.left}: not a database"),
+                (["--known", none], "--known ", "No such file or directory"),
+                (["--progress", none], f"--progress {none}: No such file or directory"),
+            )])
+            self.all_refused([
+                (["sweep", self.plan, "--out", self.left], f"--out {self.left}: not a database"),
+                (["sweep", self.plan, "--out", none], "No such file or directory"),
+                (["merge", self.store, self.left], f"{self.left}: not a database"),
+            ])
+            self.refused(self.sweep("--board", "fpl2004"), "fpl2004: not a preset")
+            options = ("--known", "--progress", "--board")
+            empty = self.sweep(*(word for option in options for word in (option, "")))
+            self.refused(empty, *(f"{option}: empty" for option in options))
+            self.refused(run("sweep"), "PLAN: missing", "--out: missing")
+            self.refused(run("merge"), "OUT: missing", "DB: missing")
 
     def test_of_banks_whose_names_differ_only_in_case(self):
-        def board(one, other):
-            return self.file(f"{one}{other}.yaml", (
-                f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\nmatcher: {{filter: none}}\n"
-                f"ssram: {{banks: {{{one}: {{}}, {other}: {{}}}}}}\n"
-                f"allocation: {{left_image: {one}, right_image: {other}, disparity: {one}, left_lut: {other}, "
-                f"right_lut: {one}}}\n").encode())
-
-        rule = "ssram.banks = A, a: the names differ only in case"
-        twins = board("A", "a")
+        buffers = "left_image: A, right_image: a, disparity: A, left_lut: a, right_lut: A"
+        board = f"extends: fpl2003\nssram: {{banks: {{A: {{}}, a: {{}}}}}}\nallocation: {{{buffers}}}\n"
+        twins = self.file("twins.yaml", board + f"image: {{width: {WIDTH}, height: {HEIGHT}}}\n")
         self.succeeds(run("check", twins))
-        plan = self.file("twins.yaml", f"board: {twins}\nrun: {{source: preloaded}}\n".encode())
+        rule = "ssram.banks = A, a: the names differ only in case"
+        plan = self.file("plan.yaml", f"board: {twins}\nrun: {{source: preloaded}}\n")
         self.refused(self.sweep(plan=plan), f"{plan}:1:8: {rule}")
-        self.refused_in_one_line(run("allocate", twins, "--source", "preloaded", "--banks", 2, "--out", self.store),
-                                 f"{twins}: {rule}")
+        allocate = ["allocate", twins, "--source", "preloaded", "--banks", 2, "--out", self.store]
+        self.refused_in_one_line(run(*allocate), f"{twins}: {rule}")
         self.refused_in_one_line(run("explain", twins, "--source", "preloaded"), f"{twins}: {rule}")
         self.assertFalse(self.store.exists())
-        self.succeeds(self.sweep("--board", board("a", "b"), plan=plan))
-        rule = f"--out {self.store}: its column ssram.banks.a.words differs from ssram.banks.A.words only in case"
-        self.refused_in_one_line(self.sweep("--board", board("A", "b"), plan=plan), rule)
-        self.refused_in_one_line(run("allocate", board("A", "b"), "--source", "preloaded", "--banks", 2, "--out", self.store),
-                                 rule)
-        self.assertEqual(self.query("SELECT count(*) FROM points"), [(1,)])
 
     def test_of_files_that_the_progress_would_replace(self):
-        link = self.folder / "link"
-        link.symlink_to(self.plan)
+        (self.folder / "link").symlink_to(self.plan)
         (self.folder / "sub").mkdir()
-        around = self.folder / "sub" / ".." / "points.db"
-        for path, name in ((self.store, "--out"), (around, "--out"), (self.plan, "PLAN"), (link, "PLAN")):
-            self.refused_in_one_line(self.sweep("--progress", path), f"--progress = {path}: is the file of {name}")
-        self.assertFalse(self.store.exists())
-        self.succeeds(self.sweep())
-        before = self.store.read_bytes()
-        more = self.folder / "more.db"
-        self.refused_in_one_line(self.sweep("--known", self.store, "--progress", self.store, store=more),
-                                 f"--progress = {self.store}: is the file of --known")
-        notes = self.file("notes", b"ok 3\nand more\n")
-        for path in (notes, self.left, self.store, self.folder, "/dev/null"):
-            self.refused_in_one_line(self.sweep("--progress", path, store=more),
-                                     f"--progress = {path}: is there, and not as a file of --progress: ")
-        self.assertFalse(more.exists())
-        self.assertEqual(notes.read_bytes(), b"ok 3\nand more\n")
-        self.assertEqual(self.plan.read_text(), PLAN)
-        self.assertEqual(self.store.read_bytes(), before)
-
-    def test_of_databases(self):
-        self.refused_in_one_line(self.sweep(store=self.left), f"--out {self.left}: not a database")
-        self.refused_in_one_line(self.sweep(store=self.folder / "none" / "a.db"), "No such file or directory")
-        self.refused_in_one_line(run("merge", self.store, self.left), f"{self.left}: not a database")
-        self.assertFalse(self.store.exists())
-        self.assertEqual(self.left.read_bytes()[:2], b"P5")
+        self.succeeds(self.sweep(store=self.folder / "known.db"))
+        known, notes = self.folder / "known.db", self.file("notes", "ok 3\nand more\n")
+        other = "exists, and was not written by --progress: "
+        with self.unchanged(self.folder):
+            for path, rule in (
+                (self.store, "is the file of --out"),
+                (self.folder / "sub" / ".." / "points.db", "is the file of --out"),
+                (self.plan, "is the file of PLAN"),
+                (self.folder / "link", "is the file of PLAN"),
+                (known, "is the file of --known"),
+                *((path, other) for path in (notes, self.left, self.folder, "/dev/null")),
+            ):
+                process = self.sweep("--known", known, "--progress", path)
+                self.refused_in_one_line(process, f"--progress = {path}: {rule}")
 
 
-class Interrupted(SweepTest):
+class Meanwhile(SweepTest):
+    """What happens to a sweep that has begun."""
+
     def setUp(self):
         super().setUp()
-        self.many = self.file("many.yaml", PLAN.replace(
-            "matcher.window: [3, 5, 7]", "matcher.disparities: {from: 1, to: 254, step: 1}").encode())
+        disparities = "matcher.disparities: {from: 1, to: 254, step: 1}"
+        self.many = self.file("many.yaml", PLAN.replace("matcher.window: [3, 5, 7]", disparities))
 
-    def start(self, *more):
-        command = [program.PROGRAM, "sweep", str(self.many), "--out", str(self.store), *more]
-        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                start_new_session=True)
-
-    def wait_for_points(self, count):
-        end = time.monotonic() + 30
-        while time.monotonic() < end:
-            try:
-                if self.query("SELECT count(*) FROM points")[0][0] >= count:
-                    return
-            except sqlite3.OperationalError:
-                pass  # not there yet
-            time.sleep(0.01)
-        self.fail("no points")
-
-    def expected(self):
-        store = self.folder / "whole.db"
-        self.succeeds(self.sweep(plan=self.many, store=store))
-        return store.read_bytes()
+    def begin(self):
+        """A process with some points done."""
+        process = self.start("sweep", self.many, "--out", self.store, start_new_session=True)
+        wait_until(lambda: self.points() >= 3)
+        return process
 
     @program.slow
-    def test_by_the_keyboard_it_says_how_to_go_on(self):
-        process = self.start()
-        self.wait_for_points(3)
+    def test_an_interrupt_by_the_keyboard_says_how_to_go_on(self):
+        process = self.begin()
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: all processes get it
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"1016 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
-        self.assertEqual(errors, "stereotlm: note: interrupted: the same command goes on where this one has ended\n")
+        note = "interrupted: run the same command to resume"
+        self.assertEqual(errors, f"stereotlm: note: {note}\n")
         self.succeeds(self.sweep(plan=self.many))
-        self.assertEqual(self.store.read_bytes(), self.expected())
+        whole = self.folder / "whole.db"
+        self.succeeds(self.sweep(plan=self.many, store=whole))
+        self.assertTrue(self.store.read_bytes() == whole.read_bytes())
 
-    def test_by_the_loss_of_its_database_it_does_not_say_that_anything_is_kept(self):
-        for another in (None, b"", b"another file"):
-            process = self.start()
-            self.wait_for_points(3)
+    def test_the_loss_of_its_database_is_said_without_saying_that_anything_is_kept(self):
+        for another in (None, "", "another file"):
+            process = self.begin()
             self.store.unlink()
             if another is not None:
-                self.store.write_bytes(another)
-            out, errors = process.communicate(timeout=60)
-            self.assertEqual((process.returncode, out), (1, ""), errors)
-            self.assertEqual(errors, f"stereotlm: error: {self.store}: has been removed or replaced meanwhile: what was "
-                                     "done is gone with it\n")
+                self.store.write_text(another)
+            gone = f"{self.store}: was removed or replaced while in use: its points are lost"
+            self.ends(process, 1, errors=f"stereotlm: error: {gone}\n")
             for left in self.folder.glob("points.db*"):
                 left.unlink()
 
-    def test_by_damage_to_its_database_it_does_not_say_that_anything_is_kept(self):
-        process = self.start()
-        self.wait_for_points(3)
+    def test_damage_to_its_database_is_said_without_saying_that_anything_is_kept(self):
+        process = self.begin()
         with open(self.store, "r+b") as damaged:
             damaged.write(b"damage" * 1000)
         (self.folder / "points.db-wal").write_bytes(b"")
         out, errors = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (1, ""), errors)
         self.assertIn("points.db", errors)
-        self.assertNotIn("is kept", errors)
+        self.assertNotIn("kept", errors)
 
-    def test_when_killed_it_keeps_what_was_done(self):
-        process = self.start("--jobs", "2")
-        self.wait_for_points(20)
-        process.kill()
-        process.communicate(timeout=60)
-        kept = self.query("SELECT count(*) FROM points")[0][0]
-        self.assertGreaterEqual(kept, 20)
-        time.sleep(0.2)
-        self.assertLessEqual(self.query("SELECT count(*) FROM points")[0][0], kept + 2)  # workers end with it
-        said = self.succeeds(self.sweep(plan=self.many))
-        self.assertRegex(said, r", \d+ there already")
-        self.assertEqual(self.store.read_bytes(), self.expected())
-
-    def test_shows_its_progress(self):
+    def test_a_terminal_shows_its_progress(self):
         terminal = Terminal(["sweep", self.many, "--out", self.store])
-        terminal.read_until(re.compile(r"\d+/1016 points   \d+\.\d %   \d+\.\d points/s   \S+ left"))
+        terminal.read_until(r"\d+/1016 points   \d+\.\d %   \d+\.\d points/s   \S+ left")
         status, out = terminal.finish()
         self.assertEqual(status, 0)
         self.assertIn("1016 points: 508 ok, 508 impossible", out)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -20,6 +21,7 @@ constexpr PortMask kAll = (1U << kPortCount) - 1;
 constexpr PortMask kHost = mask_of(port::kHost);
 constexpr PortMask kResult = mask_of(port::kResult);
 constexpr PortMask kLeft = mask_of(port::kLeftPixel);
+constexpr PortMask kRight = mask_of(port::kRightPixel);
 
 const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
 const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
@@ -89,6 +91,44 @@ TEST(BankArbiter, RefusesAWinnerBecauseOfTurnaroundEvenIfAnotherPortCouldBeGrant
   EXPECT_EQ(stats.blame[port::kResult][ArbiterStats::kTurnaround], 2U);
   EXPECT_EQ(stats.blame[port::kLeftPixel][ArbiterStats::kTurnaround], 2U);
   EXPECT_EQ(stats.blame[port::kLeftPixel][port::kResult], 1U);
+}
+
+struct Cycle {
+  uint64_t number;
+  PortMask requests;
+  PortMask granted;
+};
+
+// The result port writes, all others read.
+void expect_grants_by_age(int turnaround, std::initializer_list<Cycle> cycles) {
+  BankArbiter arbiter({"age", ArbiterConfig{}.priority}, turnaround);
+  for (const Cycle& cycle : cycles)
+    EXPECT_EQ(arbitrate(arbiter, cycle.number, cycle.requests, kResult), cycle.granted) << cycle.number;
+}
+
+TEST(AgeArbitration, GrantsTheOldestRequestAndEqualAgesByTheList) {
+  expect_grants_by_age(0, {{0, kLeft | kRight, kLeft},
+                           {1, kLeft | kRight, kRight},
+                           {2, kResult | kLeft | kRight, kLeft},
+                           {3, kResult | kRight, kResult},
+                           {4, kResult | kRight, kRight}});
+}
+
+TEST(AgeArbitration, EndsAnAgeInACycleWithoutRequestAndNotBefore) {
+  expect_grants_by_age(0, {{0, kLeft | kRight, kLeft}, {1, kHost | kRight, kRight}});
+  expect_grants_by_age(0, {{0, kLeft | kRight, kLeft}, {1, kLeft, kLeft}, {2, kHost | kRight, kHost}});
+  expect_grants_by_age(0, {{0, kLeft | kRight, kLeft}, {2, kHost | kRight, kHost}});
+}
+
+TEST(AgeArbitration, LetsTheWinnerAndAllOthersGrowOlderWhileTheBankTurnsRound) {
+  expect_grants_by_age(
+      2, {{0, kResult, kResult}, {1, kRight, kNone}, {2, kRight, kNone}, {3, kHost | kRight, kRight}});
+  expect_grants_by_age(2, {{0, kResult, kResult},
+                           {1, kLeft | kRight, kNone},
+                           {2, kHost | kRight, kNone},
+                           {3, kHost | kRight, kRight}});
+  // The bank is ready: the request is granted, and its age ends.
+  expect_grants_by_age(2, {{0, kResult, kResult}, {3, kRight, kRight}, {4, kHost | kRight, kHost}});
 }
 
 TEST(BankArbiter, CountsUncontendedGrantsWhereverTheyLay) {

@@ -13,11 +13,16 @@ using testing::StartsWith;
 using Problems = std::vector<std::string>;
 
 TEST(BankTraits, HaveTheLatenciesAndTurnaroundsOfTheDataSheets) {
-  EXPECT_EQ(read_latency_cycles(BankKind::kZbtPipelined), 2);
-  EXPECT_EQ(read_latency_cycles(BankKind::kZbtFlowThrough), 1);
-  EXPECT_EQ(read_latency_cycles(BankKind::kSyncBurst), 2);
-  for (const BankTraits& traits : kBankTraits)
-    EXPECT_EQ(traits.has_turnaround, traits.kind == BankKind::kSyncBurst) << traits.name;
+  const std::vector<BankTraits> expected = {{BankKind::kZbtPipelined, "zbt_pipelined", 2, false, 1},
+                                            {BankKind::kZbtFlowThrough, "zbt_flow_through", 1, false, 1},
+                                            {BankKind::kSyncBurst, "sync_burst", 2, true, 1}};
+  ASSERT_EQ(kBankTraits.size(), expected.size());
+  for (const BankTraits& traits : expected) {
+    EXPECT_STREQ(traits_of(traits.kind).name, traits.name);
+    EXPECT_EQ(read_latency_cycles(traits.kind), traits.read_latency_cycles) << traits.name;
+    EXPECT_EQ(traits_of(traits.kind).has_turnaround, traits.has_turnaround) << traits.name;
+    EXPECT_EQ(traits_of(traits.kind).ports, traits.ports) << traits.name;
+  }
 }
 
 TEST(SsramBankConfig, AcceptsTheEndsOfEachRange) {

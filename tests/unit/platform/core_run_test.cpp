@@ -31,13 +31,14 @@ TEST(CoreRun, GivesTheWorkedValues) {
   EXPECT_THAT(first_frame({"matcher.filter=none"}), ElementsAre(2150995));
   EXPECT_THAT(first_frame({"matcher.fetch=line_buffer"}), ElementsAre(311146));
   EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.left_lut=bank0"}), ElementsAre(4288597));
+  EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.left_lut=bank0", "fpga.arbitration=age"}),
+              ElementsAre(4287317));
   EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.disparity=[bank0, bank0]",
                            "ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}"}),
               ElementsAre(2534153));
 }
 
-// Again and again in one process.
-TEST(CoreRun, IsTheRunOfTheModules) {
+TEST(CoreRun, EqualsTheRunOfTheModulesEachTime) {
   const BoardConfig board = small_board();
   PreloadedRun run(board, identity_tables(board), 5);
   const Statistics expected = run.finish();
@@ -60,7 +61,7 @@ TEST(CoreRun, IsTheRunOfTheModules) {
   }
 }
 
-TEST(CoreRun, RefusesWhatDoesNotFit) {
+TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {
   BoardConfig board = small_board();
   Tables tables = identity_tables(board);
   EXPECT_THAT(message_of([&] { run_core(board, tables, 0); }), HasSubstr("frames = 0"));
@@ -80,7 +81,7 @@ TEST(CoreRun, RefusesWhatDoesNotFit) {
   EXPECT_THROW(run_core(board, {}, 1), std::invalid_argument);
 }
 
-TEST(CoreRun, EndsAFrameThatDoesNotGoOn) {
+TEST(CoreRun, EndsAFrameThatMakesNoProgress) {
   const BoardConfig board = small_board();
   EXPECT_THAT(message_of([&] { run_core(board, identity_tables(board), 1, 1); }),
               HasSubstr("frame 0 of the core: no slot consumed and no result written for 1 cycles"));

@@ -7,7 +7,7 @@ namespace {
 
 using namespace stereotlm;
 
-// OpenCV would say on standard error what it then throws.
+// Keeps OpenCV from printing an error that it also throws.
 int say_nothing(int /*status*/, const char* /*function*/, const char* /*message*/, const char* /*file*/,
                 int /*line*/, void* /*data*/) {
   return 0;
@@ -20,7 +20,7 @@ calib::CalibrationResult calibrate(const calib::CalibrationRequest& request) {
 
 }  // namespace
 
-// The one symbol of the library that calibration_library.h loads.
+// The only symbol that calibration_library.h looks up.
 extern "C" {
 extern const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions;
 const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions = {

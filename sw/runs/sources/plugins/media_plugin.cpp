@@ -1,7 +1,7 @@
 #include "sw/media/encode.h"
 #include "sw/runs/sources/media_library.h"
 
-// The one symbol of the library that media_library.h loads.
+// The only symbol that media_library.h looks up.
 extern "C" {
 extern const stereotlm::runs::MediaFunctions stereotlm_media_functions;
 const stereotlm::runs::MediaFunctions stereotlm_media_functions = {

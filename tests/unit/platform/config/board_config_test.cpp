@@ -96,7 +96,7 @@ TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(3); }),
             Problems{"ssram.banks.bank0.kind = 3: zbt_pipelined, zbt_flow_through or sync_burst"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
-            Problems{"fpga.arbitration = lottery: fixed_priority or round_robin"});
+            Problems{"fpga.arbitration = lottery: fixed_priority, round_robin or age"});
   EXPECT_EQ(
       problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = 6; }).size(),
       1U);

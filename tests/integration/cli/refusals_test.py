@@ -1,0 +1,347 @@
+"""Help, and what is refused: wrong command lines, pictures, boards and folders that a run cannot use.
+
+load_test.cpp has every reason against a picture, result_folder*_test.cpp those against a folder.
+"""
+
+import os
+import resource
+import shutil
+
+import program
+from pictures import noise, pgm, ppm
+from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
+
+COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate plot diff paper".split()
+UNBUILT_COMMANDS = ["report"]
+UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
+OPTIONS_OF_RUN = (
+    "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
+    "--truth-scale,--set,--out,--save-frames,--fidelity fast|cycle,--timing-only,--verify,--trace,default 1"
+)
+NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
+
+
+class Help(ProgramTest):
+    def test_of_the_program_names_every_command_and_the_exit_statuses(self):
+        for option in ("--help", "-h"):
+            text = self.succeeds(run(option))
+            for part in [*COMMANDS, *UNBUILT_COMMANDS, "Exit status: 0"]:
+                self.assertIn(part, text)
+
+    def test_of_run_names_its_options_and_defaults(self):
+        text = self.succeeds(run("run", "--help"))
+        for part in OPTIONS_OF_RUN.split(","):
+            self.assertIn(part, text)
+
+    def test_of_each_command_says_how_to_use_it_in_104_columns(self):
+        for command in ([], *([command] for command in COMMANDS)):
+            text = self.succeeds(run(*command, "--help"))
+            self.assertIn(" ".join(["Usage: stereotlm", *command]), text)
+            for line in text.splitlines():
+                self.assertLessEqual(len(line), 104, line)
+
+    def test_names_the_version(self):
+        self.assertRegex(self.succeeds(run("--version")), r"^stereotlm \d+\.\d+\.\d+\n$")
+
+
+class CommandLine(ProgramTest):
+    def test_with_a_wrong_command_is_refused(self):
+        self.all_refused([
+            ([], "a command is missing", f"{', '.join(COMMANDS[:-1])} or {COMMANDS[-1]}"),
+            ([""], "a command is missing"),
+            (["bound", "fpl2003"], "'bound': unknown command; nearest: bounds"),
+            (["--bogus"], "'--bogus': a command comes first"),
+            (["--"], "'--': a command comes first"),
+            (["--frames", "1", "run", "fpl2003"], "'--frames': a command comes first"),
+        ])
+
+    def test_with_what_is_not_in_this_version_is_refused(self):
+        for command in UNBUILT_COMMANDS:
+            for rest in ([], ["fpl2003"], ["--help"], ["--out", "a", "b", "--bogus", "3"]):
+                self.refused_in_one_line(run(command, *rest), f"error: {command}: not in this version")
+        text = "error: --trace: not in this version"
+        for arguments in (UNBUILT_OPTION_OF_RUN, UNBUILT_OPTION_OF_RUN[:1]):
+            self.refused_in_one_line(run("run", "fpl2003", *arguments), text)
+        self.refused_in_one_line(self.run_small(*UNBUILT_OPTION_OF_RUN), text)
+
+    def test_with_unknown_options_is_refused_with_the_nearest(self):
+        for command in COMMANDS:
+            self.refused_in_one_line(run(command, "--bogus"), "--bogus", f"stereotlm {command} --help")
+        nearest = {"--fames": "--frames", "--rigth": "--right", "--sett": "--set", "--verfy": "--verify"}
+        for wrong, right in {**nearest, "--timing-onyl": "--timing-only"}.items():
+            text = f"stereotlm: error: {wrong}: unknown option; nearest: {right} (see stereotlm run --help)"
+            run_it = ["run", "fpl2003"]
+            self.all_refused([([*run_it, wrong, "3"], text), ([*run_it, f"{wrong}=3"], text)])
+        lines = self.refused(run("run", "fpl2003", "--fames", "3", "--out", "a", "--verfy"))
+        self.assertEqual([line.split()[2] for line in lines], ["--fames:", "--verfy:"])
+
+    def test_with_too_many_arguments_or_values_missing_or_given_twice_is_refused(self):
+        self.refused_in_one_line(run("check", "fpl2003", "fpl2003-qvga"), "fpl2003-qvga")
+        self.refused_in_one_line(run("keys", "fpl2003"), "fpl2003")
+        for option in ("--left", "--frames", "--out", "--source", "--set"):
+            self.refused_in_one_line(run("run", "fpl2003", option), option)
+            if option != "--set":
+                self.refused_in_one_line(run("run", "fpl2003", option, "1", option, "1"), option)
+
+    def test_without_a_board_is_refused(self):
+        for command in ("run", "check", "bounds"):
+            self.refused(run(command), "stereotlm: error: BOARD: missing")
+        self.refused_in_one_line(run("check", "keys"), "keys: not a preset")  # nor a command
+
+    def test_with_wrong_values_is_refused_with_the_rule(self):
+        truth = [*self.pair, "--truth", self.left]
+        for before, option, rule, *values in (
+            (self.pair, "--source", "camera or preloaded", "foo", "Preloaded", ""),
+            (self.pair, "--fidelity", "fast or cycle", "foo", "Preloaded", ""),
+            (self.pair, "--frames", "an integer, 1 or more", "0", "+1", " 1", "1e3", "0x10", *NO_INTEGERS),
+            (truth, "--truth-scale", "a number above 0", "0", "-1", "nan", "inf", "x", "", "1e400", "2x"),
+            ([], "--synthetic", "an integer, 0..2^64-1", *NO_INTEGERS),
+            (["--video", "a"], "--video-layout", "two, side_by_side or top_bottom", "three", "", "Two"),
+        ):
+            run_it = ["run", "fpl2003", *before, option]
+            self.all_refused(([*run_it, value], f"{option} = {value}: must be {rule}") for value in values)
+
+    def test_with_options_that_do_not_go_together_is_refused(self):
+        one_source = "a run has one source of pictures: --left F"
+        no_disparities = "does not go with --timing-only, which has no disparities"
+        pair, timing, saved = self.pair, [*self.pair, "--timing-only"], ["--save-frames", "--out", self.out]
+        sequence, synthetic = ["--sequence", self.folder], ["--synthetic", "1"]
+        video = ["--video", self.left, "--video-layout", "side_by_side"]
+        one, two = ["--video", "a", "--video-layout"], ["--video", "a", "b", "--video-layout"]
+        self.all_refused([
+            (pair + sequence, f"error: --left, --sequence: {one_source}"),
+            (pair + synthetic, f"error: --left, --synthetic: {one_source}"),
+            (sequence + video, f"error: --sequence, --video: {one_source}"),
+            (pair + sequence + video + synthetic, f"--left, --sequence, --video, --synthetic: {one_source}"),
+            (one[:2], "--video-layout: missing: goes with --video, one of two, side_"),
+            ([*pair, "--video-layout", "two"], "--video-layout: goes with --video F [F2]"),
+            ([*one, "two"], "--video 'a': must name two files with --video-layout two"),
+            ([*two, "side_by_side"], "--video 'a' 'b': must name one file with --video-layout side_by_side"),
+            ([*two, "top_bottom"], "--video 'a' 'b': must name one file with --video-layout top_bottom"),
+            ([*pair, "--truth-scale", "2"], "--truth-scale: goes with --truth F"),
+            ([*synthetic, "--truth", "t"], "does not go with --synthetic, whose scene is its own truth"),
+            ([*timing, "--truth", self.left], f"--truth: {no_disparities}"),
+            ([*timing, *saved], f"--save-frames: {no_disparities}"),
+            ([*pair, "--save-frames"], "--save-frames: goes with --out DIR"),
+        ], self.run_with)
+        self.refused(self.run_with("--video", "a", "b", "c", "--video-layout", "two"))
+        self.assertFalse(self.out.exists())
+
+
+class Missing(ProgramTest):
+    def missing(self, *arguments):
+        """What is said to be missing; the last line shows a complete command."""
+        *lines, example = self.refused(run("run", *arguments))
+        command = r"stereotlm run fpl2003 .*--left \S+ --right \S+"
+        self.assertRegex(example, rf"^stereotlm: note: a complete command: {command}$")
+        return [line.split(": ")[2] for line in lines if ": missing: " in line]
+
+    def test_parts_of_a_run_are_named_all_at_once(self):
+        left, right = self.pair[:2], self.pair[2:]
+        for arguments, missing in (
+            ([], ["BOARD", "pictures"]),
+            (["fpl2003", *PRELOADED], ["pictures"]),
+            (["fpl2003", *PRELOADED, *left], ["--right"]),
+            (["fpl2003", *PRELOADED, *right], ["--left"]),
+            (["--timing-only"], ["BOARD"]),
+            (["fpl2003", "--timing-only", *left], ["--right"]),
+        ):
+            self.assertEqual(self.missing(*arguments), missing)
+        sources = "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED"
+        self.refused(self.run_with(), f"error: pictures: missing: a run needs {sources}")
+        self.assertNotIn("complete command", run("run", "fpl2003", "--left", "a", "--right", "b").stderr)
+
+    def test_the_complete_command_is_one(self):
+        example = self.refused(run("run"))[-1].split(": ")[-1].split()
+        self.assertEqual(example.pop(0), "stereotlm")
+        for name in ("left.png", "right.png"):
+            self.file(name, pgm(640, 480, bytes(640 * 480)))
+        self.succeeds(run(*example, "--set", "matcher.window=3", cwd=self.folder))
+
+
+class Pictures(ProgramTest):
+    def picture(self, width, height):
+        return self.file(f"{width}x{height}.pgm", pgm(width, height, bytes(width * height)))
+
+    def test_are_refused_with_their_option_path_and_reason(self):
+        comment = b"P5\n# \r30000 30000 255\n1 1 255\nx"  # which a decoder may take for the size
+        size = f"pixels: must be as large as the board's images, {WIDTH}x{HEIGHT}"
+        sizes = ((WIDTH + 1, HEIGHT), (WIDTH - 1, HEIGHT), (WIDTH, HEIGHT + 1), (WIDTH, HEIGHT - 1))
+        for path, reason in (
+            (self.folder / "none.png", "no such file"),
+            ("", "no such file"),
+            (self.folder, "a directory"),
+            (self.file("empty.png"), "an empty file"),
+            (self.file("cut.pgm", self.left.read_bytes()[:-1]), "truncated"),
+            (self.file("text.png", "This is a text.\n" * 10), "not a picture"),
+            (self.file("comment.pgm", comment), "30000x30000 pixels: a board's images are 2048x2048 at most"),
+            *((self.picture(*wrong), f"{wrong[0]}x{wrong[1]} {size}") for wrong in sizes),
+        ):
+            with self.subTest(reason=reason):
+                options = ["--left", path, "--right", path, "--truth", path]
+                lines = self.refused(self.run_with(*options, "--out", self.out))
+                for option, line in zip(options[::2], lines, strict=True):
+                    self.assertTrue(line.startswith(f"stereotlm: error: {option} '{path}': {reason}"), line)
+                self.assertFalse(self.out.exists())
+
+    def test_of_two_wrong_sizes_are_named_both(self):
+        wide, high = self.picture(40, 24), self.picture(32, 30)
+        process = self.run_small(left=wide, right=high)
+        self.assertEqual(len(self.refused(process, f"--left '{wide}': 40x24", f"--right '{high}': 32x30")), 2)
+
+    def test_of_ground_truth_may_not_be_in_colour(self):
+        colour = self.file("colour.ppm", ppm(WIDTH, HEIGHT, noise(3 * WIDTH, HEIGHT, 1)))
+        self.refused_in_one_line(self.run_small("--truth", colour), f"--truth '{colour}': 8-bit colour")
+
+    def test_that_may_not_be_read_are_refused(self):
+        self.left.chmod(0)
+        process = run(*self.run_arguments(), preexec_fn=of_plain_user)
+        self.refused_in_one_line(process, f"--left '{self.left}': Permission denied")
+
+    def test_with_paths_that_run_json_cannot_hold_are_refused(self):
+        strange = os.fsdecode(b"\xff")
+        for side in ("left", "right"):
+            shutil.copy(self.left, self.folder / f"{side}_{strange}.png")
+        path = self.folder / f"left_{strange}.png"
+        pair, folder = ["--left", path, "--right", self.right], ["--sequence", self.folder]
+        for options, name in (pair, path), (folder, path.name):
+            process = run("run", "fpl2003", *SMALL, *PRELOADED, *options, errors="surrogateescape")
+            self.refused_in_one_line(process, f"error: {options[0]} '{name}': a path that is not UTF-8")
+
+
+class Environment(ProgramTest):
+    def test_sets_nothing_of_opencv(self):
+        expected = self.succeeds(self.run_small())
+        values = {"WIDTH": "1", "HEIGHT": "-1", "PIXELS": "many", "PARAMS": ""}
+        variables = {f"OPENCV_IO_MAX_IMAGE_{name}": value for name, value in values.items()}
+        process = run(*self.run_arguments(), env={**os.environ, **variables, "OPENCV_LOG_LEVEL": "VERBOSE"})
+        self.assertEqual((process.stdout, process.stderr), (expected, ""))
+
+
+class Boards(ProgramTest):
+    def test_are_refused_at_once_with_the_pictures_and_the_folder(self):
+        none = self.folder / "none"
+        board = sets("matcher.window=4")
+        lines = self.refused(self.run_small(*board, "--out", self.left, left=none))
+        for line, start in zip(lines, (
+            "--set matcher.window: matcher.window = 4: 3..31",
+            f"stereotlm: error: --left '{none}': no such file",
+            f"stereotlm: error: result folder '{self.left}': not a folder",
+        ), strict=True):
+            self.assertTrue(line.startswith(start), line)
+        lines = self.refused(self.run_with("--sequence", none, *board), "--set matcher.window", "--sequence")
+        self.assertEqual(len(lines), 2)
+
+    def test_are_refused_where_they_are_no_preset_or_a_bank_is_too_small(self):
+        words = WIDTH * HEIGHT // 4
+        bank = "ssram.banks.bank4.words"
+        self.succeeds(self.run_small(*sets(f"{bank}={words}")))
+        process = self.run_small(*sets(f"{bank}={words - 1}"))
+        self.refused_in_one_line(process, f"{bank} = {words - 1}: 1 words missing")
+        self.refused_in_one_line(self.run_small(board="fpl"), "fpl: not a preset")
+
+
+class Paths(ProgramTest):
+    @program.slow
+    def test_that_lead_nowhere_are_refused_with_their_option(self):
+        self.succeeds(self.run_small("--out", self.out))
+        plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [5, 7]}\n")
+        sweep = ["sweep", plan, "--out"]
+        grid = ["9x6", "--square-mm", "25"]
+        calibrate = ["calibrate", "--grid", *grid]
+        pictures = [*calibrate, "--out", self.folder / "rig.yaml"]
+        for arguments, option, ending in (
+            (["run", "fpl2003", "--right", self.right, "--left"], "--left", ""),
+            (self.run_arguments("--truth"), "--truth", ""),
+            (["run", "fpl2003", "--sequence"], "--sequence", ""),
+            (["run", "fpl2003", "--video-layout", "side_by_side", "--video"], "--video", ""),
+            (["check", "fpl2003", "--calibration"], "--calibration", ".yaml"),
+            (self.run_arguments("--out"), "result folder", ""),
+            ([*pictures, "--right", self.right, "--left"], "--left", ""),
+            ([*pictures, "--left", self.left, "--right"], "--right", ""),
+            ([*calibrate, "--synthetic", "1", "--out"], "--out", ".yaml"),
+            (["calibrate", "--print-grid", *grid, "--out"], "--out", ".pdf"),
+            (["diff", self.out], "A and B", ""),
+            (["diff", self.out, self.out, "--csv"], "--csv", ".csv"),
+            (sweep, "--out", ""),
+            ([*sweep, self.folder / "a.db", "--known"], "--known", ""),
+            ([*sweep, self.folder / "a.db", "--progress"], "--progress", ""),
+            (["paper", "--out"], "--out", ""),
+        ):
+            loop = self.folder / f"loop{ending}"
+            if not loop.is_symlink():
+                loop.symlink_to(loop.name)
+            too_long = self.folder / f"{'long' * 64}{ending}"
+            for path in (loop, loop / f"x{ending}", too_long, self.left / f"x{ending}"):
+                process = run(*arguments, path)
+                self.assertNotIn("filesystem error", process.stderr)
+                self.refused(process, option)
+            self.assertTrue(loop.is_symlink())
+
+
+class OutputFolders(ProgramTest):
+    def test_with_files_of_others_are_refused(self):
+        self.file("out/thesis.tex", "years of work")
+        refusal = "stereotlm: error: result folder"
+        with self.unchanged(self.folder):
+            self.refused_in_one_line(self.run_small("--out", self.out), refusal, "holds 'thesis.tex'")
+
+    def refused_inside(self, out, path, *names):
+        """The pictures of these options lie in this folder, in which nothing changes."""
+        options = [word for name in ("left", "right", "truth") for word in (
+            [f"--{name}", path] if name in names else [] if name == "truth" else [f"--{name}", self.left])]
+        rule = "which is replaced whole: an input must lie outside the folder of --out"
+        with self.subTest(out=out, path=path), self.unchanged(self.out):
+            command = ["run", "fpl2003", *SMALL, *PRELOADED, *options, "--out", out]
+            lines = self.refused(run(*command, cwd=self.folder))
+            refusals = [f"--{name} '{path}': inside the result folder '{out}', {rule}" for name in names]
+            self.assertEqual(lines, [f"stereotlm: error: {refusal}" for refusal in refusals])
+
+    def test_with_pictures_of_the_run_are_refused(self):
+        self.succeeds(self.run_small("--out", self.out))
+        for names in (["left"], ["right"], ["truth"], ["left", "right", "truth"]):
+            self.refused_inside(self.out, self.out / "disparity.png", *names)
+        (self.folder / "link.png").symlink_to(self.out / "disparity.png")
+        (self.folder / "link").symlink_to(self.out)
+        for out, path in (
+            ("out", "out/disparity.png"),
+            ("out/", "./out//disparity.png"),
+            ("link", "out/../out/disparity.png"),
+            (f"{self.out}/../out/.", "link.png"),
+        ):
+            self.refused_inside(out, path, "left")
+        for below in ("frames", ".partial/earlier"):
+            picture = self.file(f"out/{below}/000000.png", self.left.read_bytes())
+            self.refused_inside(self.out, picture, "left")
+
+    def test_may_lie_beside_a_picture_of_the_run(self):
+        self.out.mkdir()
+        shutil.copy(self.left, self.folder / "out.pgm")  # its name begins like the folder's
+        for left in (self.folder / "out.pgm", self.out / ".." / "left.pgm"):
+            self.succeeds(self.run_small("--out", self.out, left=left))
+
+    def test_of_a_refused_run_stay_as_they_were(self):
+        none = self.folder / "none.pgm"
+        self.refused(self.run_small("--out", self.out / "a" / "b", left=none))
+        self.assertFalse(self.out.exists())
+        self.succeeds(self.run_small("--out", self.out))
+        with self.unchanged(self.out):
+            self.refused(self.run_small("--out", self.out, left=none))
+
+    def test_on_a_full_disk_stay_as_they_were(self):
+        def run_with_file_limit(limit, *more):
+            set_limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+            return run(*self.run_arguments("--out", self.out, *more), preexec_fn=set_limit)
+
+        self.fails(run_with_file_limit(100), "'disparity.png' cannot be written: File too large")
+        self.assertFalse(self.out.exists())
+        self.succeeds(self.run_small("--out", self.out))
+        largest = max(len(data) for data in self.result().values())
+        with self.unchanged(self.out):
+            self.fails(run_with_file_limit(largest - 1, "--frames", "2"))
+        self.succeeds(run_with_file_limit(2 * largest, "--frames", "2"))
+        self.assertEqual(self.stats()["frames"], 2)
+
+
+if __name__ == "__main__":
+    program.main()
