@@ -11,8 +11,8 @@
 namespace stereotlm::platform {
 namespace {
 
+using fpga::kPortCount;
 using memory::ArbiterStats;
-using memory::kPortCount;
 using memory::Port;
 
 BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbiter, std::uint64_t cycles,
@@ -34,8 +34,8 @@ BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbi
 }
 
 PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
-  return {memory::name_of(port), cycles.granted(), cycles.stalled(), cycles.passed(),
-          cycles.idle(),         cycles.blocked(), cycles.starved()};
+  return {fpga::kPorts[port].name, cycles.granted(), cycles.stalled(), cycles.passed(),
+          cycles.idle(),           cycles.blocked(), cycles.starved()};
 }
 
 // Sorted by port, bank and causing port, turnaround last.
@@ -46,8 +46,8 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
       for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
         const std::uint64_t cycles = counters.banks[bank].arbiter.blame[victim][by];
         if (cycles == 0) continue;
-        rows.push_back({memory::kPortNames[victim], config.banks[bank].name,
-                        by == ArbiterStats::kTurnaround ? "turnaround" : memory::kPortNames[by], cycles});
+        rows.push_back({fpga::kPorts[victim].name, config.banks[bank].name,
+                        by == ArbiterStats::kTurnaround ? "turnaround" : fpga::kPorts[by].name, cycles});
       }
     }
   }
@@ -57,7 +57,7 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
 void audit_ports(const BoardCounters& counters, std::uint64_t cycles, Audit& audit) {
   for (std::size_t index = 0; index < kPortCount; ++index) {
     const fpga::PortCycles& port = counters.ports[index];
-    const std::string name = std::string("port ") + memory::kPortNames[index];
+    const std::string name = std::string("port ") + fpga::kPorts[index].name;
     std::uint64_t blamed = 0;
     std::uint64_t granted = 0;
     for (const BoardCounters::Bank& bank : counters.banks) {
@@ -97,32 +97,40 @@ void audit_flow(const fpga::FrameGeometry& geometry, const BoardCounters& counte
 
 }  // namespace
 
+BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
+  BoardCounters counters;
+  counters.frames = frames.frame_cycles().size();
+  for (std::size_t port = 0; port < kPortCount; ++port)
+    counters.ports[port] = frames.control().port_cycles(port);
+  counters.banks.reserve(arbiters.size());
+  for (const memory::BankArbiter& arbiter : arbiters)
+    counters.banks.push_back({arbiter.stats(), arbiter.uncounted_accesses(), 0});
+  counters.left.consumed = frames.control().lane(fpga::Side::kLeft).consumed();
+  counters.right.consumed = frames.control().lane(fpga::Side::kRight).consumed();
+  return counters;
+}
+
 BoardCounters counters_of(const Board& board) {
   const fpga::StereoCore& core = board.core;
-  BoardCounters counters;
-  counters.frames = core.frame_cycles().size();
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    counters.ports[port] = core.control().port_cycles(static_cast<Port>(port));
-  }
-  counters.banks.reserve(board.banks.size());
+  const fpga::CoreDatapath& datapath = core.datapath();
+  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbiters());
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-    const memory::BankArbiter& arbiter = core.crossbar().arbiters()[bank];
     const memory::SsramBank::Stats& stats = board.banks[bank].stats();
-    counters.banks.push_back(
-        {arbiter.stats(), arbiter.uncounted_accesses(),
-         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank)});
+    counters.banks[bank].accesses =
+        stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
   }
-  counters.left = {core.sequencer().stats(fpga::Side::kLeft).slots, core.control().left().consumed()};
-  counters.right = {core.sequencer().stats(fpga::Side::kRight).slots, core.control().right().consumed()};
-  counters.packed_words = core.result_packer().stats().words;
-  counters.written_words = core.result_writer().stats().writes;
+  counters.left.issued = datapath.sequencer().stats(fpga::Side::kLeft).slots;
+  counters.right.issued = datapath.sequencer().stats(fpga::Side::kRight).slots;
+  counters.packed_words = datapath.result_packer().stats().words;
+  counters.written_words = datapath.result_writer().stats().writes;
   return counters;
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters) {
   const bool is_cycle = board.core.fidelity() == fpga::Fidelity::kCycle;
-  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frame_cycles(), counters);
+  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frames().frame_cycles(),
+                            counters);
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
@@ -142,7 +150,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                                                statistics.cycles, config.fpga.clock_mhz));
   }
   for (std::size_t port = 0; port < kPortCount; ++port) {
-    statistics.ports.push_back(port_statistics(static_cast<Port>(port), counters.ports[port]));
+    statistics.ports.push_back(port_statistics(port, counters.ports[port]));
   }
   statistics.blame = blame_rows(config, counters);
   statistics.area = area_of(config);

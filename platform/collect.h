@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/lane_control.h"
+#include "models/fpga/frame_run.h"
+#include "models/fpga/port_cycles.h"
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/memory_config.h"
 #include "platform/board.h"
@@ -29,8 +30,8 @@ struct BoardCounters {
   };
 
   std::size_t frames = 0;
-  std::array<fpga::PortCycles, memory::kPortCount> ports{};  // [memory::index_of(Port)]
-  std::vector<Bank> banks;                                   // in the order of the configuration
+  std::array<fpga::PortCycles, fpga::kPortCount> ports{};  // [port]
+  std::vector<Bank> banks;                                 // in the order of the configuration
   Lane left;
   Lane right;
   std::uint64_t packed_words = 0;
@@ -38,6 +39,8 @@ struct BoardCounters {
 };
 
 BoardCounters counters_of(const Board& board);
+// What control and arbiters alone have counted. The rest is 0: accesses, slots issued, words packed and written.
+BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters);
 
 // The figures of the frames that `counters` cover, and their bound. Checks the identities of contract section
 // 6; `failed` lists those that do not hold. `counters` are of this board, now or earlier.

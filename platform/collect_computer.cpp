@@ -60,7 +60,7 @@ void audit_words(const BoardConfig& config, const ComputerCounters::Words& words
 void audit_host_port(const ComputerCounters& counters, Audit& audit) {
   std::uint64_t grants = 0;
   for (const BoardCounters::Bank& bank : counters.board.banks) {
-    grants += bank.uncounted_grants + bank.arbiter.grants[memory::index_of(memory::Port::kHost)];
+    grants += bank.uncounted_grants + bank.arbiter.grants[fpga::kHostPort];
   }
   audit.equal("port host: grants in and between frames", grants, "words of the local bus",
               counters.local_bus.words_read + counters.local_bus.words_written);

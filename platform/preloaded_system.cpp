@@ -15,7 +15,7 @@ host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames
   config.height = board.image.height;
   config.frames = frames;
   config.pixels = fidelity != fpga::Fidelity::kTiming;
-  config.buffers = frame_buffers(board);
+  config.buffers = buffer_bases(board);
   return config;
 }
 

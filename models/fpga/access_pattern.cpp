@@ -67,7 +67,7 @@ std::vector<std::uint64_t> AccessPattern::valid_in_rows() const {
   return valid;
 }
 
-// Those before it have been counted.
+// The strips before this one have been counted.
 void AccessPattern::find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows) {
   std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
   std::fill_n(changes, words_, std::uint64_t{0});
@@ -82,7 +82,7 @@ void AccessPattern::find_changes_of_strip(int strip, const std::vector<std::uint
     }
     pixel_accesses_ += valid_in_rows[static_cast<std::size_t>(row)];
     const std::uint64_t* const bits = valid_row(row);
-    std::uint64_t before = bits[0] & 1U;  // the first column has none before it
+    std::uint64_t before = bits[0] & 1U;  // there is no column before the first one
     for (std::size_t word = 0; word < words_; ++word) {
       changes[word] |= bits[word] ^ (bits[word] << 1U | before);
       before = bits[word] >> 63U;
@@ -103,7 +103,7 @@ void AccessPattern::find_strips_with_changes() {
   }
 }
 
-// Whether the first column of a strip is like the last one of the strip before.
+// Whether the first column of a strip makes the accesses of the last column of the strip before.
 bool AccessPattern::strip_begins_alike(int strip) const {
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row + strip + k;
@@ -145,7 +145,7 @@ std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {
   const auto strips = static_cast<std::size_t>(geometry_.strips);
   const std::uint64_t next = frame_column + 1;
   auto strip = static_cast<std::size_t>(next / width);
-  std::size_t place = next % width;  // in the strip
+  std::size_t place = next % width;  // column in the strip
   while (strip < strips) {
     const std::uint64_t* const changes = changes_.data() + strip * words_;
     std::uint64_t mask = ~std::uint64_t{0} << place % 64;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -7,9 +8,9 @@
 
 namespace stereotlm::fpga {
 
-// The accesses that each slot of one side makes, known before the frame: whether the slot lies outside the
-// image, and whether its table entry is valid. Runs of uniform columns are found when the entries are set, so
-// that queries are cheap.
+// The accesses of each slot of one side: none if the slot lies outside the image, else one for its table
+// entry, and one for its pixel if the entry is valid. Known before the frame. Runs of uniform columns are
+// found when the entries are set, so that queries are cheap.
 class AccessPattern {
  public:
   // At first every entry is valid, as on a side without table.
@@ -22,9 +23,9 @@ class AccessPattern {
     const auto place = static_cast<std::size_t>(column);
     return (valid_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
-  // The end of the run of uniform columns that begins with `frame_column`: the first column behind it whose
-  // slots do not make the same accesses one by one, or the number of columns. Columns are counted over the
-  // whole frame, strip after strip.
+  // The end of the run of uniform columns that begins with `frame_column`: the next column whose slots do not
+  // make the same accesses one by one, or the number of columns. Columns are counted over the whole frame,
+  // strip after strip.
   std::uint64_t uniform_until(std::uint64_t frame_column) const;
 
   // The number of slots with an invalid entry among the first `slots` slots of a frame.
@@ -54,15 +55,17 @@ class AccessPattern {
   bool strip_begins_alike(int strip) const;
 
   FrameGeometry geometry_;
-  std::size_t words_;                 // of 64 bits, for a row of the image
+  std::size_t words_;                 // words of 64 bits for a row of the image
   std::vector<std::uint64_t> valid_;  // [row][word]
   bool all_valid_ = false;
-  std::vector<std::uint64_t> changes_;               // [strip][word]: columns that differ from the one before
-  std::vector<std::uint64_t> invalid_before_strip_;  // [strip]: slots
-  std::vector<std::uint32_t>
-      next_change_;  // [strip]: the first strip from it on with a change, or the number of strips
+  std::vector<std::uint64_t> changes_;               // [strip][word]: columns unlike the column before
+  std::vector<std::uint64_t> invalid_before_strip_;  // [strip]: slots with an invalid entry
+  // [strip]: the first strip from this one on that has a change; or the number of strips.
+  std::vector<std::uint32_t> next_change_;
   std::uint64_t empty_slots_ = 0;
   std::uint64_t pixel_accesses_ = 0;
 };
+
+using AccessPatterns = std::array<AccessPattern, 2>;  // [side]
 
 }  // namespace stereotlm::fpga

@@ -3,23 +3,22 @@
 #include <cstdint>
 #include <systemc>
 
+#include "models/fpga/core_ports.h"
 #include "models/kernels/column_filter.h"
 #include "models/kernels/words.h"
 
-// What the stages of the FPGA hand to each other.
+// The beats of the streams between the stages of the FPGA.
 namespace stereotlm::fpga {
 
-enum class Side : std::uint8_t { kLeft, kRight };
-
-// A turn of the sequence: the rectified pixel to fetch.
+// A slot of the sequence: the rectified pixel to fetch.
 struct Slot {
   int column = 0;
   int row = 0;
   bool empty = false;   // outside the image: no access
-  sc_core::sc_time at;  // of the cycle, from now
+  sc_core::sc_time at;  // start of its cycle, from now
 };
 
-// The source position of a rectified pixel, if it has one.
+// The source position of a rectified pixel, if there is one.
 struct TableEntry {
   std::uint32_t entry = 0;  // contract 1.1; not valid for an empty slot
 };
@@ -27,12 +26,12 @@ struct TableEntry {
 using kernels::MaskedPixel;
 using kernels::PixelColumn;
 
-// The window modules' outputs for one column.
+// The outputs of the window modules for one column.
 struct WindowSums {
   const std::int32_t* sums = nullptr;  // padded lanes, valid during the push
   int lanes = 0;
-  int candidates = 0;       // the first ones whose windows lie inside both images
-  bool left_valid = false;  // the table entry of the left pixel in the middle of the window
+  int candidates = 0;       // the first so many lanes have windows inside both images
+  bool left_valid = false;  // the table entry of the left pixel in the middle of the window is valid
 };
 
 // Unit A's result for a right pixel.

@@ -21,7 +21,7 @@ inline constexpr kernels::IntegerRule kLaneFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kResultFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kPipelineLatencyRule{0, 1024};
 
-// What the FPGA is synthesised for. Defaults: the paper's board.
+// The parameters that the FPGA is synthesised with. Defaults: the board of the paper.
 struct CoreConfig {
   int width = 640;                                                // pixels, kWidthRule
   int height = 480;                                               // pixels, kHeightRule

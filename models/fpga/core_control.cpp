@@ -1,5 +1,6 @@
 #include "models/fpga/core_control.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace stereotlm::fpga {
@@ -14,22 +15,29 @@ const CoreConfig& checked(const CoreConfig& config) {
 
 CoreControl::CoreControl(const CoreConfig& config)
     : geometry_(checked(config)),
-      left_(geometry_, config.left_table, config.lane_fifo_slots),
-      right_(geometry_, config.right_table, config.lane_fifo_slots),
+      lanes_{LaneControl(geometry_, config.left_table, config.lane_fifo_slots),
+             LaneControl(geometry_, config.right_table, config.lane_fifo_slots)},
       match_(geometry_),
       result_(geometry_, config.result_fifo_words) {}
 
 void CoreControl::start_frame(const FrameLatencies& latencies) {
-  left_.start_frame(latencies.left_lut, latencies.left_image);
-  right_.start_frame(latencies.right_lut, latencies.right_image);
+  for (const Side side : kSides) {
+    lanes_[index_of(side)].start_frame(latencies[lut_port(side)], latencies[pixel_port(side)]);
+  }
   match_.start_frame();
   result_.start_frame();
 }
 
+void CoreControl::correct_passes(Side side, std::uint64_t cycles, std::uint64_t marks) {
+  PortCycles& pixel = cycles_[pixel_port(side)];
+  pixel.subtract(Intent::kRequest, true, cycles);
+  pixel.add(Intent::kPass, false, cycles);
+  lanes_[index_of(side)].correct_marks(marks);
+}
+
 CoreControl::Counts CoreControl::counts() const {
   Counts counts;
-  for (std::size_t port = 0; port < counts.size(); ++port)
-    counts[port] = port_cycles(static_cast<memory::Port>(port));
+  std::copy_n(cycles_.begin(), counts.size(), counts.begin());
   return counts;
 }
 
@@ -40,40 +48,23 @@ CoreControl::Counts CoreControl::difference(const Counts& after, const Counts& b
   return difference;
 }
 
-void CoreControl::count(const Counts& counts, std::uint64_t times) {
-  using memory::index_of;
-  using memory::Port;
-  left_.count(counts[index_of(Port::kLeftLut)], counts[index_of(Port::kLeftPixel)], times);
-  right_.count(counts[index_of(Port::kRightLut)], counts[index_of(Port::kRightPixel)], times);
-  result_.count(counts[index_of(Port::kResult)], times);
+void CoreControl::add(const Counts& counts, std::uint64_t times) {
+  for (std::size_t port = 0; port < counts.size(); ++port) cycles_[port].add(counts[port], times);
 }
 
 void CoreControl::skip_to(const State& state, std::uint64_t columns, std::uint64_t words) {
   const std::uint64_t slots =
       match_.draining() ? 0 : columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
-  left_.skip_to(state.left, slots);
-  right_.skip_to(state.right, slots);
+  for (std::size_t side = 0; side < lanes_.size(); ++side) lanes_[side].skip_to(state.lanes[side], slots);
   match_.skip_columns(columns);
   result_.skip_to(state.rest >> 8U, words);
 }
 
-const PortCycles& CoreControl::port_cycles(memory::Port port) const {
-  using memory::Port;
-  switch (port) {
-    case Port::kLeftLut:
-      return left_.lut_cycles();
-    case Port::kRightLut:
-      return right_.lut_cycles();
-    case Port::kLeftPixel:
-      return left_.pixel_cycles();
-    case Port::kRightPixel:
-      return right_.pixel_cycles();
-    case Port::kResult:
-      return result_.cycles();
-    case Port::kHost:
-      break;
-  }
-  return host_cycles_;
+std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {
+  const std::uint64_t consumes = match_.cycles_left();
+  // The last word enters the queue when the matcher has consumed all, and is written in a later cycle.
+  if (consumes > 0) return cycle + consumes;
+  return cycle + result_.words_left() - 1;
 }
 
 }  // namespace stereotlm::fpga

@@ -4,11 +4,11 @@
 
 namespace stereotlm::fpga {
 
-// How the core works on a frame; the results and times are the same.
+// How the core works on a frame. Results and times are the same at all of them.
 enum class Fidelity : std::uint8_t {
   kCycle,   // cycle by cycle, every access a transaction
-  kFast,    // its data at once, by direct access; its timing ahead, as far as it is known (CoreTiming)
-  kTiming,  // as kFast, but without pictures and disparities; a frame done cycle by cycle has both
+  kFast,    // its data at once, by direct access; its cycles ahead (FastForward)
+  kTiming,  // as kFast, but without pictures and disparities; a frame that is stepped has both
 };
 
 }  // namespace stereotlm::fpga

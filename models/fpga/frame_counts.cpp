@@ -24,14 +24,19 @@ FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const AccessPattern
 
 }  // namespace
 
-FrameCounts::FrameCounts(const CoreConfig& config, const AccessPattern& left_pattern,
-                         const AccessPattern& right_pattern, const CoreControl& control,
-                         std::uint64_t answered) {
-  const FrameGeometry geometry(config);
-  left = lane_counts(geometry, left_pattern, config.left_table, control.left());
-  right = lane_counts(geometry, right_pattern, config.right_table, control.right());
+FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& patterns, const FrameRun& run,
+                         std::optional<std::uint64_t> answered) {
+  const CoreControl& control = run.control();
+  const FrameGeometry& geometry = control.geometry();
+  for (const Side side : kSides) {
+    const std::size_t index = index_of(side);
+    const std::size_t lut = lut_port(side);
+    lanes[index] = lane_counts(geometry, patterns[index], has_port(config, lut), control.lane(side));
+    accesses[lut] = lanes[index].table.reads;
+    accesses[pixel_port(side)] = lanes[index].image.reads;
+  }
   filter.pixels = geometry.slots + geometry.drain_cycles;
-  // Also the first ones, of which the filter makes nothing yet; their windows stay in the array.
+  // The first columns are among them, which the filter does not filter yet; their windows stay in the array.
   filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column);
   rows.columns = filter.columns;
   sums.columns = filter.columns;
@@ -51,9 +56,10 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPattern& left_pat
   chain.matches = matches;
   tree.columns = chain.columns;
   tree.matches = matches;
-  const std::uint64_t pixels = geometry.result_words * 4;
-  check = {answered, pixels - answered};
+  if (answered) check = LrCheck::Stats{*answered, geometry.result_words * 4 - *answered};
   packed.words = control.match().words();
+  result = {run.writes(), static_cast<std::uint64_t>(control.result().most_queued()), 0};
+  accesses[kResultPort] = geometry.result_words;
 }
 
 }  // namespace stereotlm::fpga

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
-#include "models/fpga/core_control.h"
-#include "models/fpga/frame_geometry.h"
+#include "models/fpga/core_ports.h"
+#include "models/fpga/frame_run.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
 #include "models/fpga/lut_reader.h"
 #include "models/fpga/pixel_reader.h"
 #include "models/fpga/result_packer.h"
+#include "models/fpga/result_writer.h"
 #include "models/fpga/row_buffer.h"
 #include "models/fpga/sad_array.h"
 #include "models/fpga/select_min_chain.h"
@@ -19,29 +22,30 @@
 
 namespace stereotlm::fpga {
 
-// What the stages count in one frame, whenever it runs through them: nothing of it depends on the timing but
-// the queue's longest. The slots issued and the words packed are those that the control has come to, so that
-// an audit can hold them against the geometry; the rest is known without the frame's cycles from the
-// geometry, the pattern of the slots, and the answers.
+// What the stages count in one frame, for a frame whose data they did not move. The slots issued, the words
+// packed and the words written are those that the control has come to, so that an audit can compare them with
+// the geometry. The rest follows from the geometry, the accesses of the slots, and the answers.
 struct FrameCounts {
-  // Of a frame that `control` has run, in which `answered` pixels have a disparity.
-  FrameCounts(const CoreConfig& config, const AccessPattern& left, const AccessPattern& right,
-              const CoreControl& control, std::uint64_t answered);
+  // `run` has run the frame up to its last write. `answered`: pixels that have a disparity; nothing if no
+  // disparities were computed.
+  FrameCounts(const CoreConfig& config, const AccessPatterns& patterns, const FrameRun& run,
+              std::optional<std::uint64_t> answered);
 
   struct Lane {
     Sequencer::Stats slots;
     LutReader::Stats table;
     PixelReader::Stats image;
   };
-  Lane left;
-  Lane right;
+  std::array<Lane, 2> lanes;  // [side]
   LogFilter::Stats filter;
   RowBuffer::Stats rows;
   SadArray::Stats sums;
   SelectMinChain::Stats chain;
   SelectMinTree::Stats tree;
-  LrCheck::Stats check;
+  std::optional<LrCheck::Stats> check;  // nothing if no disparities were computed
   ResultPacker::Stats packed;
+  ResultWriter::Stats result;
+  std::array<std::uint64_t, kCorePortCount> accesses{};  // [port], of the banks
 };
 
 }  // namespace stereotlm::fpga

@@ -7,8 +7,8 @@
 
 namespace stereotlm::fpga {
 
-// How a frame runs through the core (contract section 2, "Slots" and "Matcher"): strips of columns of slots,
-// and how many columns a result waits behind the slots that it is made of.
+// The slots of a frame (contract section 2, "Slots" and "Matcher"): strips of columns, and the delay of a
+// result behind its slots.
 struct FrameGeometry {
   explicit FrameGeometry(const CoreConfig& config)
       : width(config.width),
@@ -33,20 +33,20 @@ struct FrameGeometry {
   int height;
   int radius;            // r
   int filter_half;       // h
-  int slots_per_column;  // also the consume-cycles of a column of the drain
-  int lead_strips;       // strips before the one whose last column starts the first row of results
+  int slots_per_column;  // also the cycles of a column of the drain
+  int lead_strips;       // strips before the first row of results can begin
   int strips;
-  int first_row;      // of the first slot; may be above the image. Each strip begins one row further down
+  int first_row;      // of the first strip; may lie above the image. Each strip begins one row further down
   int drain_columns;  // C_d
   std::uint64_t slots;
   std::uint64_t drain_cycles;
-  std::uint64_t result_delay_columns;  // C: pixel i leaves with column i + C
+  std::uint64_t result_delay_columns;  // C: the result of pixel i leaves with column i + C
   std::uint64_t result_words;
 
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
 };
 
-// Walks the slots of a frame in their order.
+// A place in the sequence of the slots of a frame.
 class SlotCursor {
  public:
   SlotCursor() = default;
@@ -61,7 +61,7 @@ class SlotCursor {
   bool done() const { return left_ == 0; }
   int column() const { return column_; }
   int row() const { return strip_row_ + k_; }  // may lie outside the image
-  // Counted over the whole frame, strip after strip.
+  // The column, counted over the whole frame, strip after strip.
   std::uint64_t frame_column() const {
     return static_cast<std::uint64_t>(strip_row_ - first_row_) * static_cast<std::uint64_t>(width_) +
            static_cast<std::uint64_t>(column_);
@@ -92,10 +92,10 @@ class SlotCursor {
   int height_ = 0;
   int slots_per_column_ = 1;
   int first_row_ = 0;
-  int strip_row_ = 0;  // of the first slot of each column of the strip
+  int strip_row_ = 0;  // row of the first slot of each column of the strip
   int column_ = 0;
-  int k_ = 0;  // within the column
-  std::uint64_t left_ = 0;
+  int k_ = 0;               // slot within the column
+  std::uint64_t left_ = 0;  // slots
 };
 
 }  // namespace stereotlm::fpga

@@ -1,51 +1,28 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <numeric>
 
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/port_cycles.h"
+#include "models/memory/bank_traits.h"
 
 namespace stereotlm::fpga {
 
-// What a port does in a cycle, decided from the state at its beginning (contract section 2, "Port states").
-enum class Intent : std::uint8_t { kRequest, kPass, kIdle, kBlocked, kStarved };
+// Read latencies that a lane can hold, in cycles.
+inline constexpr kernels::IntegerRule kLaneLatencyRule{1, 2};
 
-// Cycles by state: a request ends granted or stalled.
-class PortCycles {
- public:
-  void count(Intent intent, bool granted, std::uint64_t cycles = 1) {
-    cycles_[granted ? kGranted : static_cast<std::size_t>(intent)] += cycles;
-  }
-  // Those of other cycles, `times` times.
-  void count(const PortCycles& others, std::uint64_t times) {
-    for (std::size_t kind = 0; kind < cycles_.size(); ++kind) cycles_[kind] += others.cycles_[kind] * times;
-  }
-  PortCycles since(const PortCycles& before) const {
-    PortCycles since = *this;
-    since.count(before, ~std::uint64_t{0});
-    return since;
-  }
+static_assert(
+    [] {
+      for (const memory::BankTraits& bank : memory::kBankTraits) {
+        if (!kLaneLatencyRule.allows(bank.read_latency_cycles)) return false;
+      }
+      return true;
+    }(),
+    "a lane cannot hold the read latency of a kind of bank");
 
-  std::uint64_t granted() const { return cycles_[kGranted]; }
-  std::uint64_t stalled() const { return of(Intent::kRequest); }
-  std::uint64_t passed() const { return of(Intent::kPass); }
-  std::uint64_t idle() const { return of(Intent::kIdle); }
-  std::uint64_t blocked() const { return of(Intent::kBlocked); }
-  std::uint64_t starved() const { return of(Intent::kStarved); }
-  std::uint64_t sum() const { return std::accumulate(cycles_.begin(), cycles_.end(), std::uint64_t{0}); }
-
- private:
-  static constexpr std::size_t kGranted = 5;
-  std::uint64_t of(Intent intent) const { return cycles_[static_cast<std::size_t>(intent)]; }
-
-  std::array<std::uint64_t, 6> cycles_{};  // [intent], requests only while not granted
-};
-
-// One side of the core, from the sequence of slots to the matcher: which port asks for what in each cycle,
-// and what follows from the grants. Plain C++: the single description of the lane's timing, whatever steps
-// it.
+// One lane of the core, from the sequence of slots to the matcher: what its ports request in each cycle, and
+// what follows from the grants. Plain C++. It is the only description of the lane's timing, at every
+// fidelity.
 //
 // A cycle is decide() and ready(), then the arbitration, then commit().
 class LaneControl {
@@ -61,8 +38,14 @@ class LaneControl {
         has_table_(has_table),
         fifo_slots_(static_cast<std::uint64_t>(kLaneFifoRule.required("lane_fifo_slots", fifo_slots))) {}
 
-  // Latencies of the banks that hold this frame's table and image: 1 or 2 cycles.
+  // Read latencies of the banks that hold this frame's table and image; without a table the first has no
+  // effect. Throws std::invalid_argument outside kLaneLatencyRule.
   void start_frame(int table_latency_cycles, int image_latency_cycles) {
+    const auto takes_two = [](const char* field, int latency) {
+      return kLaneLatencyRule.required(field, latency) == 2;
+    };
+    table_takes_two_cycles_ = has_table_ && takes_two("table_latency_cycles", table_latency_cycles);
+    image_takes_two_cycles_ = takes_two("image_latency_cycles", image_latency_cycles);
     next_slot_ = SlotCursor(geometry_);
     consumed_before_frame_ += consumed_;
     taken_ = 0;
@@ -70,8 +53,6 @@ class LaneControl {
     consumed_ = 0;
     arrived_entries_ = 0;
     arrived_pixels_ = 0;
-    table_takes_two_cycles_ = has_table_ && table_latency_cycles == 2;
-    image_takes_two_cycles_ = image_latency_cycles == 2;
   }
 
   Decision decide() const {
@@ -82,10 +63,9 @@ class LaneControl {
   bool ready() const { return arrived_pixels_ > consumed_; }
 
   // `lut_granted`, `pixel_granted`: the request was granted. `entry_valid`: of the table entry that the LUT
-  // port has just read; without effect otherwise. `consumes`: the matcher consumes a slot in this cycle.
+  // port has just read; without effect if it has read none. `consumes`: the matcher consumes a slot in this
+  // cycle.
   void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid, bool consumes) {
-    lut_cycles_.count(decision.lut, lut_granted);
-    pixel_cycles_.count(decision.pixel, pixel_granted);
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
     const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
     // What enters in cycle c is seen from cycle c + latency on.
@@ -103,20 +83,11 @@ class LaneControl {
     arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
-  // In so many cycles of this frame the pixel port had no access to make, as it turns out, but passed a slot.
-  // `marks`: bit i for slot handled() + i, whether it needs an access, of those taken and not handled.
-  void correct_passes(std::uint64_t cycles, std::uint64_t marks) {
-    pixel_cycles_.count(Intent::kRequest, true, ~cycles + 1);
-    pixel_cycles_.count(Intent::kPass, false, cycles);
-    marks_ = from_handled_on(marks);
-  }
-  // Cycles beside those committed.
-  void count(const PortCycles& lut, const PortCycles& pixel, std::uint64_t times) {
-    lut_cycles_.count(lut, times);
-    pixel_cycles_.count(pixel, times);
-  }
+  // Corrects whether the slots need an access that are taken and not handled: bit i of `marks` is that of
+  // slot handled() + i.
+  void correct_marks(std::uint64_t marks) { marks_ = from_handled_on(marks); }
 
-  // All that the lane does next depends on, but for the slots that it has not taken yet.
+  // The state that determines the lane's next cycles, together with the slots that it has not taken yet.
   struct State {
     std::uint64_t counts = 0;
     std::uint64_t marks = 0;  // of the slots taken and not handled, oldest lowest
@@ -136,7 +107,7 @@ class LaneControl {
                 std::uint64_t{arrived_entries_ != 0} << 33U,
             rotated & kept};
   }
-  // As if cycles had been committed in which the matcher consumes so many slots and that lead to this state.
+  // Skips cycles in which the matcher consumes `slots` slots; they end in this state.
   void skip_to(const State& state, std::uint64_t slots) {
     static_assert(kMostSlots <= 0xff);
     const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state.counts >> bit & 0xffU); };
@@ -150,20 +121,18 @@ class LaneControl {
     next_slot_.advance(taken_ - taken_before);
   }
 
-  // Slots of this frame that it has taken, and of these those that the pixel port has handled.
+  // Slots of the frame that the lane has taken, and those that the pixel port has handled.
   std::uint64_t taken() const { return taken_; }
   std::uint64_t handled() const { return handled_; }
   // The slot that the lane takes next.
   const SlotCursor& next_slot() const { return next_slot_; }
-  const PortCycles& lut_cycles() const { return lut_cycles_; }
-  const PortCycles& pixel_cycles() const { return pixel_cycles_; }
-  // Slots, over all frames.
+  // Slots that the matcher has consumed, over all frames.
   std::uint64_t consumed() const { return consumed_before_frame_ + consumed_; }
 
  private:
   static constexpr std::uint64_t kMostSlots = kLaneFifoRule.max;
 
-  // Bit 0 is that of the slot which the pixel port handles next.
+  // Rotates marks whose bit 0 belongs to the slot that the pixel port handles next to their places in marks_.
   std::uint64_t from_handled_on(std::uint64_t marks) const {
     const std::uint64_t place = handled_ % kMostSlots;
     return place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
@@ -186,15 +155,13 @@ class LaneControl {
   bool table_takes_two_cycles_ = false;
   bool image_takes_two_cycles_ = false;
   SlotCursor next_slot_;
-  // Slots of this frame, until now.
+  // Numbers of slots of the frame.
   std::uint64_t taken_ = 0;
   std::uint64_t handled_ = 0;
   std::uint64_t consumed_ = 0;
-  std::uint64_t arrived_entries_ = 0;  // of those taken: the pixel port can handle them
-  std::uint64_t arrived_pixels_ = 0;   // of those handled: the matcher can consume them
-  std::uint64_t marks_ = 0;            // [slot % kMostSlots] of those taken and not handled: needs an access
-  PortCycles lut_cycles_;
-  PortCycles pixel_cycles_;
+  std::uint64_t arrived_entries_ = 0;  // slots taken whose entry the pixel port can use
+  std::uint64_t arrived_pixels_ = 0;   // slots handled whose pixel the matcher can consume
+  std::uint64_t marks_ = 0;            // [slot % kMostSlots] of slots taken and not handled: needs an access
   std::uint64_t consumed_before_frame_ = 0;
 };
 

@@ -10,7 +10,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-constexpr std::uint64_t kFirstWordClock = 2;  // behind the address clock and the decode clock
+constexpr std::uint64_t kFirstWordClock = 2;  // after the address clock and the decode clock
 constexpr bool is_register(std::uint64_t address) { return address >= kLocalRegisters; }
 
 double checked(double clock_mhz) {
@@ -92,11 +92,11 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
   const std::uint64_t first = access.get_address();
   route_out->push(
       {memory::bank_of_address(first), access.is_write(), first, first + access.get_data_length()});
-  // Whoever grants may have done so already, where nothing can come between.
+  // All words may have been granted in the push.
   if (words_left_ != 0) request_event_.notify(Clock::to_time(request_ps_ - now));
 }
 
-// One word of the burst, at `address` of what lies behind the socket.
+// Transfers one word of the burst, at `address` on the socket of `through`.
 bool LocalBus::transfer(memory::WordAccess& through, std::uint64_t address, sc_core::sc_time& delay) {
   unsigned char* const data = burst_->get_data_ptr() + next_word_ * 4;
   ++next_word_;
@@ -139,7 +139,7 @@ void LocalBus::count_granted(std::size_t words, std::uint64_t grant_ps, std::uin
   advance(words, grant_ps, usable_ps);
 }
 
-// The next word, or the end of the burst.
+// `words` words have been granted: proceeds to the next word, or ends the burst.
 void LocalBus::advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
   words_left_ -= words;
   if (words_left_ != 0) {
@@ -169,7 +169,7 @@ void LocalBus::access_register() {
   register_event_.notify(Clock::to_time(clock_.edge_ps(clock_.edge_at_or_after(now) + 1) - now));
 }
 
-// The bus is free after the idle clock.
+// Ends the burst; the bus is free after the idle clock.
 void LocalBus::end(std::uint64_t last_clock_end_ps) {
   idle_clock_ = clock_.edge_at_or_after(last_clock_end_ps);
   tlm::tlm_generic_payload& access = *burst_;

@@ -24,32 +24,39 @@ struct LocalBusConfig {
 // Byte addresses on the local bus: the banks as on the crossbar, then the registers of register_map.h.
 inline constexpr std::uint64_t kLocalRegisters = std::uint64_t{1} << 34U;
 
-// Where the words of a burst go; nowhere behind its last word.
+// The words of a burst to a bank; after the last word of a burst there is no bank.
 struct HostRoute {
   std::optional<std::size_t> bank;
   bool write = false;
   std::uint64_t first = 0;  // byte address on the crossbar
-  std::uint64_t end = 0;    // the first behind the burst
+  std::uint64_t end = 0;    // byte address after the burst
 };
 
-// The FPGA's end of the bridge's local bus, and the `host` port of the banks (contract section 3; the state
-// machine of Alpha Data's examples). A burst is one transaction of consecutive words in one bank, or of
-// registers, by nb_transport: BEGIN_REQ stands for the address clock, the first that begins at or after its
-// time; then come a decode clock and one clock a word. A word whose clock ends at t asks for its bank from
-// the first cycle of the FPGA that begins at or after t, and the next word's clock is the first that begins
-// at or after the cycle in which it was granted. Words read are on the bus once they are usable. BEGIN_RESP
-// is at the end of the idle clock behind the last word: the bus is free. One burst at a time; the next
-// BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
+// The FPGA's end of the bridge's local bus (contract section 3; the state machine of Alpha Data's examples).
+// A burst is one transaction of consecutive words in one bank, or of registers, by nb_transport. One burst
+// is under way at a time.
 //
-// Refused at once: an address that is not a multiple of 4 or of no bank or register
-// TLM_ADDRESS_ERROR_RESPONSE; a length that is no multiple of 4, a streaming width below it, or a burst
-// beyond the 2^28 bytes of its bank's addresses TLM_BURST_ERROR_RESPONSE; byte enables
-// TLM_BYTE_ENABLE_ERROR_RESPONSE; neither read nor write TLM_COMMAND_ERROR_RESPONSE. What a bank or register
-// refuses is the burst's response; its other words are transferred. Debug transport and DMI reach banks and
-// registers at once; there is no b_transport.
+// - BEGIN_REQ stands for the address clock: the first clock that begins at or after the annotated time. A
+//   decode clock follows, then one clock a word.
+// - A word whose clock ends at t requests its bank from the first cycle of the FPGA that begins at or after
+//   t. The next word's clock is the first that begins at or after the cycle of the grant.
+// - Words read are on the bus once they are usable.
+// - BEGIN_RESP is at the end of the idle clock after the last word: the bus is free. The next BEGIN_REQ comes
+//   after END_RESP (or TLM_COMPLETED).
 //
-// It has no process for the banks: the core's process asks it in every cycle. Register accesses happen at the
-// end of their clock.
+// | refused at once                                                                   | response           |
+// |-----------------------------------------------------------------------------------|--------------------|
+// | an address that is no multiple of 4, or of no bank or register                    | address error      |
+// | a length that is no multiple of 4, a streaming width below it, a burst beyond the | burst error        |
+// | 2^28 bytes of its bank's addresses                                                |                    |
+// | byte enables                                                                      | byte enable error  |
+// | neither read nor write                                                            | command error      |
+//
+// If a bank or register refuses a word, its response is the response of the burst; the other words are
+// transferred. Debug transport and DMI reach banks and registers at once; b_transport is refused.
+//
+// There is no process for the banks: the core's process grants the words. Registers are accessed at the end
+// of the word's clock.
 class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {
@@ -59,39 +66,39 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
     std::uint64_t register_accesses = 0;
     std::uint64_t errors = 0;       // refused words and bursts
     std::uint64_t clocks = 0;       // whole clocks since time 0
-    std::uint64_t busy_clocks = 0;  // of these: all of a burst but its idle clock
+    std::uint64_t busy_clocks = 0;  // clocks of bursts, but not their idle clocks
   };
 
   tlm::tlm_target_socket<32> bus{"bus"};
   tlm_utils::simple_initiator_socket<LocalBus> memory{"memory"};
   tlm_utils::simple_initiator_socket<LocalBus> registers{"registers"};
-  StreamOut<HostRoute> route_out{
-      "route_out"};  // before the first word of a burst to a bank, and behind its last
+  // Before the first word of a burst to a bank, and after its last word.
+  StreamOut<HostRoute> route_out{"route_out"};
 
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
   LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks);
 
-  // Whether a word waits for a bank, and from which time it asks.
+  // Whether a word waits for a bank, and the time from which it requests.
   bool word_waits() const { return words_left_ != 0; }
   std::uint64_t request_ps() const { return request_ps_; }
-  // Whether it asks in the cycle that begins at `edge_ps`.
+  // Whether it requests in the cycle that begins at `edge_ps`.
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
-  // The word is granted, in the cycle at `at` from now, which begins at `grant_ps`; read, it is usable at
-  // `usable_ps`.
+  // Transfers the waiting word. It is granted in the cycle that is `at` from now and begins at `grant_ps`. A
+  // word that is read is usable at `usable_ps`.
   void access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps);
   std::size_t words_left() const { return words_left_; }
-  // Instead of access(): the data of all words that wait goes to or comes from there at once ..
+  // Instead of access(), in two steps. Moves the data of all waiting words to or from `words` at once.
   void move_words(unsigned char* words);
-  // .. and they are granted, `words` more of them, the last one in the cycle that begins at `grant_ps`; read,
-  // it is usable at `usable_ps`.
+  // Grants the next `words` words of them, the last one in the cycle that begins at `grant_ps`. If they are
+  // read, that one is usable at `usable_ps`.
   void count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
-  // Whether its clocks begin when those of this clock do.
+  // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
-  // Notified when the first word of a burst begins to ask.
+  // Notified when the first word of a burst begins to request.
   const sc_core::sc_event& request_event() const { return request_event_; }
-  // Up to now.
+  // Counts up to now.
   Stats stats() const;
-  // Words written to the banks that have been granted, and those of the running burst that have not yet.
+  // Words written to the banks: those granted, and those of the burst that are not granted yet.
   const WordsByRange& words_granted() const { return words_granted_; }
   WordsByRange words_to_grant() const;
 
@@ -118,18 +125,18 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   memory::WordAccess memory_access_{memory};
   memory::WordAccess register_access_{registers};
   tlm::tlm_generic_payload* burst_ = nullptr;  // until END_RESP
-  bool responding_ = false;                    // BEGIN_RESP sent, END_RESP to come
+  bool responding_ = false;                    // between BEGIN_RESP and END_RESP
   std::size_t next_word_ = 0;
   std::size_t words_left_ = 0;       // of a burst to a bank
-  std::uint64_t address_clock_ = 0;  // number of the last burst's
-  std::uint64_t idle_clock_ = 0;     // that ends it, once its last word is granted
+  std::uint64_t address_clock_ = 0;  // number of the clock, of the last burst
+  std::uint64_t idle_clock_ = 0;     // number of the clock, of the last burst; kUnknown until its last grant
   std::uint64_t request_ps_ = 0;     // end of the waiting word's clock
   tlm::tlm_response_status status_ = tlm::TLM_OK_RESPONSE;
   sc_core::sc_event request_event_{"request"};
   sc_core::sc_event register_event_{"register"};
   std::vector<AddressRange> buffers_;
   WordsByRange words_granted_;
-  Stats stats_;  // clocks and busy_clocks: of all bursts but the last
+  Stats stats_;  // busy_clocks: of all bursts but the last; clocks: not kept
 };
 
 }  // namespace stereotlm::fpga

@@ -11,13 +11,13 @@
 
 namespace stereotlm::fpga {
 
-// The filter of one side with its line memories (paper section 2.4; contract 1.2): pixels in, in slot order,
-// filtered columns out. Without a filter it only collects the column.
+// The filter of one side with its line memories (paper section 2.4; contract 1.2): takes pixels in the order
+// of the slots, and passes on filtered columns. Without a filter it only collects the columns.
 class LogFilter : public sc_core::sc_module {
  public:
   struct Stats {
-    std::uint64_t pixels = 0;   // consumed, those of the drain among them
-    std::uint64_t columns = 0;  // handed on
+    std::uint64_t pixels = 0;   // taken, also in the drain
+    std::uint64_t columns = 0;  // passed on
   };
 
   StreamOut<PixelColumn> columns_out{"columns_out"};
@@ -31,7 +31,7 @@ class LogFilter : public sc_core::sc_module {
   LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame() { filter_.start_frame(first_row_); }
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) {
     stats_.pixels += frame.pixels;
     stats_.columns += frame.columns;

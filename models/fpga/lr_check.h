@@ -10,9 +10,9 @@
 
 namespace stereotlm::fpga {
 
-// The left-right check (paper section 2.3; contract 1.4). For each column it takes unit A's match and unit
-// B's, in either order, and hands on the checked disparity of the left pixel D-1 columns back; nothing before
-// the first pixel of the frame has come that far.
+// The left-right check (paper section 2.3; contract 1.4). For each column it takes the matches of unit A and
+// unit B, in either order. It passes on the checked disparity of the left pixel D-1 columns back, from the
+// first pixel of the frame on.
 class LrCheck : public sc_core::sc_module {
  public:
   struct Stats {
@@ -33,7 +33,7 @@ class LrCheck : public sc_core::sc_module {
   LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) {
     stats_.answered += frame.answered;
     stats_.invalid += frame.invalid;

@@ -11,16 +11,16 @@
 
 namespace stereotlm::fpga {
 
-// Reads the table entry of each slot of one side, at most one a cycle, and hands it to the pixel reader
-// (paper section 3.2). When a slot is taken is the control's decision: a slot that is not empty comes in the
-// cycle in which its access is granted.
+// Reads the table entry of each slot of one side, at most one a cycle, and passes it to the pixel reader
+// (paper section 3.2). The control decides when a slot comes: one that is not empty comes in the cycle in
+// which its access is granted.
 class LutReader : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t reads = 0;
-    std::uint64_t invalid_entries = 0;  // of these
+    std::uint64_t invalid_entries = 0;  // of the entries read
     std::uint64_t empty_slots = 0;
-    std::uint64_t errors = 0;  // refused accesses; they count as an entry that is not valid
+    std::uint64_t errors = 0;  // refused accesses; such an entry is not valid
   };
 
   tlm_utils::simple_initiator_socket<LutReader> port{"port"};
@@ -32,16 +32,16 @@ class LutReader : public sc_core::sc_module {
  public:
   StreamIn<Slot, LutReader, &LutReader::take> slots_in{"slots_in", this};
 
-  // `width`: of the image, in pixels.
+  // `width`: pixels of a row of the image.
   LutReader(const sc_core::sc_module_name& name, int width);
 
-  // Byte address of the table on the port.
+  // `table_address`: byte address on the port.
   void start_frame(std::uint64_t table_address) { table_address_ = table_address; }
-  // The table of width * height entries, where memory lets it be read directly; else null. For use at once.
+  // The table of width * height entries, if memory grants direct access; else null. For use at once.
   const std::uint32_t* table(int height);
-  // A frame that was fetched so.
+  // Adds the counts of a frame whose table was read directly.
   void count(const Stats& frame);
-  // Of the last slot taken.
+  // Whether the entry of the last slot is valid.
   bool entry_valid() const { return entry_valid_; }
   const Stats& stats() const { return stats_; }
 

@@ -14,14 +14,14 @@
 namespace stereotlm::fpga {
 
 // Reads the source pixel of each slot of one side, at most one a cycle, in order, and holds it until the
-// matcher consumes it. With a table, entries arrive from the LUT reader and wait for handle(); without one,
-// slots come straight from the sequencer and are read at once. When either happens is the control's decision.
+// matcher consumes it. With a table, entries come from the LUT reader and wait for handle(). Without a table,
+// slots come from the sequencer and are read at once. The control decides when.
 class PixelReader : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t reads = 0;
-    std::uint64_t passed_slots = 0;  // empty, or without valid entry
-    std::uint64_t errors = 0;        // refused accesses; they read as 0
+    std::uint64_t passed_slots = 0;  // slots without access: empty, or without valid entry
+    std::uint64_t errors = 0;        // refused accesses; such a pixel is 0
   };
 
   tlm_utils::simple_initiator_socket<PixelReader> port{"port"};
@@ -35,12 +35,12 @@ class PixelReader : public sc_core::sc_module {
   StreamIn<TableEntry, PixelReader, &PixelReader::store_entry> entries_in{"entries_in", this};
   StreamIn<Slot, PixelReader, &PixelReader::take> slots_in{"slots_in", this};
 
-  // `width`: of the image, in pixels.
+  // `width`: pixels of a row of the image.
   PixelReader(const sc_core::sc_module_name& name, int width);
 
-  // Byte address of the image on the port.
+  // `image_address`: byte address on the port.
   void start_frame(std::uint64_t image_address);
-  // Reads or passes the oldest entry that waits, in the cycle at `at` from now.
+  // Reads or passes the oldest waiting entry, in the cycle that is `at` from now.
   void handle(const sc_core::sc_time& at);
   // The matcher consumes the oldest pixel.
   void release() {
@@ -50,11 +50,11 @@ class PixelReader : public sc_core::sc_module {
     }
     pixels_out->push(pixels_[pixels_released_++ % kRing]);
   }
-  // A cycle of the drain: a pixel that no result depends on.
+  // A cycle of the drain: passes on a pixel that no result depends on.
   void release_blank() { pixels_out->push(MaskedPixel{}); }
-  // The image of width * height pixels, where memory lets it be read directly; else null. For use at once.
+  // The image of width * height pixels, if memory grants direct access; else null. For use at once.
   const std::uint8_t* image(int height);
-  // A frame that was fetched so.
+  // Adds the counts of a frame whose image was read directly.
   void count(const Stats& frame);
   const Stats& stats() const { return stats_; }
 
@@ -69,7 +69,8 @@ class PixelReader : public sc_core::sc_module {
   memory::WordAccess access_{port};
   std::array<TableEntry, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};
-  std::size_t entries_stored_ = 0;  // all since the start of the frame, as are those below
+  // Numbers since the start of the frame.
+  std::size_t entries_stored_ = 0;
   std::size_t entries_handled_ = 0;
   std::size_t pixels_stored_ = 0;
   std::size_t pixels_released_ = 0;

@@ -93,7 +93,10 @@ void RegisterFile::start(const sc_core::sc_time& delay) {
     return;
   }
   busy_ = true;
-  start_out->push({bases_[0], bases_[1], bases_[2], bases_[3], bases_[4], delay});
+  FrameStart start{{}, delay};
+  for (std::size_t port = 0; port < kCorePortCount; ++port)
+    start.bases[port] = bases_[base_index(kPorts[port].base_register)];
+  start_out->push(start);
 }
 
 void RegisterFile::refuse_start() {
@@ -109,7 +112,7 @@ void RegisterFile::finish_frame(std::uint64_t frame_cycles, bool access_error) {
   done_changed_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// The line has one driver, whichever process changes the register.
+// A process of its own: the line then has one driver, whichever process changes the register.
 void RegisterFile::drive_done() { done.write(done_); }
 
 }  // namespace stereotlm::fpga

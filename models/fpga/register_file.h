@@ -7,27 +7,28 @@
 #include <systemc>
 #include <tlm>
 
+#include "models/fpga/core_ports.h"
 #include "models/fpga/register_map.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
-// The base registers as they stood at the start strobe: bank and first word, as in register_map.h.
+// A start strobe, with the base registers as they stood then.
 struct FrameStart {
-  std::uint32_t left_image = 0;
-  std::uint32_t right_image = 0;
-  std::uint32_t disparity = 0;
-  std::uint32_t left_lut = 0;
-  std::uint32_t right_lut = 0;
+  FrameBases bases{};
   sc_core::sc_time delay{};  // of the strobe, from now
 };
 
-// The register file of register_map.h: start strobe, status, frame base addresses, done interrupt. Register
-// accesses take no time and no DMI. Errors, without effect: an address that is no register
-// TLM_ADDRESS_ERROR_RESPONSE, a length other than 4 or a streaming width below it TLM_BURST_ERROR_RESPONSE,
-// byte enables TLM_BYTE_ENABLE_ERROR_RESPONSE, a read of a write-only register, a write of a read-only one or
-// a command that does neither TLM_COMMAND_ERROR_RESPONSE. Debug transport reads.
-// A start strobe counts at the time that its access is annotated with.
+// The register file of register_map.h: start strobe, status, frame base addresses, done interrupt. An access
+// takes no time; there is no DMI. A start strobe takes effect at the annotated time of its access. Debug
+// transport only reads.
+//
+// | refused, without effect                                                        | response           |
+// |--------------------------------------------------------------------------------|--------------------|
+// | an address that is no register                                                 | address error      |
+// | a length other than 4, or a streaming width below it                           | burst error        |
+// | byte enables                                                                   | byte enable error  |
+// | a read of a write-only register, a write of a read-only one, any other command | command error      |
 class RegisterFile : public sc_core::sc_module {
  public:
   struct Stats {
@@ -36,7 +37,7 @@ class RegisterFile : public sc_core::sc_module {
     std::uint64_t errors = 0;  // refused accesses
   };
 
-  // Two ways to the same registers; either may stay unbound.
+  // Two sockets of the same registers; either may stay unbound.
   tlm_utils::simple_target_socket_optional<RegisterFile> registers{"registers"};
   tlm_utils::simple_target_socket_optional<RegisterFile> local_bus{"local_bus"};
   sc_core::sc_out<bool> done{"done"};  // the interrupt: high from the end of a frame until it is acknowledged
@@ -44,7 +45,7 @@ class RegisterFile : public sc_core::sc_module {
 
   explicit RegisterFile(const sc_core::sc_module_name& name);
 
-  // The receiver of start_out refuses the strobe.
+  // Called by the receiver of start_out: it refuses the strobe.
   void refuse_start();
   // The frame has ended; `access_error`: memory refused one of its accesses.
   void finish_frame(std::uint64_t frame_cycles, bool access_error);
@@ -59,7 +60,7 @@ class RegisterFile : public sc_core::sc_module {
   void start(const sc_core::sc_time& delay);
   void drive_done();
 
-  std::array<std::uint32_t, 5> bases_{};  // from kLeftImageBase on
+  std::array<std::uint32_t, 5> bases_{};  // [(address - kLeftImageBase) / 4]
   bool busy_ = false;
   bool done_ = false;
   sc_core::sc_event done_changed_{"done_changed"};

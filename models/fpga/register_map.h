@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-// The registers of the FPGA core, 32 bit each, at byte addresses on its `registers` socket (ours: the paper
-// does not print its map).
+// The registers of the FPGA core, 32 bit each, at byte addresses on its `registers` socket. The paper does
+// not print its map; this one is ours.
 //
 // | address | name             | access | meaning                                                      |
 // |---------|------------------|--------|--------------------------------------------------------------|
@@ -18,10 +18,10 @@
 // | 0x1c    | kLeftLutBase     | both   | as kLeftImageBase                                            |
 // | 0x20    | kRightLutBase    | both   | as kLeftImageBase                                            |
 //
-// The core takes the bases at the start strobe. A strobe while it is busy, or with a base in a bank that the
-// board does not have, is ignored and raises error, which stays until it is acknowledged; so does an access
-// of the running frame that memory refused, or that this model cannot make as it should. A write may
-// acknowledge and start at once.
+// The core takes the bases at the start strobe. It ignores a strobe while it is busy, and a strobe with a
+// base in a bank that the board does not have. Both raise error. So does an access of the running frame that
+// memory refuses, or that this model cannot make as it should. Error stays until it is acknowledged. One
+// write may acknowledge and start.
 namespace stereotlm::fpga::registers {
 
 inline constexpr std::uint64_t kControl = 0x00;
@@ -41,11 +41,12 @@ inline constexpr std::uint32_t kStatusBusy = 1U << 0U;
 inline constexpr std::uint32_t kStatusDone = 1U << 1U;
 inline constexpr std::uint32_t kStatusError = 1U << 2U;
 
-// The value of a base register.
+// The value of a base register, and the bank in it.
 constexpr std::uint32_t base(std::uint32_t bank, std::uint32_t first_word) {
   return bank << 26U | first_word;
 }
-// The byte address on the crossbar that it stands for.
+constexpr std::uint32_t bank_of(std::uint32_t base) { return base >> 26U; }
+// The byte address on the crossbar that the value stands for.
 constexpr std::uint64_t base_address(std::uint32_t value) {
   return static_cast<std::uint64_t>(value >> 26U) << 28U | (value & 0x03FF'FFFFULL) << 2U;
 }

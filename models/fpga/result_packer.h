@@ -26,7 +26,7 @@ class ResultPacker : public sc_core::sc_module {
   explicit ResultPacker(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   void start_frame();
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) { stats_.words += frame.words; }
   const Stats& stats() const { return stats_; }
 

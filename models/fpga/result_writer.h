@@ -13,14 +13,14 @@
 
 namespace stereotlm::fpga {
 
-// The result queue and the port that writes it, word after word, to the disparity buffer. When a word is
-// written is the control's decision.
+// The result queue, and the port that writes its words to the disparity buffer, one after another. The
+// control decides when.
 class ResultWriter : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t writes = 0;
-    std::uint64_t most_queued_words = 0;
-    std::uint64_t errors = 0;  // refused accesses; their words are lost
+    std::uint64_t most_queued_words = 0;  // at one time
+    std::uint64_t errors = 0;             // refused accesses; their words are lost
   };
 
   tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};
@@ -34,14 +34,13 @@ class ResultWriter : public sc_core::sc_module {
   // `fifo_words`: depth of the queue. Throws std::invalid_argument outside kResultFifoRule.
   ResultWriter(const sc_core::sc_module_name& name, int fifo_words);
 
-  // Byte address of the disparity buffer on the port.
+  // `disparity_address`: byte address of the buffer on the port.
   void start_frame(std::uint64_t disparity_address);
-  // Writes the oldest word, in the cycle at `at` from now.
+  // Writes the oldest word, in the cycle that is `at` from now.
   void write(const sc_core::sc_time& at);
-  // The disparity buffer of so many words, where memory lets it be written directly; else null. For use at
-  // once.
+  // The disparity buffer of `words` words, if memory grants direct access; else null. For use at once.
   std::uint8_t* buffer(std::uint64_t words);
-  // A frame that was written so.
+  // Adds the counts of a frame that was written directly.
   void count(const Stats& frame);
   const Stats& stats() const { return stats_; }
 
@@ -52,7 +51,7 @@ class ResultWriter : public sc_core::sc_module {
   std::uint64_t next_address_ = 0;
   memory::WordAccess access_{port};
   std::array<std::uint32_t, kRing> words_{};
-  std::size_t stored_ = 0;  // since the start of the frame
+  std::size_t stored_ = 0;  // words since the start of the frame
   std::size_t written_ = 0;
   Stats stats_;
 };

@@ -9,8 +9,8 @@
 
 namespace stereotlm::fpga {
 
-// The line memories of the `line_buffer` fetch for one side: they keep the last n-1 rows of filtered pixels,
-// so that one pixel in makes a column of n out. The memories are not cleared between frames.
+// The line memories of the `line_buffer` fetch for one side. They keep the last n-1 rows of filtered pixels,
+// so that each pixel completes a column of n. The memories are not cleared between frames.
 class RowBuffer : public sc_core::sc_module {
  public:
   struct Stats {
@@ -25,11 +25,11 @@ class RowBuffer : public sc_core::sc_module {
  public:
   StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
 
-  // `width`: of the image, in pixels; `window`: n.
+  // `width`: pixels of a row of the image; `window`: n.
   RowBuffer(const sc_core::sc_module_name& name, int width, int window);
 
   void start_frame() { column_ = 0; }
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) { stats_.columns += frame.columns; }
   const Stats& stats() const { return stats_; }
 

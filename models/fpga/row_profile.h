@@ -4,18 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/memory/memory_config.h"
+#include "models/fpga/core_ports.h"
 
 namespace stereotlm::fpga {
 
-// The core's own ports: those before the host's, whose words are not counted cycle by cycle where they meet
-// nobody.
-inline constexpr std::size_t kCorePortCount = memory::index_of(memory::Port::kHost);
-
-// A row of results is whole with the write of its last word.
+// A row of results is complete with the write of its last word.
 struct RowEnd {
-  std::uint64_t cycles = 0;                            // of the frame, that write's included
-  std::array<std::uint64_t, kCorePortCount> stalls{};  // of these, those that each port was refused in
+  std::uint64_t cycles = 0;  // of the frame, up to that write, its own cycle included
+  // [port]: in how many of them the port was stalled. The words of the host are not counted cycle by cycle
+  // where they are uncontended, so the host has no entry.
+  std::array<std::uint64_t, kCorePortCount> stalls{};
 
   friend bool operator==(const RowEnd& a, const RowEnd& b) {
     return a.cycles == b.cycles && a.stalls == b.stalls;
@@ -23,7 +21,7 @@ struct RowEnd {
   friend bool operator!=(const RowEnd& a, const RowEnd& b) { return !(a == b); }
 };
 
-// Of a frame, one for each row, the top one first. The last one's cycles are the counted ones of the frame.
+// The rows of a frame, the top one first. The cycles of the last row are the counted cycles of the frame.
 using RowProfile = std::vector<RowEnd>;
 
 }  // namespace stereotlm::fpga

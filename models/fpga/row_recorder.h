@@ -8,8 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// Notes when the rows of results of a frame are whole, once it is turned on. Whoever steps the core asks
-// after each cycle whether as many words are written as next_words() says; that is all it costs.
+// Records when the rows of results of a frame are complete, once it is turned on. Its only cost is that the
+// stepper compares the words written with next_words() after each cycle.
 class RowRecorder {
  public:
   explicit RowRecorder(const FrameGeometry& geometry)
@@ -19,12 +19,12 @@ class RowRecorder {
   bool is_on() const { return is_on_; }
 
   void start_frame(const CoreControl& control);
-  // Words of the frame with which the next row is whole; while it is off, more than there are.
+  // Words of the frame with which the next row is complete. While the recorder is off: more than there are.
   std::uint64_t next_words() const { return next_words_; }
-  // They have been written in cycle `cycle`, in which `control` was stepped.
+  // These words are complete with `cycle`, in which `control` was stepped.
   void note(std::uint64_t cycle, const CoreControl& control);
 
-  // Of the frame that was started last, whose cycle 0 was `first_cycle`: the rows that are whole.
+  // The complete rows of the frame that was started last, in `first_cycle`.
   RowProfile profile(std::uint64_t first_cycle) const;
 
  private:
@@ -35,9 +35,9 @@ class RowRecorder {
   std::uint64_t row_words_;
   bool is_on_ = false;
   std::uint64_t next_words_ = kNever;
-  Stalls stalls_before_{};  // the frame
-  std::size_t rows_whole_ = 0;
-  RowProfile rows_;  // their cycles are those of the clock
+  Stalls stalls_before_{};  // of the ports, before the frame
+  std::size_t rows_complete_ = 0;
+  RowProfile rows_;  // cycles: of the clock
 };
 
 }  // namespace stereotlm::fpga

@@ -11,15 +11,15 @@
 
 namespace stereotlm::fpga {
 
-// The array of D column and window modules (paper figures 6 and 8). A column of both sides in, left first or
-// right first; out, for each window that ends at this column, its SAD for every candidate, first to
-// select-min unit A, then to B. Nothing leaves for the first columns, before there is a window.
+// The array of D column and window modules (paper figures 6 and 8). It takes one column of each side, in
+// either order. For the window that ends at these columns it passes on the SAD of every candidate, first to
+// select-min unit A, then to unit B. Nothing leaves before the first window is complete.
 class SadArray : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t columns = 0;
     std::uint64_t absolute_differences = 0;
-    std::uint64_t candidates = 0;  // windows inside both images
+    std::uint64_t candidates = 0;  // candidates whose windows lie inside both images
   };
 
   StreamOut<WindowSums> chain_out{"chain_out"};
@@ -36,7 +36,7 @@ class SadArray : public sc_core::sc_module {
   SadArray(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) {
     stats_.columns += frame.columns;
     stats_.absolute_differences += frame.absolute_differences;
@@ -55,7 +55,7 @@ class SadArray : public sc_core::sc_module {
   PixelColumn right_;
   bool have_left_ = false;
   bool have_right_ = false;
-  int columns_before_window_ = 0;  // to come before the first window is complete
+  int columns_before_window_ = 0;  // still to come before the first window is complete
   int column_ = 0;                 // position of the middle of the next window
   int row_ = 0;
   std::uint32_t left_valid_ = 0;  // valid bits of the middle row, newest column lowest

@@ -9,8 +9,8 @@
 
 namespace stereotlm::fpga {
 
-// Select-min unit A (paper section 3.3): the serial chain of comparators, right-based matching. Each column
-// of window sums in gives the match of the right pixel D-1 columns back.
+// Select-min unit A (paper section 3.3): the serial chain of comparators, for right-based matching. With each
+// column of window sums the match of the right pixel D-1 columns back leaves.
 class SelectMinChain : public sc_core::sc_module {
  public:
   struct Stats {
@@ -30,7 +30,7 @@ class SelectMinChain : public sc_core::sc_module {
   SelectMinChain(const sc_core::sc_module_name& name, int disparities);
 
   void start_frame() { chain_.start_frame(); }
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) {
     stats_.columns += frame.columns;
     stats_.matches += frame.matches;

@@ -8,8 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// Select-min unit B (paper section 3.3): the tree of comparators, left-based matching. Each column of window
-// sums in gives the match of its left pixel.
+// Select-min unit B (paper section 3.3): the tree of comparators, for left-based matching. With each column
+// of window sums the match of its left pixel leaves.
 class SelectMinTree : public sc_core::sc_module {
  public:
   struct Stats {
@@ -27,7 +27,7 @@ class SelectMinTree : public sc_core::sc_module {
 
   explicit SelectMinTree(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  // A frame that did not pass through.
+  // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) {
     stats_.columns += frame.columns;
     stats_.matches += frame.matches;

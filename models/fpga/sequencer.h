@@ -10,13 +10,13 @@
 
 namespace stereotlm::fpga {
 
-// Sends the slots of a frame to both lanes, each at its own pace. Where a lane is in the sequence, and in
-// which cycle it takes its next slot, is the control's decision.
+// Sends the slots of a frame to both lanes, each at its own pace. The control decides in which cycle a lane
+// takes its next slot.
 class Sequencer : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t slots = 0;
-    std::uint64_t empty_slots = 0;  // of these
+    std::uint64_t empty_slots = 0;  // of the slots
   };
 
   StreamOut<Slot> left_out{"left_out"};
@@ -24,14 +24,14 @@ class Sequencer : public sc_core::sc_module {
 
   explicit Sequencer(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  // The slot at this place of the sequence to one side, in the cycle at `at` from now.
+  // Sends the slot at this place of the sequence to one side, in the cycle that is `at` from now.
   void issue(Side side, const SlotCursor& place, const sc_core::sc_time& at) {
     Stats& stats = stats_[static_cast<std::size_t>(side)];
     ++stats.slots;
     stats.empty_slots += std::uint64_t{place.empty()};
     (side == Side::kLeft ? left_out : right_out)->push({place.column(), place.row(), place.empty(), at});
   }
-  // A frame whose slots were not sent one by one.
+  // Adds the counts of a frame whose slots were not sent.
   void count(Side side, const Stats& frame) {
     Stats& stats = stats_[static_cast<std::size_t>(side)];
     stats.slots += frame.slots;

@@ -21,18 +21,26 @@ void Progress::add(const Progress& other, std::uint64_t times) {
   words += other.words * times;
 }
 
+void Progress::subtract(const Progress& other, std::uint64_t times) {
+  cycles -= other.cycles * times;
+  columns -= other.columns * times;
+  left_slots -= other.left_slots * times;
+  right_slots -= other.right_slots * times;
+  words -= other.words * times;
+}
+
 std::size_t TransitionCache::Hash::operator()(const State& state) const {
   std::uint64_t hash = 0;
   const auto mix = [&hash](std::uint64_t word) {
     hash = (hash ^ word) * 0x9e3779b97f4a7c15U;
     hash ^= hash >> 32U;
   };
-  for (const LaneControl::State& lane : {state.control.left, state.control.right}) {
+  for (const LaneControl::State& lane : state.control.lanes) {
     mix(lane.counts);
     mix(lane.marks);
   }
   mix(state.control.rest);
-  for (const std::uint32_t word : state.arbitration) mix(word);
+  for (const std::uint64_t word : state.arbitration) mix(word);
   return hash;
 }
 
@@ -42,7 +50,7 @@ TransitionCache::Group& TransitionCache::at(const State& state) {
   return entry->second;
 }
 
-void TransitionCache::pass(Group& group, std::uint64_t times) {
+void TransitionCache::follow(Group& group, std::uint64_t times) {
   if (group.times == 0) walked_.push_back(&group);
   group.times += times;
 }
@@ -57,7 +65,7 @@ TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progr
   std::uint64_t steps = 0;
   std::uint64_t mark_after = 1;
   while (group->next != nullptr && group->progress.fits(room)) {
-    pass(*group, 1);
+    follow(*group, 1);
     room.subtract(group->progress);
     progress.add(group->progress);
     since_mark.add(group->progress);
@@ -66,7 +74,7 @@ TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progr
     if (group == mark) {
       const std::uint64_t times = since_mark.times_in(room);
       if (times == 0) continue;
-      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) pass(*group, times);
+      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) follow(*group, times);
       room.subtract(since_mark, times);
       progress.add(since_mark, times);
     } else if (steps == mark_after) {
@@ -77,7 +85,7 @@ TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progr
     }
   }
   for (Group* const walked : walked_) {
-    control.count(walked->counts, walked->times);
+    control.add(walked->counts, walked->times);
     arbitration.count_skipped(walked->decided, walked->times);
     walked->times = 0;
   }

@@ -10,13 +10,13 @@
 
 namespace stereotlm::fpga {
 
-// A distance in a frame: what the core does in some cycles, or how much it may still do.
+// A distance in a frame: how far the core comes in some cycles, or how far it may go.
 struct Progress {
   std::uint64_t cycles = 0;
-  std::uint64_t columns = 0;      // of the matcher
-  std::uint64_t left_slots = 0;   // taken
-  std::uint64_t right_slots = 0;  // taken
-  std::uint64_t words = 0;        // of results written
+  std::uint64_t columns = 0;      // consumed by the matcher
+  std::uint64_t left_slots = 0;   // taken by the left lane
+  std::uint64_t right_slots = 0;  // taken by the right lane
+  std::uint64_t words = 0;        // results written
 
   bool fits(const Progress& room) const {
     return cycles <= room.cycles && columns <= room.columns && left_slots <= room.left_slots &&
@@ -25,7 +25,7 @@ struct Progress {
   // How many times this distance fits into `room`; `cycles` is not 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other, std::uint64_t times = 1);
-  void subtract(const Progress& other, std::uint64_t times = 1) { add(other, ~times + 1); }
+  void subtract(const Progress& other, std::uint64_t times = 1);
 };
 
 // Memo of state transitions, one per group of four columns of the matcher. The state of the control objects
@@ -51,7 +51,7 @@ class TransitionCache {
     Progress progress;
     CoreControl::Counts counts{};
     memory::Arbitration::Decided decided;
-    std::uint64_t times = 0;  // passes in walk() that are not counted yet
+    std::uint64_t times = 0;  // times that walk() has followed it, not counted yet
   };
 
   explicit TransitionCache(std::size_t most = kMost) : most_(most) {}
@@ -74,11 +74,11 @@ class TransitionCache {
     std::size_t operator()(const State& state) const;
   };
 
-  void pass(Group& group, std::uint64_t times);
+  void follow(Group& group, std::uint64_t times);
 
   std::size_t most_;
   std::unordered_map<State, Group, Hash> groups_;
-  std::vector<Group*> walked_;  // groups with passes that are not counted yet
+  std::vector<Group*> walked_;  // groups whose `times` is not 0
 };
 
 }  // namespace stereotlm::fpga

@@ -6,7 +6,7 @@
 #include <systemc>
 #include <vector>
 
-#include "models/fpga/frame_buffers.h"
+#include "models/fpga/buffer_bases.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "models/kernels/rectification_table.h"
@@ -19,7 +19,7 @@ struct IdealHostConfig {
   int height = 0;  // pixels
   std::uint64_t frames = 1;
   bool pixels = true;  // false: no pictures are requested or loaded, and results are empty
-  fpga::FrameBuffers buffers;
+  fpga::BufferBases buffers;
 };
 
 // A host without a computer around it (contract section 2, `preloaded`). The tables are in their banks

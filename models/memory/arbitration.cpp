@@ -16,7 +16,7 @@ Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBa
 
 void Arbitration::route(Port port, std::size_t bank, bool write) {
   settle();
-  routes_[index_of(port)] = {bank, write};
+  routes_[port] = {bank, write};
   routed_ = static_cast<PortMask>(routed_ | mask_of(port));
   share_banks();
 }
@@ -28,8 +28,8 @@ void Arbitration::unroute(Port port) {
 }
 
 bool Arbitration::is_used_beside(Port port, std::size_t bank) const {
-  for (std::size_t other = 0; other < kPortCount; ++other) {
-    if (other != index_of(port) && is_routed(other) && routes_[other].bank == bank) return true;
+  for (std::size_t other = 0; other < kMostPorts; ++other) {
+    if (other != port && is_routed(other) && routes_[other].bank == bank) return true;
   }
   return false;
 }
@@ -39,22 +39,22 @@ BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_
   return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});
 }
 
-// Which ports meet in which banks.
+// Finds the uncontended ports, and the banks that are shared or have turnaround.
 void Arbitration::share_banks() {
   recording_ = false;
   writes_ = 0;
   alone_ = 0;
   shared_bank_count_ = 0;
-  std::array<PortMask, kPortCount> together{};  // [port]: the ports on its bank
-  for (std::size_t i = 0; i < kPortCount; ++i) {
+  std::array<PortMask, kMostPorts> together{};  // [port]: the ports on its bank
+  for (std::size_t i = 0; i < kMostPorts; ++i) {
     if (!is_routed(i)) continue;
     writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
-    for (std::size_t other = 0; other < kPortCount; ++other) {
-      const bool meet = is_routed(other) && routes_[other].bank == routes_[i].bank;
-      together[i] = static_cast<PortMask>(together[i] | unsigned{meet} << other);
+    for (std::size_t other = 0; other < kMostPorts; ++other) {
+      const bool same_bank = is_routed(other) && routes_[other].bank == routes_[i].bank;
+      together[i] = static_cast<PortMask>(together[i] | unsigned{same_bank} << other);
     }
   }
-  for (std::size_t i = 0; i < kPortCount; ++i) {
+  for (std::size_t i = 0; i < kMostPorts; ++i) {
     const auto port_mask = static_cast<PortMask>(1U << i);
     if (together[i] == 0 || lowest(together[i]) != i) continue;
     BankArbiter& arbiter = arbiters_[routes_[i].bank];
@@ -68,31 +68,31 @@ void Arbitration::share_banks() {
   }
 }
 
-// Tells the arbiters how much was granted without them.
+// Adds the grants of uncontended ports to the counts of the arbiters.
 void Arbitration::count_alone() const {
-  std::array<std::uint64_t, kPortCount> cycles{};
+  std::array<std::uint64_t, kMostPorts> cycles{};
   for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
     if (alone_cycles_[ports_alone] == 0) continue;
-    for (std::size_t port = 0; port < kPortCount; ++port)
+    for (std::size_t port = 0; port < kMostPorts; ++port)
       cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
   }
   for (std::size_t ports = 0; recording_ && ports < alone_cycles_.size(); ++ports)
     alone_before_recording_[ports] -= alone_cycles_[ports];
   alone_cycles_ = {};
-  for (std::size_t port = 0; port < kPortCount; ++port) {
+  for (std::size_t port = 0; port < kMostPorts; ++port) {
     const std::uint64_t grants = cycles[port] - retracted_grants_[port];
-    arbiters_[routes_[port].bank].count_alone(mask_of(static_cast<Port>(port)), routes_[port].write, grants);
+    arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, grants);
     alone_grants_[port] += grants;
   }
   retracted_grants_ = {};
 }
 
-// The same, and all that has been granted without them is known: nothing will be taken back any more.
+// The same when no grant can be retracted any more: the grants also move the states of the policies.
 void Arbitration::settle() {
   count_alone();
-  for (std::size_t port = 0; port < kPortCount; ++port) {
+  for (std::size_t port = 0; port < kMostPorts; ++port) {
     if (alone_grants_[port] == 0) continue;
-    arbiters_[routes_[port].bank].move_place_behind(mask_of(static_cast<Port>(port)));
+    arbiters_[routes_[port].bank].grant_alone(mask_of(port));
   }
   alone_grants_ = {};
 }

@@ -9,23 +9,24 @@
 
 namespace stereotlm::memory {
 
-// Which port works on which bank, and what the banks' arbiters grant them in a cycle (contract section 2).
-// Plain C++, no SystemC: the crossbar is built around it.
+// The arbitration of all banks (contract section 2): routes each port to a bank, and its requests to the
+// bank's arbiter. Plain C++, no SystemC: the crossbar is built around it.
 class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
 
-  // Requests of this port go to this bank, in this direction, from the next arbitrate() on. The bank must
+  // Routes the port's requests to this bank, in this direction, from the next arbitrate() on. The bank must
   // exist.
   void route(Port port, std::size_t bank, bool write);
   // The port requests nothing from now on.
   void unroute(Port port);
-  std::size_t bank_of(Port port) const { return routes_[index_of(port)].bank; }  // of its last route
-  bool is_routed(Port port) const { return is_routed(index_of(port)); }
+  std::size_t bank_of(Port port) const { return routes_[port].bank; }  // of its last route
+  bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
-  // One cycle: decides these requests, and returns the ports granted. Cycles must increase.
+  // One cycle: decides these requests, and returns the ports granted. Cycles must increase; those left out
+  // have no request.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     const auto granted = static_cast<PortMask>(requests & alone_);
     ++alone_cycles_[granted];
@@ -36,9 +37,9 @@ class Arbitration {
   // Whether the port is uncontended: its requests are granted at once as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
   // Retracts grants of an uncontended port that were counted provisionally: those cycles held no request. To
-  // be called before a route changes or counting ends, because the remaining grants then move the bank's
-  // round-robin place.
-  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[index_of(port)] += grants; }
+  // be called before a route changes or counting ends, because the remaining grants then move the state of
+  // the bank's policy.
+  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
   // Decides one request of a port for a bank that no routed port requests, in the given direction. The
   // outcome is counted later, by count_unrouted().
@@ -54,7 +55,7 @@ class Arbitration {
 
   // The state that determines all arbitration from `cycle` on as long as no route changes. One word for each
   // shared bank; the other words are 0.
-  using State = std::array<std::uint32_t, kPortCount>;
+  using State = std::array<std::uint64_t, kMostPorts>;
   State state(std::uint64_t cycle) const;
   // The decisions of some cycles. Valid as long as no route changes.
   struct Decided {
@@ -64,7 +65,7 @@ class Arbitration {
       std::uint64_t cycles;
     };
     struct Alone {
-      std::size_t ports;  // granted, a mask
+      std::size_t ports;  // mask of the ports granted
       std::uint64_t cycles;
     };
     std::vector<Shared> shared;
@@ -99,25 +100,24 @@ class Arbitration {
     std::vector<BankArbiter::Outcome> recorded;
   };
 
-  bool is_routed(std::size_t port) const { return (routed_ >> port & 1U) != 0; }
   void share_banks();
   void count_alone() const;
   void settle();
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
   mutable std::vector<BankArbiter> arbiters_;
-  std::array<Route, kPortCount> routes_{};
+  std::array<Route, kMostPorts> routes_{};
   PortMask routed_ = 0;
   PortMask writes_ = 0;  // ports whose route writes
   // Uncontended ports: each is alone on a bank without turnaround. They need no arbitration; their grants are
-  // added to the arbiter's counts later, at the latest when the arbiters are queried.
+  // added to the counts of the arbiters later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
-  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kPortCount>;  // [ports granted in this way]
+  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kMostPorts>;  // [mask of the ports granted]
   mutable AloneCycles alone_cycles_{};
   mutable AloneCycles alone_before_recording_{};  // only the difference to alone_cycles_ counts
-  mutable std::array<std::uint64_t, kPortCount> retracted_grants_{};  // of the alone_cycles_
-  mutable std::array<std::uint64_t, kPortCount> alone_grants_{};  // since settle(), without those retracted
-  std::array<SharedBank, kPortCount> shared_banks_{};
+  mutable std::array<std::uint64_t, kMostPorts> retracted_grants_{};  // of the alone_cycles_
+  mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // since settle(), without those retracted
+  std::array<SharedBank, kMostPorts> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;
 };

@@ -1,48 +1,78 @@
 #include "models/memory/bank_arbiter.h"
 
+#include <memory>
+#include <stdexcept>
+
+#include "models/memory/arbitration_policies.h"
+
 namespace stereotlm::memory {
 namespace {
 
-std::size_t place_of(const ArbiterConfig& config, PortMask port) {
-  std::size_t place = 0;
-  while (mask_of(config.priority[place]) != port) ++place;
-  return place;
+static_assert(
+    [] {
+      for (const BankTraits& bank : kBankTraits) {
+        if (bank.ports != 1) return false;
+      }
+      return true;
+    }(),
+    "an arbiter grants one access a cycle: a bank with more ports needs one for each");
+
+constexpr std::size_t lowest(PortMask mask) { return static_cast<std::size_t>(__builtin_ctz(mask)); }
+
+std::unique_ptr<const ArbitrationPolicy> make_policy(const ArbiterConfig& config) {
+  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+  return find_arbitration_policy(config.policy)->make(config.priority);
 }
 
 }  // namespace
 
 BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
-    : other_direction_cycles_(static_cast<std::uint64_t>(turnaround_cycles) + 1) {
-  const bool rotates = config.policy == ArbitrationPolicy::kRoundRobin;
-  for (std::size_t place = 0; place < kPortCount; ++place) {
-    for (std::size_t requests = 1; requests < kMasks; ++requests) {
-      std::size_t step = 0;
-      while ((requests & mask_of(config.priority[(place + step) % kPortCount])) == 0) ++step;
-      Winner& winner = winners_[place * kMasks + requests];
-      winner.port = mask_of(config.priority[(place + step) % kPortCount]);
-      winner.next_place = rotates
-                              ? static_cast<std::uint8_t>((place_of(config, winner.port) + 1) % kPortCount)
-                              : std::uint8_t{0};
-    }
-  }
+    : table_(make_policy(config)),
+      row_(&table_.row_of(0)),
+      other_direction_cycles_(static_cast<std::uint64_t>(turnaround_cycles) + 1) {}
+
+// Out of line, so that decide() stays small: what it needs is seldom missing.
+BankArbiter::Outcome BankArbiter::prepare_and_decide(std::uint64_t cycle, PortMask requests,
+                                                     PortMask writes) {
+  row_ = &row_at(cycle);
+  next_cycle_ = cycle;
+  table_.fill(*row_, requests);
+  return decide(cycle, requests, writes);
+}
+
+// The policy's state after the cycles without request up to `cycle`.
+DecisionTable::Row& BankArbiter::row_at(std::uint64_t cycle) const {
+  return row_->after_idle_cycles(cycle - next_cycle_);
 }
 
 void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
   if (cycles == 0) return;
-  const std::size_t situation = place_ * kMasks + port;
   if (counting_) {
-    outcomes_[outcome_of(situation, write ? kWrite : kRead)] += cycles;
-    // Wherever they lay: what remains up to the next call was idle.
+    outcomes_[outcome_of(port, lowest(port), write ? 1 : 0)] += cycles;
+    // Wherever the cycles lay: those that remain up to the next call were idle.
     next_uncounted_cycle_ += cycles;
   } else {
     uncounted_accesses_ += cycles;
   }
 }
 
-void BankArbiter::skip_to(std::uint32_t state, std::uint64_t cycle, std::uint64_t cycles) {
-  static_assert(kTurnaroundRule.max < 0xff);
-  place_ = state & 0xffU;
-  ready_cycle_ = {cycle + (state >> 8U & 0xffU), cycle + (state >> 16U)};
+// One grant moves the state; further ones are as cycles without request (ArbitrationPolicy).
+void BankArbiter::grant_alone(PortMask port) {
+  table_.fill(*row_, port);
+  row_ = row_->decisions[port].if_granted;
+  ++next_cycle_;
+}
+
+std::uint64_t BankArbiter::state(std::uint64_t cycle) const {
+  const auto wait = [cycle](std::uint64_t ready) { return ready > cycle ? ready - cycle : 0; };
+  return row_at(cycle).state | wait(ready_cycle_[0]) << 32U | wait(ready_cycle_[1]) << 48U;
+}
+
+void BankArbiter::skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles) {
+  static_assert(kTurnaroundRule.max < 0xffff);
+  row_ = &table_.row_of(static_cast<ArbitrationPolicy::State>(state));
+  next_cycle_ = cycle;
+  ready_cycle_ = {cycle + (state >> 32U & 0xffffU), cycle + (state >> 48U)};
   if (!counting_) return;
   next_uncounted_cycle_ += cycles;
   idle_cycles_ += cycles;
@@ -52,7 +82,7 @@ void BankArbiter::count_skipped(Outcome outcome, std::uint64_t cycles) {
   if (counting_) {
     outcomes_[outcome] += cycles;
     idle_cycles_ -= cycles;
-  } else if (outcome % kKinds != kTurning) {
+  } else if (granted_in(outcome) != 0) {
     uncounted_accesses_ += cycles;
   }
 }
@@ -70,22 +100,22 @@ void BankArbiter::end_counting(std::uint64_t end_cycle) {
 ArbiterStats BankArbiter::stats() const {
   ArbiterStats stats;
   stats.idle_cycles = idle_cycles_;
-  for (std::size_t place = 0; place < kPortCount; ++place) {
+  for (std::size_t by = 0; by <= kMostPorts; ++by) {
     for (std::size_t requests = 1; requests < kMasks; ++requests) {
-      const std::size_t situation = place * kMasks + requests;
-      const std::uint64_t* const outcomes = outcomes_.data() + outcome_of(situation, kRead);
-      const std::uint64_t granted = outcomes[kRead] + outcomes[kWrite];
-      const PortMask winner = winners_[situation].port;
-      stats.reads += outcomes[kRead];
-      stats.writes += outcomes[kWrite];
-      stats.turnaround_cycles += outcomes[kTurning];
-      if ((requests & (requests - 1)) != 0) stats.contended_cycles += granted + outcomes[kTurning];
-      const auto winner_index = static_cast<std::size_t>(__builtin_ctz(winner));
-      stats.grants[winner_index] += granted;
-      for (std::size_t port = 0; port < kPortCount; ++port) {
-        if ((requests >> port & 1U) == 0) continue;
-        stats.blame[port][ArbiterStats::kTurnaround] += outcomes[kTurning];
-        if (port != winner_index) stats.blame[port][winner_index] += granted;
+      const std::uint64_t reads = outcomes_[outcome_of(requests, by, 0)];
+      const std::uint64_t writes = outcomes_[outcome_of(requests, by, 1)];
+      const std::uint64_t cycles = reads + writes;
+      if (cycles == 0) continue;
+      if ((requests & (requests - 1)) != 0) stats.contended_cycles += cycles;
+      if (by == ArbiterStats::kTurnaround) {
+        stats.turnaround_cycles += cycles;
+      } else {
+        stats.reads += reads;
+        stats.writes += writes;
+        stats.grants[by] += cycles;
+      }
+      for (std::size_t port = 0; port < kMostPorts; ++port) {
+        if (port != by && (requests >> port & 1U) != 0) stats.blame[port][by] += cycles;
       }
     }
   }

@@ -27,13 +27,14 @@ const CrossbarConfig& checked(const std::string& name, const CrossbarConfig& con
 
 Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
     : sc_module(name),
-      ports("port", kPortCount),
+      ports("port", config.arbiter.priority.size()),
       banks("bank", config.banks.size()),
       arbitration_(checked(this->name(), config).arbiter, config.banks),
+      silent_ports_(config.silent_ports),
       direct_accesses_(config.banks.size()),
       direct_banks_(config.banks.size()) {
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    targets_.emplace_back(*this, static_cast<Port>(port));
+  for (Port port = 0; port < ports.size(); ++port) {
+    targets_.emplace_back(*this, port);
     ports[port].bind(targets_.back());
   }
   for (std::size_t bank = 0; bank < config.banks.size(); ++bank)
@@ -46,7 +47,7 @@ void Crossbar::route(Port port, std::size_t bank, bool write) {
 }
 
 void Crossbar::aim(Port port, std::size_t bank, bool write) {
-  targets_[index_of(port)].route(bank, write, *banks[bank].operator->());
+  targets_[port].route(bank, write, *banks[bank].operator->());
 }
 
 void Crossbar::PortTarget::route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target) {
@@ -70,7 +71,7 @@ void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core
 }
 
 bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
-  Watch& watch = watches_[index_of(port)];
+  Watch& watch = watches_[port];
   const bool is_new = watch.first != first || watch.end != end;
   const bool is_open = (open_banks_ >> bank_of_address(first) & 1U) != 0;
   const bool changed = watch.changed || is_open || is_new;
@@ -124,9 +125,8 @@ bool Crossbar::grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::t
   access.set_address(address & kOffsetMask);
   const bool granted = banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi);
   access.set_address(address);
-  // The host's program may write there whenever it likes; the stages tell.
-  if (granted && port == mask_of(Port::kHost)) open_banks_ |= std::uint64_t{1} << bank_of_address(address);
-  // Also a refusal names a range; what lies beyond the bank's window belongs to the next bank.
+  if (granted && (port & silent_ports_) != 0) open_banks_ |= std::uint64_t{1} << bank_of_address(address);
+  // A refusal names a range too. Addresses beyond the bank's window belong to the next bank.
   dmi.set_start_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_start_address(), kOffsetMask));
   dmi.set_end_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_end_address(), kOffsetMask));
   return granted;
@@ -137,7 +137,7 @@ void Crossbar::invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end) 
   const std::uint64_t base = static_cast<std::uint64_t>(bank) << kBankAddressBits;
   const std::uint64_t first = base + std::min<std::uint64_t>(start, kOffsetMask);
   const std::uint64_t last = base + std::min<std::uint64_t>(end, kOffsetMask);
-  for (std::size_t port = 0; port < kPortCount; ++port) {
+  for (Port port = 0; port < ports.size(); ++port) {
     if (ports[port].get_base_port().get_interface() != nullptr)
       ports[port]->invalidate_direct_mem_ptr(first, last);
   }

@@ -25,30 +25,33 @@ constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address 
 struct CrossbarConfig {
   ArbiterConfig arbiter;
   std::vector<SsramBankConfig> banks;  // what the memory controllers know about them; all of one clock
+  // Ports whose masters write by DMI at any time, without changes(). The other masters report their writes.
+  PortMask silent_ports = 0;
 };
 
-// The crossbar between the six ports and the banks, with one arbiter per bank. It has no process: its owner's
-// clocked process calls arbitrate() once per cycle. A port is routed to the bank that it works on; its
-// requests come as the argument of arbitrate(), and if one is granted, the stage behind the port makes the
-// access in the same cycle: one word by b_transport, which takes no simulated time and adds the bank's read
-// time to `delay`. Without a grant, or of another bank or direction than the port's route, it is answered
-// TLM_GENERIC_ERROR_RESPONSE and does not reach the bank, as is every nb_transport.
+// The crossbar between the ports and the banks, with one arbiter per bank. It has no process: the clocked
+// process of its owner calls arbitrate() once per cycle, with the ports that request. Each port is routed to
+// one bank and one direction. The stage behind a granted port makes its access in the same cycle: one word by
+// b_transport, which takes no simulated time and adds the bank's read time to `delay`.
 //
-// An address of a bank that does not exist is answered TLM_ADDRESS_ERROR_RESPONSE; other errors are the
-// bank's. Debug transport and DMI reach every bank without a grant.
+// An access without a grant, or of another bank or direction than the port's route, is answered
+// TLM_GENERIC_ERROR_RESPONSE, as is every nb_transport. An address of a bank that does not exist is answered
+// TLM_ADDRESS_ERROR_RESPONSE. Both reach no bank; other errors are the bank's. Debug transport and DMI reach
+// every bank without a grant.
 class Crossbar : public sc_core::sc_module {
  public:
   sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
                                             sc_core::SC_ZERO_OR_MORE_BOUND>>
-      ports;  // [index_of(Port)]; one that nobody uses may stay unbound
+      ports;  // [port]; one that nobody uses may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket_tagged<Crossbar>> banks;  // [bank]
 
   // Throws std::invalid_argument if the configuration has problems.
   Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
 
-  // As Arbitration does, for the next arbitrate() on. The bank must exist.
+  // Routes the port from the next arbitrate() on. The bank must exist.
   void route(Port port, std::size_t bank, bool write);
-  // The accesses of the port go there, but it takes no part in the arbitration: grant() says when it may.
+  // Directs the accesses of the port to this bank. The port takes no part in the arbitration: its accesses
+  // need a grant().
   void aim(Port port, std::size_t bank, bool write);
   void unroute(Port port) { arbitration_.unroute(port); }
   std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // of its last route
@@ -56,21 +59,20 @@ class Crossbar : public sc_core::sc_module {
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     return grant(arbitration_.arbitrate(cycle, requests));
   }
-  // The same in two steps: these ports have been granted by arbitration() in the current cycle.
+  // Grants these ports one access each in the current cycle. For an owner that calls arbitration() itself.
   PortMask grant(PortMask granted) { return granted_ = granted; }
   Arbitration& arbitration() { return arbitration_; }
   const Arbitration& arbitration() const { return arbitration_; }
 
-  // Tells from the last call on whether words of this port's bank may have changed, first .. end - 1 by their
-  // byte addresses on the crossbar. The first call, and one for other words, says yes.
+  // Whether the words at byte addresses first .. end - 1 on the crossbar may have changed since the port's
+  // last call. True in the first call, and after a call for other words.
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
-  // Words have been written directly.
+  // Reports that words have been written by direct access.
   void changes(std::uint64_t first, std::uint64_t bytes);
-  // Accesses that a stage has made directly, to the bank that its port is routed to.
-  void count_direct(Port port, std::uint64_t accesses) { direct_accesses_[bank_of(port)] += accesses; }
-  // As many bytes at this byte address of the crossbar, where the bank lets them be accessed directly; else
-  // null. For use at once, and to be told as above.
+  // Pointer to these bytes, for one use at once; null if the bank does not grant direct access to all of
+  // them. The caller reports writes with changes(), and accesses with count_direct().
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
+  // Counts direct accesses.
   void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
 
@@ -79,7 +81,7 @@ class Crossbar : public sc_core::sc_module {
   const std::vector<BankArbiter>& arbiters() const { return arbitration_.arbiters(); }
 
  private:
-  // The target behind one port's socket, and where its requests go.
+  // The target behind the socket of one port.
   class PortTarget : public tlm::tlm_fw_transport_if<> {
    public:
     PortTarget(Crossbar& crossbar, Port port) : crossbar_(crossbar), port_mask_(mask_of(port)) {}
@@ -100,9 +102,9 @@ class Crossbar : public sc_core::sc_module {
     PortMask port_mask_;
     bool write_ = false;
     std::uint64_t bank_base_ = 0;                            // its first address
-    tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // found once, for speed
+    tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };
-  // Words that somebody wants to know about.
+  // The words that a port watches with may_have_changed().
   struct Watch {
     std::uint64_t first = 0;
     std::uint64_t end = 0;
@@ -117,11 +119,12 @@ class Crossbar : public sc_core::sc_module {
 
   Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  std::array<Watch, kPortCount> watches_{};
-  std::uint64_t open_banks_ = 0;  // bit per bank: the host may write there directly
+  std::array<Watch, kMostPorts> watches_{};
+  PortMask silent_ports_;
+  std::uint64_t open_banks_ = 0;  // bit per bank: a silent port has direct access
   std::vector<std::uint64_t> direct_accesses_;
-  std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: as granted, until it is taken back
-  PortMask granted_ = 0;                                   // in the current cycle, and not yet used
+  std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: direct access that is not revoked
+  PortMask granted_ = 0;                                   // in the current cycle and not yet used
 };
 
 }  // namespace stereotlm::memory

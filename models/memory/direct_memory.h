@@ -5,8 +5,8 @@
 
 namespace stereotlm::memory {
 
-// Where `bytes` bytes from `address` on lie in the memory behind a socket (DMI), for one use at once: the
-// target may revoke it any later time. Null if it does not grant all of them for this command.
+// Pointer to `bytes` bytes from `address` on in the memory behind a socket (DMI), for one use at once: the
+// target may revoke it later. Null if the target does not grant all of them for this command.
 inline unsigned char* direct_memory(tlm::tlm_initiator_socket<32>& socket, tlm::tlm_command command,
                                     std::uint64_t address, std::uint64_t bytes) {
   tlm::tlm_generic_payload access;

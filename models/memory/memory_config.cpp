@@ -2,15 +2,24 @@
 
 #include <algorithm>
 
+#include "models/memory/arbitration_policies.h"
+
 namespace stereotlm::memory {
+
+std::string broken_turnaround_rule(BankKind kind, int turnaround_cycles) {
+  const BankTraits& traits = traits_of(kind);
+  const kernels::IntegerRule rule = traits.has_turnaround ? kTurnaroundRule : kernels::IntegerRule{0, 0};
+  if (rule.allows(turnaround_cycles)) return "";
+  return (traits.has_turnaround ? rule.text() : "0") + " for " + traits.name;
+}
 
 std::vector<std::string> problems(const SsramBankConfig& config) {
   std::vector<std::string> found;
   kBankWordsRule.check("words", config.words, found);
-  const bool turns = config.kind == BankKind::kSyncBurst;
-  if (turns ? !kTurnaroundRule.allows(config.turnaround_cycles) : config.turnaround_cycles != 0) {
-    found.push_back("turnaround_cycles = " + std::to_string(config.turnaround_cycles) + ": must be " +
-                    kTurnaroundRule.text() + " with sync_burst, else 0");
+  if (!is_bank_kind(config.kind)) {
+    found.push_back("kind = " + std::to_string(static_cast<int>(config.kind)) + ": must be a BankKind");
+  } else if (const auto rule = broken_turnaround_rule(config.kind, config.turnaround_cycles); !rule.empty()) {
+    found.push_back("turnaround_cycles = " + std::to_string(config.turnaround_cycles) + ": must be " + rule);
   }
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");
@@ -20,10 +29,21 @@ std::vector<std::string> problems(const SsramBankConfig& config) {
 
 std::vector<std::string> problems(const ArbiterConfig& config) {
   std::vector<std::string> found;
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    const auto times = std::count(config.priority.begin(), config.priority.end(), static_cast<Port>(port));
+  if (find_arbitration_policy(config.policy) == nullptr) {
+    std::string names;
+    for (const PolicyEntry& policy : arbitration_policies())
+      names += (names.empty() ? "" : ", ") + std::string(policy.name);
+    found.push_back("policy = " + config.policy + ": must be one of " + names);
+  }
+  const std::size_t ports = config.priority.size();
+  if (ports == 0 || ports > kMostPorts) {
+    found.push_back("priority = " + std::to_string(ports) + " ports: must be 1.." +
+                    std::to_string(kMostPorts));
+  }
+  for (Port port = 0; port < ports; ++port) {
+    const auto times = std::count(config.priority.begin(), config.priority.end(), port);
     if (times != 1) {
-      found.push_back(std::string("priority = ") + kPortNames[port] + " " + std::to_string(times) +
+      found.push_back("priority = port " + std::to_string(port) + " " + std::to_string(times) +
                       " times: must name each port once");
     }
   }

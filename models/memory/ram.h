@@ -11,8 +11,8 @@
 
 namespace stereotlm::memory {
 
-// The storage of a memory behind a base-protocol target: zeros at first; pages that were never touched cost
-// nothing.
+// Storage of a memory behind a base-protocol target. It holds zeros at first; untouched pages take no memory
+// of the host computer.
 class Ram {
  public:
   // Throws std::bad_alloc.
@@ -28,7 +28,7 @@ class Ram {
     return address <= bytes_ && length <= bytes_ - address;
   }
 
-  // Carries out a read or a write that lies inside, under its byte enables.
+  // Executes a read or a write inside the memory, with its byte enables.
   void move(tlm::tlm_generic_payload& access) {
     unsigned char* stored = data_.get() + access.get_address();
     unsigned char* data = access.get_data_ptr();
@@ -46,7 +46,7 @@ class Ram {
     }
   }
 
-  // Debug transport of as many bytes as lie inside.
+  // Debug transport: moves the bytes that lie inside the memory, and returns their number.
   unsigned debug(tlm::tlm_generic_payload& access) {
     const std::uint64_t address = access.get_address();
     if (access.get_command() == tlm::TLM_IGNORE_COMMAND || address >= bytes_) return 0;
@@ -58,7 +58,7 @@ class Ram {
     return length;
   }
 
-  // Grants the whole memory, read and write, to a request inside it; a refusal names the range without
+  // Grants the whole memory, read and write, for an address inside it. A refusal names the range beyond the
   // memory.
   bool grant_dmi(const tlm::tlm_generic_payload& access, const sc_core::sc_time& read_time,
                  tlm::tlm_dmi& dmi) {

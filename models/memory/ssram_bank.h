@@ -9,15 +9,19 @@
 
 namespace stereotlm::memory {
 
-// One synchronous SRAM bank: a single port, one 32-bit word an access, byte enables. b_transport never waits;
-// it adds the time from the access to the cycle in which the word is usable to `delay` (a write is done in
-// its own cycle). Errors, all without effect and without cost: an address that is not a multiple of 4 or
-// outside the bank is answered TLM_ADDRESS_ERROR_RESPONSE, a length other than 4 or a streaming width below
-// it TLM_BURST_ERROR_RESPONSE, byte enables of length 0 TLM_BYTE_ENABLE_ERROR_RESPONSE, a command that
-// neither reads nor writes TLM_COMMAND_ERROR_RESPONSE. nb_transport_fw completes at once, with the same
-// effect. Who may access when is decided in front of the bank, by its arbiter. Debug transport takes any
-// length; DMI grants the whole bank, read and write, and is never revoked. Words are in the host's byte
-// order.
+// One synchronous SRAM bank: a single port, one 32-bit word per access, byte enables. b_transport never
+// waits. A read adds to `delay` the time until its reader can use the word; a write adds nothing.
+// nb_transport_fw completes at once, with the same effect. The arbiter in front of the bank decides which
+// port may access it.
+//
+// Errors have no effect and add no delay:
+//   TLM_ADDRESS_ERROR_RESPONSE      an address outside the bank, or not a multiple of 4
+//   TLM_BURST_ERROR_RESPONSE        a length other than 4, or a streaming width below 4
+//   TLM_BYTE_ENABLE_ERROR_RESPONSE  byte enables of length 0
+//   TLM_COMMAND_ERROR_RESPONSE      a command that neither reads nor writes
+//
+// Debug transport takes any length. DMI grants the whole bank, read and write, and is never revoked. Words
+// are in the byte order of the host computer.
 class SsramBank : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {
@@ -33,7 +37,7 @@ class SsramBank : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> 
 
   const SsramBankConfig& config() const { return config_; }
   const Stats& stats() const { return stats_; }
-  // The words, for whoever owns the bank.
+  // The stored words. For the owner of the bank.
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(ram_.data()); }
 
  private:

@@ -6,7 +6,7 @@
 
 namespace stereotlm::memory {
 
-// The 32-bit accesses of one initiator socket: one transaction object, set up once.
+// Makes the 32-bit accesses of one initiator socket, with one transaction object that is set up once.
 class WordAccess {
  public:
   explicit WordAccess(tlm::tlm_initiator_socket<32>& socket) : socket_(socket) {
@@ -19,8 +19,8 @@ class WordAccess {
   WordAccess(const WordAccess&) = delete;
   WordAccess& operator=(const WordAccess&) = delete;
 
-  // `delay`: the time of the access, from now; grows by what the target takes. False if it was refused:
-  // status() says why, and word() is 0 after a read.
+  // `delay`: time of the access, from now; the target adds the time that it takes. Returns false if the
+  // target refuses: status() is the reason, and word() is 0 after a read.
   bool read(std::uint64_t address, sc_core::sc_time& delay) {
     word_ = 0;
     return transport(tlm::TLM_READ_COMMAND, address, delay);
@@ -34,7 +34,8 @@ class WordAccess {
 
  private:
   bool transport(tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {
-    // Found once: the way through the socket and the interface's virtual bases costs as much as an access.
+    // Looked up once: the path through the socket and the virtual bases of its interface costs as much as an
+    // access.
     if (target_ == nullptr) target_ = socket_.operator->();
     access_.set_command(command);
     access_.set_address(address);

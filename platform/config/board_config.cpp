@@ -64,7 +64,7 @@ class FieldChecker {
   void check_key(const Key& key, const WordKey& word) {
     const int index = word.get(board_);
     if (index >= 0 && index < static_cast<int>(word.words.size())) return;
-    report(key.path, key.path == "fpga.device" ? board_.fpga.device : std::to_string(index), key.rule_text);
+    report(key.path, word.text(board_), key.rule_text);
   }
   void check_key(const Key& key, const OtherKey&) {
     if (key.path == "name") {
@@ -89,8 +89,7 @@ class FieldChecker {
     const auto& list = board_.fpga.arbiter.priority;
     std::vector<std::string> names;
     for (const memory::Port port : list) {
-      const std::size_t index = memory::index_of(port);
-      names.emplace_back(index < memory::kPortCount ? memory::kPortNames[index] : "(no port)");
+      names.emplace_back(port < fpga::kPortCount ? fpga::kPorts[port].name : "(no port)");
     }
     const std::set<std::string> different(names.begin(), names.end());
     if (different.size() < list.size() || different.count("(no port)") > 0) {
@@ -109,17 +108,11 @@ class FieldChecker {
       if (!names.insert(bank.name).second) report("ssram.banks", bank.name, "repeated name");
       if (!memory::kBankWordsRule.allows(bank.words))
         report(path + ".words", bank.words, memory::kBankWordsRule.text());
-      const auto kind = static_cast<std::size_t>(bank.kind);
-      if (kind >= memory::kBankKindNames.size()) {
-        report(path + ".kind", kind, board_key("ssram.banks.NAME.kind").rule_text);
-      } else if (bank.kind == memory::BankKind::kSyncBurst) {
-        if (!memory::kTurnaroundRule.allows(bank.turnaround_cycles)) {
-          report(path + ".turnaround_cycles", bank.turnaround_cycles,
-                 memory::kTurnaroundRule.text() + " for sync_burst");
-        }
-      } else if (bank.turnaround_cycles != 0) {
-        report(path + ".turnaround_cycles", bank.turnaround_cycles,
-               fmt::format("0 for {}", memory::kBankKindNames[kind]));
+      if (!memory::is_bank_kind(bank.kind)) {
+        report(path + ".kind", static_cast<int>(bank.kind), board_key("ssram.banks.NAME.kind").rule_text);
+      } else if (const auto rule = memory::broken_turnaround_rule(bank.kind, bank.turnaround_cycles);
+                 !rule.empty()) {
+        report(path + ".turnaround_cycles", bank.turnaround_cycles, rule);
       }
     }
   }

@@ -7,6 +7,7 @@
 
 #include "models/capture/capture_config.h"
 #include "models/fpga/core_config.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "models/memory/memory_config.h"
 
@@ -60,7 +61,7 @@ struct BridgeConfig {
 struct FpgaConfig {
   std::string device = "xc2v6000";
   double clock_mhz = 40;  // 1..1000
-  memory::ArbiterConfig arbiter;
+  memory::ArbiterConfig arbiter = fpga::core_arbiter();
   int lane_fifo_slots = 16;          // slots, 1..64
   int result_fifo_words = 8;         // 32-bit words, 1..64
   int pipeline_latency_cycles = 16;  // cycles, 0..1024
@@ -71,7 +72,7 @@ struct BankConfig {
   std::string name;
   int words = 524288;  // 32-bit words, 1..2^26
   memory::BankKind kind = memory::BankKind::kZbtPipelined;
-  int turnaround_cycles = 0;  // 1..16 with sync_burst, else 0
+  int turnaround_cycles = 0;  // 1..16 if the kind has turnaround, else 0
 };
 
 // The bank of each buffer, by name. The frames use the entries of a list in turn. A list has 1 to 3 entries;

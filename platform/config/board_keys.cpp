@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "models/area/device.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
+#include "models/memory/arbitration_policies.h"
 #include "models/pci/pci_config.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/config/yaml_tree.h"
@@ -38,6 +40,11 @@ int get_enum(const BoardConfig& board) {
 }
 
 template <auto... kMembers>
+std::string enum_text(const BoardConfig& board) {
+  return std::to_string(get_enum<kMembers...>(board));
+}
+
+template <auto... kMembers>
 void set_enum(BoardConfig& board, int index) {
   auto& field = (board.*....*kMembers);
   field = static_cast<std::remove_reference_t<decltype(field)>>(index);
@@ -56,17 +63,32 @@ Key decimal(const char* path, const char* meaning, const char* unit, double min,
 template <auto... kMembers>
 Key word(const char* path, const char* meaning, std::vector<std::string> words) {
   std::string text = listed(words);
-  return {path, meaning, "", WordKey{std::move(words), get_enum<kMembers...>, set_enum<kMembers...>}, text};
+  WordKey key{std::move(words), get_enum<kMembers...>, set_enum<kMembers...>, enum_text<kMembers...>};
+  return {path, meaning, "", std::move(key), text};
 }
 
-Key other(const char* path, const char* meaning, const char* unit, std::string text) {
-  return {path, meaning, unit, OtherKey{}, std::move(text)};
+// One of the names that `kNames` returns; the board holds the name.
+template <const std::vector<std::string>& (*kNames)(), auto... kMembers>
+Key name(const char* path, const char* meaning) {
+  const auto get = [](const BoardConfig& board) {
+    const auto found = std::find(kNames().begin(), kNames().end(), (board.*....*kMembers));
+    return found == kNames().end() ? -1 : static_cast<int>(found - kNames().begin());
+  };
+  const auto set = [](BoardConfig& board, int index) {
+    (board.*....*kMembers) = kNames()[static_cast<std::size_t>(index)];
+  };
+  const auto text = [](const BoardConfig& board) { return (board.*....*kMembers); };
+  return {path, meaning, "", WordKey{kNames(), get, set, text}, listed(kNames())};
+}
+
+Key other(const char* path, std::string meaning, const char* unit, std::string text) {
+  return {path, std::move(meaning), unit, OtherKey{}, std::move(text)};
 }
 
 // A key with code of its own that takes numbers, and possibly words.
-Key other_integer(const char* path, const char* meaning, const char* unit, IntegerRule rule,
+Key other_integer(const char* path, std::string meaning, const char* unit, IntegerRule rule,
                   std::string text) {
-  return {path, meaning, unit, OtherKey{rule}, std::move(text)};
+  return {path, std::move(meaning), unit, OtherKey{rule}, std::move(text)};
 }
 
 Key optional(Key key) {
@@ -76,23 +98,35 @@ Key optional(Key key) {
 
 constexpr double microseconds(std::int64_t ps) { return static_cast<double>(ps) / 1e6; }
 
-template <std::size_t kSize>
-std::vector<std::string> names(const std::array<const char*, kSize>& list) {
-  return {list.begin(), list.end()};
+template <typename Table>
+std::vector<std::string> names_in(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& row : table) names.emplace_back(row.name);
+  return names;
 }
 
-Key device() {
-  std::vector<std::string> known;
-  known.reserve(std::size(area::kDevices));
-  for (const area::Device& one : area::kDevices) known.emplace_back(one.name);
-  const auto get = [](const BoardConfig& board) {
-    const area::Device* found = area::find_device(board.fpga.device);
-    return found == nullptr ? -1 : static_cast<int>(found - area::kDevices.data());
-  };
-  const auto set = [](BoardConfig& board, int index) {
-    board.fpga.device = area::kDevices[static_cast<std::size_t>(index)].name;
-  };
-  return {"fpga.device", "the FPGA, for its resources", "", WordKey{known, get, set}, listed(known)};
+const std::vector<std::string>& device_names() {
+  static const std::vector<std::string> kNames = names_in(area::kDevices);
+  return kNames;
+}
+
+const std::vector<std::string>& policy_names() {
+  static const std::vector<std::string> kNames = names_in(memory::arbitration_policies());
+  return kNames;
+}
+
+// "the ports, highest priority first; ..": what the list means to each policy.
+std::string priority_meaning() {
+  std::vector<std::string> meanings;
+  for (const memory::PolicyEntry& policy : memory::arbitration_policies())
+    meanings.emplace_back(policy.list_meaning);
+  return fmt::format("the ports, {}", fmt::join(meanings, "; "));
+}
+
+std::string port_names() {
+  std::vector<std::string> names;
+  for (const fpga::CorePort& port : fpga::kPorts) names.emplace_back(port.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::vector<Key> make_keys() {
@@ -100,9 +134,11 @@ std::vector<Key> make_keys() {
   const std::string list_rule = "a bank, or a list of 1 to 3 banks";
   const std::string image_rule = list_rule + "; left_image and right_image equally long";
   const std::string table_rule = "a bank or none";
-  const std::string kinds = listed(names(memory::kBankKindNames));
-  const std::string turnaround_rule =
-      memory::kTurnaroundRule.text() + "; required where the kind is sync_burst, refused beside another";
+  const std::string kinds = listed(bank_kind_names());
+  const std::string turnaround_rule = fmt::format("{}; required where the kind is {}, refused beside another",
+                                                  memory::kTurnaroundRule.text(), turnaround_kinds());
+  const std::string default_turnaround =
+      fmt::format("turnaround of a {} bank that gives none of its own", turnaround_kinds());
   Key trigger_words =
       integer("capture.fifo_trigger_words", "words in the FIFO at which it asks for the PCI bus", "words",
               {1, 4096}, member<&B::capture, &CaptureConfig::fifo_trigger_words>);
@@ -158,15 +194,12 @@ std::vector<Key> make_keys() {
               member<&B::bridge, &BridgeConfig::dma_burst_words>),
       integer("bridge.posted_words", "posted writes that the bridge can hold", "words", {1, 4096},
               member<&B::bridge, &BridgeConfig::posted_words>),
-      device(),
+      name<device_names, &B::fpga, &FpgaConfig::device>("fpga.device", "the FPGA, for its resources"),
       decimal("fpga.clock_mhz", "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000,
               member<&B::fpga, &FpgaConfig::clock_mhz>),
-      word<&B::fpga, &FpgaConfig::arbiter, &memory::ArbiterConfig::policy>(
-          "fpga.arbitration", "how a bank picks one of the ports that request it",
-          {"fixed_priority", "round_robin"}),
-      other("fpga.priority", "the ports, highest priority first; the search order of round_robin", "",
-            fmt::format("a list that names each of the six ports once: {}",
-                        fmt::join(memory::kPortNames, ", "))),
+      name<policy_names, &B::fpga, &FpgaConfig::arbiter, &memory::ArbiterConfig::policy>(
+          "fpga.arbitration", "how a bank picks one of the ports that request it"),
+      other("fpga.priority", priority_meaning(), "", "a list that names each port once: " + port_names()),
       integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
               fpga::kLaneFifoRule, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
       integer("fpga.result_fifo_words", "queue of result words before the result port", "words",
@@ -176,8 +209,7 @@ std::vector<Key> make_keys() {
       other_integer("ssram.default.words", "depth of a bank that gives none of its own", "words",
                     memory::kBankWordsRule, memory::kBankWordsRule.text()),
       other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
-      optional(other_integer("ssram.default.turnaround_cycles",
-                             "turnaround of a sync_burst bank that gives none of its own", "cycles",
+      optional(other_integer("ssram.default.turnaround_cycles", default_turnaround, "cycles",
                              memory::kTurnaroundRule, turnaround_rule)),
       optional(other_integer("ssram.banks.NAME.words", "depth of the bank NAME", "words",
                              memory::kBankWordsRule, memory::kBankWordsRule.text())),
@@ -392,6 +424,19 @@ std::string listed(const std::vector<std::string>& words) {
     out += words[i];
   }
   return out;
+}
+
+const std::vector<std::string>& bank_kind_names() {
+  static const std::vector<std::string> kNames = names_in(memory::kBankTraits);
+  return kNames;
+}
+
+std::string turnaround_kinds() {
+  std::vector<std::string> names;
+  for (const memory::BankTraits& traits : memory::kBankTraits) {
+    if (traits.has_turnaround) names.emplace_back(traits.name);
+  }
+  return listed(names);
 }
 
 bool is_bank_name(std::string_view name) {

@@ -31,11 +31,12 @@ struct DecimalKey {
 };
 
 // A key whose value is one of a few words, stored as its index. `get` returns an index outside the list if the
-// board's value is none of the words.
+// board's value is none of the words; `text` returns that value for messages.
 struct WordKey {
   std::vector<std::string> words;
   int (*get)(const BoardConfig&);
   void (*set)(BoardConfig&, int);
+  std::string (*text)(const BoardConfig&);
 };
 
 // A key with code of its own in the reader and the writer.
@@ -82,6 +83,11 @@ std::string listed(const std::vector<std::string>& words);
 
 inline constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
+
+// The names of the kinds of banks in board files, in the order of memory::BankKind.
+const std::vector<std::string>& bank_kind_names();
+// "sync_burst": the kinds of banks that have turnaround.
+std::string turnaround_kinds();
 
 bool is_bank_name(std::string_view name);
 bool is_board_name(std::string_view name);  // UTF-8, not empty, without control characters

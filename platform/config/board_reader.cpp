@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
@@ -28,7 +29,7 @@ struct Given {
 struct BankEntry {
   Place key;
   Given words;
-  Given kind;  // index into memory::kBankKindNames
+  Given kind;  // index into memory::kBankTraits
   Given turnaround_cycles;
 };
 
@@ -120,31 +121,30 @@ class BoardReader {
 
   void read_priority(const Key& key, const YamlNode& node) {
     if (!node.is_list()) return values_.report(key.path, node, key.rule_text);
-    const std::vector<std::string> names(memory::kPortNames.begin(), memory::kPortNames.end());
-    std::vector<memory::Port> ports;
+    std::vector<std::string> names;
+    for (const fpga::CorePort& port : fpga::kPorts) names.emplace_back(port.name);
+    memory::PriorityList ports;
     bool all_known = true;
     for (const YamlNode& item : node.items) {
       const auto index = values_.read_word(key.path, item, names);
       all_known = all_known && index;
       if (!index) continue;
-      const auto port = static_cast<memory::Port>(*index);
-      if (std::find(ports.begin(), ports.end(), port) != ports.end()) {
-        values_.report(key.path, item, "repeated; each of the six ports once");
+      if (std::find(ports.begin(), ports.end(), *index) != ports.end()) {
+        values_.report(key.path, item, "repeated; each port once");
         all_known = false;
       }
-      ports.push_back(port);
+      ports.push_back(*index);
     }
     if (!all_known) return;
-    if (ports.size() != memory::kPortCount) {
+    if (ports.size() != fpga::kPortCount) {
       std::vector<std::string> lacking;
       for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto port = static_cast<memory::Port>(i);
-        if (std::find(ports.begin(), ports.end(), port) == ports.end()) lacking.push_back(names[i]);
+        if (std::find(ports.begin(), ports.end(), i) == ports.end()) lacking.push_back(names[i]);
       }
       return values_.report(key.path, node,
-                            fmt::format("each of the six ports once; {} missing", fmt::join(lacking, ", ")));
+                            fmt::format("each port once; {} missing", fmt::join(lacking, ", ")));
     }
-    std::copy(ports.begin(), ports.end(), board_.fpga.arbiter.priority.begin());
+    board_.fpga.arbiter.priority = ports;
   }
 
   // That the bank exists is a rule between keys.
@@ -271,7 +271,7 @@ class BoardReader {
     };
     read("words", bank.words, integer(memory::kBankWordsRule));
     read("kind", bank.kind, [this](const std::string& key, const YamlNode& node) {
-      return values_.read_word(key, node, {memory::kBankKindNames.begin(), memory::kBankKindNames.end()});
+      return values_.read_word(key, node, bank_kind_names());
     });
     read("turnaround_cycles", bank.turnaround_cycles, integer(memory::kTurnaroundRule));
     check_turnaround_use(path, bank);
@@ -283,17 +283,17 @@ class BoardReader {
   void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;
-    if (!given.value || !kind.value || is_sync_burst(*kind.value)) return;
+    if (!given.value || !kind.value || traits_of(kind)->has_turnaround) return;
     // The value of a preset whose kind is overridden by the file or `--set` counts as inherited.
     if (given.place.source == Place::kPreset) return;
-    const auto name = memory::kBankKindNames[static_cast<std::size_t>(*kind.value)];
     values_.report_between_keys(
         latest(given.place, kind.place),
-        fmt::format("{}.turnaround_cycles = {}: only where the kind is sync_burst, and it is {}", path,
-                    *given.value, name));
+        fmt::format("{}.turnaround_cycles = {}: only where the kind is {}, and it is {}", path, *given.value,
+                    turnaround_kinds(), traits_of(kind)->name));
   }
-  static bool is_sync_burst(int kind) {
-    return static_cast<memory::BankKind>(kind) == memory::BankKind::kSyncBurst;
+  // Null if the kind could not be read.
+  static const memory::BankTraits* traits_of(const Given& kind) {
+    return kind.value ? &memory::kBankTraits[static_cast<std::size_t>(*kind.value)] : nullptr;
   }
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
@@ -335,7 +335,8 @@ class BoardReader {
     const Given& words = own.words.present ? own.words : defaults.words;
     const Given& turnaround =
         own.turnaround_cycles.present ? own.turnaround_cycles : defaults.turnaround_cycles;
-    if (kind.value && is_sync_burst(*kind.value) && !turnaround.present) {
+    const memory::BankTraits* const traits = traits_of(kind);
+    if (traits != nullptr && traits->has_turnaround && !turnaround.present) {
       if (own.kind.present) {
         values_.report_missing_beside(latest(latest(own.key, own.kind.place), defaults.key),
                                       path + ".turnaround_cycles",
@@ -350,8 +351,10 @@ class BoardReader {
       bank.words = *words.value;
       values_.accept(path + ".words", words.place);
     }
-    if (kind.value) bank.kind = static_cast<memory::BankKind>(*kind.value);
-    if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles = turnaround.value.value_or(0);
+    if (traits != nullptr) {
+      bank.kind = traits->kind;
+      if (traits->has_turnaround) bank.turnaround_cycles = turnaround.value.value_or(0);
+    }
     board_.banks.push_back(std::move(bank));
   }
 

@@ -66,7 +66,7 @@ class BoardWriter {
     for (const BankConfig& bank : board_.banks) {
       const std::string path = below("ssram.banks", bank.name);
       values_.push_back({path + ".words", std::int64_t{bank.words}});
-      values_.push_back({path + ".kind", memory::kBankKindNames[static_cast<std::size_t>(bank.kind)]});
+      values_.push_back({path + ".kind", memory::traits_of(bank.kind).name});
       values_.push_back({path + ".turnaround_cycles", std::int64_t{bank.turnaround_cycles}});
     }
     return std::move(values_);
@@ -133,7 +133,8 @@ class BoardWriter {
     if (key.path == "name") return scalar_text(board_.name);
     if (key.path == "fpga.priority") {
       std::vector<std::string> ports;
-      for (const memory::Port port : board_.fpga.arbiter.priority) ports.emplace_back(memory::name_of(port));
+      for (const memory::Port port : board_.fpga.arbiter.priority)
+        ports.emplace_back(fpga::kPorts[port].name);
       return list_text(ports);
     }
     if (const auto buffer = buffer_of_key(key.path))
@@ -146,9 +147,9 @@ class BoardWriter {
   }
 
   static std::string kind_text(const BankConfig& bank) {
-    const auto* name = memory::kBankKindNames[static_cast<std::size_t>(bank.kind)];
-    if (bank.kind != memory::BankKind::kSyncBurst) return fmt::format("kind: {}", name);
-    return fmt::format("kind: {}, turnaround_cycles: {}", name, bank.turnaround_cycles);
+    const memory::BankTraits& traits = memory::traits_of(bank.kind);
+    if (!traits.has_turnaround) return fmt::format("kind: {}", traits.name);
+    return fmt::format("kind: {}, turnaround_cycles: {}", traits.name, bank.turnaround_cycles);
   }
   std::string default_text() const {
     const BankConfig& bank = board_.banks.front();

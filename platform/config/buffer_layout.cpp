@@ -61,14 +61,14 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
   return buffer.index < 0 ? pixels : pixels / 4;
 }
 
-fpga::FrameBuffers frame_buffers(const BoardConfig& board) {
+fpga::BufferBases buffer_bases(const BoardConfig& board) {
   const BufferLayout layout = layout_buffers(board);
   return {words_of(layout.left_image), words_of(layout.right_image), words_of(layout.disparity),
           word_of(layout.left_lut), word_of(layout.right_lut)};
 }
 
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
-  const fpga::FrameBuffers words = frame_buffers(board);
+  const fpga::BufferBases words = buffer_bases(board);
   std::vector<std::uint32_t> first_words;
   for (const auto* list : {&words.left_images, &words.right_images, &words.disparities})
     first_words.insert(first_words.end(), list->begin(), list->end());

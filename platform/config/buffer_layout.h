@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "models/fpga/frame_buffers.h"
+#include "models/fpga/buffer_bases.h"
 #include "models/words_by_range.h"
 #include "platform/config/board_config.h"
 
@@ -78,7 +78,7 @@ void move_buffer(AllocationConfig& allocation, const PlacedBuffer& buffer, const
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
 // Throws as layout_buffers() does.
-fpga::FrameBuffers frame_buffers(const BoardConfig& board);
+fpga::BufferBases buffer_bases(const BoardConfig& board);
 
 // The addresses of the buffers on the local bus, in the order of buffers(). Throws as layout_buffers() does.
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);

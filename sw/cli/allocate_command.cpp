@@ -232,10 +232,10 @@ std::string space_text(const Context& context, int banks) {
   if (search.by_frames()) {
     return text +
            fmt::format(
-               "{} boards of one frame are all that has to be simulated: with fixed priority and without "
+               "{} boards of one frame are all that has to be simulated: with {} and without "
                "turnaround a\nframe leaves nothing behind, so that its cycles depend on which of its own "
                "buffers share a bank, and on nothing else\n",
-               search.size());
+               search.size(), context.board.fpga.arbiter.policy);
   }
   text += search.run().camera
               ? fmt::format(

@@ -9,7 +9,7 @@ DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t fra
   config.width = board.image.width;
   config.height = board.image.height;
   config.frames = frames;
-  config.buffers = platform::frame_buffers(board);
+  config.buffers = platform::buffer_bases(board);
   config.capture_to_host = board.capture.destination == platform::CaptureDestination::kHostMemory;
   config.host_frames = board.capture.host_frames;
   config.trigger_cameras = board.cameras.trigger == platform::CameraTrigger::kOnDemand;

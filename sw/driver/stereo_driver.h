@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/frame_buffers.h"
+#include "models/fpga/buffer_bases.h"
 #include "models/host/program.h"
 #include "platform/device_map.h"
 
@@ -18,7 +18,7 @@ struct DriverConfig {
   int width = 0;   // pixels
   int height = 0;  // pixels
   std::uint64_t frames = 1;
-  fpga::FrameBuffers buffers;
+  fpga::BufferBases buffers;
   bool capture_to_host = false;  // capture.destination: host_memory
   int host_frames = 3;           // pairs in the ring in host memory
   bool trigger_cameras = false;  // cameras.trigger: on_demand

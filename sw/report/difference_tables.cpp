@@ -8,7 +8,7 @@
 #include <tuple>
 #include <variant>
 
-#include "models/memory/memory_config.h"
+#include "models/fpga/core_ports.h"
 
 namespace stereotlm::report {
 namespace {
@@ -168,7 +168,7 @@ std::string rows_table(const RowComparison& rows) {
   if (ranges.empty()) return text;  // no difference, or differences of frames cancel out
   text += fmt::format("{:>43}stall cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
   for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-    text += fmt::format(" {:>11}", memory::kPortNames[port]);
+    text += fmt::format(" {:>11}", fpga::kPorts[port].name);
   text += '\n';
   for (const RowComparison::Range& range : ranges) {
     text +=

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "models/memory/memory_config.h"
+#include "models/fpga/core_ports.h"
 #include "sw/report/row_comparison.h"
 
 namespace stereotlm::report {
@@ -15,7 +15,7 @@ std::string head() {
   std::string text = "frame,row,a_cycles,b_cycles";
   for (const char* run : {"a", "b"}) {
     for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      text += fmt::format(",{}_{}_stall_cycles", run, memory::kPortNames[port]);
+      text += fmt::format(",{}_{}_stall_cycles", run, fpga::kPorts[port].name);
   }
   return text + '\n';
 }

@@ -8,11 +8,10 @@
 namespace stereotlm::test {
 namespace {
 
-memory::Port port_of(PlainPort port) {
-  using memory::Port;
-  static constexpr std::array<Port, kPlainPortCount> kPorts = {
-      Port::kLeftLut, Port::kRightLut, Port::kLeftPixel, Port::kRightPixel, Port::kResult, Port::kHost};
-  return kPorts[static_cast<std::size_t>(port)];
+memory::Port port_of(PlainPort plain) {
+  memory::Port port = 0;
+  while (std::string(fpga::kPorts[port].name) != name_of(plain)) ++port;
+  return port;
 }
 
 memory::BankKind kind_of(PlainBankKind kind) {
@@ -84,9 +83,7 @@ platform::BoardConfig board_config(const PlainCycleInput& input) {
   platform::BoardConfig board;
   board.name = "plain";
   board.image = {input.width, input.height};
-  board.fpga.arbiter.policy = input.arbitration == PlainArbitration::kFixedPriority
-                                  ? memory::ArbitrationPolicy::kFixedPriority
-                                  : memory::ArbitrationPolicy::kRoundRobin;
+  board.fpga.arbiter.policy = name_of(input.arbitration);
   std::transform(input.priority.begin(), input.priority.end(), board.fpga.arbiter.priority.begin(), port_of);
   board.fpga.lane_fifo_slots = input.lane_fifo_slots;
   board.fpga.result_fifo_words = input.result_fifo_words;

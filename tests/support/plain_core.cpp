@@ -26,7 +26,8 @@ class BankAndArbiter {
       : bank_(bank), arbitration_(input.arbitration), priority_(input.priority) {}
 
   // The winner among the ports that request this bank; nullopt if none does.
-  std::optional<PlainPort> winner(const std::array<bool, kPlainPortCount>& requests) const {
+  std::optional<PlainPort> winner(const std::array<bool, kPlainPortCount>& requests, Cycle now) const {
+    if (arbitration_ == PlainArbitration::kAge) return oldest(requests, now);
     std::size_t first = 0;
     if (arbitration_ == PlainArbitration::kRoundRobin && last_granted_) {
       const auto found = std::find(priority_.begin(), priority_.end(), *last_granted_);
@@ -51,13 +52,39 @@ class BankAndArbiter {
     (direction == Direction::kRead ? last_read_ : last_write_) = now;
   }
 
+  // The port has asked in this cycle, and is not granted.
+  void refuse(PlainPort port, Cycle now) {
+    Wait& wait = waits_[index_of(port)];
+    wait.cycles = age(port, now);
+    wait.last = now;
+  }
+
  private:
+  struct Wait {
+    Cycle cycles = 0;           // asked without a grant, one after the other
+    std::optional<Cycle> last;  // of them
+  };
+
+  // The age of a request in this cycle.
+  Cycle age(PlainPort port, Cycle now) const {
+    const Wait& wait = waits_[index_of(port)];
+    return wait.last == now - 1 ? wait.cycles + 1 : 1;
+  }
+  std::optional<PlainPort> oldest(const std::array<bool, kPlainPortCount>& requests, Cycle now) const {
+    std::optional<PlainPort> found;
+    for (const PlainPort port : priority_) {
+      if (requests[index_of(port)] && (!found || age(port, now) > age(*found, now))) found = port;
+    }
+    return found;
+  }
+
   PlainBank bank_;
   PlainArbitration arbitration_;
   std::array<PlainPort, kPlainPortCount> priority_;
   std::optional<PlainPort> last_granted_;
   std::optional<Cycle> last_read_;
   std::optional<Cycle> last_write_;
+  std::array<Wait, kPlainPortCount> waits_{};  // of each port, the last
 };
 
 // The rectified pixel that a slot is for; the row may be outside the image.
@@ -373,7 +400,7 @@ class PlainCore::Cycles {
       }
       if (request_count >= 2) ++states.contended;
 
-      const PlainPort winner = *banks_[bank].winner(requests);
+      const PlainPort winner = *banks_[bank].winner(requests, now);
       const Direction direction = direction_of(winner);
       const bool refused = banks_[bank].is_turning_round(direction, now);
       if (refused) {
@@ -385,7 +412,9 @@ class PlainCore::Cycles {
         granted[index_of(winner)] = true;
       }
       for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-        if (requests[port] && !granted[port]) ++blame[port][refused ? kTurnaround : index_of(winner)];
+        if (!requests[port] || granted[port]) continue;
+        ++blame[port][refused ? kTurnaround : index_of(winner)];
+        banks_[bank].refuse(static_cast<PlainPort>(port), now);
       }
     }
     return granted;
@@ -455,7 +484,8 @@ const char* name_of(PlainPort port) {
 }
 
 const char* name_of(PlainArbitration arbitration) {
-  return arbitration == PlainArbitration::kFixedPriority ? "fixed_priority" : "round_robin";
+  static constexpr std::array<const char*, 3> kNames = {"fixed_priority", "round_robin", "age"};
+  return kNames[static_cast<std::size_t>(arbitration)];
 }
 
 int plain_read_latency(PlainBankKind kind) { return read_latency(kind); }

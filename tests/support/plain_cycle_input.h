@@ -17,7 +17,7 @@ const char* name_of(PlainPort port);  // as in the contract: "left_lut"
 
 enum class PlainBankKind { kZbtPipelined, kZbtFlowThrough, kSyncBurst };
 enum class PlainFetch { kColumn, kLineBuffer };
-enum class PlainArbitration { kFixedPriority, kRoundRobin };
+enum class PlainArbitration { kFixedPriority, kRoundRobin, kAge };
 const char* name_of(PlainArbitration arbitration);
 
 struct PlainBank {

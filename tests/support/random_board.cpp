@@ -280,7 +280,7 @@ RandomBoard make_random_board(std::uint64_t seed) {
   board.fetch = random.chance(60) ? PlainFetch::kColumn : PlainFetch::kLineBuffer;
   if (random.chance(80)) board.lr_tolerance = random.mostly_small(0, 2, 253);
 
-  board.arbitration = random.chance(50) ? PlainArbitration::kFixedPriority : PlainArbitration::kRoundRobin;
+  board.arbitration = static_cast<PlainArbitration>(random.between(0, 2));
   draw_priority(board, random);
   board.lane_fifo_slots = random.mostly_small(1, 8, 64);
   board.result_fifo_words = random.mostly_small(1, 4, 64);

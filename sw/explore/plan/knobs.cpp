@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/buffer_layout.h"
@@ -55,8 +56,8 @@ class Steps {
   void add_priorities() {
     const auto& list = board_.fpga.arbiter.priority;
     for (std::size_t first = 0; first + 1 < list.size(); ++first) {
-      const std::string a = memory::kPortNames[memory::index_of(list[first])];
-      const std::string b = memory::kPortNames[memory::index_of(list[first + 1])];
+      const std::string a = fpga::kPorts[list[first]].name;
+      const std::string b = fpga::kPorts[list[first + 1]].name;
       BoardConfig changed = board_;
       std::swap(changed.fpga.arbiter.priority[first], changed.fpga.arbiter.priority[first + 1]);
       add({"fpga.priority", a + ", " + b, b + ", " + a, std::move(changed)});
@@ -66,19 +67,18 @@ class Steps {
   void add_kinds() {
     std::set<memory::BankKind> kinds;
     for (const BankConfig& bank : board_.banks) kinds.insert(bank.kind);
-    const std::string from =
-        kinds.size() > 1 ? "different" : memory::kBankKindNames[static_cast<std::size_t>(*kinds.begin())];
-    for (std::size_t kind = 0; kind < memory::kBankKindNames.size(); ++kind) {
+    const std::string from = kinds.size() > 1 ? "different" : memory::traits_of(*kinds.begin()).name;
+    for (const memory::BankTraits& traits : memory::kBankTraits) {
       BoardConfig changed = board_;
       for (BankConfig& bank : changed.banks) {
-        bank.kind = static_cast<memory::BankKind>(kind);
-        const bool turns = bank.kind == memory::BankKind::kSyncBurst;
-        if (!turns) bank.turnaround_cycles = 0;
-        if (turns && bank.turnaround_cycles == 0) bank.turnaround_cycles = kTurnaroundCycles;
+        bank.kind = traits.kind;
+        if (!traits.has_turnaround) {
+          bank.turnaround_cycles = 0;
+        } else if (bank.turnaround_cycles == 0) {
+          bank.turnaround_cycles = kTurnaroundCycles;
+        }
       }
-      if (!(changed == board_)) {
-        add({"ssram.banks.*.kind", from, memory::kBankKindNames[kind], std::move(changed)});
-      }
+      if (!(changed == board_)) add({"ssram.banks.*.kind", from, traits.name, std::move(changed)});
     }
   }
 
@@ -86,14 +86,14 @@ class Steps {
   void add_turnarounds() {
     std::set<int> cycles;
     for (const BankConfig& bank : board_.banks) {
-      if (bank.kind == memory::BankKind::kSyncBurst) cycles.insert(bank.turnaround_cycles);
+      if (memory::traits_of(bank.kind).has_turnaround) cycles.insert(bank.turnaround_cycles);
     }
     if (cycles.empty()) return;
     const bool is_one = cycles.size() == 1;
     for (const int change : {1, -1}) {
       BoardConfig changed = board_;
       for (BankConfig& bank : changed.banks) {
-        if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles += change;
+        if (memory::traits_of(bank.kind).has_turnaround) bank.turnaround_cycles += change;
       }
       add({"ssram.banks.*.turnaround_cycles", is_one ? std::to_string(*cycles.begin()) : "different",
            is_one ? std::to_string(*cycles.begin() + change)

@@ -23,7 +23,7 @@ struct KnobStep {
 // One step of every knob of a board, as long as the changed board is valid:
 //   a number: up and down by one (the window by two); a word: each other one
 //   fpga.priority: two neighbours exchanged
-//   ssram.banks.*.kind: all banks get another kind (a new sync_burst has 2 turnaround cycles)
+//   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
 //   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
 //   allocation.left_image, right_image, and allocation.disparity: a buffer more, in the bank of the first, or
 //   one less

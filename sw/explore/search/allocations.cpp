@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "models/memory/arbitration_policies.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::explore {
@@ -118,7 +119,7 @@ BoardConfig placed(const BoardConfig& board, const Placement& placement) {
 }
 
 bool frames_are_independent(const BoardConfig& board) {
-  return board.fpga.arbiter.policy == memory::ArbitrationPolicy::kFixedPriority &&
+  return memory::find_arbitration_policy(board.fpga.arbiter.policy)->forgets &&
          std::none_of(board.banks.begin(), board.banks.end(),
                       [](const BankConfig& bank) { return bank.turnaround_cycles > 0; });
 }

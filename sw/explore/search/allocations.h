@@ -28,9 +28,9 @@ void for_each_placement(const platform::BoardConfig& board, int most_banks,
 // The board with its buffers in the banks of the placement.
 platform::BoardConfig placed(const platform::BoardConfig& board, const Placement& placement);
 
-// Whether a frame of the core alone leaves no state behind that the next frame could observe: fixed priority,
-// and no bank with turnaround. (The search places of round robin persist, and the direction of the last
-// access to a bank with turnaround.)
+// Whether a frame of the core alone leaves no state behind that the next frame could observe: an arbitration
+// policy that forgets, and no bank with turnaround. (The search places of round robin persist, and the
+// direction of the last access to a bank with turnaround.)
 bool frames_are_independent(const platform::BoardConfig& board);
 
 // A board that computes one frame of the lists' turn, with the buffers of that frame alone. Each lies in the

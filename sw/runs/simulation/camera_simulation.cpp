@@ -79,8 +79,7 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
 // A measure of progress towards a result. The traffic generator does not count.
 std::uint64_t CameraSimulation::work_done() {
   computer_.board.core.catch_up();
-  const fpga::CoreControl& core = computer_.board.core.control();
-  std::uint64_t work = core.left().consumed() + core.result().cycles().granted();
+  std::uint64_t work = computer_.board.core.control().work();
   const pci::PciBus::Stats bus = computer_.pci_bus.stats();
   for (std::size_t master = 0; master < platform::Computer::kLoad; ++master)
     work += bus.masters[master].words;

@@ -49,7 +49,8 @@ std::optional<Json> simulate_computer(const explore::Point& point, const platfor
     simulation->advance();
     if (!hopeless || simulation->frames_started() == 0) continue;
     const fpga::StereoCore& core = simulation->computer().board.core;
-    if (hopeless({simulation->frames_started() - 1, seconds(board, core.first_cycle())})) return std::nullopt;
+    if (hopeless({simulation->frames_started() - 1, seconds(board, core.frames().first_cycle())}))
+      return std::nullopt;
   }
   return document_of(simulation->statistics());
 }
@@ -84,7 +85,7 @@ double first_start_s(const platform::BoardConfig& board, const platform::Tables&
     BlankPairs blank(board);
     CameraSimulation simulation(board, tables, blank, 1, binder, fpga::Fidelity::kTiming);
     while (!simulation.finished()) simulation.advance();
-    tell(std::to_string(simulation.computer().board.core.first_cycle()));
+    tell(std::to_string(simulation.computer().board.core.frames().first_cycle()));
   });
   const std::uint64_t cycle = std::stoull(child.next().value());
   child.next();

@@ -44,7 +44,7 @@ class Deliveries : public driver::FrameListener {
 // The driver, and then reads of both tables through the bridge's window.
 class DriverAndReadBack : public host::Program {
  public:
-  DriverAndReadBack(driver::StereoDriver& driver, const fpga::FrameBuffers& buffers)
+  DriverAndReadBack(driver::StereoDriver& driver, const fpga::BufferBases& buffers)
       : driver_(driver), buffers_(buffers) {}
 
   void run(host::HostBus& bus) override {
@@ -68,7 +68,7 @@ class DriverAndReadBack : public host::Program {
   }
 
   driver::StereoDriver& driver_;
-  fpga::FrameBuffers buffers_;
+  fpga::BufferBases buffers_;
   platform::DeviceMap devices_;
 };
 
@@ -89,7 +89,7 @@ TEST(UploadedTables, AreWhatTheirBanksHold) {
   Deliveries deliveries;
   const driver::DriverConfig config = driver::driver_config(board, 2);
   driver::StereoDriver driver(config, tables.left.entries, tables.right.entries, deliveries);
-  DriverAndReadBack program(driver, platform::frame_buffers(board));
+  DriverAndReadBack program(driver, platform::buffer_bases(board));
   test::MonitoringBinder binder;
   platform::Computer computer("computer", board, driver::host_memory_bytes(config), program, left, right,
                               binder);

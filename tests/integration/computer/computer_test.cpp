@@ -181,7 +181,7 @@ TEST_F(ComputerTest, BlamesTheHostForItsTrafficOnABankOfTheCore) {
   run(config, 6);
   const auto& arbiter = computer->board.core.crossbar().arbiters()[0];
   EXPECT_GT(arbiter.stats()
-                .blame[memory::index_of(memory::Port::kLeftPixel)][memory::index_of(memory::Port::kHost)],
+                .blame[fpga::pixel_port(fpga::Side::kLeft)][fpga::kHostPort],
             0U);
   expect_results_of_the_captured_pictures();
 }

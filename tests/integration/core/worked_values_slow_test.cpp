@@ -58,6 +58,14 @@ TEST(CoreWorkedValues, HoldWithATableInABankOfItsImage) {
   EXPECT_EQ(blame_of(statistics), std::vector<std::string>{"left_lut in bank0 by left_pixel: 2137602"});
 }
 
+TEST(CoreWorkedValues, HoldWithATableInABankOfItsImageByAge) {
+  const auto statistics =
+      run_one_frame("fpl2003", {"matcher.filter=none", "allocation.left_lut=bank0", "fpga.arbitration=age"});
+  EXPECT_EQ(statistics.frame_cycles, Cycles{4'287'317});
+  EXPECT_EQ(blame_of(statistics), (std::vector<std::string>{"left_lut in bank0 by left_pixel: 2136322",
+                                                            "left_pixel in bank0 by left_lut: 2135042"}));
+}
+
 TEST(CoreWorkedValues, HoldWithTheResultInABankOfAnImage) {
   const auto statistics =
       run_one_frame("fpl2003", {"matcher.filter=none", "allocation.disparity=[bank0, bank0]"});

@@ -10,7 +10,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-// What a slot asks for.
+// The accesses of a slot.
 enum class Access : std::uint8_t { kNone, kTable, kTableAndImage };
 
 // Every column of slots of a frame, by a literal walk over all of them.
@@ -40,53 +40,33 @@ std::uint64_t count(const std::vector<std::vector<Access>>& columns, Access what
   return slots;
 }
 
-// Cores and tables; what a case looks at in each.
-template <typename Look>
-void for_random_patterns(const Look& look) {
+TEST(AccessPattern, EqualsAWalkOverTheSlots) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const CoreConfig config = random_core(random, 140);
     AccessPattern pattern{FrameGeometry(config)};
     std::vector<std::uint32_t> entries;
-    // What a table before this one has left does not matter.
+    // A table before this one has no effect.
     for (int table = random.between(1, 2); table > 0; --table) {
       entries = random_entries(random, config);
       pattern.set_entries(entries.data());
     }
-    look(config, pattern, entries);
-    if (testing::Test::HasFailure()) return;
-  }
-}
-
-TEST(AccessPattern, FindsTheNextColumnThatDiffers) {
-  for_random_patterns([](const CoreConfig& config, const AccessPattern& pattern, const auto& entries) {
     const auto columns = columns_of(config, entries);
+    ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
+    ASSERT_EQ(pattern.pixel_accesses(), count(columns, Access::kTableAndImage));
     std::size_t next = columns.size();
     for (std::size_t column = columns.size(); column-- > 0;) {
       if (column + 1 < columns.size() && columns[column + 1] != columns[column]) next = column + 1;
       ASSERT_EQ(pattern.uniform_until(column), next) << column;
     }
-  });
-}
-
-TEST(AccessPattern, KnowsEveryEntry) {
-  for_random_patterns([](const CoreConfig& config, const AccessPattern& pattern, const auto& entries) {
     for (int row = 0; row < config.height; ++row) {
       for (int column = 0; column < config.width; ++column) {
         ASSERT_EQ(pattern.entry_valid(column, row),
                   kernels::entry_is_valid(entries[place_of(config, column, row)]));
       }
     }
-  });
-}
-
-TEST(AccessPattern, CountsTheSlotsOfAFrame) {
-  for_random_patterns([](const CoreConfig& config, const AccessPattern& pattern, const auto& entries) {
-    const auto columns = columns_of(config, entries);
-    ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
-    ASSERT_EQ(pattern.pixel_accesses(), count(columns, Access::kTableAndImage));
-  });
+  }
 }
 
 TEST(AccessPattern, BeginsWithEveryEntryValid) {
@@ -103,7 +83,7 @@ TEST(AccessPattern, BeginsWithEveryEntryValid) {
   }
 }
 
-TEST(AccessPattern, HasColumnsAlikeOverTheEndOfAStrip) {
+TEST(AccessPattern, HasUniformColumnsAcrossTheEndOfAStrip) {
   CoreConfig config;
   config.width = 8;
   config.height = 9;

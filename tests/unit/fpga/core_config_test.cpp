@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <string>
+#include <vector>
+
+#include "models/fpga/core_ports.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -61,6 +65,29 @@ TEST(CoreConfig, RefusesAKernelWithProblems) {
   const auto found = problems_after([](CoreConfig& c) { c.filter->weights.front() = 1; });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found.front().rfind("filter: ", 0), 0U) << found.front();
+}
+
+TEST(CorePorts, AreThoseOfTheContract) {
+  const std::vector<std::string> expected = {"left_lut",    "right_lut", "left_pixel",
+                                             "right_pixel", "result",    "host"};
+  std::vector<std::string> names;
+  for (const CorePort& port : kPorts) names.emplace_back(port.name);
+  EXPECT_EQ(names, expected);
+}
+
+TEST(CorePorts, HaveThePriorityListOfTheContract) {
+  std::vector<std::string> names;
+  for (const memory::Port port : core_arbiter().priority) names.emplace_back(kPorts[port].name);
+  EXPECT_EQ(names, (std::vector<std::string>{"host", "result", "left_pixel", "right_pixel", "left_lut",
+                                             "right_lut"}));
+  EXPECT_EQ(core_arbiter().policy, "fixed_priority");
+}
+
+TEST(CorePorts, ExistForATableOnlyIfTheCoreHasOne) {
+  CoreConfig config;
+  config.right_table = false;
+  for (memory::Port port = 0; port < kPortCount; ++port)
+    EXPECT_EQ(has_port(config, port), port != lut_port(Side::kRight)) << kPorts[port].name;
 }
 
 }  // namespace

@@ -9,7 +9,6 @@ namespace stereotlm::fpga {
 namespace {
 
 using memory::mask_of;
-using memory::Port;
 using memory::PortMask;
 
 CoreConfig small_core(Fetch fetch = Fetch::kColumn) {
@@ -73,40 +72,24 @@ TEST(MatchControl, CompletesAWordWithTheColumnOfItsLastResult) {
   }
 }
 
-TEST(ResultControl, HasRoomForOneLessThanItsDepthAndNoMore) {
+TEST(ResultControl, RequestsAndHasRoomByTheWordsInItsQueue) {
   ResultControl result(FrameGeometry(small_core()), 2);
   result.start_frame();
-  EXPECT_TRUE(result.has_room());
-  result.commit(result.decide(), false, true);
-  EXPECT_TRUE(result.has_room());
-  result.commit(result.decide(), false, true);
-  EXPECT_FALSE(result.has_room());
-  result.commit(result.decide(), true, false);
-  EXPECT_TRUE(result.has_room());
-}
-
-TEST(ResultControl, AsksFromTheCycleAfterAWordEntered) {
-  ResultControl result(FrameGeometry(small_core()), 8);
-  result.start_frame();
-  EXPECT_EQ(result.decide(), Intent::kIdle);
-  result.commit(Intent::kIdle, false, true);
-  EXPECT_EQ(result.decide(), Intent::kRequest);
-  result.commit(Intent::kRequest, false, false);
-  EXPECT_EQ(result.decide(), Intent::kRequest);
-  result.commit(Intent::kRequest, true, false);
-  EXPECT_EQ(result.decide(), Intent::kStarved);
-  EXPECT_EQ(result.cycles().stalled(), 1U);
-  EXPECT_EQ(result.cycles().granted(), 1U);
-  EXPECT_EQ(result.cycles().idle(), 1U);
-}
-
-TEST(ResultControl, TakesAndGivesAWordInOneCycle) {
-  ResultControl result(FrameGeometry(small_core()), 1);
-  result.start_frame();
-  result.commit(Intent::kIdle, false, true);
-  result.commit(Intent::kRequest, true, true);
-  EXPECT_EQ(result.decide(), Intent::kRequest);
-  EXPECT_FALSE(result.has_room());
+  const auto expect = [&result](Intent intent, bool has_room) {
+    EXPECT_EQ(result.decide(), intent);
+    EXPECT_EQ(result.has_room(), has_room);
+  };
+  expect(Intent::kIdle, true);
+  result.commit(false, true);  // the first word enters: requested from the next cycle on
+  expect(Intent::kRequest, true);
+  result.commit(false, true);
+  expect(Intent::kRequest, false);
+  result.commit(true, true);  // a word enters and one leaves
+  expect(Intent::kRequest, false);
+  result.commit(true, false);
+  expect(Intent::kRequest, true);
+  result.commit(true, false);
+  expect(Intent::kStarved, true);
 }
 
 TEST(ResultControl, IsDoneWithTheLastWordAndIdleThen) {
@@ -115,10 +98,9 @@ TEST(ResultControl, IsDoneWithTheLastWordAndIdleThen) {
   for (int frame = 0; frame < 2; ++frame) {
     result.start_frame();
     for (std::uint64_t word = 0; word < geometry.result_words; ++word) {
+      result.commit(false, true);
       EXPECT_FALSE(result.frame_done());
-      result.commit(result.decide(), false, true);
-      EXPECT_FALSE(result.frame_done());
-      result.commit(result.decide(), true, false);
+      result.commit(true, false);
     }
     EXPECT_TRUE(result.frame_done());
     EXPECT_EQ(result.decide(), Intent::kIdle);
@@ -133,49 +115,48 @@ std::uint64_t run_frame(CoreControl& core, PortMask refused = 0, std::uint64_t r
     const CoreControl::Decision decision = core.decide();
     const PortMask requests = decision.requests();
     const auto granted = cycles < refused_cycles ? static_cast<PortMask>(requests & ~refused) : requests;
-    core.commit(decision, granted, true, true);
+    core.commit(decision, granted, {true, true});
     core.count_host(false, false);
     ++cycles;
   }
   return cycles;
 }
 
+// Cycles of an uncontended frame beside the latencies.
+std::uint64_t work_of(const CoreControl& core) {
+  return core.geometry().slots + core.geometry().drain_cycles + 1;
+}
+
 TEST(CoreControl, TakesTheLatenciesTheSlotsTheDrainAndTheLastWrite) {
   for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
     CoreControl core(small_core(fetch));
-    const FrameGeometry& geometry = core.geometry();
-    const std::uint64_t work = geometry.slots + geometry.drain_cycles + 1;
     core.start_frame({2, 2, 2, 2});
-    EXPECT_EQ(run_frame(core), 4 + work);
+    EXPECT_EQ(run_frame(core), 4 + work_of(core));
     core.start_frame({1, 2, 1, 1});  // the slower side decides
-    EXPECT_EQ(run_frame(core), 3 + work);
+    EXPECT_EQ(run_frame(core), 3 + work_of(core));
     core.start_frame({1, 1, 1, 1});
-    EXPECT_EQ(run_frame(core), 2 + work);
+    EXPECT_EQ(run_frame(core), 2 + work_of(core));
   }
 }
 
 TEST(CoreControl, NeedsNoTableLatencyWithoutTables) {
-  CoreConfig config = small_core();
-  config.left_table = false;
-  CoreControl left_only(config);
-  left_only.start_frame({2, 2, 2, 2});
-  const std::uint64_t work = left_only.geometry().slots + left_only.geometry().drain_cycles + 1;
-  EXPECT_EQ(run_frame(left_only), 4 + work);
-  EXPECT_EQ(left_only.port_cycles(Port::kLeftLut).idle(), 4 + work);
-  config.right_table = false;
-  CoreControl neither(config);
-  neither.start_frame({2, 2, 2, 2});
-  EXPECT_EQ(run_frame(neither), 2 + work);
+  for (const bool right_table : {true, false}) {
+    CoreConfig config = small_core();
+    config.left_table = false;
+    config.right_table = right_table;
+    CoreControl core(config);
+    core.start_frame({2, 2, 2, 2});
+    EXPECT_EQ(run_frame(core), (right_table ? 4 : 2) + work_of(core));
+    EXPECT_EQ(core.port_cycles(lut_port(Side::kLeft)).idle(), (right_table ? 4 : 2) + work_of(core));
+  }
 }
 
 TEST(CoreControl, ConsumesBothLanesTogether) {
   CoreControl core(small_core());
   core.start_frame({1, 1, 1, 1});
-  const std::uint64_t alone = core.geometry().slots + core.geometry().drain_cycles + 1 + 2;
   // The first slot is empty; the second is refused in cycles 1 to 9.
-  EXPECT_EQ(run_frame(core, mask_of(Port::kRightLut), 10), alone + 9);
-  EXPECT_EQ(core.left().consumed(), core.geometry().slots);
-  EXPECT_EQ(core.right().consumed(), core.geometry().slots);
+  EXPECT_EQ(run_frame(core, mask_of(lut_port(Side::kRight)), 10), 2 + work_of(core) + 9);
+  for (const Side side : kSides) EXPECT_EQ(core.lane(side).consumed(), core.geometry().slots);
 }
 
 TEST(CoreControl, PutsEachPortIntoOneStateACycle) {
@@ -183,59 +164,48 @@ TEST(CoreControl, PutsEachPortIntoOneStateACycle) {
   std::uint64_t cycles = 0;
   for (int frame = 0; frame < 3; ++frame) {
     core.start_frame({2, 1, 2, 1});
-    cycles += run_frame(core, mask_of(Port::kLeftPixel), static_cast<std::uint64_t>(frame * 7));
+    cycles += run_frame(core, mask_of(pixel_port(Side::kLeft)), static_cast<std::uint64_t>(frame * 7));
   }
-  for (std::size_t port = 0; port < memory::kPortCount; ++port)
-    EXPECT_EQ(core.port_cycles(static_cast<Port>(port)).sum(), cycles) << memory::kPortNames[port];
+  for (std::size_t port = 0; port < kPortCount; ++port)
+    EXPECT_EQ(core.port_cycles(port).sum(), cycles) << kPorts[port].name;
 }
 
-TEST(CoreControl, CountsWhatTheHostPortDid) {
+TEST(CoreControl, CountsTheCyclesOfTheHostPort) {
   CoreControl core(small_core());
-  core.count_host(false, false);
-  core.count_host(true, false);
+  core.count_host(false, false, 3);
   core.count_host(true, false);
   core.count_host(true, true);
-  const PortCycles& host = core.port_cycles(Port::kHost);
+  core.host_was_busy(true, 2);
+  const PortCycles& host = core.port_cycles(kHostPort);
   EXPECT_EQ(host.idle(), 1U);
-  EXPECT_EQ(host.stalled(), 2U);
-  EXPECT_EQ(host.granted(), 1U);
-  EXPECT_EQ(host.sum(), 4U);
+  EXPECT_EQ(host.stalled(), 1U);
+  EXPECT_EQ(host.granted(), 3U);
+  EXPECT_EQ(host.sum(), 5U);
 }
 
-// The result port of small_core() with this queue, refused in the cycles before `refused_cycles`.
-std::uint64_t run_with_queue(int fifo_words, std::uint64_t refused_cycles, std::uint64_t& stalls) {
-  CoreConfig config = small_core();
-  config.result_fifo_words = fifo_words;
-  CoreControl core(config);
-  core.start_frame({1, 1, 1, 1});
-  const std::uint64_t cycles = run_frame(core, mask_of(Port::kResult), refused_cycles);
-  stalls = core.port_cycles(Port::kResult).stalled();
-  return cycles;
-}
-
-TEST(CoreControl, StopsTheMatcherWhileTheResultQueueIsFull) {
+TEST(CoreControl, StopsTheMatcherOnlyWhileTheResultQueueIsFull) {
+  struct Queue {
+    int words;
+    std::uint64_t refused_cycles;  // before which the result port is refused
+    std::uint64_t cycles;
+    std::uint64_t stalls;
+  };
   const FrameGeometry geometry(small_core());
-  const std::uint64_t alone = 2 + geometry.slots + geometry.drain_cycles + 1;
+  const std::uint64_t uncontended = 2 + geometry.slots + geometry.drain_cycles + 1;
   // The lanes are consumed from cycle 2 on; the first word enters at the end of this cycle.
   const std::uint64_t first_word = 2 + (geometry.result_delay_columns + 4) * 3 - 1;
-  std::uint64_t stalls = 0;
   // One place: the queue is full in the cycle in which each word is written, the last one stops nothing.
-  const std::uint64_t one_place = alone + geometry.result_words - 1;
-  EXPECT_EQ(run_with_queue(1, 0, stalls), one_place);
-  EXPECT_EQ(run_with_queue(1, first_word + 1, stalls), one_place);
-  EXPECT_EQ(stalls, 0U);
-  EXPECT_EQ(run_with_queue(1, first_word + 2, stalls), one_place + 1);
-  EXPECT_EQ(stalls, 1U);
-}
-
-TEST(CoreControl, LosesNothingToAStallWhileTheResultQueueHasRoom) {
-  const FrameGeometry geometry(small_core());
-  const std::uint64_t alone = 2 + geometry.slots + geometry.drain_cycles + 1;
-  const std::uint64_t first_word = 2 + (geometry.result_delay_columns + 4) * 3 - 1;
-  std::uint64_t stalls = 0;
-  EXPECT_EQ(run_with_queue(2, 0, stalls), alone);
-  EXPECT_EQ(run_with_queue(2, first_word + 3, stalls), alone);
-  EXPECT_EQ(stalls, 2U);
+  const std::uint64_t one_place = uncontended + geometry.result_words - 1;
+  for (const Queue& queue : {Queue{1, 0, one_place, 0}, Queue{1, first_word + 1, one_place, 0},
+                             Queue{1, first_word + 2, one_place + 1, 1}, Queue{2, 0, uncontended, 0},
+                             Queue{2, first_word + 3, uncontended, 2}}) {
+    CoreConfig config = small_core();
+    config.result_fifo_words = queue.words;
+    CoreControl core(config);
+    core.start_frame({1, 1, 1, 1});
+    EXPECT_EQ(run_frame(core, mask_of(kResultPort), queue.refused_cycles), queue.cycles);
+    EXPECT_EQ(core.port_cycles(kResultPort).stalled(), queue.stalls);
+  }
 }
 
 TEST(CoreControl, NamesTheRequestsAndPassesOfACycle) {
@@ -243,11 +213,11 @@ TEST(CoreControl, NamesTheRequestsAndPassesOfACycle) {
   core.start_frame({1, 1, 1, 1});
   CoreControl::Decision decision = core.decide();  // the first slot lies above the image
   EXPECT_EQ(decision.requests(), 0);
-  EXPECT_EQ(decision.passes(), mask_of(Port::kLeftLut) | mask_of(Port::kRightLut));
-  core.commit(decision, 0, false, false);
+  EXPECT_EQ(decision.passes(), mask_of(lut_port(Side::kLeft)) | mask_of(lut_port(Side::kRight)));
+  core.commit(decision, 0, {});
   decision = core.decide();
-  EXPECT_EQ(decision.requests(), mask_of(Port::kLeftLut) | mask_of(Port::kRightLut));
-  EXPECT_EQ(decision.passes(), mask_of(Port::kLeftPixel) | mask_of(Port::kRightPixel));
+  EXPECT_EQ(decision.requests(), mask_of(lut_port(Side::kLeft)) | mask_of(lut_port(Side::kRight)));
+  EXPECT_EQ(decision.passes(), mask_of(pixel_port(Side::kLeft)) | mask_of(pixel_port(Side::kRight)));
 }
 
 TEST(CoreControl, RefusesAConfigurationWithProblems) {

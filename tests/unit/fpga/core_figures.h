@@ -11,18 +11,28 @@ namespace stereotlm::fpga {
 // All that a core counts but the accesses of its banks, one line for each block: to be compared as a whole.
 class CoreFigures {
  public:
-  explicit CoreFigures(const StereoCore& core) {
-    line("frame_cycles", core.frame_cycles());
-    for (std::size_t index = 0; index < memory::kPortCount; ++index) {
-      const PortCycles& port = core.control().port_cycles(static_cast<memory::Port>(index));
-      line(memory::kPortNames[index],
+  CoreFigures(const FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
+    line("frame_cycles", frames.frame_cycles());
+    for (std::size_t index = 0; index < kPortCount; ++index) {
+      const PortCycles& port = frames.control().port_cycles(index);
+      line(kPorts[index].name,
            {port.granted(), port.stalled(), port.passed(), port.idle(), port.blocked(), port.starved()});
     }
-    for (const memory::BankArbiter& arbiter : core.crossbar().arbiters()) add(arbiter);
+    for (const memory::BankArbiter& arbiter : arbiters) add(arbiter);
+    for (const Side side : kSides) line("consumed", {frames.control().lane(side).consumed()});
+    line("most queued", {static_cast<std::uint64_t>(frames.control().result().most_queued())});
+  }
+  explicit CoreFigures(const StereoCore& core) : CoreFigures(core.frames(), core.crossbar().arbiters()) {
     const LocalBus::Stats bus = core.local_bus_port().stats();
     line("local bus", {bus.bursts, bus.words_read, bus.words_written, bus.register_accesses, bus.errors,
                        bus.clocks, bus.busy_clocks});
-    add_stages(core);
+    add(core.datapath());
+  }
+  void add(const RowProfile& rows) {
+    for (const RowEnd& row : rows) {
+      line("row complete", {row.cycles});
+      line("  stalls", {row.stalls.begin(), row.stalls.end()});
+    }
   }
   const std::string& text() const { return text_; }
 
@@ -39,32 +49,26 @@ class CoreFigures {
     line("  grants", {stats.grants.begin(), stats.grants.end()});
     for (const auto& row : stats.blame) line("  blame", {row.begin(), row.end()});
   }
-  void add_stages(const StereoCore& core) {
-    for (const Side side : {Side::kLeft, Side::kRight}) {
-      const Sequencer::Stats slots = core.sequencer().stats(side);
-      line("slots", {slots.slots, slots.empty_slots});
-    }
-    for (const LutReader* reader : {core.left_lut_reader(), core.right_lut_reader()}) {
-      if (reader == nullptr) continue;
-      const LutReader::Stats stats = reader->stats();
-      line("table", {stats.reads, stats.invalid_entries, stats.empty_slots, stats.errors});
-    }
-    for (const PixelReader* reader : {&core.left_pixel_reader(), &core.right_pixel_reader()}) {
-      const PixelReader::Stats stats = reader->stats();
+  void add(const CoreDatapath& datapath) {
+    for (const Side side : kSides) {
+      const CoreDatapath::Lane& lane = datapath.lane(side);
+      line("slots", {datapath.sequencer().stats(side).slots, datapath.sequencer().stats(side).empty_slots});
+      if (lane.lut_reader) {
+        const LutReader::Stats stats = lane.lut_reader->stats();
+        line("table", {stats.reads, stats.invalid_entries, stats.empty_slots, stats.errors});
+      }
+      const PixelReader::Stats stats = lane.pixel_reader.stats();
       line("image", {stats.reads, stats.passed_slots, stats.errors});
+      line("filter", {lane.filter.stats().pixels, lane.filter.stats().columns});
+      if (lane.row_buffer) line("rows", {lane.row_buffer->stats().columns});
     }
-    for (const LogFilter* filter : {&core.left_filter(), &core.right_filter()})
-      line("filter", {filter->stats().pixels, filter->stats().columns});
-    for (const RowBuffer* rows : {core.left_row_buffer(), core.right_row_buffer()}) {
-      if (rows != nullptr) line("rows", {rows->stats().columns});
-    }
-    const SadArray::Stats sums = core.sad_array().stats();
+    const SadArray::Stats sums = datapath.sad_array().stats();
     line("sums", {sums.columns, sums.absolute_differences, sums.candidates});
-    line("chain", {core.select_min_chain().stats().columns, core.select_min_chain().stats().matches});
-    line("tree", {core.select_min_tree().stats().columns, core.select_min_tree().stats().matches});
-    line("check", {core.lr_check().stats().answered, core.lr_check().stats().invalid});
-    line("packer", {core.result_packer().stats().words});
-    const ResultWriter::Stats writer = core.result_writer().stats();
+    line("chain", {datapath.select_min_chain().stats().columns, datapath.select_min_chain().stats().matches});
+    line("tree", {datapath.select_min_tree().stats().columns, datapath.select_min_tree().stats().matches});
+    line("check", {datapath.lr_check().stats().answered, datapath.lr_check().stats().invalid});
+    line("packer", {datapath.result_packer().stats().words});
+    const ResultWriter::Stats writer = datapath.result_writer().stats();
     line("writer", {writer.writes, writer.most_queued_words, writer.errors});
   }
 

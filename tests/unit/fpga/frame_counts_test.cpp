@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "models/fpga/core_timing.h"
+#include "models/fpga/frame_run.h"
 
 namespace stereotlm::fpga {
 namespace {
-
-using memory::Port;
 
 CoreConfig small_core() {
   CoreConfig config;
@@ -19,51 +17,45 @@ CoreConfig small_core() {
   return config;
 }
 
-// A frame in which nothing contends.
+// A frame in which no port contends.
 class FrameCountsTest : public testing::Test {
  protected:
   FrameCountsTest() {
-    for (const Port port : {Port::kLeftLut, Port::kRightLut, Port::kLeftPixel, Port::kRightPixel})
-      arbitration_.route(port, memory::index_of(port), false);
-    arbitration_.route(Port::kResult, memory::index_of(Port::kResult), true);
-    timing_.start_frame({}, pattern_, pattern_);
+    FrameBases bases{};
+    for (std::uint32_t port = 0; port < kCorePortCount; ++port) bases[port] = registers::base(port, 0);
+    run_.start_direct(0, bases, patterns_);
   }
-  // After the frame's cycles before `end`.
+  // After the cycles of the frame before `end`.
   FrameCounts counts(std::uint64_t end) {
-    cycle_ = timing_.run_ahead(cycle_, end);
-    return {config_, pattern_, pattern_, timing_.control(), 0};
+    run_.run_ahead(end);
+    return {config_, patterns_, run_, std::nullopt};
   }
-  const FrameGeometry& geometry() const { return timing_.control().geometry(); }
+  const FrameGeometry& geometry() const { return run_.control().geometry(); }
 
  private:
   CoreConfig config_ = small_core();
-  memory::Arbitration arbitration_{memory::ArbiterConfig{},
-                                   std::vector<memory::SsramBankConfig>(memory::kPortCount)};
-  CoreTiming timing_{config_, arbitration_};
-  AccessPattern pattern_{timing_.control().geometry()};
-  std::uint64_t cycle_ = 0;
+  std::vector<memory::SsramBankConfig> banks_ = std::vector<memory::SsramBankConfig>(kPortCount);
+  memory::Arbitration arbitration_{core_arbiter(), banks_};
+  FrameRun run_{config_, banks_, arbitration_, UINT64_MAX};
+  AccessPatterns patterns_{AccessPattern(geometry()), AccessPattern(geometry())};
 };
 
-TEST_F(FrameCountsTest, HaveTheSlotsAndWordsOfTheGeometryAtTheEnd) {
-  const FrameCounts whole = counts(UINT64_MAX);
-  EXPECT_EQ(whole.left.slots.slots, geometry().slots);
-  EXPECT_EQ(whole.right.slots.slots, geometry().slots);
-  EXPECT_EQ(whole.packed.words, geometry().result_words);
-}
-
-// A control that has not done what it should is noticed: its counts are not those of the geometry.
+// A control that has not done what it should is found: its counts are not those of the geometry.
 TEST_F(FrameCountsTest, HaveTheSlotsAndWordsThatTheControlHasComeTo) {
-  const FrameCounts early = counts(1);
-  EXPECT_EQ(early.left.slots.slots, 1U);
-  EXPECT_EQ(early.right.slots.slots, 1U);
-  EXPECT_EQ(early.packed.words, 0U);
   // From cycle 4 on a slot is consumed a cycle, three of them a column.
   const std::uint64_t columns = geometry().result_delay_columns + 8;
-  EXPECT_EQ(counts(4 + 3 * columns - 1).packed.words, 1U);
-  const FrameCounts later = counts(4 + 3 * columns);
-  EXPECT_EQ(later.packed.words, 2U);
-  EXPECT_EQ(later.left.slots.slots, 4 + 3 * columns);
-  EXPECT_EQ(later.right.slots.slots, 4 + 3 * columns);
+  struct Expected {
+    std::uint64_t end;
+    std::uint64_t slots;
+    std::uint64_t words;
+  };
+  for (const Expected& expected : {Expected{1, 1, 0}, Expected{4 + 3 * columns - 1, 4 + 3 * columns - 1, 1},
+                                   Expected{4 + 3 * columns, 4 + 3 * columns, 2},
+                                   Expected{UINT64_MAX, geometry().slots, geometry().result_words}}) {
+    const FrameCounts found = counts(expected.end);
+    for (const FrameCounts::Lane& lane : found.lanes) EXPECT_EQ(lane.slots.slots, expected.slots);
+    EXPECT_EQ(found.packed.words, expected.words);
+  }
 }
 
 }  // namespace

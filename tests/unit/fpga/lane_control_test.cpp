@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <ostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace stereotlm::fpga {
 namespace {
@@ -20,232 +24,143 @@ CoreConfig config(int height) {
   return core;
 }
 
-// A lane and one who steps it. Everything is granted and every entry valid unless the test says otherwise.
-class Lane {
- public:
-  explicit Lane(int fifo_slots, int table_latency = 2, int image_latency = 2, bool has_table = true,
-                int height = 2)
-      : geometry(config(height)), control(geometry, has_table, fifo_slots) {
-    control.start_frame(table_latency, image_latency);
-  }
-
-  bool grant_lut = true;
-  bool grant_pixel = true;
-  bool entry_valid = true;
-  bool consume = true;  // whatever can be consumed
-
-  // One cycle; returns what was decided in it.
-  LaneControl::Decision step() {
-    const LaneControl::Decision decision = control.decide();
-    consumed_now = consume && control.ready();
-    control.commit(decision, grant_lut && decision.lut == Intent::kRequest,
-                   grant_pixel && decision.pixel == Intent::kRequest, entry_valid, consumed_now);
-    ++cycles;
-    return decision;
-  }
-  // The intent of a port over the next cycles.
-  std::vector<Intent> lut(int count) {
-    std::vector<Intent> intents;
-    while (count-- > 0) intents.push_back(step().lut);
-    return intents;
-  }
-  std::vector<Intent> pixel(int count) {
-    std::vector<Intent> intents;
-    while (count-- > 0) intents.push_back(step().pixel);
-    return intents;
-  }
-
-  FrameGeometry geometry;
-  LaneControl control;
-  bool consumed_now = false;
-  std::uint64_t cycles = 0;
+struct Setting {
+  int fifo_slots = 16;
+  int table_latency = 2;
+  int image_latency = 2;
+  bool has_table = true;
+  int height = 2;
 };
 
-constexpr Intent kRequest = Intent::kRequest;
-constexpr Intent kPass = Intent::kPass;
-constexpr Intent kIdle = Intent::kIdle;
-constexpr Intent kBlocked = Intent::kBlocked;
-constexpr Intent kStarved = Intent::kStarved;
-using Intents = std::vector<Intent>;
+// Cycles of a lane, one character a cycle.
+struct Cycles {
+  const char* claim;
+  Setting setting = {};
+  // Expected. Intents: R request, P pass, I idle, B blocked, S starved. Consumed: 1 a slot, 0 none. A shorter
+  // text says nothing about the later cycles.
+  std::string lut = "";
+  std::string pixel = "";
+  std::string consumed = "";
+  // Given: 1 or 0; the last one holds for the later cycles.
+  std::string grants_lut = "1";
+  std::string grants_pixel = "1";
+  std::string entry_valid = "1";
+  std::string consumes = "1";  // if the lane is ready
+};
 
-TEST(LaneControl, TakesASlotWithOnePlaceLeftAndNoneWithoutPlace) {
-  Lane lane(3);
-  lane.grant_pixel = false;
-  EXPECT_EQ(lane.lut(5), (Intents{kRequest, kRequest, kRequest, kBlocked, kBlocked}));
+void PrintTo(const Cycles& cycles, std::ostream* out) { *out << cycles.claim; }
+
+bool at(const std::string& given, std::size_t cycle) {
+  return given[std::min(cycle, given.size() - 1)] == '1';
 }
 
-TEST(LaneControl, CountsASlotConsumedInTheCycleAsStillInTheLane) {
-  Lane lane(1, 1, 1);
-  EXPECT_EQ(lane.step().lut, kRequest);  // cycle 0: taken
-  EXPECT_EQ(lane.step().lut, kBlocked);  // cycle 1: handled
-  EXPECT_EQ(lane.step().lut, kBlocked);  // cycle 2: consumed
-  EXPECT_TRUE(lane.consumed_now);
-  EXPECT_EQ(lane.step().lut, kRequest);
-}
+char letter_of(Intent intent) { return "RPIBS"[static_cast<std::size_t>(intent)]; }
 
-TEST(LaneControl, RunsWithoutPauseIfThePlacesCoverTheLatencies) {
-  // A slot stays for both latencies and the cycle in which it is consumed.
-  Lane enough(5, 2, 2, true, 8);
-  EXPECT_EQ(enough.lut(20), Intents(20, kRequest));
-  Lane one_short(4, 2, 2, true, 8);
-  EXPECT_EQ(one_short.lut(6), (Intents{kRequest, kRequest, kRequest, kRequest, kBlocked, kRequest}));
-}
-
-TEST(LaneControl, HandlesASlotAtTheTablesLatencyAndNotBefore) {
-  Lane pipelined(16, 2, 2);
-  EXPECT_EQ(pipelined.pixel(3), (Intents{kIdle, kIdle, kRequest}));
-  Lane flow_through(16, 1, 2);
-  EXPECT_EQ(flow_through.pixel(2), (Intents{kIdle, kRequest}));
-}
-
-TEST(LaneControl, LetsTheMatcherConsumeAtTheImagesLatencyAndNotBefore) {
-  for (const int image_latency : {1, 2}) {
-    Lane lane(16, 1, image_latency);
-    std::vector<bool> consumed;
-    for (int cycle = 0; cycle <= 1 + image_latency; ++cycle) {
-      lane.step();
-      consumed.push_back(lane.consumed_now);
-    }
-    std::vector<bool> expected(static_cast<std::size_t>(1 + image_latency), false);
-    expected.push_back(true);
-    EXPECT_EQ(consumed, expected) << image_latency;
+// Runs the cycles and compares them with those expected.
+void expect_cycles(LaneControl& lane, const Cycles& cycles) {
+  const std::size_t count = std::max({cycles.lut.size(), cycles.pixel.size(), cycles.consumed.size()});
+  std::string lut;
+  std::string pixel;
+  std::string consumed;
+  for (std::size_t cycle = 0; cycle < count; ++cycle) {
+    const LaneControl::Decision decision = lane.decide();
+    const bool consumes = at(cycles.consumes, cycle) && lane.ready();
+    lut += letter_of(decision.lut);
+    pixel += letter_of(decision.pixel);
+    consumed += consumes ? '1' : '0';
+    lane.commit(decision, at(cycles.grants_lut, cycle) && decision.lut == Intent::kRequest,
+                at(cycles.grants_pixel, cycle) && decision.pixel == Intent::kRequest,
+                at(cycles.entry_valid, cycle), consumes);
   }
+  EXPECT_EQ(lut.substr(0, cycles.lut.size()), cycles.lut);
+  EXPECT_EQ(pixel.substr(0, cycles.pixel.size()), cycles.pixel);
+  EXPECT_EQ(consumed.substr(0, cycles.consumed.size()), cycles.consumed);
 }
 
-TEST(LaneControl, AsksAgainForWhatWasRefused) {
-  Lane lane(2, 1, 1);
-  lane.grant_lut = false;
-  EXPECT_EQ(lane.lut(3), Intents(3, kRequest));
-  lane.grant_lut = true;
-  lane.grant_pixel = false;
-  lane.step();
-  EXPECT_EQ(lane.pixel(3), Intents(3, kRequest));
-  EXPECT_EQ(lane.control.lut_cycles().stalled(), 3U);
-  EXPECT_EQ(lane.control.pixel_cycles().stalled(), 3U);
-  EXPECT_EQ(lane.control.pixel_cycles().granted(), 0U);
-  lane.grant_pixel = true;
-  lane.step();
-  EXPECT_EQ(lane.control.pixel_cycles().granted(), 1U);
+class LaneCycles : public testing::TestWithParam<Cycles> {};
+
+TEST_P(LaneCycles, AreThoseOfTheContract) {
+  const Setting& setting = GetParam().setting;
+  LaneControl lane(FrameGeometry(config(setting.height)), setting.has_table, setting.fifo_slots);
+  lane.start_frame(setting.table_latency, setting.image_latency);
+  expect_cycles(lane, GetParam());
 }
 
-TEST(LaneControl, PassesWhatHasNoValidEntryAndAsksForWhatHas) {
-  Lane lane(16, 2, 1);
-  Intents pixel;
-  for (const bool valid : {true, false, false, true, true, true}) {
-    lane.entry_valid = valid;
-    pixel.push_back(lane.step().pixel);
-  }
-  EXPECT_EQ(pixel, (Intents{kIdle, kIdle, kRequest, kPass, kPass, kRequest}));
-  EXPECT_EQ(lane.control.pixel_cycles().passed(), 2U);
+// The entries of a full lane, every third one valid, while the first slot waits for its grant.
+std::string in_64_slots(char valid, char invalid) {
+  std::string slots;
+  for (int slot = 0; slot < 64; ++slot) slots += slot % 3 == 0 ? valid : invalid;
+  return slots;
 }
 
-TEST(LaneControl, KeepsTheEntriesOfAFullLaneInOrder) {
-  Lane lane(64, 2, 2, true, 32);
-  lane.grant_pixel = false;
-  lane.step();  // the first is valid and keeps the others waiting
-  for (int slot = 1; slot < 64; ++slot) {
-    lane.entry_valid = slot % 3 == 0;
-    EXPECT_EQ(lane.step().lut, kRequest);
-  }
-  lane.consume = false;
-  EXPECT_EQ(lane.step().lut, kBlocked);
-  lane.grant_pixel = true;
-  for (int slot = 0; slot < 64; ++slot)
-    EXPECT_EQ(lane.step().pixel, slot % 3 == 0 ? kRequest : kPass) << slot;
-}
+// Claim and setting; expected lut, pixel, consumed; given grants_lut, grants_pixel, entry_valid, consumes.
+const std::vector<Cycles> kCycles = {
+    {"TakeASlotWithOnePlaceLeftAndNoneWithout", {3}, "RRRBB", "", "", "1", "0"},
+    {"CountASlotThatIsConsumedAsStillInTheLane", {1, 1, 1}, "RBBR", "", "0010"},
+    // A slot stays for both latencies and the cycle in which it is consumed.
+    {"RunWithoutPauseIfThePlacesCoverTheLatencies", {5, 2, 2, true, 8}, "RRRRRRRRRRRRRRRRRRRR"},
+    {"PauseIfOnePlaceIsMissing", {4, 2, 2, true, 8}, "RRRRBR"},
+    {"HandleAndConsumeASlotAtTheLatencies", {16, 2, 2}, "", "IIR", "00001"},
+    {"HandleAndConsumeASlotAtAShortTableLatency", {16, 1, 2}, "", "IR", "0001"},
+    {"HandleAndConsumeASlotAtShortLatencies", {16, 1, 1}, "", "IR", "001"},
+    {"RequestAgainAfterARefusal", {2, 1, 1}, "RRRRRBB", "IIIIRRRRR", "000000001", "0001", "00000001"},
+    {"PassASlotWithoutValidEntry", {16, 2, 1}, "", "IIRPPR", "", "1", "1", "100111"},
+    {"KeepTheEntriesOfAFullLaneInOrder",
+     {64, 2, 2, true, 32},
+     std::string(64, 'R') + 'B',
+     "II" + std::string(63, 'R') + in_64_slots('R', 'P'),
+     "",
+     "1",
+     std::string(65, '0') + '1',
+     in_64_slots('1', '0'),
+     "0"},
+    // Four pixels, then four empty slots.
+    {"PassEmptySlotsAtBothPortsWithTheSameLatencies",
+     {16, 2, 2, true, 1},
+     "RRRRPPPPI",
+     "IIRRRRPPPPI",
+     "0000111111110"},
+    {"StarveThePixelPortBetweenItsFirstAndItsLastSlot",
+     {16, 1, 1, true, 1},
+     "",
+     "IIIIRSSSRRRPPPPI",
+     "",
+     "00010001"},
+    {"BlockOnlyAPortThatTakesSlots", {2, 1, 1}, "RRBBB", "IRRSS", "", "1", "1", "1", "0"},
+    {"LetThePixelPortTakeTheSlotsOfASideWithoutTable", {2, 2, 2, false}, "IIII", "RRBR", "0011"},
+    {"NeedOnlyTheImagesLatencyOnASideWithoutTable", {16, 2, 2, false, 1}, "", "RRRRPPPPI", "001111111"},
+    {"NeedOnlyAShortImageLatencyOnASideWithoutTable", {16, 2, 1, false, 1}, "", "RRRRPPPPI", "011111111"},
+};
 
-TEST(LaneControl, PassesEmptySlotsAtBothPortsWithTheSameLatencies) {
-  Lane lane(16, 2, 2, true, 1);  // four pixels, then four empty slots
-  EXPECT_EQ(lane.lut(4), Intents(4, kRequest));
-  EXPECT_EQ(lane.lut(4), Intents(4, kPass));
-  EXPECT_EQ(lane.lut(1), Intents{kIdle});
-  EXPECT_EQ(lane.control.pixel_cycles().granted(), 4U);
-  EXPECT_EQ(lane.pixel(1), Intents{kPass});
-  EXPECT_EQ(lane.pixel(1), Intents{kIdle});
-  EXPECT_EQ(lane.control.pixel_cycles().passed(), 4U);
-  // The last slot was taken in cycle 7, handled in cycle 9 and is consumed in cycle 11.
-  EXPECT_EQ(lane.cycles, 11U);
-  EXPECT_EQ(lane.control.consumed(), 7U);
-  lane.step();
-  EXPECT_EQ(lane.control.consumed(), 8U);
-  lane.step();
-  EXPECT_EQ(lane.control.consumed(), 8U);
-}
-
-TEST(LaneControl, StarvesThePixelPortBetweenItsFirstAndItsLastSlot) {
-  Lane lane(16, 1, 1, true, 1);
-  lane.grant_lut = false;
-  EXPECT_EQ(lane.pixel(3), Intents(3, kIdle));  // nothing yet: idle
-  lane.grant_lut = true;
-  EXPECT_EQ(lane.step().pixel, kIdle);
-  lane.grant_lut = false;
-  EXPECT_EQ(lane.pixel(3), (Intents{kRequest, kStarved, kStarved}));
-  lane.grant_lut = true;
-  EXPECT_EQ(lane.pixel(3), (Intents{kStarved, kRequest, kRequest}));
-  EXPECT_EQ(lane.pixel(6), (Intents{kRequest, kPass, kPass, kPass, kPass, kIdle}));
-}
-
-TEST(LaneControl, BlocksOnlyAPortThatTakesSlots) {
-  Lane lane(2, 1, 1);
-  lane.consume = false;
-  EXPECT_EQ(lane.lut(4), (Intents{kRequest, kRequest, kBlocked, kBlocked}));
-  EXPECT_EQ(lane.control.pixel_cycles().blocked(), 0U);
-  EXPECT_EQ(lane.control.pixel_cycles().starved(), 1U);
-}
-
-TEST(LaneControl, LetsThePixelPortTakeTheSlotsOfASideWithoutTable) {
-  Lane lane(2, 2, 2, false, 1);
-  EXPECT_EQ(lane.pixel(4), (Intents{kRequest, kRequest, kBlocked, kRequest}));  // consumed first in cycle 2
-  EXPECT_EQ(lane.control.consumed(), 2U);
-  EXPECT_EQ(lane.control.lut_cycles().idle(), 4U);
-}
-
-TEST(LaneControl, ConsumesAtTheImagesLatencyOnASideWithoutTable) {
-  for (const int image_latency : {1, 2}) {
-    Lane lane(16, 2, image_latency, false, 1);
-    for (int cycle = 0; cycle < image_latency; ++cycle) {
-      lane.step();
-      EXPECT_FALSE(lane.consumed_now);
-    }
-    lane.step();
-    EXPECT_TRUE(lane.consumed_now);
-    EXPECT_EQ(lane.pixel(8 - image_latency - 1).size(), static_cast<std::size_t>(8 - image_latency - 1));
-    EXPECT_EQ(lane.pixel(1), Intents{kIdle});  // all slots taken, the last four without access
-    EXPECT_EQ(lane.control.pixel_cycles().granted(), 4U);
-    EXPECT_EQ(lane.control.pixel_cycles().passed(), 4U);
-  }
-}
-
-TEST(LaneControl, CountsEveryCycleOnceAtEachPort) {
-  Lane lane(2, 2, 1, true, 3);
-  for (int cycle = 0; cycle < 60; ++cycle) {
-    lane.grant_lut = cycle % 3 != 0;
-    lane.grant_pixel = cycle % 5 != 0;
-    lane.entry_valid = cycle % 7 != 0;
-    lane.consume = cycle % 2 == 0;
-    lane.step();
-  }
-  EXPECT_EQ(lane.control.lut_cycles().sum(), 60U);
-  EXPECT_EQ(lane.control.pixel_cycles().sum(), 60U);
-}
-
-TEST(LaneControl, RefusesADepthOutsideItsRange) {
-  const FrameGeometry geometry(config(2));
-  EXPECT_NO_THROW(LaneControl(geometry, true, 1));
-  EXPECT_NO_THROW(LaneControl(geometry, true, 64));
-  EXPECT_THROW(LaneControl(geometry, true, 0), std::invalid_argument);
-  EXPECT_THROW(LaneControl(geometry, true, 65), std::invalid_argument);
-}
+INSTANTIATE_TEST_SUITE_P(LaneControl, LaneCycles, testing::ValuesIn(kCycles),
+                         [](const auto& suite) { return std::string(suite.param.claim); });
 
 TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
-  Lane lane(16, 2, 2, true, 1);
-  for (int cycle = 0; cycle < 20; ++cycle) lane.step();
-  EXPECT_EQ(lane.control.consumed(), 8U);
-  lane.control.start_frame(1, 1);
-  EXPECT_EQ(lane.pixel(2), (Intents{kIdle, kRequest}));
-  lane.step();
-  EXPECT_TRUE(lane.consumed_now);
-  EXPECT_EQ(lane.control.consumed(), 9U);  // over all frames
+  LaneControl lane(FrameGeometry(config(1)), true, 16);
+  lane.start_frame(2, 2);
+  Cycles cycles{""};
+  cycles.consumed = "00001111111100000000";
+  expect_cycles(lane, cycles);
+  EXPECT_EQ(lane.consumed(), 8U);
+  lane.start_frame(1, 1);
+  cycles.pixel = "IR";
+  cycles.consumed = "001";
+  expect_cycles(lane, cycles);
+  EXPECT_EQ(lane.consumed(), 9U);  // over all frames
+}
+
+TEST(LaneControl, RefusesADepthOrAReadLatencyOutsideItsRange) {
+  const FrameGeometry geometry(config(2));
+  for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, slots));
+  for (const int slots : {0, 65}) EXPECT_THROW(LaneControl(geometry, true, slots), std::invalid_argument);
+  LaneControl lane(geometry, true, 1);
+  LaneControl lane_without_table(geometry, false, 1);
+  for (const int latency : {1, 2}) EXPECT_NO_THROW(lane.start_frame(latency, latency));
+  for (const int latency : {0, 3}) {
+    EXPECT_THROW(lane.start_frame(latency, 2), std::invalid_argument);
+    EXPECT_THROW(lane.start_frame(2, latency), std::invalid_argument);
+    EXPECT_NO_THROW(lane_without_table.start_frame(latency, 2));  // the first has no effect
+  }
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   return config;
 }
 
-// Of a pixel, in a table.
+// Index of a pixel's entry in a table.
 inline std::size_t place_of(const CoreConfig& config, int column, int row) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(config.width) +
          static_cast<std::size_t>(column);

@@ -38,20 +38,11 @@ class RegisterFileTest : public testing::Test {
     ASSERT_EQ(host.write(kControl, value).status, tlm::TLM_OK_RESPONSE);
     settle();
   }
-  std::uint32_t status() { return host.read(kStatus).word; }
-
-  // Sends `payload`, which must be refused so and change nothing.
-  void expect_refused(tlm::tlm_generic_payload& payload, tlm::tlm_response_status status_expected) {
-    const auto errors = file.stats().errors;
-    sc_core::sc_time delay;
-    host.socket->b_transport(payload, delay);
-    EXPECT_EQ(payload.get_response_status(), status_expected);
-    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
-    EXPECT_EQ(file.stats().errors, errors + 1);
-    EXPECT_TRUE(starts.beats.empty());
-    for (const std::uint64_t base : kBases) EXPECT_EQ(host.read(base).word, 0U);
-    binder.take_violations();
+  void finish_frame(std::uint64_t frame_cycles, bool access_error = false) {
+    file.finish_frame(frame_cycles, access_error);
+    settle();
   }
+  std::uint32_t status() { return host.read(kStatus).word; }
 
   test::MonitoringBinder binder;
   TestHost host{"test_host"};
@@ -76,20 +67,14 @@ TEST_F(RegisterFileTest, HandsTheBasesToTheCoreWithTheStrobe) {
   EXPECT_TRUE(starts.beats.empty());
   control(kControlStart);
   ASSERT_EQ(starts.beats.size(), 1U);
-  const FrameStart& start = starts.beats[0];
-  EXPECT_EQ(start.left_image, 10U);
-  EXPECT_EQ(start.right_image, 11U);
-  EXPECT_EQ(start.disparity, 12U);
-  EXPECT_EQ(start.left_lut, 13U);
-  EXPECT_EQ(start.right_lut, 14U);
+  EXPECT_EQ(starts.beats[0].bases, (FrameBases{13, 14, 10, 11, 12}));  // by ports
   EXPECT_EQ(status(), kStatusBusy);
 }
 
 TEST_F(RegisterFileTest, RaisesTheInterruptWithTheEndOfAFrameUntilItIsAcknowledged) {
   control(kControlStart);
   EXPECT_FALSE(done.read());
-  file.finish_frame(0x1'2345'6789, false);
-  settle();
+  finish_frame(0x1'2345'6789);
   EXPECT_TRUE(done.read());
   EXPECT_EQ(status(), kStatusDone);
   EXPECT_EQ(host.read(registers::kFrameCyclesLow).word, 0x2345'6789U);
@@ -107,8 +92,7 @@ TEST_F(RegisterFileTest, IgnoresAStrobeWhileBusyAndRaisesError) {
   control(kControlStart);
   EXPECT_EQ(starts.beats.size(), 1U);
   EXPECT_EQ(status(), kStatusBusy | kStatusError);
-  file.finish_frame(5, false);
-  settle();
+  finish_frame(5);
   EXPECT_EQ(status(), kStatusDone | kStatusError);  // stays
   control(kControlAcknowledge);
   EXPECT_EQ(status(), 0U);
@@ -126,30 +110,14 @@ TEST_F(RegisterFileTest, RaisesErrorWithARefusedStrobeAndIsNotBusy) {
 
 TEST_F(RegisterFileTest, RaisesErrorWithTheEndOfAFrameThatMemoryRefused) {
   control(kControlStart);
-  file.finish_frame(5, true);
-  settle();
+  finish_frame(5, true);
   EXPECT_EQ(status(), kStatusDone | kStatusError);
-  control(kControlAcknowledge | kControlStart);
-  file.finish_frame(5, false);
-  settle();
-  EXPECT_EQ(status(), kStatusDone);
-}
-
-TEST_F(RegisterFileTest, AcknowledgesAndStartsInOneWrite) {
-  control(kControlStart);
-  file.finish_frame(5, false);
-  settle();
-  control(kControlAcknowledge | kControlStart);
-  EXPECT_FALSE(done.read());
+  control(kControlAcknowledge | kControlStart);  // both in one write
   EXPECT_EQ(status(), kStatusBusy);
+  EXPECT_FALSE(done.read());
   EXPECT_EQ(starts.beats.size(), 2U);
-}
-
-TEST_F(RegisterFileTest, AnswersTheLastRegisterAndRefusesTheAddressBehindIt) {
-  EXPECT_EQ(host.write(registers::kEnd - 4, 0).status, tlm::TLM_OK_RESPONSE);
-  EXPECT_EQ(host.write(registers::kEnd, 0).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  EXPECT_EQ(host.read(registers::kEnd).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  EXPECT_EQ(file.stats().errors, 2U);
+  finish_frame(5);
+  EXPECT_EQ(status(), kStatusDone);
 }
 
 TEST_F(RegisterFileTest, RefusesTheDirectionThatARegisterDoesNotHave) {
@@ -161,38 +129,49 @@ TEST_F(RegisterFileTest, RefusesTheDirectionThatARegisterDoesNotHave) {
   EXPECT_EQ(file.stats().errors, 4U);
 }
 
-TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWholeWord) {
+TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWordOfARegister) {
+  struct Access {
+    std::uint64_t address = registers::kLeftImageBase;
+    unsigned length = 4;
+    unsigned streaming_width = 8;
+    bool has_enables = false;
+    tlm::tlm_command command = tlm::TLM_WRITE_COMMAND;
+    tlm::tlm_response_status response = tlm::TLM_BURST_ERROR_RESPONSE;
+  };
+  std::vector<Access> accesses(7);
+  accesses[0].length = 1;
+  accesses[1].length = 3;
+  accesses[2].length = 8;
+  accesses[3].streaming_width = 3;
+  accesses[4].has_enables = true;
+  accesses[4].response = tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
+  accesses[5].address += 2;
+  accesses[5].response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  accesses[6].command = tlm::TLM_IGNORE_COMMAND;
+  accesses[6].response = tlm::TLM_COMMAND_ERROR_RESPONSE;
   std::array<unsigned char, 8> data;
   data.fill(0xFF);
-  std::array<unsigned char, 4> enables;
-  enables.fill(TLM_BYTE_ENABLED);
-  const auto payload = [&data] {
-    auto fresh = std::make_unique<tlm::tlm_generic_payload>();
-    fresh->set_command(tlm::TLM_WRITE_COMMAND);
-    fresh->set_address(registers::kLeftImageBase);
-    fresh->set_data_ptr(data.data());
-    fresh->set_data_length(4);
-    fresh->set_streaming_width(8);
-    return fresh;
-  };
-  for (const unsigned length : {1U, 3U, 8U}) {
-    const auto wrong_length = payload();
-    wrong_length->set_data_length(length);
-    expect_refused(*wrong_length, tlm::TLM_BURST_ERROR_RESPONSE);
+  for (const Access& access : accesses) {
+    tlm::tlm_generic_payload payload;
+    payload.set_command(access.command);
+    payload.set_address(access.address);
+    payload.set_data_ptr(data.data());
+    payload.set_data_length(access.length);
+    payload.set_streaming_width(access.streaming_width);
+    if (access.has_enables) payload.set_byte_enable_ptr(data.data());
+    payload.set_byte_enable_length(access.has_enables ? 4 : 0);
+    sc_core::sc_time delay;
+    host.socket->b_transport(payload, delay);
+    EXPECT_EQ(payload.get_response_status(), access.response);
+    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
   }
-  const auto narrow = payload();
-  narrow->set_streaming_width(3);
-  expect_refused(*narrow, tlm::TLM_BURST_ERROR_RESPONSE);
-  const auto enabled = payload();
-  enabled->set_byte_enable_ptr(enables.data());
-  enabled->set_byte_enable_length(4);
-  expect_refused(*enabled, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-  const auto unaligned = payload();
-  unaligned->set_address(registers::kLeftImageBase + 2);
-  expect_refused(*unaligned, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  const auto ignored = payload();
-  ignored->set_command(tlm::TLM_IGNORE_COMMAND);
-  expect_refused(*ignored, tlm::TLM_COMMAND_ERROR_RESPONSE);
+  EXPECT_EQ(file.stats().errors, accesses.size());
+  EXPECT_TRUE(starts.beats.empty());
+  for (const std::uint64_t base : kBases) EXPECT_EQ(host.read(base).word, 0U);
+  binder.take_violations();
+  EXPECT_EQ(host.write(registers::kEnd - 4, 0).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(host.write(registers::kEnd, 0).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(host.read(registers::kEnd).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
 }
 
 TEST_F(RegisterFileTest, LetsDebugTransportReadAndNotWrite) {

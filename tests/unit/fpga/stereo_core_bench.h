@@ -81,11 +81,9 @@ class StereoCoreBench : public testing::Test {
     const auto table = kernels::identity_table(config.core.width, config.core.height);
     memory.debug_write(memory::crossbar_address(kLeftTable, 0), table.entries);
     memory.debug_write(memory::crossbar_address(kRightTable, 0), table.entries);
-    set_base(registers::kLeftImageBase, kLeft);
-    set_base(registers::kRightImageBase, kRight);
-    set_base(registers::kDisparityBase, kResult);
-    set_base(registers::kLeftLutBase, kLeftTable);
-    set_base(registers::kRightLutBase, kRightTable);
+    const FrameBases banks_of_ports = {kLeftTable, kRightTable, kLeft, kRight, kResult};
+    for (memory::Port port = 0; port < kCorePortCount; ++port)
+      set_base(kPorts[port].base_register, banks_of_ports[port]);
   }
   void set_base(std::uint64_t base_register, std::uint32_t bank, std::uint32_t word = 0) {
     registers.write(base_register, registers::base(bank, word));
@@ -104,6 +102,12 @@ class StereoCoreBench : public testing::Test {
   // The start of a clock cycle.
   sc_core::sc_time edge(std::uint64_t cycle) const { return Clock::to_time(clock->edge_ps(cycle)); }
   static void run_until(const sc_core::sc_time& time) { sc_core::sc_start(time - sc_core::sc_time_stamp()); }
+  // One frame on this board.
+  void run(const StereoCoreConfig& board) {
+    build(board);
+    start();
+    finish();
+  }
   // Lets everything come to an end.
   void finish() { run_until(sc_core::sc_time_stamp() + edge(5000)); }
   // Does something in a process of its own, at this time.
@@ -114,6 +118,7 @@ class StereoCoreBench : public testing::Test {
     });
   }
 
+  const std::vector<std::uint64_t>& frame_cycles() const { return core->frames().frame_cycles(); }
   // frame_cycles if nothing contends, with both latencies of the slower side.
   std::uint64_t frame_cycles_alone(std::uint64_t latencies) const {
     const FrameGeometry& geometry = core->control().geometry();
@@ -121,13 +126,15 @@ class StereoCoreBench : public testing::Test {
   }
   std::uint64_t pipeline() const { return static_cast<std::uint64_t>(config.core.pipeline_latency_cycles); }
   const PortCycles& port(memory::Port which) const { return core->control().port_cycles(which); }
-  // Transported, and direct.
-  std::uint64_t accesses(Bank bank) const {
-    const memory::SsramBank::Stats& stats = banks[bank]->stats();
-    return stats.reads + stats.writes + core->crossbar().direct_accesses(bank);
+  // Words that reached a bank by transport, and directly.
+  std::uint64_t transported(std::uint32_t bank) const {
+    return banks[bank]->stats().reads + banks[bank]->stats().writes;
   }
-  std::uint64_t blamed(Bank bank, memory::Port victim, memory::Port by) const {
-    return core->crossbar().arbiters()[bank].stats().blame[memory::index_of(victim)][memory::index_of(by)];
+  std::uint64_t accesses(std::uint32_t bank) const {
+    return transported(bank) + core->crossbar().direct_accesses(bank);
+  }
+  std::uint64_t blamed(std::uint32_t bank, memory::Port victim, memory::Port by) const {
+    return core->crossbar().arbiters()[bank].stats().blame[victim][by];
   }
 
   StereoCoreConfig config;

@@ -16,6 +16,7 @@
 #include "tests/support/test_host.h"
 #include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/random_core.h"
+#include "tests/unit/support/random_memory.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -43,17 +44,11 @@ StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {
   board.core.clock_mhz = clocks[static_cast<std::size_t>(random.between(0, 2))];
   board.local_bus.clock_mhz =
       random.chance(50) ? board.core.clock_mhz : clocks[static_cast<std::size_t>(random.between(0, 2))];
-  if (random.chance(40)) board.memory.arbiter.policy = memory::ArbitrationPolicy::kRoundRobin;
-  auto& priority = board.memory.arbiter.priority;
-  for (std::size_t place = 0; place < priority.size(); ++place)
-    std::swap(priority[place],
-              priority[static_cast<std::size_t>(random.between(static_cast<int>(place), 5))]);
+  board.memory.arbiter = test::random_arbiter(random);
   for (int banks = random.between(1, 8); banks > 0; --banks) {
-    memory::SsramBankConfig bank;
+    memory::SsramBankConfig bank = test::random_bank(random);
     bank.words = kBankWords;
     bank.clock_mhz = board.core.clock_mhz;
-    bank.kind = static_cast<memory::BankKind>(random.between(0, 2));
-    if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles = random.mostly_small(1, 3, 16);
     board.memory.banks.push_back(bank);
   }
   return board;
@@ -108,7 +103,7 @@ class HostedRun {
     }
     return text;
   }
-  std::size_t frames() const { return core_->frame_cycles().size(); }
+  std::size_t frames() const { return core_->frames().frame_cycles().size(); }
 
  private:
   int banks() const { return static_cast<int>(banks_.size()); }
@@ -147,7 +142,7 @@ class HostedRun {
             {registers::kLeftLutBase, in_any_bank(kLeftTable)},
             {registers::kRightLutBase, in_any_bank(kRightTable)}};
   }
-  bool is_idle() const { return frames_started_ == core_->frame_cycles().size(); }
+  bool is_idle() const { return frames_started_ == core_->frames().frame_cycles().size(); }
 
   // A burst that no frame minds: reads what it only reads, or scratch words.
   void access_words(SplitMix64& random) {

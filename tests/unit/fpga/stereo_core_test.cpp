@@ -12,7 +12,6 @@ namespace stereotlm::fpga {
 namespace {
 
 using memory::BankKind;
-using memory::Port;
 using registers::kStatusBusy;
 using registers::kStatusDone;
 using registers::kStatusError;
@@ -41,36 +40,27 @@ class StereoCoreTest : public StereoCoreFidelities {
   }
 };
 
-TEST_P(StereoCoreTest, BeginsInTheCycleThatBeginsWithTheStrobe) {
+TEST_P(StereoCoreTest, BeginsInTheFirstCycleAtOrAfterItsStrobe) {
   build(small_board());
-  at(edge(10), [this] { start(); });
+  struct Strobe {
+    sc_time at;
+    sc_time delay;  // that its access carries
+    std::uint64_t first_cycle;
+  };
+  const std::vector<Strobe> strobes = {{edge(10), {}, 10},
+                                       {edge(1000) - kPicosecond, {}, 1000},
+                                       {edge(2000) + kPicosecond, {}, 2001},
+                                       {edge(3000), edge(3), 3003}};
+  std::vector<sc_time> ends;
+  for (const Strobe& strobe : strobes) {
+    at(strobe.at, [this, strobe] {
+      const auto value = registers::kControlStart | registers::kControlAcknowledge;
+      registers.write(registers::kControl, value, strobe.delay);
+    });
+    ends.push_back(edge(strobe.first_cycle + frame_cycles_alone(4)));
+  }
   finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
-}
-
-TEST_P(StereoCoreTest, BeginsInTheCycleAfterAStrobeAPicosecondEarlier) {
-  build(small_board());
-  at(edge(10) - kPicosecond, [this] { start(); });
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(10 + frame_cycles_alone(4)));
-}
-
-TEST_P(StereoCoreTest, BeginsInTheNextCycleAfterAStrobeWithinACycle) {
-  build(small_board());
-  at(edge(10) + kPicosecond, [this] { start(); });
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(11 + frame_cycles_alone(4)));
-}
-
-TEST_P(StereoCoreTest, BeginsAfterTheDelayThatItsStrobeCarries) {
-  build(small_board());
-  at(edge(10), [this] { registers.write(registers::kControl, registers::kControlStart, edge(3)); });
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(13 + frame_cycles_alone(4)));
+  EXPECT_EQ(done_at, ends);
 }
 
 TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
@@ -79,11 +69,11 @@ TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   run_until(edge(frame_cycles_alone(4)) - kPicosecond);
   EXPECT_EQ(status(), kStatusBusy);
   EXPECT_FALSE(done.read());
-  EXPECT_TRUE(core->frame_cycles().empty());
+  EXPECT_TRUE(frame_cycles().empty());
   run_until(edge(frame_cycles_alone(4)) + kPicosecond);
   EXPECT_EQ(status(), kStatusDone);
   EXPECT_TRUE(done.read());
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(registers.read(registers::kFrameCyclesLow).word, frame_cycles_alone(4));
   EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
 }
@@ -95,18 +85,14 @@ TEST_P(StereoCoreTest, KeepsItsCyclesOnAClockWithoutWholePeriod) {
   build(board);
   at(edge(7), [this] { start(); });
   finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(7 + frame_cycles_alone(4)));
+  EXPECT_EQ(done_at, std::vector<sc_time>{edge(7 + frame_cycles_alone(4))});
 }
 
 TEST_P(StereoCoreTest, EndsAFrameWithoutPipelineLatencyRightAfterItsLastWrite) {
   StereoCoreConfig board = small_board();
   board.core.pipeline_latency_cycles = 0;
-  build(board);
-  start();
-  finish();
-  ASSERT_EQ(done_at.size(), 1U);
-  EXPECT_EQ(done_at[0], edge(frame_cycles_alone(4)));
+  run(board);
+  EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
 }
 
 TEST_P(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
@@ -122,14 +108,12 @@ TEST_P(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
   set_base(registers::kLeftImageBase, kLeft);
   start();
   finish();
-  EXPECT_EQ(core->frame_cycles(), (std::vector<std::uint64_t>{frame_cycles_alone(3), frame_cycles_alone(2)}));
+  EXPECT_EQ(frame_cycles(), (std::vector<std::uint64_t>{frame_cycles_alone(3), frame_cycles_alone(2)}));
   EXPECT_EQ(result_words(), expected_words());
 }
 
 TEST_P(StereoCoreTest, ComputesTheDisparitiesOfTheContract) {
-  build(small_board());
-  start();
-  finish();
+  run(small_board());
   EXPECT_EQ(result_words(), expected_words());
 }
 
@@ -138,13 +122,12 @@ TEST_P(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
   board.core.filter = kernels::log7();
   board.core.fetch = Fetch::kLineBuffer;
   board.core.lr_tolerance = 1;
-  build(board);
-  start();
-  finish();
+  run(board);
   EXPECT_EQ(result_words(), expected_words());
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  ASSERT_NE(core->left_row_buffer(), nullptr);
-  EXPECT_EQ(core->left_row_buffer()->stats().columns, core->left_filter().stats().columns);
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  const CoreDatapath::Lane& lane = core->datapath().lane(Side::kLeft);
+  ASSERT_NE(lane.row_buffer, nullptr);
+  EXPECT_EQ(lane.row_buffer->stats().columns, lane.filter.stats().columns);
 }
 
 TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
@@ -158,30 +141,32 @@ TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
   start();
   finish();
   EXPECT_EQ(result_words(), expected_words());
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(2)});
-  EXPECT_EQ(core->left_lut_reader(), nullptr);
-  EXPECT_EQ(core->right_row_buffer(), nullptr);
-  EXPECT_EQ(port(Port::kLeftLut).idle(), frame_cycles_alone(2) - pipeline());
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(2)});
+  EXPECT_EQ(core->datapath().lane(Side::kLeft).lut_reader, nullptr);
+  EXPECT_EQ(core->datapath().lane(Side::kRight).row_buffer, nullptr);
+  EXPECT_EQ(port(lut_port(Side::kLeft)).idle(), frame_cycles_alone(2) - pipeline());
 }
 
 TEST_P(StereoCoreTest, CountsTheSameAtAllItsStages) {
-  build(small_board());
-  start();
-  finish();
+  run(small_board());
   const FrameGeometry& geometry = core->control().geometry();
   const std::uint64_t columns = (geometry.slots + geometry.drain_cycles) / 3;
-  EXPECT_EQ(core->sequencer().stats(Side::kRight).slots, geometry.slots);
-  EXPECT_EQ(core->control().left().consumed(), geometry.slots);
-  EXPECT_EQ(core->left_lut_reader()->stats().reads, port(Port::kLeftLut).granted());
-  EXPECT_EQ(core->left_pixel_reader().stats().reads, port(Port::kLeftPixel).granted());
-  EXPECT_EQ(core->right_pixel_reader().stats().passed_slots, port(Port::kRightPixel).passed());
-  EXPECT_EQ(core->right_filter().stats().columns, columns);
-  EXPECT_EQ(core->sad_array().stats().columns, columns);
-  EXPECT_EQ(core->select_min_chain().stats().columns, core->select_min_tree().stats().columns);
-  EXPECT_EQ(core->lr_check().stats().answered + core->lr_check().stats().invalid, 48U);
-  EXPECT_EQ(core->result_packer().stats().words, 12U);
-  EXPECT_EQ(core->result_writer().stats().writes, 12U);
-  EXPECT_EQ(accesses(kLeft), port(Port::kLeftPixel).granted());
+  const CoreDatapath& datapath = core->datapath();
+  for (const Side side : kSides) {
+    const CoreDatapath::Lane& lane = datapath.lane(side);
+    EXPECT_EQ(datapath.sequencer().stats(side).slots, geometry.slots);
+    EXPECT_EQ(core->control().lane(side).consumed(), geometry.slots);
+    EXPECT_EQ(lane.lut_reader->stats().reads, port(lut_port(side)).granted());
+    EXPECT_EQ(lane.pixel_reader.stats().reads, port(pixel_port(side)).granted());
+    EXPECT_EQ(lane.pixel_reader.stats().passed_slots, port(pixel_port(side)).passed());
+    EXPECT_EQ(lane.filter.stats().columns, columns);
+  }
+  EXPECT_EQ(datapath.sad_array().stats().columns, columns);
+  EXPECT_EQ(datapath.select_min_chain().stats().columns, datapath.select_min_tree().stats().columns);
+  EXPECT_EQ(datapath.lr_check().stats().answered + datapath.lr_check().stats().invalid, 48U);
+  EXPECT_EQ(datapath.result_packer().stats().words, 12U);
+  EXPECT_EQ(datapath.result_writer().stats().writes, 12U);
+  EXPECT_EQ(accesses(kLeft), port(pixel_port(Side::kLeft)).granted());
   EXPECT_EQ(accesses(kResult), 12U);
 }
 
@@ -194,7 +179,7 @@ TEST_P(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
   at(edge(2), [this] { start(); });
   finish();
   const std::uint64_t cycles = frame_cycles_alone(4);
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>(3, cycles));
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>(3, cycles));
   EXPECT_EQ(done_at, (std::vector<sc_time>{edge(2 + cycles), edge(2 + 2 * cycles), edge(2 + 3 * cycles)}));
   EXPECT_EQ(result_words(), expected_words());
 }
@@ -219,7 +204,7 @@ TEST_P(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
   });
   finish();
   EXPECT_EQ(status(), kStatusDone | kStatusError);
-  EXPECT_EQ(core->frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(result_words(), expected_words());
 }
 
@@ -231,7 +216,7 @@ TEST_P(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtT
   at(edge(2 * cycles), [this] { control(registers::kControlAcknowledge); });
   at(edge(3 * cycles), [this] { start(); });
   on_done = [this] {
-    if (core->frame_cycles().size() == 2) start();
+    if (frame_cycles().size() == 2) start();
   };
   run_until(edge(cycles) + kPicosecond);
   EXPECT_EQ(status(), kStatusDone | kStatusError);
@@ -258,73 +243,58 @@ TEST_P(StereoCoreTest, KeepsItsTimesInAFrameOfManyThousandCycles) {
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(1 + cycles)});
   EXPECT_EQ(memory.answers.at(0).at, edge(17'006));
   EXPECT_EQ(memory.answers.at(1).at, edge(17'012));
-  EXPECT_EQ(port(Port::kHost).granted(), 2U);
+  EXPECT_EQ(port(kHostPort).granted(), 2U);
   EXPECT_EQ(result_words(), expected_words());
 }
 
-class StereoCoreBases : public StereoCoreBench, public testing::WithParamInterface<const char*> {
+class StereoCoreBases : public StereoCoreBench, public testing::WithParamInterface<memory::Port> {
  protected:
-  std::uint64_t base_register() const {
-    const std::string name = GetParam();
-    if (name == "left_image") return registers::kLeftImageBase;
-    if (name == "right_image") return registers::kRightImageBase;
-    if (name == "disparity") return registers::kDisparityBase;
-    return name == "left_lut" ? registers::kLeftLutBase : registers::kRightLutBase;
+  const CorePort& tested() const { return kPorts[GetParam()]; }
+  void run_frame_on(std::uint32_t bank, std::uint32_t word = 0) {
+    set_base(tested().base_register, bank, word);
+    start();
+    finish();
   }
 };
 
 TEST_P(StereoCoreBases, MustLieInABankThatTheBoardHas) {
   build(small_board());
-  set_base(base_register(), kBankCount);
-  start();
-  finish();
+  run_frame_on(kBankCount);
   EXPECT_EQ(status(), kStatusError);
   EXPECT_TRUE(done_at.empty());
-  EXPECT_TRUE(core->frame_cycles().empty());
-  for (const auto& bank : banks) EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
-  set_base(base_register(), kSpare);
-  start();
-  finish();
+  EXPECT_TRUE(frame_cycles().empty());
+  for (std::uint32_t bank = 0; bank < kBankCount; ++bank) EXPECT_EQ(accesses(bank), 0U);
+  run_frame_on(kSpare);
   EXPECT_EQ(status(), kStatusDone);
 }
 
 TEST_P(StereoCoreBases, RaiseErrorBehindABanksEndAndTheFrameEnds) {
-  StereoCoreConfig board = small_board();
-  build(board);
-  // Image and disparity buffers have 12 words, tables 48: the last word lies just inside, then just outside.
-  const bool table = base_register() >= registers::kLeftLutBase;
-  const std::uint32_t last_fit = kWords - (table ? 48 : 12);
+  build(small_board());
+  // The last word of the buffer of 8 x 6 pixels lies just inside, then just outside.
+  const auto last_fit = static_cast<std::uint32_t>(kWords - 8 * 6 * tested().bytes_per_pixel / 4);
   memory.debug_write(memory::crossbar_address(kSpare, last_fit),
                      std::vector<std::uint32_t>(kWords - last_fit, kernels::kEntryValid));
-  set_base(base_register(), kSpare, last_fit);
-  start();
-  finish();
+  run_frame_on(kSpare, last_fit);
   EXPECT_EQ(status(), kStatusDone);
-  set_base(base_register(), kSpare, last_fit + 1);
-  start();
-  finish();
+  run_frame_on(kSpare, last_fit + 1);
   EXPECT_EQ(status(), kStatusDone | kStatusError);
-  EXPECT_EQ(core->frame_cycles().size(), 2U);
+  EXPECT_EQ(frame_cycles().size(), 2U);
   EXPECT_GT(banks[kSpare]->stats().errors, 0U);
-  set_base(base_register(), kSpare, last_fit);
-  start();
-  finish();
+  run_frame_on(kSpare, last_fit);
   EXPECT_EQ(status(), kStatusDone);
 }
 
-INSTANTIATE_TEST_SUITE_P(StereoCore, StereoCoreBases,
-                         testing::Values("left_image", "right_image", "disparity", "left_lut", "right_lut"));
+INSTANTIATE_TEST_SUITE_P(StereoCore, StereoCoreBases, testing::Range(std::size_t{0}, kCorePortCount),
+                         [](const auto& suite) { return std::string(kPorts[suite.param].name); });
 
 TEST_P(StereoCoreTest, RefusesAConfigurationWithProblems) {
-  StereoCoreConfig window = small_board();
-  window.core.window = 4;
-  EXPECT_THROW(StereoCore("a", window, binder), std::invalid_argument);
-  StereoCoreConfig no_banks = small_board();
-  no_banks.memory.banks.clear();
-  EXPECT_THROW(StereoCore("b", no_banks, binder), std::invalid_argument);
-  StereoCoreConfig two_clocks = small_board();
-  two_clocks.core.clock_mhz += 1;
-  EXPECT_THROW(StereoCore("c", two_clocks, binder), std::invalid_argument);
+  std::vector<StereoCoreConfig> refused(4, small_board());
+  refused[0].core.window = 4;
+  refused[1].memory.banks.clear();
+  refused[2].memory.arbiter.priority = {0, 1, 2, 3, 4};
+  refused[3].core.clock_mhz += 1;
+  for (const StereoCoreConfig& board : refused)
+    EXPECT_THROW(StereoCore("refused", board, binder), std::invalid_argument);
 }
 
 INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreTest, testing::Values(Fidelity::kCycle, Fidelity::kFast),

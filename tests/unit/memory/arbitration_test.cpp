@@ -4,27 +4,29 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/support/random_board.h"
-#include "tests/unit/memory/step_arbiter.h"
+#include "tests/unit/memory/plain_arbiter.h"
+#include "tests/unit/support/random_memory.h"
 
 namespace stereotlm::memory {
 namespace {
 
+using test::random_arbiter;
 using test::SplitMix64;
 
 constexpr PortMask kNone = 0;
-constexpr int kBanks = 4;
+constexpr PortMask kLeft = mask_of(port::kLeftPixel);
+constexpr PortMask kRight = mask_of(port::kRightPixel);
+constexpr PortMask kResult = mask_of(port::kResult);
+constexpr PortMask kHost = mask_of(port::kHost);
+const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
+const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
-constexpr PortMask both(PortMask a, PortMask b) { return static_cast<PortMask>(a | b); }
-constexpr PortMask kLeft = mask_of(Port::kLeftPixel);
-constexpr PortMask kRight = mask_of(Port::kRightPixel);
-constexpr PortMask kResult = mask_of(Port::kResult);
-constexpr PortMask kHost = mask_of(Port::kHost);
+constexpr int kBanks = 4;
 
 // Banks without turnaround, and two with.
 std::vector<SsramBankConfig> banks() {
@@ -32,189 +34,85 @@ std::vector<SsramBankConfig> banks() {
       {16}, {16, BankKind::kZbtFlowThrough}, {16, BankKind::kSyncBurst, 2}, {16, BankKind::kSyncBurst, 9}};
 }
 
-ArbiterConfig random_arbiter(SplitMix64& random) {
-  ArbiterConfig config;
-  if (random.chance(50)) config.policy = ArbitrationPolicy::kRoundRobin;
-  for (std::size_t place = 0; place < kPortCount; ++place)
-    std::swap(config.priority[place],
-              config.priority[static_cast<std::size_t>(random.between(static_cast<int>(place), 5))]);
-  return config;
-}
-
-std::string text_of(const BankArbiter& arbiter) {
-  const ArbiterStats stats = arbiter.stats();
-  std::ostringstream text;
-  text << "reads " << stats.reads << ", writes " << stats.writes << ", turnaround " << stats.turnaround_cycles
-       << ", idle " << stats.idle_cycles << ", contended " << stats.contended_cycles << ", uncounted "
-       << arbiter.uncounted_accesses() << "; grants";
-  for (const std::uint64_t grants : stats.grants) text << ' ' << grants;
-  text << "; blame";
-  for (const auto& row : stats.blame) {
-    for (const std::uint64_t cycles : row) text << ' ' << cycles;
-  }
-  return text.str();
-}
-
-std::string text_of(const std::vector<BankArbiter>& arbiters) {
-  std::string text;
-  for (const BankArbiter& arbiter : arbiters) text += text_of(arbiter) + '\n';
-  return text;
-}
-
-// An arbiter for each bank that is asked in every cycle.
-class PlainArbitration {
- public:
-  explicit PlainArbitration(const ArbiterConfig& config) {
-    for (const SsramBankConfig& bank : banks()) arbiters.emplace_back(config, bank.turnaround_cycles);
-  }
-  void route(Port port, std::size_t bank, bool write) { routes[index_of(port)] = {bank, write}; }
-  PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
-    PortMask granted = 0;
-    for (std::size_t bank = 0; bank < arbiters.size(); ++bank) {
-      PortMask asking = 0;
-      PortMask writes = 0;
-      for (std::size_t port = 0; port < kPortCount; ++port) {
-        if ((requests >> port & 1U) == 0 || routes[port].first != bank) continue;
-        asking = static_cast<PortMask>(asking | 1U << port);
-        if (routes[port].second) writes = static_cast<PortMask>(writes | 1U << port);
-      }
-      if (asking != 0) granted = both(granted, memory::arbitrate(arbiters[bank], cycle, asking, writes));
-    }
-    return granted;
-  }
-  std::vector<BankArbiter> arbiters;
-  std::array<std::pair<std::size_t, bool>, kPortCount> routes{};
-};
-
 // Every port gets a route, or most of them.
 struct Routes {
   explicit Routes(SplitMix64& random) {
     for (std::size_t port = 0; port < kPortCount; ++port) {
       if (random.chance(10)) continue;
-      const auto bank = static_cast<std::size_t>(random.between(0, kBanks - 1));
-      routes[port] = {bank, random.chance(40)};
+      bank[port] = static_cast<std::size_t>(random.between(0, kBanks - 1));
       ports = static_cast<PortMask>(ports | 1U << port);
+      if (random.chance(40)) writes = static_cast<PortMask>(writes | 1U << port);
     }
   }
-  template <typename Target>
-  void apply(Target& target) const {
-    for (std::size_t port = 0; port < kPortCount; ++port) {
-      if ((ports >> port & 1U) != 0)
-        target.route(static_cast<Port>(port), routes[port].first, routes[port].second);
+  void apply(Arbitration& arbitration) const {
+    for (Port port = 0; port < kPortCount; ++port) {
+      arbitration.unroute(port);
+      if ((ports & mask_of(port)) != 0) arbitration.route(port, bank[port], (writes & mask_of(port)) != 0);
     }
   }
-  std::array<std::pair<std::size_t, bool>, kPortCount> routes{};
+  // The requests for one bank.
+  PortMask of_bank(std::size_t number, PortMask requests) const {
+    PortMask mask = 0;
+    for (std::size_t port = 0; port < kPortCount; ++port)
+      mask = static_cast<PortMask>(mask | (bank[port] == number ? requests & 1U << port : 0U));
+    return mask;
+  }
+  PortMask random_requests(SplitMix64& random) const {
+    return random.chance(20) ? kNone : static_cast<PortMask>(random.next() & ports);
+  }
+
+  std::array<std::size_t, kPortCount> bank{};
   PortMask ports = 0;
+  PortMask writes = 0;
 };
 
-PortMask random_requests(SplitMix64& random, PortMask ports) {
-  return random.chance(20) ? kNone : static_cast<PortMask>(random.next() & ports);
-}
-
-TEST(Arbitration, GrantsAndCountsAsAnArbiterForEachBankWhoeverMeetsThere) {
+TEST(Arbitration, GrantsAndCountsAsOneArbiterPerBank) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SplitMix64 random(seed);
     const ArbiterConfig config = random_arbiter(random);
     Arbitration arbitration(config, banks());
-    PlainArbitration plain(config);
+    std::vector<PlainArbiter> plain;
+    for (const SsramBankConfig& bank : banks()) plain.emplace_back(config, bank.turnaround_cycles);
     std::uint64_t cycle = 0;
     for (int part = 0; part < 6; ++part) {
-      for (std::size_t port = 0; port < kPortCount; ++port) arbitration.unroute(static_cast<Port>(port));
       const Routes routes(random);
       routes.apply(arbitration);
-      routes.apply(plain);
       const bool counts = part % 2 == 1;
-      if (counts) {
-        arbitration.begin_counting(cycle);
-        for (BankArbiter& arbiter : plain.arbiters) arbiter.begin_counting(cycle);
-      }
+      for (PlainArbiter& arbiter : plain) arbiter.counts = counts;
+      if (counts) arbitration.begin_counting(cycle);
       for (const std::uint64_t end = cycle + 100; cycle < end; ++cycle) {
-        const PortMask requests = random_requests(random, routes.ports);
-        ASSERT_EQ(arbitration.arbitrate(cycle, requests), plain.arbitrate(cycle, requests)) << cycle;
+        const PortMask requests = routes.random_requests(random);
+        PortMask granted = 0;
+        for (std::size_t bank = 0; bank < plain.size(); ++bank)
+          granted |= plain[bank].step(routes.of_bank(bank, requests), routes.writes);
+        ASSERT_EQ(arbitration.arbitrate(cycle, requests), granted) << cycle;
       }
-      if (counts) {
-        arbitration.end_counting(cycle);
-        for (BankArbiter& arbiter : plain.arbiters) arbiter.end_counting(cycle);
-      }
-      ASSERT_EQ(text_of(arbitration.arbiters()), text_of(plain.arbiters)) << part;
+      if (counts) arbitration.end_counting(cycle);
+      ASSERT_EQ(texts_of(arbitration.arbiters()), texts_of(plain)) << part;
     }
   }
 }
 
-// Two in the same routes, counting or not: one skips what the other steps.
-struct TwoAlike {
-  TwoAlike(SplitMix64& random, bool are_counted, std::uint64_t cycle)
-      : config(random_arbiter(random)), routes(random), counts(are_counted) {
-    for (Arbitration* arbitration : {&skips, &steps}) {
-      routes.apply(*arbitration);
-      if (counts) arbitration->begin_counting(cycle);
-    }
-  }
-  // All that both have counted until then is the same.
-  void expect_equal(std::uint64_t end_cycle) {
-    for (Arbitration* arbitration : {&skips, &steps}) {
-      if (counts) arbitration->end_counting(end_cycle);
-    }
-    ASSERT_EQ(text_of(skips.arbiters()), text_of(steps.arbiters()));
-  }
+class SkippedArbitration : public testing::TestWithParam<bool> {};
 
-  ArbiterConfig config;
-  Routes routes;
-  bool counts;
-  Arbitration skips{config, banks()};
-  Arbitration steps{config, banks()};
-};
-
-class ArbitrationPeriods : public testing::TestWithParam<bool> {};
-
-TEST_P(ArbitrationPeriods, RepeatWhatSteppingThemAgainCounts) {
+// Two with the same routes, counting or not: one steps every cycle; the other records the cycles between two
+// states, and skips them wherever it is in the first of these states again.
+TEST_P(SkippedArbitration, EqualsTheSteppedOneInGrantsStatesAndCounts) {
+  int skipped = 0;
   int repeated = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SplitMix64 random(seed);
-    std::uint64_t cycle = 7;
-    TwoAlike two(random, GetParam(), cycle);
-    std::vector<PortMask> period;
-    for (int cycles = random.between(1, 30); cycles > 0; --cycles)
-      period.push_back(random_requests(random, two.routes.ports));
-    const auto step = [&](Arbitration& arbitration, std::uint64_t from) {
-      for (std::size_t i = 0; i < period.size(); ++i) arbitration.arbitrate(from + i, period[i]);
-    };
-    // Until it comes back to where it was.
-    for (int tries = 0; tries < 20; ++tries) {
-      const Arbitration::State before = two.skips.state(cycle);
-      two.skips.begin_recording();
-      step(two.skips, cycle);
-      step(two.steps, cycle);
-      cycle += period.size();
-      if (!(two.skips.state(cycle) == before)) continue;
-      const auto times = static_cast<std::uint64_t>(random.between(1, 5));
-      const Arbitration::Decided decided = two.skips.take_recorded();
-      two.skips.count_skipped(decided, times);
-      two.skips.skip_to(before, cycle + times * period.size(), times * period.size());
-      for (std::uint64_t i = 0; i < times; ++i) step(two.steps, cycle + i * period.size());
-      cycle += times * period.size();
-      ++repeated;
-      ASSERT_EQ(two.skips.state(cycle), two.steps.state(cycle));
-    }
-    for (const std::uint64_t end = cycle + 50; cycle < end; ++cycle) {
-      const PortMask requests = random_requests(random, two.routes.ports);
-      ASSERT_EQ(two.skips.arbitrate(cycle, requests), two.steps.arbitrate(cycle, requests));
-    }
-    ASSERT_NO_FATAL_FAILURE(two.expect_equal(cycle));
-  }
-  EXPECT_GT(repeated, 300);
-}
-
-// What one has recorded between two states another one skips, wherever in time it is in the first of them.
-TEST_P(ArbitrationPeriods, SkipToWhereStepsLead) {
-  int skipped = 0;
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    SplitMix64 random(seed);
+    const ArbiterConfig config = random_arbiter(random);
+    const Routes routes(random);
+    Arbitration skips(config, banks());
+    Arbitration steps(config, banks());
     std::uint64_t cycle = 3;
-    TwoAlike two(random, GetParam(), cycle);
+    for (Arbitration* arbitration : {&skips, &steps}) {
+      routes.apply(*arbitration);
+      if (GetParam()) arbitration->begin_counting(cycle);
+    }
     struct Span {
       Arbitration::State begin;
       std::vector<PortMask> requests;
@@ -223,124 +121,104 @@ TEST_P(ArbitrationPeriods, SkipToWhereStepsLead) {
     };
     std::vector<Span> spans;
     for (int part = 0; part < 60; ++part) {
-      const Arbitration::State now = two.steps.state(cycle);
-      ASSERT_EQ(two.skips.state(cycle), now);
+      const Arbitration::State now = steps.state(cycle);
+      ASSERT_EQ(skips.state(cycle), now);
       const auto known =
-          std::find_if(spans.begin(), spans.end(), [&now](const Span& s) { return s.begin == now; });
+          std::find_if(spans.begin(), spans.end(), [&now](const Span& span) { return span.begin == now; });
       if (known != spans.end()) {
-        const std::uint64_t cycles = known->requests.size();
-        for (std::uint64_t i = 0; i < cycles; ++i) two.steps.arbitrate(cycle + i, known->requests[i]);
-        cycle += cycles;
-        two.skips.count_skipped(known->decided, 1);
-        two.skips.skip_to(known->end, cycle, cycles);
-        skipped += int{!(known->begin == known->end)};
+        const bool recurs = known->begin == known->end;
+        const auto times = static_cast<std::uint64_t>(recurs ? random.between(1, 5) : 1);
+        for (std::uint64_t i = 0; i < times; ++i) {
+          for (const PortMask requests : known->requests) steps.arbitrate(cycle++, requests);
+        }
+        skips.count_skipped(known->decided, times);
+        skips.skip_to(known->end, cycle, times * known->requests.size());
+        ++(recurs ? repeated : skipped);
+        if (recurs) spans.erase(known);
         continue;
       }
       Span span{now, {}, {}, {}};
-      for (int cycles = random.between(1, 12); cycles > 0; --cycles)
-        span.requests.push_back(random_requests(random, two.routes.ports));
-      two.skips.begin_recording();
-      for (const PortMask requests : span.requests) {
-        ASSERT_EQ(two.skips.arbitrate(cycle, requests), two.steps.arbitrate(cycle, requests));
+      skips.begin_recording();
+      for (int cycles = random.between(1, 12); cycles > 0; --cycles) {
+        span.requests.push_back(routes.random_requests(random));
+        ASSERT_EQ(skips.arbitrate(cycle, span.requests.back()), steps.arbitrate(cycle, span.requests.back()));
         ++cycle;
+        if (random.chance(20)) skips.arbiters();  // a query changes nothing
       }
-      span.decided = two.skips.take_recorded();
-      span.end = two.steps.state(cycle);
+      span.decided = skips.take_recorded();
+      span.end = steps.state(cycle);
       spans.push_back(span);
     }
-    ASSERT_NO_FATAL_FAILURE(two.expect_equal(cycle));
+    for (Arbitration* arbitration : {&skips, &steps}) {
+      if (GetParam()) arbitration->end_counting(cycle);
+    }
+    ASSERT_EQ(texts_of(skips.arbiters()), texts_of(steps.arbiters()));
   }
   EXPECT_GT(skipped, 100);
+  EXPECT_GT(repeated, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arbitration, ArbitrationPeriods, testing::Bool(), [](const auto& suite) {
+INSTANTIATE_TEST_SUITE_P(Arbitration, SkippedArbitration, testing::Bool(), [](const auto& suite) {
   return std::string(suite.param ? "Counted" : "NotCounted");
 });
 
-TEST(Arbitration, RepeatsAPeriodInWhichSomebodyAsksForTheArbiters) {
-  Arbitration arbitration(ArbiterConfig{}, banks());
-  arbitration.route(Port::kLeftPixel, 0, false);
-  arbitration.begin_counting(0);
-  for (std::uint64_t cycle = 0; cycle < 3; ++cycle) arbitration.arbitrate(cycle, kLeft);
-  const Arbitration::State state = arbitration.state(3);
-  arbitration.begin_recording();
-  arbitration.arbitrate(3, kLeft);
-  EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 4U);
-  arbitration.arbitrate(4, kLeft);
-  arbitration.arbitrate(5, kNone);
-  arbitration.count_skipped(arbitration.take_recorded(), 5);
-  arbitration.skip_to(state, 21, 15);
-  arbitration.end_counting(21);
-  EXPECT_EQ(arbitration.arbiters()[0].stats().reads, 3U + 6 * 2);
-  EXPECT_EQ(arbitration.arbiters()[0].stats().idle_cycles, 6U);
-}
-
 // Round robin: left_pixel is before right_pixel, unless it was the last that was granted.
-PortMask granted_after_being_alone(std::uint64_t grants, std::uint64_t taken_back) {
-  Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());
-  arbitration.route(Port::kLeftPixel, 0, false);
+PortMask granted_after_being_alone(std::uint64_t grants, std::uint64_t retracted) {
+  Arbitration arbitration(kRoundRobin, banks());
+  arbitration.route(port::kLeftPixel, 0, false);
   for (std::uint64_t cycle = 0; cycle < grants; ++cycle) arbitration.arbitrate(cycle, kLeft);
   EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants);
-  arbitration.retract_grants(Port::kLeftPixel, taken_back);
-  EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants - taken_back);
-  arbitration.route(Port::kRightPixel, 0, false);
-  return arbitration.arbitrate(grants, both(kLeft, kRight));
+  arbitration.retract_grants(port::kLeftPixel, retracted);
+  EXPECT_EQ(arbitration.arbiters()[0].uncounted_accesses(), grants - retracted);
+  arbitration.route(port::kRightPixel, 0, false);
+  return arbitration.arbitrate(grants, kLeft | kRight);
 }
 
-TEST(Arbitration, MovesNoPlaceForGrantsThatAreTakenBackAfterSomebodyAsked) {
+TEST(Arbitration, MovesNoPlaceForGrantsThatAreRetractedAfterAQuery) {
   EXPECT_EQ(granted_after_being_alone(0, 0), kLeft);
   EXPECT_EQ(granted_after_being_alone(5, 5), kLeft);
   EXPECT_EQ(granted_after_being_alone(5, 4), kRight);
   EXPECT_EQ(granted_after_being_alone(1, 0), kRight);
 }
 
-TEST(Arbitration, HasAStateOnlyWherePortsMeetOrTheBankTurnsRound) {
-  Arbitration arbitration({ArbitrationPolicy::kRoundRobin, ArbiterConfig{}.priority}, banks());
+TEST(Arbitration, HasAStateOnlyWherePortsContendOrTheBankHasTurnaround) {
+  Arbitration arbitration(kRoundRobin, banks());
   const Arbitration::State none{};
-  arbitration.route(Port::kLeftPixel, 0, false);
+  arbitration.route(port::kLeftPixel, 0, false);
   arbitration.arbitrate(0, kLeft);
-  EXPECT_EQ(arbitration.state(1), none);  // alone, its place is nobody's business
-  arbitration.route(Port::kRightPixel, 0, false);
+  EXPECT_EQ(arbitration.state(1), none);
+  arbitration.route(port::kRightPixel, 0, false);
   EXPECT_NE(arbitration.state(1), none);
-  arbitration.unroute(Port::kRightPixel);
-  arbitration.unroute(Port::kLeftPixel);
-  arbitration.route(Port::kResult, 2, true);
+  arbitration.unroute(port::kRightPixel);
+  arbitration.unroute(port::kLeftPixel);
+  arbitration.route(port::kResult, 2, true);
   arbitration.arbitrate(1, kResult);
   EXPECT_NE(arbitration.state(2), none);
 }
 
-TEST(Arbitration, HasTheSameStateWheneverItTurnsRoundForAsLong) {
-  Arbitration arbitration(ArbiterConfig{}, banks());
-  arbitration.route(Port::kResult, 2, true);
-  arbitration.arbitrate(10, kResult);
-  const Arbitration::State after_one = arbitration.state(11);
-  EXPECT_NE(after_one, arbitration.state(12));
-  EXPECT_EQ(arbitration.state(13), arbitration.state(14));  // ready
-  arbitration.arbitrate(1000, kResult);
-  EXPECT_EQ(arbitration.state(1001), after_one);
-}
-
-TEST(Arbitration, KnowsWhoElseIsRoutedToABank) {
-  Arbitration arbitration(ArbiterConfig{}, banks());
-  arbitration.route(Port::kHost, 1, false);
-  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 1));
-  EXPECT_TRUE(arbitration.is_used_beside(Port::kResult, 1));
-  arbitration.route(Port::kLeftPixel, 1, false);
-  EXPECT_TRUE(arbitration.is_used_beside(Port::kHost, 1));
-  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 0));
-  arbitration.unroute(Port::kLeftPixel);
-  EXPECT_FALSE(arbitration.is_used_beside(Port::kHost, 1));
+TEST(Arbitration, KnowsWhichOtherPortsAreRoutedToABankAndWhetherItHasTurnaround) {
+  Arbitration arbitration(kFixedPriority, banks());
+  arbitration.route(port::kHost, 1, false);
+  EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 1));
+  EXPECT_TRUE(arbitration.is_used_beside(port::kResult, 1));
+  arbitration.route(port::kLeftPixel, 1, false);
+  EXPECT_TRUE(arbitration.is_used_beside(port::kHost, 1));
+  EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 0));
+  arbitration.unroute(port::kLeftPixel);
+  EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 1));
+  for (std::size_t bank = 0; bank < kBanks; ++bank) EXPECT_EQ(arbitration.needs_turnaround(bank), bank >= 2);
 }
 
 TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {
-  Arbitration arbitration(ArbiterConfig{}, banks());
-  arbitration.route(Port::kLeftPixel, 0, false);
-  arbitration.route(Port::kRightPixel, 0, false);
-  arbitration.unroute(Port::kLeftPixel);
-  EXPECT_EQ(arbitration.arbitrate(0, both(kLeft, kRight)), kRight);
+  Arbitration arbitration(kFixedPriority, banks());
+  arbitration.route(port::kLeftPixel, 0, false);
+  arbitration.route(port::kRightPixel, 0, false);
+  arbitration.unroute(port::kLeftPixel);
+  EXPECT_EQ(arbitration.arbitrate(0, kLeft | kRight), kRight);
 }
 
-// Requests for a bank that no port is routed to, decided now and counted later.
+// Runs of requests for a bank that no port is routed to: a run without turnaround is decided in its first two
+// cycles, and counted later.
 TEST(Arbitration, DecidesAndCountsUnroutedAsRouted) {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     SplitMix64 random(seed);
@@ -350,28 +228,31 @@ TEST(Arbitration, DecidesAndCountsUnroutedAsRouted) {
     Arbitration routed(config, banks());
     unrouted.begin_counting(0);
     routed.begin_counting(0);
-    std::vector<std::pair<std::uint64_t, BankArbiter::Outcome>> decided;
+    struct Run {
+      std::uint64_t cycle;
+      std::uint64_t cycles;
+      BankArbiter::Outcome outcome;
+    };
+    std::vector<Run> runs;
     std::uint64_t cycle = 0;
+    const auto decide = [&](bool write, std::uint64_t cycles) {
+      const auto outcome = unrouted.decide_unrouted(bank, cycle, port::kHost, write);
+      runs.push_back({cycle, cycles, outcome});
+      for (; cycles > 0; --cycles)
+        ASSERT_EQ(unrouted.grants(bank, outcome), routed.arbitrate(cycle++, kHost) == kHost);
+    };
     for (int requests = 0; requests < 100; ++requests) {
-      cycle += static_cast<std::uint64_t>(random.mostly_small(1, 3, 20));
+      cycle += static_cast<std::uint64_t>(random.mostly_small(0, 2, 19));
       const bool write = random.chance(50);
-      routed.route(Port::kHost, bank, write);
-      const auto outcome = unrouted.decide_unrouted(bank, cycle, Port::kHost, write);
-      decided.emplace_back(cycle, outcome);
-      ASSERT_EQ(unrouted.grants(bank, outcome), routed.arbitrate(cycle, kHost) == kHost);
+      routed.route(port::kHost, bank, write);
+      decide(write, 1);
+      if (bank < 2) decide(write, static_cast<std::uint64_t>(random.between(1, 5)));
     }
-    for (const auto& [at, outcome] : decided) unrouted.count_unrouted(bank, at, outcome, 1);
+    for (const Run& run : runs) unrouted.count_unrouted(bank, run.cycle, run.outcome, run.cycles);
     unrouted.end_counting(cycle + 5);
     routed.end_counting(cycle + 5);
-    ASSERT_EQ(text_of(unrouted.arbiters()), text_of(routed.arbiters()));
+    ASSERT_EQ(texts_of(unrouted.arbiters()), texts_of(routed.arbiters()));
   }
-}
-
-TEST(Arbitration, KnowsWhichBanksNeedTurnaround) {
-  const Arbitration arbitration(ArbiterConfig{}, banks());
-  EXPECT_FALSE(arbitration.needs_turnaround(0));
-  EXPECT_FALSE(arbitration.needs_turnaround(1));
-  EXPECT_TRUE(arbitration.needs_turnaround(2));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "models/memory/ssram_bank.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/test_host.h"
+#include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
 
@@ -24,15 +25,15 @@ class CrossbarBench : public testing::Test {
   static constexpr std::size_t kBurst = 2;
   static constexpr std::uint64_t kPeriodPs = 25'000;
 
-  void build(const ArbiterConfig& arbiter = {}, double clock_mhz = 40) {
-    CrossbarConfig config{arbiter,
-                          {{kWords, BankKind::kZbtPipelined, 0, clock_mhz},
-                           {kWords, BankKind::kZbtFlowThrough, 0, clock_mhz},
-                           {kWords, BankKind::kSyncBurst, 2, clock_mhz}}};
+  CrossbarBench() {
+    const CrossbarConfig config{arbiter_of("fixed_priority"),
+                                {{kWords, BankKind::kZbtPipelined},
+                                 {kWords, BankKind::kZbtFlowThrough},
+                                 {kWords, BankKind::kSyncBurst, 2}},
+                                mask_of(port::kHost)};
     crossbar = std::make_unique<Crossbar>("crossbar", config);
-    for (std::size_t port = 0; port < kPortCount; ++port) {
-      binder.bind(hosts[port].socket, crossbar->ports[port], std::string(kPortNames[port]) + "_to_crossbar");
-    }
+    for (std::size_t port = 0; port < kPortCount; ++port)
+      binder.bind(hosts[port].socket, crossbar->ports[port], "port" + std::to_string(port) + "_to_crossbar");
     for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
       const std::string number = std::to_string(bank);
       banks.push_back(std::make_unique<SsramBank>(("ssram" + number).c_str(), config.banks[bank]));
@@ -41,8 +42,8 @@ class CrossbarBench : public testing::Test {
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
 
-  test::TestHost& at(Port port) { return hosts[index_of(port)]; }
-  // Cycle number `cycle`, with these stages asking.
+  test::TestHost& at(Port port) { return hosts[port]; }
+  // One cycle with these requests.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests = 0) {
     return crossbar->arbitrate(cycle, requests);
   }

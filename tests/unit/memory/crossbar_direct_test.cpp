@@ -1,9 +1,10 @@
-// What a stage needs to work on many words at once: direct access, whether they have changed, and grants that
-// are decided elsewhere.
+// Accesses of a stage to many words at once: direct access, changes of watched words, and grants that are
+// decided elsewhere.
 #include <gtest/gtest.h>
 
 #include <array>
-#include <utility>
+#include <tuple>
+#include <vector>
 
 #include "tests/unit/memory/crossbar_bench.h"
 #include "tests/unit/support/scripted_link.h"
@@ -11,8 +12,8 @@
 namespace stereotlm::memory {
 namespace {
 
-constexpr PortMask kHost = mask_of(Port::kHost);
-constexpr PortMask kResult = mask_of(Port::kResult);
+constexpr PortMask kHost = mask_of(port::kHost);
+constexpr PortMask kResult = mask_of(port::kResult);
 
 // Words 4 .. 7 of a bank are watched.
 class CrossbarWatch : public CrossbarBench {
@@ -20,13 +21,10 @@ class CrossbarWatch : public CrossbarBench {
   static constexpr std::uint32_t kFirst = 4;
   static constexpr std::uint32_t kEnd = 8;
 
-  bool has_changed(Port port = Port::kLeftLut) {
-    return crossbar->may_have_changed(port, crossbar_address(kPipelined, kFirst),
-                                      crossbar_address(kPipelined, kEnd));
-  }
-  void build_and_look() {
-    build();
-    ASSERT_TRUE(has_changed());
+  CrossbarWatch() { EXPECT_TRUE(has_changed()); }
+  bool has_changed(Port port = port::kLeftLut, std::uint32_t first = kFirst, std::uint32_t end = kEnd) {
+    return crossbar->may_have_changed(port, crossbar_address(kPipelined, first),
+                                      crossbar_address(kPipelined, end));
   }
   void write(Port port, std::uint32_t word, std::uint64_t cycle, std::size_t bank = kPipelined) {
     crossbar->route(port, bank, true);
@@ -35,134 +33,104 @@ class CrossbarWatch : public CrossbarBench {
   }
 };
 
-TEST_F(CrossbarWatch, SaysYesAtFirstAndNoWhenNothingHappened) {
-  build();
-  EXPECT_TRUE(has_changed());
+TEST_F(CrossbarWatch, ReportsNoChangeAfterTheFirstCallUnlessItIsForOtherWords) {
   EXPECT_FALSE(has_changed());
   EXPECT_FALSE(has_changed());
+  EXPECT_TRUE(has_changed(port::kLeftLut, kFirst - 1, kEnd));
+  EXPECT_TRUE(has_changed(port::kLeftLut, kFirst - 1, kEnd + 1));
+  EXPECT_FALSE(has_changed(port::kLeftLut, kFirst - 1, kEnd + 1));
 }
 
-TEST_F(CrossbarWatch, SaysYesForOtherWords) {
-  build_and_look();
-  const auto look = [this](std::uint32_t first, std::uint32_t end) {
-    return crossbar->may_have_changed(Port::kLeftLut, crossbar_address(kPipelined, first),
-                                      crossbar_address(kPipelined, end));
-  };
-  EXPECT_TRUE(look(kFirst - 1, kEnd));
-  EXPECT_TRUE(look(kFirst - 1, kEnd + 1));
-  EXPECT_FALSE(look(kFirst - 1, kEnd + 1));
-}
-
-TEST_F(CrossbarWatch, SeesAnAccessThatWritesAmongTheWords) {
-  build_and_look();
+TEST_F(CrossbarWatch, ReportsAWriteToOneOfTheWordsOnce) {
   std::uint64_t cycle = 0;
-  for (const Port port : {Port::kHost, Port::kResult}) {
-    for (const auto& [word, is_among] : std::array<std::pair<std::uint32_t, bool>, 4>{
-             {{kFirst - 1, false}, {kFirst, true}, {kEnd - 1, true}, {kEnd, false}}}) {
+  for (const Port port : {port::kHost, port::kResult}) {
+    for (const std::uint32_t word : {kFirst - 1, kFirst, kEnd - 1, kEnd}) {
       write(port, word, cycle++);
-      EXPECT_EQ(has_changed(), is_among) << word;
+      EXPECT_EQ(has_changed(), word >= kFirst && word < kEnd) << word;
       EXPECT_FALSE(has_changed());
     }
   }
 }
 
-TEST_F(CrossbarWatch, RemembersAWriteBehindWhichOthersCame) {
-  build_and_look();
-  write(Port::kHost, kFirst, 0);
-  write(Port::kHost, kEnd, 1);
+TEST_F(CrossbarWatch, RemembersAWriteThatOthersFollow) {
+  write(port::kHost, kFirst, 0);
+  write(port::kHost, kEnd, 1);
   EXPECT_TRUE(has_changed());
 }
 
-TEST_F(CrossbarWatch, DoesNotMindAnotherBankOrARead) {
-  build_and_look();
-  write(Port::kHost, kFirst, 0, kFlowThrough);
-  crossbar->route(Port::kHost, kPipelined, false);
+TEST_F(CrossbarWatch, IgnoresAWriteToAnotherBankAndReads) {
+  write(port::kHost, kFirst, 0, kFlowThrough);
+  crossbar->route(port::kHost, kPipelined, false);
   ASSERT_EQ(arbitrate(1, kHost), kHost);
-  at(Port::kHost).read(crossbar_address(kPipelined, kFirst));
-  at(Port::kHost).debug_read(crossbar_address(kPipelined, 0), kWords);
+  at(port::kHost).read(crossbar_address(kPipelined, kFirst));
+  at(port::kHost).debug_read(crossbar_address(kPipelined, 0), kWords);
   EXPECT_FALSE(has_changed());
 }
 
-TEST_F(CrossbarWatch, SeesAWriteByDebugTransportOfAsManyWordsAsThereAre) {
-  build_and_look();
-  at(Port::kHost).debug_write(crossbar_address(kPipelined, 0), {1, 2, 3, 4});
-  EXPECT_FALSE(has_changed());
-  at(Port::kHost).debug_write(crossbar_address(kPipelined, 0), {1, 2, 3, 4, 5});
-  EXPECT_TRUE(has_changed());
-  at(Port::kHost).debug_write(crossbar_address(kPipelined, kEnd - 1), {1, 2, 3});
-  EXPECT_TRUE(has_changed());
-  at(Port::kHost).debug_write(crossbar_address(kPipelined, kEnd), {1, 2, 3});
-  EXPECT_FALSE(has_changed());
+TEST_F(CrossbarWatch, ReportsAWriteByDebugTransportThatReachesTheWords) {
+  const std::vector<std::uint32_t> words(5);
+  for (const auto& [word, count, expected] : {std::tuple{0U, kFirst, false}, std::tuple{0U, kFirst + 1, true},
+                                              std::tuple{kEnd - 1, 3U, true}, std::tuple{kEnd, 3U, false}}) {
+    at(port::kHost).debug_write(crossbar_address(kPipelined, word), {words.begin(), words.begin() + count});
+    EXPECT_EQ(has_changed(), expected) << word << ' ' << count;
+  }
 }
 
-TEST_F(CrossbarWatch, IsToldOfWordsWrittenDirectly) {
-  build_and_look();
-  crossbar->changes(crossbar_address(kPipelined, 0), std::uint64_t{4} * kFirst);
-  EXPECT_FALSE(has_changed());
-  crossbar->changes(crossbar_address(kPipelined, 0), std::uint64_t{4} * kFirst + 1);
-  EXPECT_TRUE(has_changed());
-  crossbar->changes(crossbar_address(kPipelined, kEnd), 4);
-  EXPECT_FALSE(has_changed());
+TEST_F(CrossbarWatch, ReportsDirectWritesThatReachTheWords) {
+  const std::uint64_t first = crossbar_address(kPipelined, kFirst);
+  for (const auto& [address, bytes, expected] :
+       {std::tuple{first - 8, 8U, false}, std::tuple{first - 8, 9U, true},
+        std::tuple{first + 16, 4U, false}}) {
+    crossbar->changes(address, bytes);
+    EXPECT_EQ(has_changed(), expected) << address << ' ' << bytes;
+  }
 }
 
-TEST_F(CrossbarWatch, AlwaysSaysYesOnceTheHostCanWriteDirectly) {
-  build_and_look();
+TEST_F(CrossbarWatch, AlwaysReportsAChangeOnceASilentPortHasDirectAccessToTheBank) {
   tlm::tlm_dmi dmi;
-  ASSERT_TRUE(at(Port::kHost).dmi(crossbar_address(kFlowThrough, 0), dmi));
+  ASSERT_TRUE(at(port::kHost).dmi(crossbar_address(kFlowThrough, 0), dmi));
+  ASSERT_TRUE(at(port::kResult).dmi(crossbar_address(kPipelined, 0), dmi));  // reports what it writes
   EXPECT_FALSE(has_changed());
-  ASSERT_TRUE(at(Port::kHost).dmi(crossbar_address(kPipelined, kWords - 1), dmi));
+  ASSERT_TRUE(at(port::kHost).dmi(crossbar_address(kPipelined, kWords - 1), dmi));
   EXPECT_TRUE(has_changed());
   EXPECT_TRUE(has_changed());
 }
 
-TEST_F(CrossbarWatch, TrustsTheStagesThatWorkDirectly) {
-  build_and_look();
-  tlm::tlm_dmi dmi;
-  ASSERT_TRUE(at(Port::kResult).dmi(crossbar_address(kPipelined, 0), dmi));
-  EXPECT_FALSE(has_changed());
-}
-
-TEST_F(CrossbarWatch, IsEachPortsOwn) {
-  build_and_look();
-  EXPECT_TRUE(has_changed(Port::kRightLut));
-  write(Port::kHost, kFirst, 0);
-  EXPECT_TRUE(has_changed(Port::kLeftLut));
-  EXPECT_TRUE(has_changed(Port::kRightLut));
-  EXPECT_FALSE(has_changed(Port::kLeftLut));
+TEST_F(CrossbarWatch, ReportsEachChangeToEachPort) {
+  EXPECT_TRUE(has_changed(port::kRightLut));
+  write(port::kHost, kFirst, 0);
+  EXPECT_TRUE(has_changed(port::kLeftLut));
+  EXPECT_TRUE(has_changed(port::kRightLut));
+  EXPECT_FALSE(has_changed(port::kLeftLut));
 }
 
 class CrossbarDirect : public CrossbarBench {};
 
-TEST_F(CrossbarDirect, ReachesTheWordsOfTheBank) {
-  build();
-  unsigned char* const words = crossbar->direct(crossbar_address(kFlowThrough, 3), 8);
-  ASSERT_NE(words, nullptr);
-  EXPECT_EQ(words, reinterpret_cast<const unsigned char*>(banks[kFlowThrough]->words() + 3));
-  EXPECT_EQ(crossbar->direct(crossbar_address(kFlowThrough, 4), 4), words + 4);
+TEST_F(CrossbarDirect, ReachesTheWordsOfABankAndNoneBeyondItsEnd) {
+  const auto* const stored = reinterpret_cast<const unsigned char*>(banks[kFlowThrough]->words());
+  const auto direct = [this](std::uint32_t word, std::uint64_t bytes) {
+    return crossbar->direct(crossbar_address(kFlowThrough, word), bytes);
+  };
+  EXPECT_EQ(direct(3, 8), stored + 12);
+  EXPECT_EQ(direct(4, 4), stored + 16);
+  EXPECT_EQ(direct(kWords - 1, 4), stored + std::size_t{4} * (kWords - 1));
+  EXPECT_EQ(direct(kWords, 4), nullptr);
+  EXPECT_EQ(direct(0, std::uint64_t{4} * kWords), stored);
+  EXPECT_EQ(direct(0, std::uint64_t{4} * kWords + 1), nullptr);
   EXPECT_EQ(accesses(kFlowThrough), 0U);
 }
 
-TEST_F(CrossbarDirect, ReachesAllWordsOfABankAndNoneBehindItsEnd) {
-  build();
-  EXPECT_NE(crossbar->direct(crossbar_address(kPipelined, 0), std::uint64_t{4} * kWords), nullptr);
-  EXPECT_EQ(crossbar->direct(crossbar_address(kPipelined, 0), std::uint64_t{4} * kWords + 1), nullptr);
-  EXPECT_EQ(crossbar->direct(crossbar_address(kPipelined, kWords), 4), nullptr);
-  EXPECT_NE(crossbar->direct(crossbar_address(kPipelined, kWords - 1), 4), nullptr);
-}
-
-TEST_F(CrossbarDirect, CountsWhatItIsToldByBankAndByRoute) {
-  build();
-  crossbar->route(Port::kLeftPixel, kBurst, false);
-  crossbar->count_direct(Port::kLeftPixel, 7);
+TEST_F(CrossbarDirect, CountsWhatIsReportedOfEachBank) {
   crossbar->count_direct(kFlowThrough, 3);
   crossbar->count_direct(kBurst, 1);
+  crossbar->count_direct(kBurst, 7);
   EXPECT_EQ(crossbar->direct_accesses(kPipelined), 0U);
   EXPECT_EQ(crossbar->direct_accesses(kFlowThrough), 3U);
   EXPECT_EQ(crossbar->direct_accesses(kBurst), 8U);
 }
 
-// A bank that grants direct access to its words 0 and 1, or not at all, and takes it back; to words 2 and 3
-// apart from them.
+// A bank that grants direct access to its words 0 and 1, or not at all, and revokes it; words 2 and 3 are
+// granted separately.
 class CrossbarRevoked : public testing::Test {
  protected:
   CrossbarRevoked() {
@@ -186,7 +154,7 @@ class CrossbarRevoked : public testing::Test {
   unsigned char* memory_behind = nullptr;
   bool reads_only = false;
   int asked = 0;
-  Crossbar crossbar{"crossbar", {ArbiterConfig{}, {{16}}}};
+  Crossbar crossbar{"crossbar", {arbiter_of("fixed_priority"), {{16}}}};
   test::ScriptedTarget target{"target"};
   test::MonitoringBinder binder;
 };
@@ -197,7 +165,7 @@ TEST_F(CrossbarRevoked, AsksTheBankOnce) {
   EXPECT_EQ(asked, 1);
 }
 
-TEST_F(CrossbarRevoked, AsksAgainForWordsThatAreGrantedApart) {
+TEST_F(CrossbarRevoked, AsksAgainForWordsThatAreGrantedSeparately) {
   memory_behind = second.data();
   EXPECT_EQ(crossbar.direct(0, 8), first.data());
   EXPECT_EQ(crossbar.direct(12, 4), second.data() + 4);
@@ -207,7 +175,7 @@ TEST_F(CrossbarRevoked, AsksAgainForWordsThatAreGrantedApart) {
   EXPECT_EQ(crossbar.direct(4, 8), nullptr);
 }
 
-TEST_F(CrossbarRevoked, AsksAgainWhenTheBankHasTakenItBack) {
+TEST_F(CrossbarRevoked, AsksAgainAfterTheBankHasRevokedTheAccess) {
   ASSERT_EQ(crossbar.direct(0, 8), first.data());
   memory = second.data();
   target.socket->invalidate_direct_mem_ptr(0, 7);
@@ -232,39 +200,30 @@ TEST_F(CrossbarRevoked, IsNullForWordsThatCanOnlyBeRead) {
 
 class CrossbarAim : public CrossbarBench {};
 
-TEST_F(CrossbarAim, LeadsTheAccessOfAPortThatIsGrantedElsewhere) {
-  build();
-  crossbar->aim(Port::kHost, kFlowThrough, true);
+TEST_F(CrossbarAim, LeadsAnAccessOnlyIfThePortIsGranted) {
+  crossbar->aim(port::kHost, kFlowThrough, true);
+  const auto write = [this] { return at(port::kHost).write(crossbar_address(kFlowThrough, 2), 9).status; };
+  EXPECT_EQ(write(), tlm::TLM_GENERIC_ERROR_RESPONSE);
   crossbar->grant(kHost);
-  EXPECT_EQ(at(Port::kHost).write(crossbar_address(kFlowThrough, 2), 9).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(write(), tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(write(), tlm::TLM_GENERIC_ERROR_RESPONSE);
+  EXPECT_EQ(accesses(kFlowThrough), 1U);
   EXPECT_EQ(banks[kFlowThrough]->words()[2], 9U);
-  EXPECT_EQ(at(Port::kHost).write(crossbar_address(kFlowThrough, 2), 9).status,
-            tlm::TLM_GENERIC_ERROR_RESPONSE);
-}
-
-TEST_F(CrossbarAim, GrantsNothingByItself) {
-  build();
-  crossbar->aim(Port::kHost, kFlowThrough, true);
-  EXPECT_EQ(at(Port::kHost).write(crossbar_address(kFlowThrough, 2), 9).status,
-            tlm::TLM_GENERIC_ERROR_RESPONSE);
-  EXPECT_EQ(accesses(kFlowThrough), 0U);
 }
 
 TEST_F(CrossbarAim, TakesNoPartInTheArbitration) {
-  build();
-  crossbar->route(Port::kResult, kFlowThrough, true);
-  crossbar->aim(Port::kHost, kFlowThrough, true);
-  EXPECT_FALSE(crossbar->arbitration().is_used_beside(Port::kResult, kFlowThrough));
-  EXPECT_EQ(arbitrate(0, static_cast<PortMask>(kHost | kResult)), kResult);
+  crossbar->route(port::kResult, kFlowThrough, true);
+  crossbar->aim(port::kHost, kFlowThrough, true);
+  EXPECT_FALSE(crossbar->arbitration().is_used_beside(port::kResult, kFlowThrough));
+  EXPECT_EQ(arbitrate(0, kHost | kResult), kResult);
 }
 
-TEST_F(CrossbarAim, ChangesTheWayOfARoutedPortOnly) {
-  build();
-  crossbar->route(Port::kHost, kPipelined, false);
-  crossbar->aim(Port::kHost, kFlowThrough, false);
-  EXPECT_EQ(crossbar->bank_of(Port::kHost), kPipelined);
+TEST_F(CrossbarAim, RedirectsTheAccessesOfARoutedPortButNotItsRequests) {
+  crossbar->route(port::kHost, kPipelined, false);
+  crossbar->aim(port::kHost, kFlowThrough, false);
+  EXPECT_EQ(crossbar->bank_of(port::kHost), kPipelined);
   ASSERT_EQ(arbitrate(0, kHost), kHost);
-  EXPECT_EQ(at(Port::kHost).read(crossbar_address(kFlowThrough, 0)).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(at(port::kHost).read(crossbar_address(kFlowThrough, 0)).status, tlm::TLM_OK_RESPONSE);
 }
 
 }  // namespace

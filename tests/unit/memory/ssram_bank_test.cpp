@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -13,6 +15,11 @@
 #include "tests/support/test_host.h"
 
 namespace stereotlm::memory {
+
+void PrintTo(const SsramBankConfig& bank, std::ostream* out) {
+  *out << traits_of(bank.kind).name << "_at_" << std::lround(bank.clock_mhz) << "_MHz";
+}
+
 namespace {
 
 using sc_core::sc_time;
@@ -36,17 +43,22 @@ class SsramBankTest : public testing::Test {
   }
   void build() { build({kWords}); }
 
-  // Sends the payload, which must be refused so, without effect and without cost.
-  void expect_refused(tlm::tlm_response_status status) {
-    const auto errors = bank->stats().errors;
+  // Sends the payload, and returns the time that the bank adds.
+  sc_time transport() {
+    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+    payload.set_dmi_allowed(false);
     sc_time delay(7, sc_core::SC_NS);
     host.socket->b_transport(payload, delay);
+    return delay - sc_time(7, sc_core::SC_NS);
+  }
+  // Sends the payload, which must be refused with this status, without effect and without cost.
+  void expect_refused(tlm::tlm_response_status status) {
+    const auto errors = bank->stats().errors;
+    EXPECT_EQ(transport(), sc_core::SC_ZERO_TIME);
     EXPECT_EQ(payload.get_response_status(), status);
-    EXPECT_EQ(delay, sc_time(7, sc_core::SC_NS));
     EXPECT_EQ(bank->stats().errors, errors + 1);
     EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
     EXPECT_EQ(host.debug_read(0, kWords), std::vector<std::uint32_t>(kWords));
-    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   }
   void expect_violations(std::size_t count) { EXPECT_EQ(binder->take_violations().size(), count); }
 
@@ -58,21 +70,13 @@ class SsramBankTest : public testing::Test {
   std::array<unsigned char, 4> enables{};
 };
 
-class SsramBankKinds : public SsramBankTest, public testing::WithParamInterface<const char*> {
- protected:
-  static SsramBankConfig config() {
-    const std::string name = GetParam();
-    if (name == "sync_burst") return {kWords, BankKind::kSyncBurst, 2};
-    if (name == "zbt_flow_through") return {kWords, BankKind::kZbtFlowThrough, 0, 1000};
-    return {kWords, BankKind::kZbtPipelined, 0, name == "zbt_pipelined at 33.333 MHz" ? 33.333 : 40};
-  }
-};
+class SsramBankTimes : public SsramBankTest, public testing::WithParamInterface<SsramBankConfig> {};
 
-TEST_P(SsramBankKinds, AddsItsReadLatencyToAReadAndNothingToAWrite) {
-  build(config());
+TEST_P(SsramBankTimes, AddsItsReadLatencyToAReadAndNothingToAWrite) {
+  build(GetParam());
   const sc_time before(3, sc_core::SC_NS);
-  const auto latency = static_cast<std::uint64_t>(read_latency_cycles(config().kind));
-  const sc_time read_time = Clock::to_time(Clock(config().clock_mhz).edge_ps(latency));
+  const auto latency = static_cast<std::uint64_t>(read_latency_cycles(GetParam().kind));
+  const sc_time read_time = Clock::to_time(Clock(GetParam().clock_mhz).edge_ps(latency));
   EXPECT_EQ(host.write(8, 0xDEAD'BEEF, before).at, before);
   const TestHost::Answer answer = host.read(8, before);
   EXPECT_EQ(answer.at, before + read_time);
@@ -83,17 +87,16 @@ TEST_P(SsramBankKinds, AddsItsReadLatencyToAReadAndNothingToAWrite) {
   EXPECT_EQ(bank->stats().errors, 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(SsramBank, SsramBankKinds,
-                         testing::Values("zbt_pipelined", "zbt_pipelined at 33.333 MHz", "zbt_flow_through",
-                                         "sync_burst"));
+INSTANTIATE_TEST_SUITE_P(SsramBank, SsramBankTimes,
+                         testing::Values(SsramBankConfig{kWords, BankKind::kZbtPipelined, 0, 40},
+                                         SsramBankConfig{kWords, BankKind::kZbtPipelined, 0, 33.333},
+                                         SsramBankConfig{kWords, BankKind::kZbtFlowThrough, 0, 1000},
+                                         SsramBankConfig{kWords, BankKind::kSyncBurst, 2, 40}),
+                         [](const auto& suite) { return testing::PrintToString(suite.param); });
 
-TEST_F(SsramBankTest, HoldsZerosAtFirst) {
+TEST_F(SsramBankTest, HoldsZerosAtFirstAndThenEachWordByItself) {
   build();
   EXPECT_EQ(host.debug_read(0, kWords), std::vector<std::uint32_t>(kWords));
-}
-
-TEST_F(SsramBankTest, KeepsEachWordByItself) {
-  build();
   for (std::uint32_t word = 0; word < kWords; ++word) host.write(word * 4, 0x1111'0000 + word);
   for (std::uint32_t word = 0; word < kWords; ++word) {
     EXPECT_EQ(host.read(word * 4).word, 0x1111'0000 + word);
@@ -101,7 +104,7 @@ TEST_F(SsramBankTest, KeepsEachWordByItself) {
   }
 }
 
-TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheAddressBehindIt) {
+TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheNextAddress) {
   build();
   EXPECT_EQ(host.write((kWords - 1) * 4, 0).status, tlm::TLM_OK_RESPONSE);
   EXPECT_EQ(host.write(kWords * 4, 1).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
@@ -110,7 +113,7 @@ TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheAddressBehindIt) {
   EXPECT_EQ(bank->stats().errors, 3U);
 }
 
-TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedToWords) {
+TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthOtherThanFour) {
   build();
   payload.set_command(tlm::TLM_WRITE_COMMAND);
   data.fill(0xFF);
@@ -119,15 +122,10 @@ TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedToWords) {
     expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
     expect_violations(1);
   }
-}
-
-TEST_F(SsramBankTest, RefusesAnyLengthButFour) {
-  build();
-  payload.set_command(tlm::TLM_WRITE_COMMAND);
-  data.fill(0xFF);
+  payload.set_address(4);
+  payload.set_streaming_width(8);
   for (const unsigned length : {1U, 3U, 5U, 8U}) {
     payload.set_data_length(length);
-    payload.set_streaming_width(8);
     expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
     expect_violations(length == 8 ? 0 : 1);
   }
@@ -141,26 +139,22 @@ TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
   payload.set_streaming_width(3);
   expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
   payload.set_streaming_width(4);
-  sc_time delay;
-  host.socket->b_transport(payload, delay);
+  transport();
   EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
 }
 
-TEST_F(SsramBankTest, RefusesByteEnablesOfLengthZero) {
+TEST_F(SsramBankTest, RefusesByteEnablesOfLengthZeroAndACommandThatNeitherReadsNorWrites) {
   build();
   payload.set_byte_enable_ptr(enables.data());
   payload.set_byte_enable_length(0);
   expect_refused(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
   expect_violations(1);
-}
-
-TEST_F(SsramBankTest, RefusesACommandThatNeitherReadsNorWrites) {
-  build();
+  payload.set_byte_enable_ptr(nullptr);
   payload.set_command(tlm::TLM_IGNORE_COMMAND);
   expect_refused(tlm::TLM_COMMAND_ERROR_RESPONSE);
 }
 
-TEST_F(SsramBankTest, WritesOnlyTheBytesThatAreEnabled) {
+TEST_F(SsramBankTest, MovesOnlyTheBytesThatAreEnabledAndRepeatsShortByteEnables) {
   build();
   host.write(4, 0x4433'2211);
   enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED, TLM_BYTE_DISABLED, TLM_BYTE_ENABLED};
@@ -168,35 +162,22 @@ TEST_F(SsramBankTest, WritesOnlyTheBytesThatAreEnabled) {
   payload.set_command(tlm::TLM_WRITE_COMMAND);
   payload.set_byte_enable_ptr(enables.data());
   payload.set_byte_enable_length(4);
-  sc_time delay;
-  host.socket->b_transport(payload, delay);
+  transport();
   EXPECT_EQ(host.read(4).word, 0xA333'A111U);
-}
-
-TEST_F(SsramBankTest, RepeatsByteEnablesThatAreShorterThanTheWord) {
-  build();
-  host.write(4, 0x4433'2211);
-  enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED};
-  data = {0xA0, 0xA1, 0xA2, 0xA3};
-  payload.set_byte_enable_ptr(enables.data());
+  payload.set_command(tlm::TLM_READ_COMMAND);
   payload.set_byte_enable_length(2);
-  sc_time delay;
-  host.socket->b_transport(payload, delay);
-  EXPECT_EQ(data, (std::array<unsigned char, 8>{0xA0, 0x22, 0xA2, 0x44}));
+  data = {0xB0, 0xB1, 0xB2, 0xB3};
+  transport();
+  EXPECT_EQ(data, (std::array<unsigned char, 8>{0xB0, 0xA1, 0xB2, 0xA3}));
 }
 
-TEST_F(SsramBankTest, HandsDebugTransportAnyLengthUpToItsEnd) {
+TEST_F(SsramBankTest, GivesDebugTransportAnyLengthUpToItsEnd) {
   build();
   EXPECT_EQ(host.debug_write((kWords - 2) * 4, {1, 2}), 8U);
   EXPECT_EQ(host.debug_write((kWords - 1) * 4, {3, 4}), 4U);
   EXPECT_EQ(host.debug_write(kWords * 4, {5}), 0U);
   EXPECT_EQ(host.debug_read((kWords - 2) * 4, 5), (std::vector<std::uint32_t>{1, 3}));
   EXPECT_EQ(host.debug_read(kWords * 4, 1), (std::vector<std::uint32_t>{}));
-  EXPECT_EQ(bank->stats().reads + bank->stats().writes + bank->stats().errors, 0U);
-}
-
-TEST_F(SsramBankTest, HandsDebugTransportSingleBytes) {
-  build();
   host.debug_write(4, {0x4433'2211});
   payload.set_address(6);
   payload.set_data_length(3);
@@ -204,10 +185,13 @@ TEST_F(SsramBankTest, HandsDebugTransportSingleBytes) {
   EXPECT_EQ(data, (std::array<unsigned char, 8>{0x33, 0x44, 0x00}));
   payload.set_command(tlm::TLM_IGNORE_COMMAND);
   EXPECT_EQ(host.socket->transport_dbg(payload), 0U);
+  EXPECT_EQ(bank->stats().reads + bank->stats().writes + bank->stats().errors, 0U);
 }
 
-TEST_F(SsramBankTest, GrantsDirectAccessToTheWholeBank) {
+TEST_F(SsramBankTest, OffersAndGrantsDirectAccessToTheWholeBankAndNotBeyond) {
   build();
+  transport();
+  EXPECT_TRUE(payload.is_dmi_allowed());
   tlm::tlm_dmi dmi;
   ASSERT_TRUE(host.dmi((kWords - 1) * 4, dmi));
   EXPECT_EQ(dmi.get_start_address(), 0U);
@@ -217,20 +201,8 @@ TEST_F(SsramBankTest, GrantsDirectAccessToTheWholeBank) {
   EXPECT_EQ(dmi.get_write_latency(), sc_core::SC_ZERO_TIME);
   reinterpret_cast<std::uint32_t*>(dmi.get_dmi_ptr())[3] = 42;
   EXPECT_EQ(host.read(12).word, 42U);
-}
-
-TEST_F(SsramBankTest, GrantsNoDirectAccessBehindItsEnd) {
-  build();
   // The monitor asks for the refused range too: it must contain the address.
-  tlm::tlm_dmi dmi;
   EXPECT_FALSE(host.dmi(kWords * 4, dmi));
-}
-
-TEST_F(SsramBankTest, HintsAtDirectAccess) {
-  build();
-  sc_time delay;
-  host.socket->b_transport(payload, delay);
-  EXPECT_TRUE(payload.is_dmi_allowed());
 }
 
 TEST_F(SsramBankTest, CompletesANonBlockingAccessAtOnce) {
@@ -249,7 +221,7 @@ TEST(SsramBank, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(SsramBank("bank", SsramBankConfig{0}), std::invalid_argument);
 }
 
-TEST_F(SsramBankTest, ServesAWordAccessAgainAndAgain) {
+TEST_F(SsramBankTest, ServesAWordAccessRepeatedly) {
   build();
   WordAccess access(host.socket);
   sc_time delay;

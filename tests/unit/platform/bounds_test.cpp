@@ -264,6 +264,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"five_places", [](auto& b) { b.fpga.lane_fifo_slots = 5; }}),
     name_of);
 
+void set_policy(BoardConfig& board, const char* policy) {
+  board.fpga.arbiter.policy = policy;
+  board.allocation.left_lut = board.allocation.right_lut = "bank0";
+  board.allocation.right_image = {"bank0", "bank1"};
+}
+
 class ContendedBoards : public BoundedRun {};
 
 TEST_P(ContendedBoards, TakeLongerThanTheirBound) {
@@ -288,12 +294,8 @@ INSTANTIATE_TEST_SUITE_P(
              [](auto& b) {
                b.allocation.disparity = {"bank0", "bank0"};
              }},
-        Case{"round_robin",
-             [](auto& b) {
-               b.fpga.arbiter.policy = memory::ArbitrationPolicy::kRoundRobin;
-               b.allocation.left_lut = b.allocation.right_lut = "bank0";
-               b.allocation.right_image = {"bank0", "bank1"};
-             }},
+        Case{"round_robin", [](auto& b) { set_policy(b, "round_robin"); }},
+        Case{"age", [](auto& b) { set_policy(b, "age"); }},
         Case{"one_bank",
              [](auto& b) {
                b.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};

@@ -150,14 +150,14 @@ TEST_F(CollectStatistics, ReportsTheIdentitiesThatDoNotHoldInTheMiddleOfAFrame) 
   const Statistics statistics = run->collect();
   ASSERT_EQ(statistics.frames, 1U);
   const auto& control = run->system.board.core.control();
-  const uint64_t states = control.port_cycles(memory::Port::kLeftLut).sum();
+  const uint64_t states = control.port_cycles(fpga::lut_port(fpga::Side::kLeft)).sum();
   ASSERT_GT(states, frame - kPipeline);
   EXPECT_THAT(statistics.failed,
               Contains(fmt::format("port left_lut: sum of its states = {}, but cycles = {}", states,
                                    frame - kPipeline)));
   EXPECT_THAT(statistics.failed,
               Contains(fmt::format("left lane: slots consumed = {}, but slots of the sequence = 288",
-                                   control.left().consumed())));
+                                   control.lane(fpga::Side::kLeft).consumed())));
   EXPECT_THAT(statistics.failed, Contains(StartsWith("bank bank1: busy + turnaround + idle cycles = ")));
   // At the end all of them hold.
   EXPECT_THAT(run->finish().failed, IsEmpty());
@@ -174,12 +174,12 @@ TEST_F(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
     EXPECT_THAT(collect_statistics(board, run->tables, run->system.board, counters).failed,
                 ElementsAre(line));
   };
-  for (std::size_t port = 0; port < memory::kPortCount; ++port) {
-    const std::string name = fmt::format("port {}: ", memory::kPortNames[port]);
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    const std::string name = fmt::format("port {}: ", fpga::kPorts[port].name);
     const uint64_t grants = valid.ports[port].grants;
     expect_failed(
         fmt::format("{}sum of its states = {}, but cycles = {}", name, cycles + 1, cycles),
-        [port](BoardCounters& counters) { counters.ports[port].count(fpga::Intent::kStarved, false); });
+        [port](BoardCounters& counters) { counters.ports[port].add(fpga::Intent::kStarved, false); });
     for (std::size_t by = 0; by <= memory::ArbiterStats::kTurnaround; ++by) {
       expect_failed(name + "stall_cycles = 0, but blamed by the arbiters = 1",
                     [port, by](BoardCounters& counters) { ++counters.banks[1].arbiter.blame[port][by]; });

@@ -31,6 +31,8 @@ TEST(CoreRun, GivesTheWorkedValues) {
   EXPECT_THAT(first_frame({"matcher.filter=none"}), ElementsAre(2150995));
   EXPECT_THAT(first_frame({"matcher.fetch=line_buffer"}), ElementsAre(311146));
   EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.left_lut=bank0"}), ElementsAre(4288597));
+  EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.left_lut=bank0", "fpga.arbitration=age"}),
+              ElementsAre(4287317));
   EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.disparity=[bank0, bank0]",
                            "ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}"}),
               ElementsAre(2534153));

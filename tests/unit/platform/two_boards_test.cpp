@@ -27,8 +27,8 @@ TEST(TwoBoards, TakeTheSameCyclesSideBySideAsAlone) {
   // Nothing contends, so each frame takes what the matcher needs.
   const std::vector<std::uint64_t> first_frames(3, frame_bounds(first, first_tables, 0).back().cycles);
   const std::vector<std::uint64_t> second_frames(2, frame_bounds(second, second_tables, 0).back().cycles);
-  EXPECT_EQ(one.board.core.frame_cycles(), first_frames);
-  EXPECT_EQ(two.board.core.frame_cycles(), second_frames);
+  EXPECT_EQ(one.board.core.frames().frame_cycles(), first_frames);
+  EXPECT_EQ(two.board.core.frames().frame_cycles(), second_frames);
   EXPECT_TRUE(collect_statistics(first, first_tables, one.board).failed.empty());
   EXPECT_TRUE(collect_statistics(second, second_tables, two.board).failed.empty());
 }

@@ -261,6 +261,33 @@ TEST(PlainCycleLoop, DoesNotMoveTheRoundRobinPlaceWhileTheBankTurnsRound) {
   EXPECT_EQ(result.banks[0].contended, 3U);
 }
 
+// Cycles in which the host's word is granted. The host asks in every cycle but `pause`, and is last in the list.
+std::string host_grants_by_age(const PlainBank& bank, int cycles, int pause = -1) {
+  PlainCycleInput input = tiny_board_of_one_bank();  // without host, each lane asks in cycles 1, 4, 7 and 10
+  input.arbitration = PlainArbitration::kAge;
+  std::rotate(input.priority.begin(), input.priority.begin() + 1, input.priority.end());
+  input.banks[0] = bank;
+  PlainCore core(input);
+  core.start_frame(0);
+  std::string grants;
+  for (int cycle = 0; cycle < cycles; ++cycle) {
+    const bool asks = cycle != pause;
+    const bool granted = core.step(cycle, asks ? std::optional(PlainHostRequest{0, true}) : std::nullopt);
+    grants += !asks ? '-' : granted ? '1' : '0';
+  }
+  return grants;
+}
+
+TEST(PlainCycleLoop, GrantsTheOldestRequestByAgeAndEqualAgesByTheList) {
+  EXPECT_EQ(host_grants_by_age({}, 13), "1001010101010");
+}
+
+TEST(PlainCycleLoop, EndsAnAgeInACycleWithoutRequest) { EXPECT_EQ(host_grants_by_age({}, 6, 3), "100-01"); }
+
+TEST(PlainCycleLoop, LetsAllRequestsGrowOlderWhileTheBankTurnsRound) {
+  EXPECT_EQ(host_grants_by_age({PlainBankKind::kSyncBurst, 1}, 11), "10000100001");
+}
+
 TEST(PlainCycleLoop, ReportsAHangAtTheLimitAndNotBefore) {
   const PlainCycleInput input = tiny_board();
   const PlainCycleResult in_time = run_plain_cycle_loop(input, 2, 18);

@@ -69,7 +69,7 @@ std::string number_of(Enumerator value) {
 
 // Every kind of board that a comparison must not miss is drawn at least once in a hundred.
 TEST(RandomBoard, CoversEveryKindOfBoard) {
-  std::map<std::string, int> seen;
+  std::map<std::string, int> seen = {{"fixed_priority", 0}, {"round_robin", 0}, {"age", 0}};
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const RandomBoard board = make_random_board(seed);
     const int half = board.filter ? (board.filter->size - 1) / 2 : 0;

@@ -30,7 +30,7 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   board.capture.fifo_trigger_words = 141;
   board.pci.clock_mhz = std::numeric_limits<double>::infinity();
   board.fpga.device = "xc2v8000";
-  board.fpga.arbiter.priority[0] = memory::Port::kResult;
+  board.fpga.arbiter.priority[0] = fpga::kResultPort;
   board.banks[1].name = "bank0";
   board.banks[2].name = "none";
   board.banks[3].words = 0;
@@ -45,8 +45,7 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
       "number, a truth value or null";
   const std::string priority_problem =
       "fpga.priority = [result, result, left_pixel, right_pixel, left_lut, right_lut]: a list that names "
-      "each of "
-      "the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, host";
+      "each port once: left_lut, right_lut, left_pixel, right_pixel, result, host";
   EXPECT_EQ(
       problems(board),
       (Problems{name_problem, "image.width = 642: 4..2048, a multiple of 4",
@@ -91,13 +90,15 @@ TEST(BoardConfig, DiffersInEachFieldOfALoad) {
   EXPECT_NE(board, with_load({1, 2, 3, 5}));
 }
 
-TEST(BoardConfig, RefusesEnumeratorsThatDoNotExist) {
+TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
             Problems{"cameras.trigger = 2: free_running or on_demand"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(3); }),
             Problems{"ssram.banks.bank0.kind = 3: zbt_pipelined, zbt_flow_through or sync_burst"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
+            Problems{"fpga.arbitration = lottery: fixed_priority, round_robin or age"});
   EXPECT_EQ(
-      problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = static_cast<memory::Port>(6); }).size(),
+      problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = 6; }).size(),
       1U);
 }
 

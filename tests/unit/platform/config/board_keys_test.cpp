@@ -146,13 +146,13 @@ std::vector<KeyCase> key_cases() {
        "xc2v6000"},
       decimal_case("fpga.clock_mhz", "1", "0.999", "1000.001"),
       {"fpga.arbitration",
-       {"fixed_priority", "round_robin"},
+       {"fixed_priority", "round_robin", "age"},
        {"lottery", "null", "[round_robin]"},
-       "fixed_priority or round_robin"},
+       "fixed_priority, round_robin or age"},
       {"fpga.priority",
        {"[right_lut, left_lut, right_pixel, left_pixel, result, host]"},
        {"host", "{}", "null", "5"},
-       "a list that names each of the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, "
+       "a list that names each port once: left_lut, right_lut, left_pixel, right_pixel, result, "
        "host"},
       integer_case("fpga.lane_fifo_slots", 1, 64),
       integer_case("fpga.result_fifo_words", 1, 64),

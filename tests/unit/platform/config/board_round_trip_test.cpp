@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "models/memory/arbitration_policies.h"
 #include "platform/config/board_yaml.h"
 #include "tests/unit/platform/config/board_files.h"
 
@@ -35,8 +36,10 @@ std::vector<BankConfig> any_banks() {
     BankConfig bank;
     bank.name = names[static_cast<std::size_t>(first + i) % names.size()];
     bank.words = *rc::gen::element(18000000, 18000001, 1 << 26);  // any allocation fits
-    bank.kind = static_cast<memory::BankKind>(any_int(0, 2));
-    if (bank.kind == memory::BankKind::kSyncBurst) bank.turnaround_cycles = any_int(1, 16);
+    const int kind = any_int(0, static_cast<int>(memory::kBankTraits.size()) - 1);
+    const memory::BankTraits& traits = memory::kBankTraits[static_cast<std::size_t>(kind)];
+    bank.kind = traits.kind;
+    if (traits.has_turnaround) bank.turnaround_cycles = any_int(1, 16);
     banks.push_back(bank);
   }
   return banks;
@@ -72,7 +75,9 @@ BoardConfig any_board() {
   }
   board.bridge = {any_decimal(1, 1000), any_int(1, 1024), any_int(1, 4096)};
   board.fpga.clock_mhz = any_decimal(1, 1000);
-  board.fpga.arbiter.policy = static_cast<memory::ArbitrationPolicy>(any_int(0, 1));
+  const auto& policies = memory::arbitration_policies();
+  const int policy = any_int(0, static_cast<int>(policies.size()) - 1);
+  board.fpga.arbiter.policy = policies[static_cast<std::size_t>(policy)].name;
   auto& priority = board.fpga.arbiter.priority;
   for (std::size_t i = 0; i < priority.size(); ++i) {
     std::swap(priority[i], priority[static_cast<std::size_t>(any_int(0, 5))]);

@@ -175,19 +175,19 @@ TEST(BoardPriority, NamesEachPortOnce) {
   const std::string head = kBase + "fpga: {priority: ";
   EXPECT_EQ(
       refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut]}"),
-      "board.yaml:2:18: fpga.priority = [host, result, left_pixel, right_pixel, left_lut]: each of the six "
-      "ports once; right_lut missing");
-  EXPECT_EQ(refusal_of(head + "[]}").substr(0, 80),
-            "board.yaml:2:18: fpga.priority = []: each of the six ports once; left_lut, right");
+      "board.yaml:2:18: fpga.priority = [host, result, left_pixel, right_pixel, left_lut]: each port once; "
+      "right_lut missing");
+  EXPECT_EQ(refusal_of(head + "[]}").substr(0, 68),
+            "board.yaml:2:18: fpga.priority = []: each port once; left_lut, right");
   EXPECT_EQ(refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, right_lut, host]}"),
-            "board.yaml:2:79: fpga.priority = host: repeated; each of the six ports once");
+            "board.yaml:2:79: fpga.priority = host: repeated; each port once");
   EXPECT_EQ(
       refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, lut]}"),
       "board.yaml:2:68: fpga.priority = lut: left_lut, right_lut, left_pixel, right_pixel, result or host");
   const BoardConfig board = load_text(head + "[right_lut, host, result, left_pixel, right_pixel, left_lut]}");
-  EXPECT_EQ(board.fpga.arbiter.priority[0], memory::Port::kRightLut);
-  EXPECT_EQ(board.fpga.arbiter.priority[1], memory::Port::kHost);
-  EXPECT_EQ(board.fpga.arbiter.priority[5], memory::Port::kLeftLut);
+  EXPECT_EQ(board.fpga.arbiter.priority[0], fpga::lut_port(fpga::Side::kRight));
+  EXPECT_EQ(board.fpga.arbiter.priority[1], fpga::kHostPort);
+  EXPECT_EQ(board.fpga.arbiter.priority[5], fpga::lut_port(fpga::Side::kLeft));
 }
 
 TEST(BoardLoad, IsNoneOrAMapOfItsWordsAndTimes) {

@@ -32,8 +32,8 @@ board.yaml:2:44: image.width = 640: repeated key, first at 2:9
 board.yaml:3:26: cameras.frame_rate_hz = 1001: 0.1..1000
 board.yaml:3:41: cameras.trigger = off: free_running or on_demand
 board.yaml:5:11: fpga.device = xc2v600: xc2v6000
-board.yaml:6:3: fpga.arbitration = (nothing): fixed_priority or round_robin
-board.yaml:7:63: fpga.priority = left_lut: repeated; each of the six ports once
+board.yaml:6:3: fpga.arbitration = (nothing): fixed_priority, round_robin or age
+board.yaml:7:63: fpga.priority = left_lut: repeated; each port once
 board.yaml:8:1: größe = {ü: 1}: unknown key, and no known key is near
 board.yaml:9:11: matcher.filter.shift: missing: 0..31
 board.yaml:9:40: matcher.filter.kernel = [1, 2]: a row of 3 entries, as many as there are rows
@@ -80,8 +80,8 @@ board.yaml:1:1: bridge: missing: a map of local_clock_mhz, dma_burst_words, post
 board.yaml:2:1: image.height: missing: 1..2048
 board.yaml:5:1: fpga.device: missing: xc2v6000
 board.yaml:5:1: fpga.clock_mhz: missing: 1..1000
-board.yaml:5:1: fpga.arbitration: missing: fixed_priority or round_robin
-board.yaml:5:1: fpga.priority: missing: a list that names each of the six ports once: left_lut, right_lut, left_pixel, right_pixel, result, host
+board.yaml:5:1: fpga.arbitration: missing: fixed_priority, round_robin or age
+board.yaml:5:1: fpga.priority: missing: a list that names each port once: left_lut, right_lut, left_pixel, right_pixel, result, host
 board.yaml:5:1: fpga.lane_fifo_slots: missing: 1..64
 board.yaml:5:1: fpga.result_fifo_words: missing: 1..64
 board.yaml:5:1: fpga.pipeline_latency_cycles: missing: 0..1024

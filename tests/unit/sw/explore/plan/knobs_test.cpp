@@ -53,7 +53,7 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {"capture.fifo_trigger_words", {"capture.fifo_words=32"}, "32 -> 31; "},
       {"pci.load.burst_words", {}, ""},
       {"pci.load.burst_words", {"pci.load={burst_words: 8, interval_us: 10}"}, "8 -> 9; 8 -> 7; "},
-      {"fpga.arbitration", {}, "fixed_priority -> round_robin; "},
+      {"fpga.arbitration", {}, "fixed_priority -> round_robin; fixed_priority -> age; "},
       {"matcher.fetch", {}, "column -> line_buffer; "},
       {"matcher.filter", {}, "log7 -> none; "},
       {"matcher.filter", {"matcher.filter=none"}, "none -> log7; "},

@@ -126,6 +126,7 @@ TEST(AllocationSearch, NeedsAFrameForEachWayInWhichTheBuffersOfAFrameShareBanks)
   EXPECT_EQ(search.point(0).run.frames, 1U);
   EXPECT_EQ(core_search(fpl2003({"ssram.default.words=2097152"}), 8).size(), 52U)
       << "the set partitions of five buffers, if a bank holds everything";
+  EXPECT_EQ(core_search(fpl2003({"fpga.arbitration=age"}), 8).size(), 35U);
 }
 
 TEST(AllocationSearch, RunsEachPlacementIfFramesAreNotIndependent) {

@@ -1,0 +1,164 @@
+#include "models/fpga/core_datapath.h"
+
+#include <string>
+
+namespace stereotlm::fpga {
+namespace {
+
+using memory::PortMask;
+
+constexpr bool has(PortMask mask, memory::Port port) { return (mask & memory::mask_of(port)) != 0; }
+
+}  // namespace
+
+CoreDatapath::Lane::Lane(const std::string& side, const CoreConfig& config, bool has_table)
+    : pixel_reader((side + "_pixel").c_str(), config.width), filter((side + "_filter").c_str(), config) {
+  if (has_table) lut_reader = std::make_unique<LutReader>((side + "_lut").c_str(), config.width);
+  if (config.fetch == Fetch::kLineBuffer)
+    row_buffer = std::make_unique<RowBuffer>((side + "_rows").c_str(), config.width, config.window);
+}
+
+CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder)
+    : config_(config), crossbar_(crossbar) {
+  bind_memory(binder);
+  bind_streams();
+}
+
+void CoreDatapath::bind_memory(Binder& binder) {
+  const auto bind = [this, &binder](InitiatorSocket& from, memory::Port port) {
+    binder.bind(from, crossbar_.ports[port], std::string(kPorts[port].name) + "_to_crossbar");
+  };
+  for (const Side side : kSides) {
+    Lane& lane = lanes_[index_of(side)];
+    if (lane.lut_reader) bind(lane.lut_reader->port, lut_port(side));
+    bind(lane.pixel_reader.port, pixel_port(side));
+  }
+  bind(result_writer_.port, kResultPort);
+}
+
+void CoreDatapath::bind_streams() {
+  const std::array<StreamOut<Slot>*, 2> slots_of = {&sequencer_.left_out, &sequencer_.right_out};
+  const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&sad_array_.left_in,
+                                                                                &sad_array_.right_in};
+  for (const Side side : kSides) {
+    Lane& lane = lanes_[index_of(side)];
+    StreamOut<Slot>& slots = *slots_of[index_of(side)];
+    auto& columns = *columns_of[index_of(side)];
+    if (lane.lut_reader) {
+      slots.bind(lane.lut_reader->slots_in);
+      lane.lut_reader->entries_out.bind(lane.pixel_reader.entries_in);
+    } else {
+      slots.bind(lane.pixel_reader.slots_in);
+    }
+    lane.pixel_reader.pixels_out.bind(lane.filter.pixels_in);
+    if (lane.row_buffer) {
+      lane.filter.columns_out.bind(lane.row_buffer->columns_in);
+      lane.row_buffer->columns_out.bind(columns);
+    } else {
+      lane.filter.columns_out.bind(columns);
+    }
+  }
+  sad_array_.chain_out.bind(select_min_chain_.sums_in);
+  sad_array_.tree_out.bind(select_min_tree_.sums_in);
+  select_min_chain_.matches_out.bind(lr_check_.right_in);
+  select_min_tree_.matches_out.bind(lr_check_.left_in);
+  lr_check_.disparities_out.bind(result_packer_.disparities_in);
+  result_packer_.words_out.bind(result_writer_.words_in);
+}
+
+void CoreDatapath::start_frame(const FrameBases& bases) {
+  const auto aim = [this, &bases](memory::Port port) {
+    crossbar_.aim(port, registers::bank_of(bases[port]), kPorts[port].write);
+    return registers::base_address(bases[port]);
+  };
+  for (const Side side : kSides) {
+    Lane& lane = lanes_[index_of(side)];
+    if (lane.lut_reader) lane.lut_reader->start_frame(aim(lut_port(side)));
+    lane.pixel_reader.start_frame(aim(pixel_port(side)));
+    lane.filter.start_frame();
+    if (lane.row_buffer) lane.row_buffer->start_frame();
+  }
+  result_writer_.start_frame(aim(kResultPort));
+  sad_array_.start_frame();
+  select_min_chain_.start_frame();
+  lr_check_.start_frame();
+  result_packer_.start_frame();
+}
+
+EntriesRead CoreDatapath::move(const CoreControl& control, const CoreControl::Decision& decision,
+                               PortMask granted, const sc_core::sc_time& at) {
+  const auto moving = static_cast<PortMask>(granted | decision.passes());
+  EntriesRead entries_valid{};
+  const auto take_slot = [&](Side side, Lane& lane) {
+    if (!has(moving, lut_port(side))) return;
+    issue(side, control, at);
+    entries_valid[index_of(side)] = lane.lut_reader->entry_valid();
+  };
+  const auto handle_slot = [&](Side side, Lane& lane) {
+    if (!has(moving, pixel_port(side))) return;
+    lane.lut_reader ? lane.pixel_reader.handle(at) : issue(side, control, at);
+  };
+  Lane& left = lanes_[0];
+  Lane& right = lanes_[1];
+  take_slot(Side::kLeft, left);
+  take_slot(Side::kRight, right);
+  handle_slot(Side::kLeft, left);
+  handle_slot(Side::kRight, right);
+  if (has(granted, kResultPort)) result_writer_.write(at);
+  if (!decision.consume) return entries_valid;
+  if (decision.drain) {
+    left.pixel_reader.release_blank();
+    right.pixel_reader.release_blank();
+  } else {
+    left.pixel_reader.release();
+    right.pixel_reader.release();
+  }
+  return entries_valid;
+}
+
+std::uint64_t CoreDatapath::errors() const {
+  std::uint64_t errors = result_writer_.stats().errors;
+  for (const Lane& lane : lanes_) {
+    errors += lane.pixel_reader.stats().errors;
+    if (lane.lut_reader) errors += lane.lut_reader->stats().errors;
+  }
+  return errors;
+}
+
+DirectFrame::Memory CoreDatapath::direct_memory(const DirectFrame::Buffers& buffers) {
+  DirectFrame::Memory memory;
+  for (const Side side : kSides) {
+    Lane& lane = lanes_[index_of(side)];
+    memory.images[index_of(side)] = lane.pixel_reader.image(config_.height);
+    if (!lane.lut_reader) continue;
+    DirectFrame::Table& table = memory.tables[index_of(side)];
+    table.entries = lane.lut_reader->table(config_.height);
+    const AddressRange& range = buffers[lut_port(side)];
+    table.may_have_changed =
+        table.entries != nullptr && crossbar_.may_have_changed(lut_port(side), range.first, range.end);
+  }
+  memory.disparities = direct_disparities();
+  return memory;
+}
+
+void CoreDatapath::count(const FrameCounts& frame) {
+  for (const Side side : kSides) {
+    Lane& lane = lanes_[index_of(side)];
+    const FrameCounts::Lane& counts = frame.lanes[index_of(side)];
+    sequencer_.count(side, counts.slots);
+    if (lane.lut_reader) lane.lut_reader->count(counts.table);
+    lane.pixel_reader.count(counts.image);
+    lane.filter.count(frame.filter);
+    if (lane.row_buffer) lane.row_buffer->count(frame.rows);
+  }
+  sad_array_.count(frame.sums);
+  select_min_chain_.count(frame.chain);
+  select_min_tree_.count(frame.tree);
+  if (frame.check) lr_check_.count(*frame.check);
+  result_packer_.count(frame.packed);
+  result_writer_.count(frame.result);
+  for (memory::Port port = 0; port < kCorePortCount; ++port)
+    crossbar_.count_direct(crossbar_.bank_of(port), frame.accesses[port]);
+}
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <systemc>
+
+#include "models/binder.h"
+#include "models/fpga/core_config.h"
+#include "models/fpga/core_control.h"
+#include "models/fpga/core_ports.h"
+#include "models/fpga/direct_frame.h"
+#include "models/fpga/frame_counts.h"
+#include "models/fpga/log_filter.h"
+#include "models/fpga/lr_check.h"
+#include "models/fpga/lut_reader.h"
+#include "models/fpga/pixel_reader.h"
+#include "models/fpga/result_packer.h"
+#include "models/fpga/result_writer.h"
+#include "models/fpga/row_buffer.h"
+#include "models/fpga/sad_array.h"
+#include "models/fpga/select_min_chain.h"
+#include "models/fpga/select_min_tree.h"
+#include "models/fpga/sequencer.h"
+#include "models/memory/crossbar.h"
+
+namespace stereotlm::fpga {
+
+// The stages of the core and the streams between them (paper figures 5 and 6). Memory is reached through the
+// crossbar's sockets. The stages are children of the module that holds this object.
+class CoreDatapath {
+ public:
+  // The stages of one side, up to the matcher.
+  struct Lane {
+    Lane(const std::string& side, const CoreConfig& config, bool has_table);
+
+    std::unique_ptr<LutReader> lut_reader;  // null if the side has no table
+    PixelReader pixel_reader;
+    LogFilter filter;
+    std::unique_ptr<RowBuffer> row_buffer;  // null unless the fetch is kLineBuffer
+  };
+
+  // `binder` binds the stages to the crossbar, which outlives this object.
+  CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder);
+
+  // Starts a frame on these buffers. Their banks exist.
+  void start_frame(const FrameBases& bases);
+  // Moves the data of one cycle, which is `at` from now. `control` is in the state in which it decided.
+  EntriesRead move(const CoreControl& control, const CoreControl::Decision& decision,
+                   memory::PortMask granted, const sc_core::sc_time& at);
+  // Accesses of all frames that memory has refused.
+  std::uint64_t errors() const;
+
+  // The memory of the frame's buffers, by direct access.
+  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers);
+  std::uint8_t* direct_disparities() { return result_writer_.buffer(geometry_.result_words); }
+  // Adds what the stages count in a frame whose data they did not move.
+  void count(const FrameCounts& frame);
+
+  // The stages, for their statistics.
+  const Sequencer& sequencer() const { return sequencer_; }
+  const Lane& lane(Side side) const { return lanes_[index_of(side)]; }
+  const SadArray& sad_array() const { return sad_array_; }
+  const SelectMinChain& select_min_chain() const { return select_min_chain_; }
+  const SelectMinTree& select_min_tree() const { return select_min_tree_; }
+  const LrCheck& lr_check() const { return lr_check_; }
+  const ResultPacker& result_packer() const { return result_packer_; }
+  const ResultWriter& result_writer() const { return result_writer_; }
+
+ private:
+  void bind_memory(Binder& binder);
+  void bind_streams();
+  void issue(Side side, const CoreControl& control, const sc_core::sc_time& at) {
+    sequencer_.issue(side, control.lane(side).next_slot(), at);
+  }
+
+  CoreConfig config_;
+  FrameGeometry geometry_{config_};
+  memory::Crossbar& crossbar_;
+  Sequencer sequencer_{"sequencer"};
+  std::array<Lane, 2> lanes_{Lane("left", config_, config_.left_table),
+                             Lane("right", config_, config_.right_table)};  // [side]
+  SadArray sad_array_{"sad_array", config_};
+  SelectMinChain select_min_chain_{"select_min_chain", config_.disparities};
+  SelectMinTree select_min_tree_{"select_min_tree"};
+  LrCheck lr_check_{"lr_check", config_};
+  ResultPacker result_packer_{"result_packer"};
+  ResultWriter result_writer_{"result_writer", config_.result_fifo_words};
+};
+
+}  // namespace stereotlm::fpga

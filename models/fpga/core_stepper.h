@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/fpga/core_config.h"
+#include "models/fpga/core_control.h"
+#include "models/fpga/row_recorder.h"
+#include "models/memory/arbitration.h"
+
+namespace stereotlm::fpga {
+
+// One cycle of the core: the control decides, the arbiters grant, the caller moves the data, and the control
+// commits what follows from the grants. Plain C++, no SystemC.
+class CoreStepper {
+ public:
+  // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
+  CoreStepper(const CoreConfig& config, memory::Arbitration& arbitration)
+      : control_(config), rows_(control_.geometry()), arbitration_(arbitration) {}
+
+  // The ports are routed before.
+  void start_frame(const FrameLatencies& latencies) {
+    control_.start_frame(latencies);
+    rows_.start_frame(control_);
+  }
+
+  // Runs `cycle`, in which the host requests or not. `move` moves the data of the cycle: it is called as
+  // move(decision, granted) and returns EntriesRead. Returns the ports granted.
+  template <class Move>
+  memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
+    using memory::PortMask;
+    const CoreControl::Decision decision = control_.decide();
+    const PortMask host = host_requests ? memory::mask_of(kHostPort) : PortMask{0};
+    const PortMask granted = arbitration_.arbitrate(cycle, static_cast<PortMask>(decision.requests() | host));
+    completed_group_ = control_.commit(decision, granted, move(decision, granted));
+    control_.count_host(host_requests, (granted & host) != 0);
+    if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
+    return granted;
+  }
+  // Whether the matcher has completed a group of four columns in the last cycle.
+  bool completed_group() const { return completed_group_; }
+
+  CoreControl& control() { return control_; }
+  const CoreControl& control() const { return control_; }
+  RowRecorder& rows() { return rows_; }
+  const RowRecorder& rows() const { return rows_; }
+  memory::Arbitration& arbitration() { return arbitration_; }
+  const memory::Arbitration& arbitration() const { return arbitration_; }
+
+ private:
+  CoreControl control_;
+  RowRecorder rows_;
+  memory::Arbitration& arbitration_;
+  bool completed_group_ = false;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "models/fpga/access_pattern.h"
+#include "models/fpga/core_config.h"
+#include "models/fpga/core_ports.h"
+#include "models/kernels/stereo_pipeline.h"
+#include "models/words_by_range.h"
+
+namespace stereotlm::fpga {
+
+// The data of a frame that is worked on at once: read from memory when the frame starts, and written back
+// with its last write. Plain C++; where memory grants direct access is the caller's business.
+class DirectFrame {
+ public:
+  using Buffers =
+      std::array<AddressRange, kCorePortCount>;  // [port that accesses it]; empty if there is none
+
+  // Memory of the buffers, in which words are in the host's byte order. Null: no direct access is granted.
+  struct Table {
+    const std::uint32_t* entries = nullptr;
+    bool may_have_changed = true;  // since the last frame
+  };
+  struct Memory {
+    std::array<Table, 2> tables;                  // [side]; without meaning for a side without table
+    std::array<const std::uint8_t*, 2> images{};  // [side]
+    std::uint8_t* disparities = nullptr;
+  };
+
+  // `has_pixels`: disparities are computed. Throws std::invalid_argument if the configuration has problems.
+  DirectFrame(const CoreConfig& config, bool has_pixels);
+
+  // A frame starts on these buffers.
+  void set_buffers(const FrameBases& bases);
+  const Buffers& buffers() const { return buffers_; }
+  // Whether the buffer of the disparities overlaps no other buffer.
+  bool disparities_are_apart() const;
+  // Reads tables and pictures, and computes the disparities. False if that cannot be done: direct access is
+  // not granted, or an entry of a table points outside the image.
+  bool read(const Memory& memory);
+
+  // The port whose buffer makes an access of others a hazard while the frame runs: the access would observe
+  // when the frame reads or writes its data. Nothing if the access is no hazard.
+  std::optional<memory::Port> hazard_with(const AddressRange& words, bool write) const;
+
+  // The accesses of the frame's slots.
+  const AccessPatterns& patterns() const { return patterns_; }
+  bool has_pixels() const { return pipeline_ != nullptr; }
+  // Writes the disparities of the frame.
+  void write(std::uint8_t* disparities) const;
+  // Pixels of the frame that have a disparity; nothing if none are computed.
+  std::optional<std::uint64_t> answered() const;
+
+ private:
+  bool read_table(Side side, const Table& table);
+
+  CoreConfig config_;
+  Buffers buffers_{};
+  AccessPatterns patterns_;
+  std::array<bool, 2> table_is_valid_{true, true};  // [side]: no entry points outside the image
+  std::unique_ptr<kernels::StereoPipeline> pipeline_;
+  std::vector<std::uint8_t> disparities_;
+};
+
+}  // namespace stereotlm::fpga

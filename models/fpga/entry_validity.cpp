@@ -1,0 +1,40 @@
+#include "models/fpga/entry_validity.h"
+
+namespace stereotlm::fpga {
+
+EntryValidity::EntryValidity(CoreStepper& stepper)
+    : stepper_(stepper), all_valid_(stepper.control().geometry()) {}
+
+void EntryValidity::start_direct_frame(const AccessPatterns& patterns) {
+  for (const Side side : kSides) {
+    sides_[index_of(side)] = {&patterns[index_of(side)], stepper_.arbitration().is_alone(pixel_port(side))};
+  }
+}
+
+std::uint64_t EntryValidity::uniform_until(Side side) const {
+  const Table& table = sides_[index_of(side)];
+  const AccessPattern& pattern = table.is_assumed_valid ? all_valid_ : *table.pattern;
+  return pattern.uniform_until(stepper_.control().lane(side).next_slot().frame_column());
+}
+
+bool EntryValidity::resolve() {
+  const bool left_was_assumed = resolve(Side::kLeft);
+  const bool right_was_assumed = resolve(Side::kRight);
+  return left_was_assumed || right_was_assumed;
+}
+
+bool EntryValidity::resolve(Side side) {
+  Table& table = sides_[index_of(side)];
+  if (!table.is_assumed_valid) return false;
+  table.is_assumed_valid = false;
+  const LaneControl& lane = stepper_.control().lane(side);
+  const std::uint64_t passed = table.pattern->invalid_before(lane.handled());
+  std::uint64_t marks = 0;
+  for (std::uint64_t slot = lane.handled(); slot < lane.taken(); ++slot)
+    marks |= std::uint64_t{table.pattern->needs_pixel(slot)} << (slot - lane.handled());
+  stepper_.control().correct_passes(side, passed, marks);
+  stepper_.arbitration().retract_grants(pixel_port(side), passed);
+  return true;
+}
+
+}  // namespace stereotlm::fpga

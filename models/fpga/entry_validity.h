@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "models/fpga/access_pattern.h"
+#include "models/fpga/core_stepper.h"
+
+namespace stereotlm::fpga {
+
+// Finds for a direct frame which table entries are valid.
+//
+// An uncontended pixel port takes one cycle for a slot, whether the entry is valid (the port is granted) or
+// not (it passes). Only the counts differ. So all entries of such a side are assumed to be valid, and a pass
+// counts as a grant, until resolve() corrects the counts. Then the transitions of the core repeat far more
+// often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
+class EntryValidity {
+ public:
+  // `stepper` outlives this object.
+  explicit EntryValidity(CoreStepper& stepper);
+
+  // A frame with these accesses starts; the ports are routed. The patterns outlive the frame.
+  void start_direct_frame(const AccessPatterns& patterns);
+  // A frame starts whose entries are not read here.
+  void start_stepped_frame() { sides_ = {}; }
+
+  // The entries that are read with these grants.
+  EntriesRead read(memory::PortMask granted) const {
+    return {reads_valid(Side::kLeft, granted), reads_valid(Side::kRight, granted)};
+  }
+  // The end of the run of uniform columns that begins with the column of the next slot of a side. See
+  // AccessPattern::uniform_until().
+  std::uint64_t uniform_until(Side side) const;
+
+  // To be called before a route changes, and after the last cycle of a frame. Corrects the counts; from now
+  // on the patterns say which entries are valid. Returns whether entries were assumed to be valid:
+  // transitions that were recorded before do not hold any more.
+  bool resolve();
+
+ private:
+  struct Table {
+    const AccessPattern* pattern = nullptr;
+    bool is_assumed_valid = false;  // every entry is assumed to be valid
+  };
+
+  bool resolve(Side side);
+  bool reads_valid(Side side, memory::PortMask granted) const {
+    if ((granted & memory::mask_of(lut_port(side))) == 0) return false;
+    const Table& table = sides_[index_of(side)];
+    const SlotCursor& slot = stepper_.control().lane(side).next_slot();
+    return table.is_assumed_valid || table.pattern->entry_valid(slot.column(), slot.row());
+  }
+
+  CoreStepper& stepper_;
+  AccessPattern all_valid_;
+  std::array<Table, 2> sides_{};  // [side]
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "models/fpga/core_stepper.h"
+#include "models/fpga/entry_validity.h"
+#include "models/fpga/transition_cache.h"
+
+namespace stereotlm::fpga {
+
+// Runs many cycles of a frame at once, without data. A transition of the core that is in the TransitionCache
+// is skipped; others are stepped and recorded. While rows are recorded, the cycles around the end of each row
+// are stepped.
+class FastForward {
+ public:
+  // `stepper` outlives this object. `most_groups`: cap of the transition cache.
+  FastForward(CoreStepper& stepper, std::size_t most_groups)
+      : stepper_(stepper), entries_(stepper), known_(most_groups) {}
+
+  // A frame with these accesses starts, which is fast-forwarded. The ports are routed, and the stepper has
+  // started the frame. The patterns outlive the frame.
+  void start_direct_frame(const AccessPatterns& patterns) {
+    entries_.start_direct_frame(patterns);
+    forget();
+  }
+  // A frame starts that the owner steps.
+  void start_stepped_frame() {
+    entries_.start_stepped_frame();
+    forget();
+  }
+  // To be called before the route of the host changes within a frame, and after the last cycle of a frame.
+  // Corrects the counts that are provisional until then.
+  void settle();
+
+  // Runs one cycle, in which the host requests or not. Returns the ports granted.
+  memory::PortMask step(std::uint64_t cycle, bool host_requests);
+  // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
+  // next cycle.
+  std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
+
+ private:
+  // The group that is being stepped; it is recorded at its end.
+  struct Stepped {
+    TransitionCache::Group* group;
+    Progress begin;
+    CoreControl::Counts counts;
+  };
+
+  void forget();
+  std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
+  bool has_uniform_slots();
+  std::uint64_t uniform_slots(Side side) const;
+  Progress room(std::uint64_t cycle, std::uint64_t end) const;
+  bool holds_group(const Progress& room) const;
+  void begin_group(TransitionCache::Group& group, std::uint64_t cycle);
+  void end_group(std::uint64_t cycle);
+  Progress progress(std::uint64_t cycle) const;
+  TransitionCache::State state(std::uint64_t cycle) const {
+    return {control().state(), stepper_.arbitration().state(cycle)};
+  }
+  const CoreControl& control() const { return stepper_.control(); }
+
+  CoreStepper& stepper_;
+  EntryValidity entries_;
+  TransitionCache known_;
+  std::optional<Stepped> stepped_;
+  // [side]: slots of the frame before which the cached transitions hold; 0: the cache is empty.
+  std::array<std::uint64_t, 2> uniform_to_{};
+};
+
+}  // namespace stereotlm::fpga

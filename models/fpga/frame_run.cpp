@@ -1,0 +1,69 @@
+#include "models/fpga/frame_run.h"
+
+#include <algorithm>
+
+namespace stereotlm::fpga {
+
+FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
+                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
+                   std::size_t most_groups)
+    : config_(config),
+      stepper_(config, arbitration),
+      fast_forward_(stepper_, most_groups),
+      watchdog_(stall_timeout_cycles) {
+  for (const memory::SsramBankConfig& bank : banks)
+    latencies_.push_back(memory::read_latency_cycles(bank.kind));
+}
+
+void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
+  begin(cycle, bases);
+  fast_forward_.start_stepped_frame();
+}
+
+void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
+  begin(cycle, bases);
+  fast_forward_.start_direct_frame(patterns);
+}
+
+void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
+  state_ = State::kRunning;
+  cycle_ = std::max(cycle_, cycle);
+  first_cycle_ = cycle_;
+  writes_before_ = all_writes();
+  watchdog_.start_frame(cycle_, control().work());
+  stepper_.start_frame(route_ports(bases));
+  stepper_.arbitration().begin_counting(first_cycle_);
+}
+
+FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
+  FrameLatencies latencies{};
+  for (std::size_t port = 0; port < kCorePortCount; ++port) {
+    if (!has_port(config_, port)) continue;
+    const std::size_t bank = registers::bank_of(bases[port]);
+    stepper_.arbitration().route(port, bank, kPorts[port].write);
+    latencies[port] = latencies_[bank];
+  }
+  return latencies;
+}
+
+void FrameRun::finish() {
+  state_ = State::kFinishing;
+  done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
+  fast_forward_.settle();
+  stepper_.arbitration().end_counting(cycle_);
+}
+
+void FrameRun::end() {
+  state_ = State::kIdle;
+  frame_cycles_.push_back(done_cycle_ - first_cycle_);
+  if (stepper_.rows().is_on()) row_profiles_.push_back(stepper_.rows().profile(first_cycle_));
+}
+
+std::string FrameRun::waits(bool host_requests) const {
+  if (!is_running()) return "the core runs no frame";
+  return "frame " + std::to_string(frame_cycles_.size()) + " of the core, cycle " +
+         std::to_string(cycle_ - first_cycle_) + "; " +
+         waits_of_ports(control(), stepper_.arbitration(), host_requests);
+}
+
+}  // namespace stereotlm::fpga

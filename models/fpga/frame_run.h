@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/fpga/core_ports.h"
+#include "models/fpga/core_stepper.h"
+#include "models/fpga/fast_forward.h"
+#include "models/fpga/row_profile.h"
+#include "models/fpga/stall_watchdog.h"
+
+namespace stereotlm::fpga {
+
+// The frames of a core, one after another, in cycles of its clock: the routes of the ports to the banks, the
+// cycles of a frame, and its progress. Plain C++, for StereoCore and for platform::run_core().
+//
+// A frame runs up to its last write. Then it finishes, and ends pipeline_latency_cycles later.
+class FrameRun {
+ public:
+  // `arbitration` outlives this object. `most_groups`: cap of the transition cache. Throws
+  // std::invalid_argument if the configuration has problems.
+  FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
+           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
+           std::size_t most_groups = TransitionCache::kMost);
+
+  bool has_bank(std::uint32_t base) const { return registers::bank_of(base) < latencies_.size(); }
+  int read_latency_cycles(std::size_t bank) const { return latencies_[bank]; }
+
+  // Starts a frame in `cycle`, or in cycle() if that is later. The banks of the bases exist. The caller steps
+  // the frame, and moves the data of each cycle.
+  void start_stepped(std::uint64_t cycle, const FrameBases& bases);
+  // The same for a frame whose data is not moved in its cycles. It runs ahead with these accesses. The
+  // patterns outlive the frame.
+  void start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns);
+
+  // Runs cycle(), in which the host requests or not. `move` is that of CoreStepper::step().
+  template <class Move>
+  memory::PortMask step(bool host_requests, const Move& move) {
+    return stepper_.step(cycle_++, host_requests, move);
+  }
+  // The same for a direct frame.
+  memory::PortMask step(bool host_requests) { return fast_forward_.step(cycle_++, host_requests); }
+  // Runs the cycles of a direct frame up to `end`, `end` not included, or until the frame is done.
+  void run_ahead(std::uint64_t end) { cycle_ = fast_forward_.run_ahead(cycle_, end); }
+  // To be called while no frame runs: `cycle` is the next to run.
+  void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
+  // To be called before the route of the host changes.
+  void host_route_changes() { fast_forward_.settle(); }
+  // To be called when control().frame_done().
+  void finish();
+  // To be called at done_cycle().
+  void end();
+
+  bool is_running() const { return state_ == State::kRunning; }
+  bool is_finishing() const { return state_ == State::kFinishing; }
+  // The next cycle to run.
+  std::uint64_t cycle() const { return cycle_; }
+  // The first cycle of the frame that was started last.
+  std::uint64_t first_cycle() const { return first_cycle_; }
+  // The first cycle after the frame that was finished last.
+  std::uint64_t done_cycle() const { return done_cycle_; }
+  CoreControl& control() { return stepper_.control(); }
+  const CoreControl& control() const { return stepper_.control(); }
+  // Words written by the frame that was started last.
+  std::uint64_t writes() const { return all_writes() - writes_before_; }
+  // See StallWatchdog.
+  std::uint64_t stalled_cycles() { return watchdog_.stalled_cycles(cycle_, control().work()); }
+  // The frame that runs, and what its ports wait for.
+  std::string waits(bool host_requests) const;
+
+  // frame_cycles of every frame that has ended: from its first cycle to its end.
+  const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
+  // From the next frame on, records when each row of results is complete. take_rows() returns the frames
+  // that have ended since its last call; the caller takes them regularly, or they fill memory.
+  void record_rows() { stepper_.rows().turn_on(); }
+  std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
+
+ private:
+  enum class State { kIdle, kRunning, kFinishing };
+
+  FrameLatencies route_ports(const FrameBases& bases);
+  void begin(std::uint64_t cycle, const FrameBases& bases);
+  std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
+
+  CoreConfig config_;
+  std::vector<int> latencies_;  // [bank]: read latency, cycles
+  CoreStepper stepper_;
+  FastForward fast_forward_;
+  StallWatchdog watchdog_;
+  State state_ = State::kIdle;
+  std::uint64_t cycle_ = 0;
+  std::uint64_t first_cycle_ = 0;
+  std::uint64_t done_cycle_ = 0;
+  std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
+  std::vector<std::uint64_t> frame_cycles_;
+  std::vector<RowProfile> row_profiles_;  // not yet taken
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,150 @@
+#include "models/fpga/host_port.h"
+
+#include <algorithm>
+
+namespace stereotlm::fpga {
+namespace {
+
+constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
+// Most cycles in which one serve_contended() serves.
+constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
+
+std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
+
+}  // namespace
+
+void HostPort::route(const HostRoute& route) {
+  burst_ = route;
+  is_moved_ = false;
+  if (route.bank) {
+    read_latency_cycles_ = frames_.read_latency_cycles(*route.bank);
+    crossbar_.aim(kHostPort, *route.bank, route.write);
+  } else if (is_joined_) {
+    is_joined_ = false;
+    frames_.host_route_changes();
+    crossbar_.unroute(kHostPort);
+  }
+}
+
+void HostPort::join() {
+  if (!burst_.bank || is_joined_) return;
+  is_joined_ = true;
+  frames_.host_route_changes();
+  crossbar_.arbitration().route(kHostPort, *burst_.bank, burst_.write);
+}
+
+bool HostPort::access(std::uint64_t cycle, const sc_core::sc_time& at) {
+  bus_.access(at, clock_.edge_ps(cycle), usable_ps(cycle));
+  return !bus_.word_waits();
+}
+
+bool HostPort::is_contended() const {
+  return frames_.is_running() &&
+         (!is_only_master_ || crossbar_.arbitration().is_used_beside(kHostPort, *burst_.bank));
+}
+
+void HostPort::serve_contended() {
+  const std::uint64_t now_ps = present_ps();
+  const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
+  move_burst();
+  frames_.run_ahead(first);  // before join(): the route of the host prevents skipping
+  join();
+  const std::uint64_t end = frames_.cycle() + kMostCycles;
+  while (frames_.cycle() < end && !frames_.control().frame_done() && bus_.word_waits()) {
+    const std::uint64_t cycle = frames_.cycle();
+    const std::uint64_t edge_ps = clock_.edge_ps(cycle);
+    const memory::PortMask granted = frames_.step(bus_.requests(edge_ps));
+    if ((granted & kHostMask) != 0) serve_word(cycle, edge_ps, now_ps);
+  }
+}
+
+void HostPort::serve_at_once() {
+  if (is_only_master_ && !is_contended()) serve_uncontended();
+}
+
+std::optional<std::uint64_t> HostPort::serve_uncontended() {
+  const memory::Arbitration& arbitration = crossbar_.arbitration();
+  const std::uint64_t now_ps = present_ps();
+  const std::size_t bank = *burst_.bank;
+  count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
+  served_bank_ = bank;
+  // The first cycle that is not decided: a word that was refused up to the end of a frame requests from here.
+  std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
+  move_burst();
+  if (is_moved_ && !arbitration.needs_turnaround(bank) && bus_.is_in_step_with(clock_)) serve_in_step(cycle);
+  while (bus_.word_waits()) {
+    cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
+    const std::uint64_t edge_ps = clock_.edge_ps(cycle);
+    // Another master of the registers may start a frame that uses the bank: when the previous frame ends, and
+    // at any pending event.
+    if (!is_only_master_ && frames_.is_finishing() && cycle >= frames_.done_cycle()) {
+      count_words_outside();
+      return clock_.edge_ps(frames_.done_cycle());
+    }
+    if (!is_only_master_ && edge_ps >= now_ps &&
+        edge_ps >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
+      count_words_outside();
+      return edge_ps + 1;
+    }
+    const memory::BankArbiter::Outcome outcome = decide(cycle);
+    served_.push_back({cycle, 1, outcome});
+    if (arbitration.grants(bank, outcome)) serve_word(cycle, edge_ps, now_ps);
+    ++cycle;
+  }
+  if (!frames_.is_running()) count_words_outside();
+  return std::nullopt;
+}
+
+memory::BankArbiter::Outcome HostPort::decide(std::uint64_t cycle) {
+  return crossbar_.arbitration().decide_unrouted(*burst_.bank, cycle, kHostPort, burst_.write);
+}
+
+// Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
+// direct access.
+void HostPort::move_burst() {
+  const std::uint64_t bytes = burst_.end - burst_.first;
+  if (is_moved_ || !is_only_master_ || bus_.words_left() * 4 != bytes) return;
+  unsigned char* const words = crossbar_.direct(burst_.first, bytes);
+  if (words == nullptr) return;
+  bus_.move_words(words);
+  if (burst_.write) crossbar_.changes(burst_.first, bytes);
+  crossbar_.count_direct(*burst_.bank, bytes / 4);
+  is_moved_ = true;
+}
+
+// The waiting word is granted in `cycle`.
+void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps) {
+  if (is_moved_) {
+    bus_.count_granted(1, edge_ps, usable_ps(cycle));
+  } else {
+    crossbar_.grant(kHostMask);
+    access(cycle, Clock::to_time(std::max(edge_ps, now_ps) - now_ps));
+  }
+}
+
+// Serves one word a cycle from `first_cycle` on, to the end of the burst.
+void HostPort::serve_in_step(std::uint64_t first_cycle) {
+  const std::uint64_t first = std::max(first_cycle, clock_.edge_at_or_after(bus_.request_ps()));
+  const std::size_t words = bus_.words_left();
+  served_.push_back({first, 1, decide(first)});
+  // After the first grant each further request has the same outcome.
+  if (words > 1) served_.push_back({first + 1, words - 1, decide(first + 1)});
+  const std::uint64_t last = first + words - 1;
+  bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
+}
+
+void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
+  memory::Arbitration& arbitration = crossbar_.arbitration();
+  auto next = served_.begin();
+  for (; next != served_.end() && next->cycle < end_cycle; ++next) {
+    const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
+    arbitration.count_unrouted(served_bank_, next->cycle, next->outcome, cycles);
+    if (in_frame) frames_.control().host_was_busy(arbitration.grants(served_bank_, next->outcome), cycles);
+    next->cycle += cycles;
+    next->cycles -= cycles;
+    if (next->cycles != 0) break;
+  }
+  served_.erase(served_.begin(), next);
+}
+
+}  // namespace stereotlm::fpga

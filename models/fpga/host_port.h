@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <systemc>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/fpga/frame_run.h"
+#include "models/fpga/local_bus.h"
+#include "models/memory/crossbar.h"
+#include "models/words_by_range.h"
+
+namespace stereotlm::fpga {
+
+// The host port of the banks: serves the bursts of the local bus, beside the frames of the core. It has no
+// process and never waits; the core's process calls it.
+//
+// A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
+// An uncontended burst is served independently of the frame. Its words are counted later, when it is known
+// whether their cycles belong to the frame.
+class HostPort {
+ public:
+  // All of these outlive this object.
+  HostPort(LocalBus& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
+      : bus_(bus), crossbar_(crossbar), frames_(frames), clock_(clock) {}
+
+  // Only the local bus can start frames: then no frame starts within a burst. Default: others can too.
+  void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
+
+  // A burst begins, or has ended; see LocalBus::route_out.
+  void route(const HostRoute& route);
+  const HostRoute& burst() const { return burst_; }
+  // The words of the burst that are not granted yet.
+  AddressRange words_left() const { return {burst_.end - 4 * bus_.words_left(), burst_.end}; }
+
+  // The burst takes part in the arbitration of its bank from now on.
+  void join();
+  // The waiting word has been granted in `cycle`, which is `at` from now. True if the burst is answered.
+  bool access(std::uint64_t cycle, const sc_core::sc_time& at);
+
+  // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
+  // next frame as soon as this one ends.
+  bool is_contended() const;
+  // Runs the frame ahead to the waiting word. Then steps the frame and serves the words of the burst, to the
+  // end of the burst or of the frame, but not more than 8192 cycles.
+  void serve_contended();
+  // Serves the words of an uncontended burst. A word may be served early, but never before a pending event
+  // that could start a frame on its bank. Returns the time to call again, in ps: either a later time, or the
+  // end of the finishing frame, which must be ended first. Returns nothing if no word waits any more.
+  std::optional<std::uint64_t> serve_uncontended();
+  // Serves an uncontended burst that has just begun, if no frame can start within it.
+  void serve_at_once();
+
+  // Counts the words that were served before the frame's cycle(), as words in the frame.
+  void count_words_in_frame() { count_served(frames_.cycle(), true); }
+  // Counts all other words that were served, as words outside a frame.
+  void count_words_outside() { count_served(UINT64_MAX, false); }
+
+ private:
+  // Words that were served in an uncontended bank, and are not counted yet.
+  struct Served {
+    std::uint64_t cycle;
+    std::uint64_t cycles;  // number of cycles, from `cycle` on
+    memory::BankArbiter::Outcome outcome;
+  };
+
+  void move_burst();
+  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps);
+  void serve_in_step(std::uint64_t first_cycle);
+  memory::BankArbiter::Outcome decide(std::uint64_t cycle);
+  void count_served(std::uint64_t end_cycle, bool in_frame);
+  std::uint64_t usable_ps(std::uint64_t cycle) const {
+    return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));
+  }
+
+  LocalBus& bus_;
+  memory::Crossbar& crossbar_;
+  FrameRun& frames_;
+  const Clock& clock_;
+  bool is_only_master_ = false;
+  HostRoute burst_;
+  int read_latency_cycles_ = 2;  // of the burst's bank
+  bool is_joined_ = false;       // the burst takes part in the arbitration
+  bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
+  std::vector<Served> served_;
+  std::size_t served_bank_ = 0;  // bank of all served_
+};
+
+}  // namespace stereotlm::fpga

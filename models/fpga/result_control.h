@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "models/fpga/core_config.h"
+#include "models/fpga/frame_geometry.h"
+#include "models/fpga/port_cycles.h"
+
+namespace stereotlm::fpga {
+
+// The queue of result words and the port that writes them.
+class ResultControl {
+ public:
+  ResultControl(const FrameGeometry& geometry, int fifo_words)
+      : words_per_frame_(geometry.result_words), fifo_words_(fifo_words) {}
+
+  void start_frame() {
+    queued_ = 0;
+    written_ = 0;
+  }
+  bool has_room() const { return queued_ < fifo_words_; }
+  bool frame_done() const { return written_ == words_per_frame_; }
+  Intent decide() const {
+    if (queued_ > 0) return Intent::kRequest;
+    return written_ == 0 || frame_done() ? Intent::kIdle : Intent::kStarved;
+  }
+  void commit(bool granted, bool word_enters) {
+    queued_ += int{word_enters} - int{granted};
+    written_ += std::uint64_t{granted};
+    most_queued_ = std::max(most_queued_, queued_);
+  }
+
+  std::uint64_t state() const {
+    return static_cast<std::uint64_t>(queued_) | std::uint64_t{written_ != 0} << 8U;
+  }
+  // Skips cycles in which `words` words are written; they end in this state.
+  void skip_to(std::uint64_t state, std::uint64_t words) {
+    static_assert(kResultFifoRule.max <= 0xff);
+    queued_ = static_cast<int>(state & 0xffU);
+    written_ += words;
+  }
+
+  // Words of the frame.
+  std::uint64_t words_written() const { return written_; }
+  std::uint64_t words_left() const { return words_per_frame_ - written_; }
+  // The most words queued at one time, over all frames.
+  int most_queued() const { return most_queued_; }
+
+ private:
+  std::uint64_t words_per_frame_;
+  int fifo_words_;
+  int queued_ = 0;
+  std::uint64_t written_ = 0;
+  int most_queued_ = 0;
+};
+
+}  // namespace stereotlm::fpga

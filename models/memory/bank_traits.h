@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "models/kernels/integer_rule.h"
+
+namespace stereotlm::memory {
+
+enum class BankKind : std::uint8_t { kZbtPipelined, kZbtFlowThrough, kSyncBurst };
+
+// Range of `turnaround_cycles` of a bank whose kind has turnaround.
+inline constexpr kernels::IntegerRule kTurnaroundRule{1, 16};
+
+// The properties of one kind of bank.
+struct BankTraits {
+  BankKind kind;
+  const char* name;         // in board files
+  int read_latency_cycles;  // from the grant of a read to the cycle in which its reader can use the word
+  bool has_turnaround;      // between reads and writes; false: turnaround_cycles is 0
+  int ports;                // accesses that a bank can serve in a cycle
+};
+
+// Every kind of bank, in the order of BankKind. Board files, their key list and explain's knobs follow from
+// this table. Latencies: Cypress AN1090.
+inline constexpr std::array kBankTraits = {
+    BankTraits{BankKind::kZbtPipelined, "zbt_pipelined", 2, false, 1},
+    BankTraits{BankKind::kZbtFlowThrough, "zbt_flow_through", 1, false, 1},
+    BankTraits{BankKind::kSyncBurst, "sync_burst", 2, true, 1},
+};
+
+// `kind` must be one of the table.
+constexpr const BankTraits& traits_of(BankKind kind) { return kBankTraits[static_cast<std::size_t>(kind)]; }
+
+constexpr int read_latency_cycles(BankKind kind) { return traits_of(kind).read_latency_cycles; }
+
+constexpr bool is_bank_kind(BankKind kind) { return static_cast<std::size_t>(kind) < kBankTraits.size(); }
+
+static_assert(
+    [] {
+      for (std::size_t kind = 0; kind < kBankTraits.size(); ++kind) {
+        if (kBankTraits[kind].kind != static_cast<BankKind>(kind)) return false;
+      }
+      return true;
+    }(),
+    "the rows of kBankTraits are in the order of BankKind");
+
+}  // namespace stereotlm::memory

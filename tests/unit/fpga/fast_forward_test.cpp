@@ -1,0 +1,285 @@
+// Running ahead compared with stepping, on random cores, banks and tables.
+#include "models/fpga/fast_forward.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "models/fpga/frame_run.h"
+#include "tests/unit/fpga/core_figures.h"
+#include "tests/unit/fpga/random_core.h"
+#include "tests/unit/support/random_memory.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+constexpr std::uint64_t kNever = UINT64_MAX;
+
+// A burst of the local bus. It begins to request in a cycle of the clock, or later if the burst before it has
+// not ended.
+struct Burst {
+  std::uint64_t cycle = 0;
+  std::size_t bank = 0;
+  bool write = false;
+  int words = 1;
+  std::uint64_t waits = 0;  // cycles, routed, before it requests
+};
+
+struct Setting {
+  CoreConfig core;
+  memory::ArbiterConfig arbiter = core_arbiter();
+  std::vector<memory::SsramBankConfig> banks;
+  FrameBases bases{};
+  std::vector<std::uint32_t> left_entries;
+  std::vector<std::uint32_t> right_entries;
+  int frames = 1;
+  std::size_t most_groups = TransitionCache::kMost;
+};
+
+Setting random_setting(test::SplitMix64& random) {
+  Setting setting;
+  setting.core = random_core(random, 64);
+  setting.arbiter = test::random_arbiter(random);
+  for (int banks = random.between(1, 6); banks > 0; --banks)
+    setting.banks.push_back(test::random_bank(random));
+  for (std::uint32_t& base : setting.bases) {
+    const int banks = static_cast<int>(setting.banks.size());
+    base = registers::base(static_cast<std::uint32_t>(random.between(0, banks - 1)), 0);
+  }
+  setting.left_entries = random_entries(random, setting.core);
+  setting.right_entries = random_entries(random, setting.core);
+  setting.frames = random.between(1, 3);
+  if (random.chance(30)) setting.most_groups = static_cast<std::size_t>(random.between(1, 16));
+  return setting;
+}
+
+// The board of the paper without filter, or a smaller image: a bank for each port, and every entry valid.
+Setting bank_for_each_port(int width, int height) {
+  Setting setting;
+  setting.core.width = width;
+  setting.core.height = height;
+  setting.core.filter.reset();
+  setting.banks.resize(6);
+  for (std::uint32_t port = 0; port < kCorePortCount; ++port) setting.bases[port] = registers::base(port, 0);
+  setting.left_entries = setting.right_entries = kernels::identity_table(width, height).entries;
+  return setting;
+}
+
+// A core with its arbiters, frame after frame.
+class Core {
+ public:
+  enum class Way { kStepped, kAhead };
+
+  Core(const Setting& setting, Way way, bool records_rows = false)
+      : setting_(setting),
+        way_(way),
+        arbitration_(setting.arbiter, setting.banks),
+        frames_(setting.core, setting.banks, arbitration_, kNever, setting.most_groups) {
+    if (setting.core.left_table) patterns_[0].set_entries(setting.left_entries.data());
+    if (setting.core.right_table) patterns_[1].set_entries(setting.right_entries.data());
+    if (records_rows) frames_.record_rows();
+  }
+
+  void start(std::uint64_t cycle) {
+    if (way_ == Way::kAhead) {
+      frames_.start_direct(cycle, setting_.bases, patterns_);
+    } else {
+      frames_.start_stepped(cycle, setting_.bases);
+    }
+  }
+  bool done() const { return frames_.control().frame_done(); }
+  std::uint64_t cycle() const { return frames_.cycle(); }
+  std::uint64_t earliest_last_write() const { return frames_.control().earliest_last_write(cycle()); }
+  // One cycle. True if the host is granted.
+  bool step(bool host_requests = false) {
+    const memory::PortMask granted =
+        way_ == Way::kAhead
+            ? frames_.step(host_requests)
+            : frames_.step(host_requests, [this](const auto& /*decision*/, memory::PortMask grants) {
+                return EntriesRead{reads_valid(Side::kLeft, grants), reads_valid(Side::kRight, grants)};
+              });
+    return (granted & memory::mask_of(kHostPort)) != 0;
+  }
+  // Takes the frame up to a cycle, or to its end.
+  void advance(std::uint64_t end) {
+    if (way_ == Way::kAhead) frames_.run_ahead(end);
+    while (cycle() < end && !done()) step();
+  }
+  // The words of a burst, up to the end of the burst or the frame.
+  void serve(const Burst& burst) {
+    if (done()) return;
+    frames_.host_route_changes();
+    arbitration_.route(kHostPort, burst.bank, burst.write);
+    advance(cycle() + burst.waits);
+    for (int words = 0; words < burst.words && !done();) words += int{step(true)};
+    frames_.host_route_changes();
+    arbitration_.unroute(kHostPort);
+  }
+  void finish() {
+    frames_.finish();
+    frames_.end();
+    for (const RowProfile& frame : frames_.take_rows()) rows_ = frame;
+  }
+
+  // Of the last frame.
+  const RowProfile& rows() const { return rows_; }
+  std::string figures() const {
+    CoreFigures figures(frames_, arbitration_.arbiters());
+    figures.add(rows_);
+    return figures.text();
+  }
+
+ private:
+  bool reads_valid(Side side, memory::PortMask grants) const {
+    const SlotCursor& slot = frames_.control().lane(side).next_slot();
+    return (grants & memory::mask_of(lut_port(side))) != 0 &&
+           patterns_[index_of(side)].entry_valid(slot.column(), slot.row());
+  }
+
+  const Setting& setting_;
+  Way way_;
+  memory::Arbitration arbitration_;
+  FrameRun frames_;
+  AccessPatterns patterns_{AccessPattern(FrameGeometry(setting_.core)),
+                           AccessPattern(FrameGeometry(setting_.core))};
+  RowProfile rows_;
+};
+
+// Two cores of the same random setting, one stepped and one run ahead, frame after frame.
+// `frame(random, setting, stepped, ahead)` takes both to the end of each frame, or as far as it likes.
+template <typename Frame>
+void expect_equal_figures(std::uint64_t settings, const Frame& frame, bool records_rows = false) {
+  for (std::uint64_t seed = 0; seed < settings; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::SplitMix64 random(seed);
+    const Setting setting = random_setting(random);
+    Core stepped(setting, Core::Way::kStepped, records_rows);
+    Core ahead(setting, Core::Way::kAhead, records_rows);
+    auto cycle = static_cast<std::uint64_t>(random.between(0, 100));
+    for (int number = 0; number < setting.frames; ++number) {
+      stepped.start(cycle);
+      ahead.start(cycle);
+      frame(random, setting, stepped, ahead);
+      stepped.finish();
+      ahead.finish();
+      ASSERT_EQ(ahead.cycle(), stepped.cycle());
+      ASSERT_EQ(ahead.figures(), stepped.figures()) << "frame " << number;
+      cycle = stepped.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 3, 1000));
+    }
+  }
+}
+
+void run_to_the_end(Core& stepped, Core& ahead) {
+  stepped.advance(kNever);
+  ahead.advance(kNever);
+  ASSERT_TRUE(ahead.done());
+}
+
+TEST(FastForward, CountsWhatItsStepsCount) {
+  expect_equal_figures(400, [](auto&, auto&, Core& stepped, Core& ahead) { run_to_the_end(stepped, ahead); });
+}
+
+TEST(FastForward, StopsInAnyCycleAndResumes) {
+  expect_equal_figures(200, [](auto& random, auto&, Core& stepped, Core& ahead) {
+    while (!ahead.done()) {
+      const std::uint64_t end = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(1, 300, 5000));
+      ahead.advance(end);
+      EXPECT_LE(ahead.cycle(), end);
+      stepped.advance(end);
+      EXPECT_EQ(ahead.cycle(), stepped.cycle());
+    }
+  });
+}
+
+TEST(FastForward, HasTheCountsOfTheStepsInTheMiddleOfAFrame) {
+  expect_equal_figures(200, [](auto& random, auto&, Core& stepped, Core& ahead) {
+    const std::uint64_t end = ahead.cycle() + static_cast<std::uint64_t>(random.between(1, 3000));
+    ahead.advance(end);
+    stepped.advance(end);
+  });
+}
+
+// Takes both to the end of a frame, with bursts of the host in between.
+void run_beside_host(test::SplitMix64& random, const Setting& setting, Core& stepped, Core& ahead) {
+  for (int bursts = random.mostly_small(0, 6, 100); bursts > 0; --bursts) {
+    Burst burst;
+    burst.cycle = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 500, 5000));
+    burst.bank = static_cast<std::size_t>(random.between(0, static_cast<int>(setting.banks.size()) - 1));
+    burst.write = random.chance(50);
+    burst.words = random.mostly_small(1, 8, 100);
+    if (random.chance(30)) burst.waits = static_cast<std::uint64_t>(random.between(1, 500));
+    for (Core* core : {&stepped, &ahead}) {
+      core->advance(burst.cycle);
+      core->serve(burst);
+    }
+  }
+  run_to_the_end(stepped, ahead);
+}
+
+TEST(FastForward, CountsWhatItsStepsCountBesideTheHost) { expect_equal_figures(300, run_beside_host); }
+
+TEST(FastForward, RecordsTheRowsOfItsSteps) { expect_equal_figures(400, run_beside_host, true); }
+
+// The left table beside the left image (contract section 2): half of the columns' reads come too late.
+TEST(FastForward, RecordsInWhichRowsAPortIsStalled) {
+  Setting setting = bank_for_each_port(640, 480);
+  setting.bases[0] = setting.bases[2];
+  Core core(setting, Core::Way::kAhead, true);
+  for (const std::uint64_t first_cycle : {100U, 10'000'000U}) {
+    core.start(first_cycle);
+    core.advance(kNever);
+    core.finish();
+    const RowProfile& rows = core.rows();
+    ASSERT_EQ(rows.size(), 480U);
+    EXPECT_EQ(core.cycle(), first_cycle + rows.back().cycles);
+    EXPECT_EQ(rows.back().cycles + 16, 4'288'597U);
+    EXPECT_EQ(rows.back().stalls, (std::array<std::uint64_t, kCorePortCount>{2'137'602, 0, 0, 0, 0}));
+    for (std::size_t row = 10; row < 400; ++row) {
+      EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
+      EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
+    }
+  }
+}
+
+TEST(FastForward, RecordsNoRowsUnasked) {
+  const Setting setting = bank_for_each_port(16, 5);
+  Core core(setting, Core::Way::kAhead);
+  core.start(0);
+  core.advance(kNever);
+  core.finish();
+  EXPECT_TRUE(core.rows().empty());
+}
+
+TEST(EarliestLastWrite, IsNeverLaterThanTheLastWrite) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::SplitMix64 random(seed);
+    const Setting setting = random_setting(random);
+    Core core(setting, Core::Way::kAhead);
+    core.start(0);
+    std::vector<std::uint64_t> earliest;
+    while (!core.done()) {
+      earliest.push_back(core.earliest_last_write());
+      core.step();
+    }
+    const std::uint64_t last_write = core.cycle() - 1;
+    ASSERT_LE(*std::max_element(earliest.begin(), earliest.end()), last_write);
+    ASSERT_EQ(earliest.back(), last_write);
+  }
+}
+
+TEST(EarliestLastWrite, IsTheLastWriteFromTheFirstSlotConsumedOnWhenUncontended) {
+  const Setting setting = bank_for_each_port(16, 5);
+  Core core(setting, Core::Way::kAhead);
+  core.start(100);
+  core.advance(100 + 4);  // the latencies of table and image
+  const std::uint64_t last_write = core.earliest_last_write();
+  core.advance(kNever);
+  EXPECT_EQ(core.cycle(), last_write + 1);
+}
+
+}  // namespace
+}  // namespace stereotlm::fpga

@@ -1,0 +1,173 @@
+#include "models/memory/arbitration_policies.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/unit/memory/ports.h"
+#include "tests/support/random_board.h"
+
+namespace stereotlm::memory {
+
+void PrintTo(const PolicyEntry& policy, std::ostream* out) { *out << policy.name; }
+
+namespace {
+
+using State = ArbitrationPolicy::State;
+
+constexpr PortMask kAll = (1U << kPortCount) - 1;
+const PriorityList kList = {port::kRightLut, port::kResult,    port::kLeftLut,
+                            port::kHost,     port::kLeftPixel, port::kRightPixel};
+
+std::unique_ptr<const ArbitrationPolicy> policy_of(const std::string& name) {
+  return find_arbitration_policy(name)->make(kList);
+}
+
+// The first of the list, from `place` on, that requests.
+Port first_requesting(std::size_t place, PortMask requests) {
+  while ((requests & mask_of(kList[place % kPortCount])) == 0) ++place;
+  return kList[place % kPortCount];
+}
+
+// The rules that each policy must keep in every state that it can reach (ArbitrationPolicy).
+class EveryPolicy : public testing::TestWithParam<PolicyEntry> {
+ protected:
+  EveryPolicy() {
+    std::vector<State> found = {0};
+    states_ = {0};
+    const auto add = [&](State state) {
+      if (states_.insert(state).second) found.push_back(state);
+    };
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (unsigned requests = 0; requests <= kAll; ++requests) {
+        const State state = found[i];
+        const auto mask = static_cast<PortMask>(requests);
+        add(policy_->next(state, mask, 0));
+        if (mask != 0) add(policy_->next(state, mask, mask_of(policy_->winner(state, mask))));
+      }
+    }
+  }
+
+  std::unique_ptr<const ArbitrationPolicy> policy_ = GetParam().make(kList);
+  std::set<State> states_;
+};
+
+TEST_P(EveryPolicy, LetsOneOfTheRequestsWin) {
+  for (const State state : states_) {
+    for (unsigned requests = 1; requests <= kAll; ++requests)
+      ASSERT_NE(requests & mask_of(policy_->winner(state, static_cast<PortMask>(requests))), 0U) << state;
+  }
+}
+
+TEST_P(EveryPolicy, TakesFurtherUncontendedGrantsToAPortForIdleCycles) {
+  for (const State state : states_) {
+    for (const Port port : kList) {
+      const PortMask mask = mask_of(port);
+      const State granted = policy_->next(state, mask, mask);
+      ASSERT_EQ(policy_->next(granted, mask, mask), policy_->next(granted, 0, 0)) << state;
+    }
+  }
+}
+
+TEST_P(EveryPolicy, ForgetsAsTheTableSays) {
+  bool forgets = true;
+  for (const State state : states_) {
+    for (const Port port : kList)
+      forgets = forgets && policy_->next(state, mask_of(port), mask_of(port)) == 0;
+  }
+  EXPECT_EQ(forgets, GetParam().forgets);
+}
+
+INSTANTIATE_TEST_SUITE_P(ArbitrationPolicies, EveryPolicy, testing::ValuesIn(arbitration_policies()),
+                         [](const auto& suite) { return std::string(suite.param.name); });
+
+TEST(ArbitrationPolicies, AreFoundByTheirNames) {
+  for (const PolicyEntry& policy : arbitration_policies())
+    EXPECT_EQ(find_arbitration_policy(policy.name), &policy);
+  EXPECT_EQ(find_arbitration_policy("lottery"), nullptr);
+}
+
+TEST(FixedPriorityPolicy, LetsTheFirstOfTheListWinForEverySetOfRequests) {
+  const auto policy = policy_of("fixed_priority");
+  for (unsigned requests = 1; requests <= kAll; ++requests) {
+    const auto mask = static_cast<PortMask>(requests);
+    EXPECT_EQ(policy->winner(0, mask), first_requesting(0, mask)) << requests;
+    EXPECT_EQ(policy->next(0, mask, mask_of(first_requesting(0, mask))), 0U);
+  }
+}
+
+TEST(RoundRobinPolicy, SearchesFromTheHeadOfTheListAtFirstAndThenFromAfterTheLastPortGranted) {
+  const auto policy = policy_of("round_robin");
+  for (std::size_t granted = 0; granted <= kPortCount; ++granted) {  // so many ports of the list, in turn
+    State state = 0;
+    for (std::size_t place = 0; place < granted; ++place)
+      state = policy->next(state, kAll, mask_of(kList[place]));
+    for (unsigned requests = 1; requests <= kAll; ++requests) {
+      const auto mask = static_cast<PortMask>(requests);
+      EXPECT_EQ(policy->winner(state, mask), first_requesting(granted, mask)) << granted << ' ' << requests;
+      EXPECT_EQ(policy->next(state, mask, 0), state);
+    }
+  }
+}
+
+// The ages themselves.
+class PlainAges {
+ public:
+  Port winner(PortMask requests) {
+    std::optional<Port> winner;
+    for (const Port port : kList) {
+      std::uint64_t& age = ages_[port];
+      age = (requests & mask_of(port)) != 0 ? age + 1 : 0;
+      if (age > 0 && (!winner || age > ages_[*winner])) winner = port;
+    }
+    return *winner;
+  }
+  void grant(Port port) { ages_[port] = 0; }
+
+ private:
+  std::array<std::uint64_t, kPortCount> ages_{};
+};
+
+TEST(AgePolicy, LetsTheOldestRequestWinAsTheAgesThemselves) {
+  const auto policy = policy_of("age");
+  test::SplitMix64 random(1);
+  PlainAges ages;
+  State state = 0;
+  for (int cycle = 0; cycle < 100'000; ++cycle) {
+    const int share = cycle / 1000 % 4;  // of the ports that request
+    unsigned requests = 0;
+    for (std::size_t port = 0; port < kPortCount; ++port)
+      requests |= unsigned{random.chance(25 * share + 20)} << port;
+    if (requests == 0) {
+      state = policy->next(state, 0, 0);
+      ages = {};
+      continue;
+    }
+    const auto mask = static_cast<PortMask>(requests);
+    const Port winner = ages.winner(mask);
+    ASSERT_EQ(policy->winner(state, mask), winner) << cycle;
+    const bool is_granted = random.chance(70);
+    if (is_granted) ages.grant(winner);
+    state = policy->next(state, mask, is_granted ? mask_of(winner) : PortMask{0});
+  }
+}
+
+TEST(AgePolicy, HasOneStateForEachOrderOfWaitingPorts) {
+  const auto policy = policy_of("age");
+  const PortMask three = mask_of(kList[0]) | mask_of(kList[1]) | mask_of(kList[2]);
+  const State after_one = policy->next(0, three, 0);
+  EXPECT_EQ(policy->next(after_one, three, 0), after_one);  // all grow older
+  EXPECT_EQ(policy->next(after_one, three, mask_of(kList[2])),
+            policy->next(0, mask_of(kList[0]) | mask_of(kList[1]), 0));
+  EXPECT_EQ(policy->next(after_one, 0, 0), 0U);
+}
+
+}  // namespace
+}  // namespace stereotlm::memory

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::memory {
+
+// The ports of these tests.
+namespace port {
+inline constexpr Port kLeftLut = 0;
+inline constexpr Port kRightLut = 1;
+inline constexpr Port kLeftPixel = 2;
+inline constexpr Port kRightPixel = 3;
+inline constexpr Port kResult = 4;
+inline constexpr Port kHost = 5;
+}  // namespace port
+inline constexpr std::size_t kPortCount = 6;
+
+inline ArbiterConfig arbiter_of(const std::string& policy) {
+  return {policy,
+          {port::kHost, port::kResult, port::kLeftPixel, port::kRightPixel, port::kLeftLut, port::kRightLut}};
+}
+
+}  // namespace stereotlm::memory
