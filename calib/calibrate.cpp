@@ -12,7 +12,7 @@
 namespace stereotlm::calib {
 namespace {
 
-// Finds the grids. A pair without one in both pictures is skipped.
+// Finds the grids. Skips pairs without a grid in both pictures.
 void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
   const auto search = [&](const kernels::GrayImage& picture, const std::string& name) {
     GridSearch found = find_grid(picture, request.grid);
@@ -58,7 +58,7 @@ void check_places(const Rig& rig) {
   }
 }
 
-// Over the whole picture: where the model folds it over, nothing can be said of what the lens sees.
+// Whether the lens model covers the whole picture. Where it folds the picture over, it describes no lens.
 bool is_determined(const CameraModel& lens, const Rig& rig) {
   try {
     for (const int row : {0, rig.height - 1}) {
@@ -109,7 +109,8 @@ bool all_inside(const kernels::GrayImage& picture, const Corners& corners) {
   });
 }
 
-// Of pairs whose corners the rectified pictures hold, all of them.
+// The row error of corners that are found in the rectified pictures. Only pairs whose corners all lie in both
+// rectified pictures count.
 RowError found_again(const CalibrationRequest& request, const CalibrationResult& result) {
   const Calibration& made = result.calibration;
   RowErrors errors;
@@ -129,7 +130,7 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
   return errors.result();
 }
 
-// Each pair by a calibration without it. Many pairs are taken in groups.
+// Measures each pair with a calibration that leaves it out. If there are many pairs, groups are left out.
 HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std::vector<GridPair>& corners,
                  const std::vector<std::size_t>& pairs, Lens lens) {
   constexpr std::size_t kMostGroups = 20;
@@ -158,7 +159,7 @@ HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std
   return HeldOut{std::sqrt(squares / static_cast<double>(count)), rows.result()};
 }
 
-// Nothing if too few pairs would be left, or they do not make a calibration.
+// Nothing if too few pairs would be left, or if they determine no calibration.
 std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
                                 const std::vector<GridPair>& corners, Lens lens) {
   std::vector<std::size_t> pairs;

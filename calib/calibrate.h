@@ -21,30 +21,30 @@ struct PicturePair {
 struct CalibrationRequest {
   GridShape grid;
   std::vector<PicturePair> pictures;    // all of one size
-  int disparities = 80;                 // candidates of the board
+  int disparities = 80;                 // number of candidates of the board
   std::optional<int> disparity_offset;  // nothing: chosen so that the grid's disparities fit
 };
 
 // A pair in which the grid was found.
 struct CalibratedPair {
-  std::size_t picture = 0;  // of the request
+  std::size_t picture = 0;  // index in the request
   GridPair corners;
-  std::vector<bool> used;  // by corner: it fits
+  std::vector<bool> used;  // per corner: whether it fits
 };
 
 struct CalibrationResult {
-  Calibration calibration;  // without the sums of the tables
+  Calibration calibration;  // without the checksums of the tables
   TablePair tables;
   std::vector<CalibratedPair> pairs;
-  std::vector<LeftOutCorner> left_out;  // their pair: of `pairs`
-  Lens lens = Lens::kFull;              // without k3 if the grid was not seen where that shows
-  std::vector<std::string> skipped;     // pictures without grid: "'left04.jpg': no grid of .."
+  std::vector<LeftOutCorner> left_out;  // their pair is an index in `pairs`
+  Lens lens = Lens::kFull;              // without k3 if the grid was not seen where k3 has an effect
+  std::vector<std::string> skipped;     // one message per picture without grid: "'left04.jpg': no grid of .."
 };
 
-// From pictures of a grid to the tables: finds the corners, fits the rig to those that fit one, rectifies,
-// chooses the disparity offset, and measures how good all that is. Throws std::invalid_argument, with all
-// that is needed to mend it: too few pairs with a grid; cameras swapped or one above the other; disparities
-// that do not hold the grid's.
+// Makes tables from pictures of a grid: finds the corners, fits the rig and leaves out corners that do not
+// fit, rectifies, chooses the disparity offset, and measures the quality. Throws std::invalid_argument with a
+// message that names the cure: too few pairs with a grid; cameras swapped or one above the other; too few
+// disparities for the grid.
 CalibrationResult calibrate(const CalibrationRequest& request);
 
 }  // namespace stereotlm::calib

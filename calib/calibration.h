@@ -12,7 +12,8 @@
 
 namespace stereotlm::calib {
 
-// How well a rig explains the pairs that were left out when it was fitted to the others, each pair once.
+// How well a rig that was fitted to some pairs explains the pairs that were left out. Each pair is left out
+// once.
 struct HeldOut {
   double rms_px = 0;   // reprojection, over the pictures of both cameras
   RowError row_error;  // of rectified corners
@@ -23,10 +24,9 @@ struct Quality {
   double right_rms_px = 0;
   double stereo_rms_px = 0;  // over the pictures of both cameras
   RowError row_error;        // of rectified corners
-  RowError
-      found_again;  // of corners found in the rectified pictures themselves, nearest pixel as in the tables
+  RowError found_again;  // of corners found in the rectified pictures, whose pixels are rounded by the tables
   std::optional<HeldOut> held_out;  // nothing if there are too few pairs
-  DisparityRange disparities;       // of the grid, whole and true
+  DisparityRange disparities;       // of the grid, without the offset
 };
 
 // A pair of pictures in which the grid was found.
@@ -36,16 +36,16 @@ struct Source {
   std::size_t corners_used = 0;
 };
 
-// What the file of a calibration holds.
+// The contents of a calibration file.
 struct Calibration {
   GridShape grid;
   Rig rig;
   Rectification rectification;
-  int disparities = 0;  // that it was made for
+  int disparities = 0;  // number of candidates for which it was made
   int disparity_offset = 0;
   Quality quality;
   std::vector<Source> sources;
-  std::string left_lut_sha256;  // of the files of the tables
+  std::string left_lut_sha256;  // of the table files
   std::string right_lut_sha256;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 using Kind = StorageValue::Kind;
 
-// The whole text as a number.
+// The value as a number; the whole text must be one.
 template <typename Number>
 std::optional<Number> number_of(const StorageValue& value) {
   Number number = 0;
@@ -28,7 +28,7 @@ std::optional<Number> number_of(const StorageValue& value) {
   return number;
 }
 
-// Also what OpenCV writes for those that are not finite.
+// Accepts the words that OpenCV writes for numbers that are not finite.
 std::optional<double> double_of(const StorageValue& value) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (value.text == ".Inf") return kInfinity;
@@ -37,7 +37,7 @@ std::optional<double> double_of(const StorageValue& value) {
   return number_of<double>(value);
 }
 
-// A map of the file. `path`: what stands before its keys in messages.
+// Reads a map of the file. `path` precedes the keys in messages.
 class Reader {
  public:
   explicit Reader(const StorageValue& map, std::string path = "") : map_(map), path_(std::move(path)) {}

@@ -9,7 +9,7 @@
 namespace stereotlm::calib {
 namespace {
 
-// The lens: where a direction appears to come from, and the derivative of that.
+// A direction bent by the lens, and the derivative of the bent direction.
 struct Bent {
   Eigen::Vector2d direction;
   Eigen::Matrix2d derivative;
@@ -21,7 +21,8 @@ Bent bent(const std::array<double, 5>& distortion, const Eigen::Vector2d& direct
   const double y = direction.y();
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));  // of `radial`, by x is x times this
+  const double slope =
+      2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));  // the derivative of `radial` by x is x times this
   Bent result;
   result.direction = {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
                       y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
@@ -48,7 +49,7 @@ Eigen::Vector2d CameraModel::pixel(const Eigen::Vector2d& direction) const {
   return (matrix * bent(distortion, direction).direction.homogeneous()).hnormalized();
 }
 
-// Newton's method, from the direction that there would be without a lens.
+// Newton's method, starting at the direction without a lens.
 Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
   constexpr int kMostSteps = 50;
   constexpr double kCloseEnough = 1e-12;
@@ -56,7 +57,7 @@ Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
   Eigen::Vector2d result = seen;
   for (int step = 0; step < kMostSteps; ++step) {
     const Bent here = bent(distortion, result);
-    // Beyond the place where the lens folds the picture over, its derivative turns it round.
+    // Where the lens folds the picture over, the determinant of the derivative is no longer positive.
     if (!(here.derivative.determinant() > 0)) break;
     const Eigen::Vector2d error = here.direction - seen;
     if (error.norm() < kCloseEnough) return result;

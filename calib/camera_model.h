@@ -12,15 +12,15 @@ struct CameraModel {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // fx 0 cx; 0 fy cy; 0 0 1, pixels
   std::array<double, 5> distortion{};                    // k1, k2 (radial), p1, p2 (tangential), k3 (radial)
 
-  // How far from the axis (length of a direction) the lens maps directions one to one, going outwards; at
-  // most 10. Beyond, its polynomial bends the picture back into itself, which no lens does.
+  // The largest distance from the axis (length of a direction) up to which the lens maps directions one to
+  // one; at most 10. Beyond it the polynomial bends the picture back into itself, which no lens does.
   double widest() const;
 
-  // Where a direction is seen, in pixels; of directions beyond widest(), where the polynomial leads.
+  // The pixel at which a direction is seen. Beyond widest() it follows the polynomial.
   Eigen::Vector2d pixel(const Eigen::Vector2d& direction) const;
 
-  // The direction that is seen at a pixel. Throws std::domain_error if there is none within the part of the
-  // picture that the lens model describes one to one.
+  // The direction that is seen at a pixel. Throws std::domain_error if the lens model does not map a
+  // direction one to one to this pixel.
   Eigen::Vector2d direction(const Eigen::Vector2d& pixel) const;
 };
 

@@ -18,8 +18,8 @@ constexpr int kCaptionHeight = 24;  // pixels
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
 constexpr double kSmallestScale = 0.5;
-constexpr int kFractionBits = 4;  // of positions and lengths that OpenCV draws
-// Beyond this no position can be drawn on.
+constexpr int kFractionBits = 4;  // of the positions and lengths that OpenCV draws
+// Positions beyond this cannot be drawn.
 constexpr double kFarthest = 1e5;
 
 int fixed_point(double pixels) {

@@ -10,25 +10,25 @@
 
 namespace stereotlm::calib {
 
-// From the board's disparities to millimetres. Points are in camera coordinates of the ideal left camera: x
-// right, y down, z forward, mm.
+// Converts disparities of the board to millimetres. Points are in camera coordinates of the ideal left
+// camera: x right, y down, z forward, mm.
 struct DepthGeometry {
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();  // Rectification::q
-  int disparity_offset = 0;                     // what the left table leaves out of disparities and columns
+  int disparity_offset = 0;  // offset that the left table subtracts from columns and disparities
 
-  // What the board's output shows at (column, row), which need not be whole, with this disparity; nothing if
-  // it would not be in front of the camera at a finite distance.
+  // The point that the board's output shows at (column, row), which need not be whole, with this disparity.
+  // Nothing if the point is not in front of the camera at a finite distance.
   std::optional<Eigen::Vector3d> point(double column, double row, double disparity) const;
 };
 
-// Depth (z) of each pixel of the board's output, row by row, to the nearest millimetre; 0 where it has no
-// answer, or the depth is less than half a millimetre or above 65535.
+// Depth (z) of each pixel of the board's output, row by row, to the nearest millimetre. It is 0 where there
+// is no disparity, or where the depth is less than half a millimetre or above 65535.
 std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
                                              const kernels::GrayImage& disparity);
 
-// The points of all pixels with an answer as a PLY file (binary, little endian): x, y, z in mm as floats, and
-// the grey of the pixel of `rectified_left` as red, green, blue. Throws std::invalid_argument if the images
-// differ in size.
+// The points of all pixels with a disparity as a PLY file (binary, little endian): x, y, z in mm as floats,
+// and the grey of the pixel of `rectified_left` as red, green, blue. Throws std::invalid_argument if the
+// images differ in size.
 std::string point_cloud_ply(const DepthGeometry& geometry, const kernels::GrayImage& disparity,
                             const kernels::GrayImage& rectified_left);
 

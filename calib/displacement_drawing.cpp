@@ -19,7 +19,7 @@ std::uint32_t entry_at(const kernels::RectificationTable& table, int column, int
                        static_cast<std::size_t>(column)];
 }
 
-// Pixels; -1 where the entry is not valid.
+// The distance of each entry from its source in pixels; -1 where the entry is not valid.
 cv::Mat1f distances(const kernels::RectificationTable& table) {
   cv::Mat1f result(table.height, table.width);
   for (int row = 0; row < table.height; ++row) {
@@ -39,7 +39,7 @@ double largest(const cv::Mat1f& distances) {
   return std::max(most, 0.0);
 }
 
-// Of 0 to `most`; what is below is grey.
+// Colours for distances of 0 to `most`. Negative distances are grey.
 cv::Mat in_colors(const cv::Mat1f& distances, double most) {
   cv::Mat levels;
   distances.convertTo(levels, CV_8U, most > 0 ? 255 / most : 0);
@@ -49,7 +49,8 @@ cv::Mat in_colors(const cv::Mat1f& distances, double most) {
   return colors;
 }
 
-// White with a black edge, to be seen on every colour. A short one is all head, the shortest a point.
+// Draws an arrow in white with a black edge, so that it is visible on every colour. A short arrow is only a
+// head, the shortest a point.
 void draw_arrow(cv::Mat& panel, const cv::Point2d& from, const cv::Point2d& to) {
   constexpr double kLongestPoint = 1.5;  // pixels
   constexpr double kHeadLength = 6;      // pixels

@@ -42,7 +42,7 @@ Corners to_corners(const std::vector<cv::Point2f>& points) {
   return corners;
 }
 
-// Of a square board, turned by a quarter: (column, row) is seen at (row, last - column).
+// The corners of a square board that is turned by a quarter: (column, row) is seen at (row, last - column).
 Corners turned_by_quarter(const GridShape& shape, const Corners& corners) {
   Corners turned;
   for (int row = 0; row < shape.rows; ++row) {
@@ -53,7 +53,7 @@ Corners turned_by_quarter(const GridShape& shape, const Corners& corners) {
   return turned;
 }
 
-// How far the rows and columns of both run in the same directions.
+// How well the directions of rows and of columns agree: 2 if both are the same, -2 if both are opposite.
 double agreement(const GridShape& shape, const Corners& a, const Corners& b) {
   const auto along = [&shape](const Corners& corners, int column, int row) -> Eigen::Vector2d {
     return (corners[index_of(shape, column, row)] - corners.front()).normalized();
@@ -64,7 +64,7 @@ double agreement(const GridShape& shape, const Corners& a, const Corners& b) {
          along(a, 0, last_row).dot(along(b, 0, last_row));
 }
 
-// The mean of 3 x 3 pixels, of those that there are.
+// The mean of those of the 3 x 3 pixels that lie in the picture.
 double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& position) {
   const auto column = static_cast<int>(std::lround(position.x()));
   const auto row = static_cast<int>(std::lround(position.y()));
@@ -79,8 +79,8 @@ double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& positio
   return count > 0 ? sum / count : 0;
 }
 
-// How much two opposite of the squares around a corner are brighter than the other two. `right` and `down`
-// lead to the next corners.
+// How much two opposite squares at a corner are brighter than the other two. `right` and `down` lead to the
+// next corners.
 double contrast(const kernels::GrayImage& picture, const Eigen::Vector2d& corner,
                 const Eigen::Vector2d& right, const Eigen::Vector2d& down) {
   constexpr double kReach = 0.35;  // of a square
@@ -90,7 +90,7 @@ double contrast(const kernels::GrayImage& picture, const Eigen::Vector2d& corner
          grey_at(picture, corner + rising) - grey_at(picture, corner - rising);
 }
 
-// Whether corners are all that a chessboard has.
+// Checks that the corners are all corners of a chessboard.
 class Squares {
  public:
   Squares(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners)
@@ -107,10 +107,9 @@ class Squares {
     without_lens_ = to_eigen<Eigen::Matrix3d>(cv::findHomography(on_board, seen));
   }
 
-  // Whether the corners alternate as those of a chessboard do. They do not where a line in between was
-  // missed.
+  // Whether the corners alternate as those of a chessboard do. They do not if a line between them was missed.
   bool alternate() const {
-    constexpr double kAtLeast = 0.9;  // the rest is for single corners that cannot be seen well
+    constexpr double kAtLeast = 0.9;  // single corners may be hard to see
     double sum = 0;
     double most = 0;
     for (int row = 0; row < shape_.rows; ++row) {
@@ -123,8 +122,8 @@ class Squares {
     return std::abs(sum) > kAtLeast * most;
   }
 
-  // Whether there are more lines of corners than those found. On the edge of the outermost squares, where one
-  // or two of the four squares around a point are missing, the contrast is half that of a corner.
+  // Whether there are more lines of corners than those found. At the edge of the outermost squares one or two
+  // of the four squares at a point are missing, and the contrast is half that of a corner.
   bool continue_outside() const {
     constexpr double kAtLeast = 0.72;
     const auto exceeds = [](double beyond, double within) {
@@ -139,7 +138,7 @@ class Squares {
   }
 
  private:
-  // Of one beyond the corners found: where their plane leads, bent as its neighbour is.
+  // The position of a corner. Beyond the corners found it follows their plane, bent as at its neighbour.
   Eigen::Vector2d corner(int column, int row) const {
     const int inner_column = std::clamp(column, 0, shape_.columns - 1);
     const int inner_row = std::clamp(row, 0, shape_.rows - 1);
@@ -183,7 +182,7 @@ class Squares {
 }  // namespace
 
 GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) {
-  constexpr int kSmallest = 16;  // pixels each way: what OpenCV's search takes
+  constexpr int kSmallest = 16;  // pixels each way: the least that OpenCV's search accepts
   std::vector<cv::Point2f> points;
   if (std::min(picture.width, picture.height) < kSmallest ||
       !cv::findChessboardCorners(view(picture), {shape.columns, shape.rows}, points,

@@ -5,7 +5,7 @@
 
 namespace stereotlm::calib {
 
-// The corners of a pair, where they are in its rectified pictures.
+// The corners of a pair in its rectified pictures.
 GridPair rectified(const Rig& rig, const Rectification& rectification, const GridPair& pair);
 
 struct RowError {
@@ -14,7 +14,7 @@ struct RowError {
   std::size_t corners = 0;
 };
 
-// Collects how far rows of the same corner lie apart in the two pictures.
+// Collects the distances between the rows of the same corner in the two pictures.
 class RowErrors {
  public:
   void add(const Eigen::Vector2d& left, const Eigen::Vector2d& right);
@@ -26,17 +26,18 @@ class RowErrors {
   std::size_t count_ = 0;
 };
 
-// Disparities x_left - x_right of what the rig is to see.
+// Disparities x_left - x_right that the rig has to cover.
 struct DisparityRange {
   double min = 0;
   double max = 0;
 
-  // Candidates from the whole disparity below the least to that above the largest.
+  // Number of candidates from the whole disparity below `min` to the whole disparity above `max`.
   int needed() const;
 };
 
-// Throws std::invalid_argument if `range` needs more than `disparities` candidates: what `auto` chooses,
-// which leaves as much room on its near side as on its far side, and is not below 0 unless it must.
+// The offset that `auto` chooses. It leaves the same room on the near and the far side of `range`, and is
+// negative only if `range` is. Throws std::invalid_argument if `range` needs more than `disparities`
+// candidates.
 int disparity_offset_for(const DisparityRange& range, int disparities);
 
 }  // namespace stereotlm::calib

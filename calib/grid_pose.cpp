@@ -10,7 +10,7 @@ namespace {
 
 using Step = Eigen::Matrix<double, 6, 1>;  // rotation vector (rad), translation (mm)
 
-// Only to begin with.
+// The starting point of the fit.
 Eigen::Isometry3d pose_from_left(const Rig& rig, const std::vector<Eigen::Vector3d>& points,
                                  const Corners& corners) {
   std::vector<cv::Point3d> object;

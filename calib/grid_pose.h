@@ -7,8 +7,9 @@
 
 namespace stereotlm::calib {
 
-// Where the grid is, from its own coordinates to those of the left camera, such that the corners used are
-// seen nearest to where they were found: least squares over both cameras (Gauss-Newton).
+// The pose of the grid: from its own coordinates to those of the left camera. It minimises the squared
+// distances, over both cameras, between where the used corners were found and where they would be seen
+// (Gauss-Newton).
 Eigen::Isometry3d grid_pose(const Rig& rig, const GridShape& shape, const GridPair& pair,
                             const std::vector<bool>& used);
 

@@ -21,7 +21,7 @@ std::vector<std::string> problems(const GridShape& shape);
 // The inner corners on the chessboard, row by row, z = 0, in mm; the first is the origin.
 std::vector<Eigen::Vector3d> corner_points(const GridShape& shape);
 
-// Of one picture, in the order of corner_points(), pixels.
+// The corners in one picture, in the order of corner_points(), in pixels.
 using Corners = std::vector<Eigen::Vector2d>;
 
 }  // namespace stereotlm::calib

@@ -19,12 +19,12 @@ namespace {
 constexpr double kPointsPerMm = 72 / 25.4;
 constexpr double kLargestPageMm = 14400 / kPointsPerMm;
 constexpr double kLeastMarginMm = 10;
-constexpr double kPrintHeightMm = 10;  // below the margin under the board: the small print and as much white
+constexpr double kPrintHeightMm = 10;  // below the margin under the board: half small print, half white
 constexpr double kFontSizeMm = 2.8;
 constexpr int kRulerMm = 100;
 constexpr double kLineMm = 0.2;
 
-// A4 and A3, both ways round.
+// A4 and A3, landscape and portrait.
 constexpr std::array<std::pair<double, double>, 4> kPages = {
     {{297, 210}, {210, 297}, {420, 297}, {297, 420}}};
 constexpr double kNarrowestPageMm = 210;
@@ -41,7 +41,7 @@ using Context = std::unique_ptr<cairo_t, DestroyContext>;
 double board_width(const GridShape& shape) { return (shape.columns + 1) * shape.square_mm; }
 double board_height(const GridShape& shape) { return (shape.rows + 1) * shape.square_mm; }
 
-// The board in the middle of what the small print leaves.
+// Places the board in the middle of the page above the small print.
 GridSheet with_board(const GridShape& shape, double width_mm, double height_mm) {
   return {width_mm, height_mm, (width_mm - board_width(shape)) / 2,
           (height_mm - kPrintHeightMm - board_height(shape)) / 2};
@@ -58,10 +58,10 @@ struct Line {
 struct Text {
   std::string words;
   double x, bottom;  // mm
-  bool ends_at_x;    // or begins there
+  bool ends_at_x;    // else it begins there
 };
 
-// What is on the page; all of it is black.
+// The contents of the page, all in black.
 struct Drawing {
   GridSheet sheet;
   std::vector<Box> squares;
@@ -82,7 +82,7 @@ std::vector<Box> squares_of(const GridShape& shape, const GridSheet& sheet) {
   return squares;
 }
 
-// A tick every 10 mm, up from `bottom`.
+// A ruler with a tick every 10 mm, upwards from `bottom`.
 std::vector<Line> ruler_at(double left, double bottom) {
   std::vector<Line> lines = {{left, bottom, left + kRulerMm, bottom}};
   for (int mm = 0; mm <= kRulerMm; mm += 10) {
@@ -98,7 +98,7 @@ std::string small_print(const GridShape& shape) {
 }
 
 Drawing drawing_of(const GridShape& shape) {
-  constexpr double kPrintWidthMm = 198;  // the ruler begins it, the text ends it
+  constexpr double kPrintWidthMm = 198;  // from the beginning of the ruler to the end of the text
   const GridSheet sheet = grid_sheet(shape);
   const double left = (sheet.width_mm - kPrintWidthMm) / 2;
   const double bottom = sheet.height_mm - kPrintHeightMm / 2;
@@ -125,7 +125,7 @@ void draw(cairo_t* context, const Drawing& drawing) {
   }
   cairo_set_line_width(context, kLineMm);
   cairo_stroke(context);
-  // Cairo's own letters: the same on every machine, and no time to look for fonts.
+  // Cairo's own letters are the same on every machine, and need no search for fonts.
   cairo_select_font_face(context, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(context, kFontSizeMm);
   for (const Text& text : drawing.texts) {
@@ -136,7 +136,7 @@ void draw(cairo_t* context, const Drawing& drawing) {
   }
 }
 
-// Draws and finishes. `units_per_mm`: of the surface.
+// Draws and finishes the surface, which has `units_per_mm`.
 void draw(cairo_surface_t* surface, const Drawing& drawing, double units_per_mm) {
   const Context context(cairo_create(surface));
   cairo_scale(context.get(), units_per_mm, units_per_mm);
@@ -155,7 +155,7 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count
   return CAIRO_STATUS_SUCCESS;
 }
 
-// For the SVG: what is left of a sum without its error of the last digits.
+// Removes rounding errors in the last digits, for the SVG.
 double rounded(double mm) {
   constexpr double kParts = 1e6;
   return std::round(mm * kParts) / kParts;
@@ -198,7 +198,7 @@ std::string grid_sheet_pdf(const GridShape& shape) {
   return bytes;
 }
 
-// Not by Cairo, which rounds places to 1/256 of a unit and numbers all that a process draws.
+// Cairo is not used: it rounds positions to 1/256 of a unit, and numbers all drawings of a process.
 std::string grid_sheet_svg(const GridShape& shape) {
   const Drawing drawing = drawing_of(shape);
   const double width = rounded(drawing.sheet.width_mm);
@@ -228,7 +228,7 @@ std::string grid_sheet_svg(const GridShape& shape) {
 }
 
 kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm) {
-  constexpr double kMostPixels = 32767;  // of Cairo's image surfaces
+  constexpr double kMostPixels = 32767;  // limit of Cairo's image surfaces
   const Drawing drawing = drawing_of(shape);
   const GridSheet& sheet = drawing.sheet;
   const double width = std::ceil(sheet.width_mm * pixels_per_mm);

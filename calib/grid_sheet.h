@@ -12,24 +12,25 @@ namespace stereotlm::calib {
 struct GridSheet {
   double width_mm = 0;
   double height_mm = 0;
-  // The corner at the top left of the squares, from that of the page.
+  // The top left corner of the squares, from the top left corner of the page.
   double board_left_mm = 0;
   double board_top_mm = 0;
 };
 
-// The first page that leaves the board white on all sides for half a square, and for 10 mm at least: A4
-// landscape, A4 portrait, A3 landscape, A3 portrait. If there is none, the first that leaves it 10 mm; then
-// one made to measure, half a square again, but no narrower than A4. Throws std::invalid_argument with all
-// problems(shape), or if the page would be larger than a PDF's can be, 5080 mm (14400 pt).
+// The first of A4 landscape, A4 portrait, A3 landscape and A3 portrait that leaves a white margin of half a
+// square, and of at least 10 mm, around the board. If there is none, the first that leaves 10 mm. If there is
+// none, a page made to measure with a margin of half a square, but no narrower than A4. Throws
+// std::invalid_argument with all problems(shape), or if the page would be larger than the limit of PDF, 5080
+// mm (14400 pt).
 GridSheet grid_sheet(const GridShape& shape);
 
-// Files as bytes, to be printed at 100 %: every edge is within 1/1000 mm of its place. The same shape gives
-// the same bytes. Both throw as grid_sheet().
+// Files as bytes, to be printed at 100 %. Every edge is within 1/1000 mm of its place. The same shape gives
+// the same bytes. Both throw as grid_sheet() does.
 std::string grid_sheet_pdf(const GridShape& shape);
 std::string grid_sheet_svg(const GridShape& shape);
 
-// The page as pixels; x mm from its left edge are at column x * pixels_per_mm - 0.5. Throws as grid_sheet(),
-// and if the picture would have no pixel or more than 32767 in a row or column.
+// The page as pixels: x mm from its left edge is column x * pixels_per_mm - 0.5. Throws as grid_sheet() does,
+// and if the picture would have no pixel, or more than 32767 in a row or column.
 kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm);
 
 }  // namespace stereotlm::calib

@@ -11,10 +11,10 @@ namespace stereotlm::calib {
 // The file of a table: its entries row by row, 32 bits each, little endian.
 std::string lut_bytes(const kernels::RectificationTable& table);
 
-// How many bytes the file of a table for images of this size has.
+// The size in bytes of the table file for images of this size.
 std::size_t lut_byte_count(int width, int height);
 
-// Throws std::runtime_error if that is not the file of a table for images of this size, or an entry is none.
+// Throws std::runtime_error if the bytes are not a table for images of this size, or if an entry is broken.
 kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height);
 
 }  // namespace stereotlm::calib

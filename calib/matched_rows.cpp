@@ -11,11 +11,11 @@ namespace stereotlm::calib {
 namespace {
 
 constexpr int kMostPoints = 150;
-constexpr int kReach = 7;     // of the window around a point, pixels
+constexpr int kReach = 7;     // of the window around a point to each side, pixels
 constexpr int kMostRows = 8;  // above and below
 constexpr float kAlike = 0.9F;
 
-// Where between its neighbours the largest of three values would be: -0.5 .. 0.5.
+// The position of the maximum between the neighbours of the largest of three values: -0.5..0.5.
 double between(double before, double largest, double after) {
   const double bend = before - 2 * largest + after;
   return bend < 0 ? 0.5 * (before - after) / bend : 0;

@@ -6,14 +6,14 @@
 namespace stereotlm::calib {
 
 struct MatchedRows {
-  std::size_t points = 0;  // conspicuous ones of the left picture that could be looked for
-  RowError error;          // of those that were found
+  std::size_t points = 0;  // distinctive points of the left picture that were searched for
+  RowError error;          // of the points that were found
 };
 
-// How well the rows of two rectified pictures agree, from what they show: the most conspicuous points of the
-// left one are looked for in the right one, 0 .. disparities-1 columns to the left and up to 8 rows above or
-// below, and those found beyond doubt count. A hint whether the tables belong to the cameras: those of the
-// rig itself come out below one pixel. Costs some 20 ms at 640x480. Throws std::invalid_argument if the
+// Measures how well the rows of two rectified pictures agree. The most distinctive points of the left picture
+// are searched for in the right one, 0..disparities-1 columns to the left and up to 8 rows above or below.
+// Only reliable matches count. The result indicates whether the tables belong to the cameras: the tables of
+// the rig itself give less than one pixel. Takes about 20 ms at 640x480. Throws std::invalid_argument if the
 // pictures differ in size.
 MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
 

@@ -7,7 +7,7 @@
 
 #include "models/kernels/gray_image.h"
 
-// For the files of this folder that use OpenCV, whose own header for Eigen depends on the order of includes.
+// Conversions between Eigen and OpenCV. OpenCV's own header for Eigen depends on the order of includes.
 namespace stereotlm::calib {
 
 template <typename Derived>
@@ -39,7 +39,8 @@ Matrix to_eigen(const cv::Mat& matrix) {
   return result;
 }
 
-// The same pixels, not copied: the image must outlive the result, which must not be written to.
+// Shares the pixels of the image, which must outlive the result. The result must not be written to: OpenCV
+// has no read-only view.
 inline cv::Mat view(const kernels::GrayImage& image) {
   return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data())};
 }

@@ -6,8 +6,8 @@
 namespace stereotlm::calib {
 namespace {
 
-// From camera coordinates of the camera to homogeneous pixels of its rectified picture; what P2's last column
-// adds is the distance between the cameras, which does not move the directions of either.
+// From camera coordinates of the camera to homogeneous pixels of its rectified picture. The last column of P2
+// adds the distance between the cameras, which does not change directions.
 Eigen::Matrix3d to_rectified(const Eigen::Matrix3d& rotation, const Projection& projection) {
   return projection.leftCols<3>() * rotation;
 }

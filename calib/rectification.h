@@ -9,8 +9,8 @@ namespace stereotlm::calib {
 
 using Projection = Eigen::Matrix<double, 3, 4>;
 
-// Two ideal cameras in place of those of a rig, with parallel axes, one focal length and one principal point,
-// that see a point in the same row. Names as in OpenCV's stereoRectify.
+// Two ideal cameras that replace those of a rig. They have parallel axes, the same focal length and the same
+// principal point, and see a point in the same row. Names as in OpenCV's stereoRectify.
 struct Rectification {
   // Camera coordinates of an ideal camera = r1 (r2) * those of the left (right) camera.
   Eigen::Matrix3d r1 = Eigen::Matrix3d::Identity();
@@ -23,16 +23,16 @@ struct Rectification {
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
 };
 
-// The rectified pictures have the size of the rig's, and hold no pixel that the cameras did not see.
+// The rectified pictures have the size of the rig's pictures, and contain only pixels that the cameras saw.
 Rectification rectify(const Rig& rig);
 
-// Where a pixel of a camera's picture is in its rectified one. `rotation` and `projection`: r1 and p1, or r2
-// and p2. Throws as CameraModel::direction.
+// The position in the rectified picture of a pixel of a camera's picture. `rotation` and `projection` are r1
+// and p1, or r2 and p2. Throws as CameraModel::direction() does.
 Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
                                 const Projection& projection, const Eigen::Vector2d& pixel);
 
-// The other way: the pixel of the camera's picture that is seen at a position of the rectified one. Nothing
-// if that is behind the camera or beyond what its lens sees (CameraModel::widest()).
+// The reverse: the pixel of the camera's picture that is seen at a position of the rectified picture. Nothing
+// if the position is behind the camera or beyond the view of its lens (CameraModel::widest()).
 class SourcePixels {
  public:
   SourcePixels(const CameraModel& camera, const Eigen::Matrix3d& rotation, const Projection& projection);

@@ -17,7 +17,7 @@ struct Rig {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-// Where the two cameras see a point, given in camera coordinates of the left one: pixels.
+// The pixels at which the two cameras see a point, which is in camera coordinates of the left camera.
 struct SeenPoint {
   Eigen::Vector2d left;
   Eigen::Vector2d right;

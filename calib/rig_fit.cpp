@@ -17,10 +17,10 @@ namespace {
 using Used = std::vector<std::vector<bool>>;
 
 constexpr double kMostMedians = 8;
-constexpr double kAlwaysFits = 0.1;  // pixels: no camera sees corners better
+constexpr double kAlwaysFits = 0.1;  // pixels: no camera sees corners more exactly
 constexpr int kMostRounds = 20;
 
-// The corners used, in OpenCV's form: a pair without any is not there.
+// The used corners in OpenCV's form, without pairs that have none.
 struct Observations {
   std::vector<std::vector<cv::Point3f>> points;
   std::vector<std::vector<cv::Point2f>> left;
@@ -58,7 +58,7 @@ CameraModel to_camera(const cv::Mat& matrix, const cv::Mat& distortion) {
   return camera;
 }
 
-// One camera by itself, and where it sees the grid of each pair.
+// The fit of one camera alone, with the pose of the grid in each pair.
 struct SingleFit {
   cv::Mat matrix;
   cv::Mat distortion;
@@ -87,7 +87,7 @@ SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv:
   });
 }
 
-// From the two cameras' parameters.
+// Starts at the parameters of the two cameras.
 Rig solve(const Observations& seen, const CameraModel& left, const CameraModel& right, cv::Size size,
           Lens lens) {
   return or_refused([&] {
@@ -125,8 +125,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Pairs after which the right camera is where the others say: a grid that moved between the two pictures of a
-// pair would spoil the fit to all, and then nothing fits.
+// The pairs that agree about the place of the right camera. A grid that moved between the two pictures of a
+// pair would spoil the fit to all pairs.
 Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
   constexpr double kMostShare = 0.02;  // of the distance of the grid
   std::array<std::vector<double>, 3> places;

@@ -18,8 +18,8 @@ using kernels::GrayImage;
 // Levels before they are rounded, row by row.
 using Levels = std::vector<float>;
 
-// Every level mixed with its neighbours: of `count` levels that are `step` apart. The first and the last
-// repeat.
+// Mixes every level with its neighbours, for `count` levels that are `step` apart. The first and the last
+// level repeat.
 void mix(const float* in, float* out, std::size_t count, std::size_t step) {
   constexpr float kNeighbour = 0.15F;
   for (std::size_t i = 0; i < count; ++i) {
@@ -72,7 +72,8 @@ std::vector<SceneCamera::Corner> SceneCamera::corners_above(int row, const Scene
   return result;
 }
 
-// The middle and the corners, which the neighbours share, are enough, unless an edge crosses the pixel.
+// Samples the middle and the corners, which neighbouring pixels share. If an edge crosses the pixel, it takes
+// more samples.
 double SceneCamera::level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
                           const Corner& d) const {
   constexpr double kEdge = 95;

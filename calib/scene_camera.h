@@ -9,27 +9,27 @@
 
 namespace stereotlm::calib {
 
-// A camera at a place of the scene, with a lens that is not quite sharp. It keeps a ray for every pixel: they
-// cost more to find than most pictures.
+// A camera at a place of the scene, with a lens that is slightly blurred. It keeps a ray for every pixel,
+// because finding the rays takes longer than rendering most pictures.
 class SceneCamera {
  public:
-  // `to_scene`: from directions in camera coordinates to those in the scene's. Throws as
-  // CameraModel::direction.
+  // `to_scene` turns directions in camera coordinates to scene coordinates. Throws as
+  // CameraModel::direction() does.
   SceneCamera(const CameraModel& model, const Eigen::Vector3d& place, const Eigen::Matrix3d& to_scene,
               int width, int height);
 
   const Eigen::Vector3d& place() const { return place_; }
 
-  // Every pixel is a mean; where an edge crosses it, of 64 samples. The rays are exact through the corners of
-  // the pixels and interpolated between them, at 320 x 240 less than 0.001 pixels off.
+  // Every pixel is a mean of samples, of 64 where an edge crosses it. The rays are exact at the corners of
+  // the pixels and interpolated between them, with an error below 0.001 pixels at 320 x 240.
   kernels::GrayImage picture(const SceneSurfaces& surfaces) const;
 
  private:
   struct Corner;
 
-  // Of a row of pixels.
+  // The corners above a row of pixels.
   std::vector<Corner> corners_above(int row, const SceneSurfaces& surfaces) const;
-  // Of the pixel between the corners a and b above, c and d below.
+  // The level of the pixel between the corners a and b above, c and d below.
   double level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
                const Corner& d) const;
 

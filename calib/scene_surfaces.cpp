@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
-// std::floor is a call.
+// The floor of a value; std::floor would be a function call.
 std::int64_t below(double value) {
   const auto towards_zero = static_cast<std::int64_t>(value);
   return towards_zero - (value < static_cast<double>(towards_zero) ? 1 : 0);
 }
 
-// 0..1, at a point of a lattice.
+// A random value of 0..1 at a point of a lattice.
 double lattice(std::uint64_t seed, std::int64_t column, std::int64_t row) {
   const std::uint64_t position = static_cast<std::uint64_t>(row) << 32U ^ static_cast<std::uint64_t>(column);
   return unit(mixed(seed + position * kSplitMixStep));
@@ -26,7 +26,7 @@ double lattice(std::uint64_t seed, std::int64_t column, std::int64_t row) {
 
 double smooth(double part) { return part * part * (3 - 2 * part); }
 
-// 0..1, between the points of a lattice.
+// A value of 0..1, interpolated between the points of a lattice.
 double value_noise(std::uint64_t seed, double x, double y) {
   const std::int64_t column = below(x);
   const std::int64_t row = below(y);
@@ -76,7 +76,7 @@ Plane::Plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& across, const
 
 double Plane::meets(const Ray& ray) const {
   const double t = normal_.dot(origin_ - ray.origin) / normal_.dot(ray.direction);
-  // Also not if the ray is parallel to the plane, or in it.
+  // This includes rays that are parallel to the plane or lie in it.
   if (!(t > 0) || !std::isfinite(t)) return kNowhere;
   if (!extent_.contains(position(ray.at(t)))) return kNowhere;
   return t;

@@ -10,7 +10,7 @@
 
 #include "calib/grid_shape.h"
 
-// What the cameras of a synthetic rig look at. Lengths are in mm.
+// The surfaces in front of the cameras of a synthetic rig. Lengths are in mm.
 namespace stereotlm::calib {
 
 // The points origin + t * direction, t > 0.
@@ -21,27 +21,26 @@ struct Ray {
   Eigen::Vector3d at(double t) const { return origin + t * direction; }
 };
 
-// A grey level, 0..255, for every position on a surface; what a unit of length is, the surface says.
+// A grey level, 0..255, for every position on a surface. The surface defines the unit of length.
 using Texture = std::function<double(const Eigen::Vector2d& position)>;
 
-// Smooth noise of four sizes, one unit and two, four and eight, around a level: nowhere flat, and no detail
-// finer than a unit.
+// Smooth noise around a level, with details of one, two, four and eight units. It is flat nowhere.
 Texture noise(std::uint64_t seed, double level);
 
-// A unit is a square, the first inner corner is the origin, and the square above and to the left of it is
-// black. White around the squares.
+// A chessboard on white. The unit is a square and the first inner corner is the origin; the square above and
+// to the left of it is black.
 Texture chessboard(const GridShape& shape);
 
-// `across` and `down` are a unit of the texture: at right angles, from the origin of the texture. The plane
-// ends where `extent`, in units of the texture, does. Both sides look the same.
+// A plane with the origin of its texture at `origin`. `across` and `down` are one unit of the texture each,
+// at right angles. `extent`, in these units, limits the plane. Both sides look the same.
 class Plane {
  public:
   Plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& across, const Eigen::Vector3d& down,
         const Eigen::AlignedBox2d& extent, Texture texture);
 
-  // t of the first point, infinite if there is none.
+  // t of the first point on the ray, infinite if there is none.
   double meets(const Ray& ray) const;
-  // Of a point on the surface.
+  // The level of a point on the surface.
   double level(const Eigen::Vector3d& point) const { return texture_(position(point)); }
 
  private:
@@ -55,13 +54,13 @@ class Plane {
   Texture texture_;
 };
 
-// Painted as by a projector far away on the z axis, `unit_mm` to a unit of the texture: it looks as fine at
-// the rim as in the middle.
+// A sphere whose texture is projected from far away along the z axis, so that it looks as fine at the rim as
+// in the middle. A unit of the texture is `unit_mm`.
 class Sphere {
  public:
   Sphere(const Eigen::Vector3d& centre, double radius, double unit_mm, Texture texture);
 
-  // As those of a plane.
+  // As for a plane.
   double meets(const Ray& ray) const;
   double level(const Eigen::Vector3d& point) const;
 
@@ -74,14 +73,14 @@ class Sphere {
 
 class SceneSurfaces {
  public:
-  // `background`: the level where there is nothing.
+  // `background` is the level where a ray meets no surface.
   SceneSurfaces(std::vector<std::variant<Plane, Sphere>> surfaces, double background);
 
-  // The first point on a ray.
+  // The first point of a surface on a ray.
   std::optional<Eigen::Vector3d> first(const Ray& ray) const;
-  // Whether nothing lies between the two; `point` is on a surface.
+  // Whether no surface lies between the eye and `point`, which is on a surface.
   bool visible(const Eigen::Vector3d& eye, const Eigen::Vector3d& point) const;
-  // What is seen along a ray.
+  // The level that is seen along a ray.
   double level(const Ray& ray) const;
 
  private:

@@ -20,7 +20,7 @@ struct SourceRows {
   int count() const { return last < first ? 0 : last - first + 1; }
 };
 
-// Of each row of the rectified picture.
+// The source rows of each row of the rectified picture.
 std::vector<SourceRows> rows_of(const kernels::RectificationTable& table) {
   std::vector<SourceRows> rows(static_cast<std::size_t>(table.height));
   auto entry = table.entries.begin();

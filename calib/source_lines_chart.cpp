@@ -31,7 +31,7 @@ struct Curve {
 
 int lines_of(std::size_t index) { return 1 + 2 * static_cast<int>(index); }
 
-// The largest number of lines over the picture, and the mean.
+// Curves of the largest number of lines over the picture, and of the mean.
 std::vector<Curve> curves_of(const kernels::RectificationTable& table, const std::string& side,
                              const cv::Scalar& color, Mark mark) {
   Curve largest{side + ", maximum", color, 2, mark, {}};

@@ -25,7 +25,7 @@ using Kind = StorageValue::Kind;
 
 int line_of(const YAML::Mark& mark) { return mark.is_null() ? 1 : mark.line + 1; }
 
-// Makes values of what yaml-cpp's parser meets.
+// Builds values from the events of yaml-cpp's parser.
 class Builder : public YAML::EventHandler {
  public:
   StorageValue take_root() { return std::move(root_); }
@@ -109,10 +109,10 @@ class Builder : public YAML::EventHandler {
 
   int documents_ = 0;
   StorageValue root_;
-  std::vector<StorageValue> open_;  // the outermost first
+  std::vector<StorageValue> open_;  // open maps and lists, the outermost first
 };
 
-// yaml-cpp ends at some of them, and leaves others as they are.
+// Refuses control characters: yaml-cpp stops at some of them and accepts others.
 void check_characters(const std::string& text) {
   int line = 1;
   for (const char character : text) {

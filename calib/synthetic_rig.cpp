@@ -24,7 +24,7 @@ constexpr kernels::IntegerRule kGridSideRule{1, 1000};
 constexpr double kGridBackground = 115;
 constexpr double kPi = 3.14159265358979323846;
 
-// What is drawn from the seed, so that one does not depend on how much another draws.
+// Each of these has its own random numbers, so that none depends on how many another takes.
 enum class Drawn : std::uint64_t { rig, scene, poses };
 
 SplitMix random_for(std::uint64_t seed, Drawn drawn) {
@@ -33,7 +33,7 @@ SplitMix random_for(std::uint64_t seed, Drawn drawn) {
 
 double radians(double degrees) { return degrees * (kPi / 180); }
 
-// The larger side of the 4:3 picture around this one.
+// The width of the smallest 4:3 picture that contains this one.
 double full_width(int width, int height) { return std::max<double>(width, height * 4.0 / 3.0); }
 
 CameraModel random_camera(SplitMix& random, int width, int height) {
@@ -64,23 +64,23 @@ Rig random_rig(std::uint64_t seed, int width, int height) {
   return rig;
 }
 
-// The finest texture that the cameras resolve at a distance, mm.
+// The finest texture in mm that the cameras resolve at a distance.
 double unit_at(double distance, const Rig& rig) {
   constexpr double kPixels = 2;
   return kPixels * distance / rig.left.matrix(0, 0);
 }
 
-// Upright, then tilted, then turned.
+// A rectangle that stands upright, is tilted, then turned.
 struct Rectangle {
   Vector3d middle;
   double turn;           // degrees
   double tilt;           // degrees
   Vector2d size;         // mm
-  double foreshortened;  // how many times it looks lower than it is
+  double foreshortened;  // the factor by which it looks lower than it is
   double level;
 };
 
-// What is drawn is drawn in braces, which unlike parentheses keep the order.
+// Random numbers are drawn inside braces, which evaluate in order; parentheses do not.
 SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
   SplitMix random = random_for(seed, Drawn::scene);
   std::vector<std::variant<Plane, Sphere>> surfaces;
@@ -115,7 +115,7 @@ SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
   return {std::move(surfaces), 0};
 }
 
-// The inner corners and the outer ones, all around the black and white squares.
+// The inner corners and the corners at the border of the black and white squares.
 std::vector<Vector3d> square_corners(const GridShape& shape) {
   std::vector<Vector3d> points = corner_points({shape.columns + 2, shape.rows + 2, shape.square_mm});
   for (Vector3d& point : points) point -= Vector3d(shape.square_mm, shape.square_mm, 0);
@@ -131,13 +131,13 @@ void check(const GridShape& shape, int number) {
   if (number < 0) throw std::invalid_argument("number = " + std::to_string(number) + ": must be 0 or more");
 }
 
-// Whether there is a pixel of a width x height picture at a position.
+// Whether a position lies on a pixel of a width x height picture.
 bool inside(const Vector2d& position, int width, int height) {
   return position.x() >= -0.5 && position.x() < width - 0.5 &&  //
          position.y() >= -0.5 && position.y() < height - 0.5;
 }
 
-// Where a camera sees a point in its own coordinates; nothing if not.
+// The pixel at which a camera sees a point in its own coordinates; nothing if it does not see it.
 std::optional<Vector2d> pixel_of(const CameraModel& camera, const Vector3d& point, int width, int height) {
   if (!(point.z() > 0)) return std::nullopt;
   const Vector2d pixel = camera.pixel(point.hnormalized());
@@ -172,8 +172,8 @@ SyntheticRig::CornerPair SyntheticRig::grid_corners(const GridShape& shape, int 
   return seen(points).value();
 }
 
-// Sizes and tilts follow from the number, so that a few poses are well spread; the place is drawn until the
-// squares are inside both pictures, from a little farther away each time.
+// Size and tilt follow from the number, so that a few poses are well spread. Places are drawn, each a little
+// farther away, until the squares lie inside both pictures.
 Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) const {
   check(shape, number);
   constexpr int kMostDraws = 500;
@@ -185,7 +185,8 @@ Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) co
   const Vector2d middle = Vector2d(shape.columns - 1, shape.rows - 1) * shape.square_mm / 2;
   const Vector2d squares = Vector2d(shape.columns + 1, shape.rows + 1) * shape.square_mm;
   const double focal = rig_.left.matrix(0, 0);
-  // What they fill of a side of the picture, and how far apart across it the cameras see them at most.
+  // The part of a side of the picture that the squares fill, and the largest disparity as a part of the
+  // width.
   const double part = 0.4 + 0.3 * std::fmod(number * kGoldenRatio, 1.0);
   constexpr double kApart = 0.25;
   double distance = focal * std::max({squares.x() / rig_.width / part, squares.y() / rig_.height / part,
@@ -213,7 +214,7 @@ Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) co
                           std::to_string(rig_.height) + " pixels show");
 }
 
-// Points in coordinates of the left camera, where the cameras see them; nothing unless both see all.
+// Where the cameras see points given in coordinates of the left camera; nothing unless both see all points.
 std::optional<SyntheticRig::CornerPair> SyntheticRig::seen(const std::vector<Vector3d>& points) const {
   CornerPair result;
   for (const Vector3d& point : points) {

@@ -39,7 +39,7 @@ TablePair tables(const Rig& rig, const Rectification& rectification, int dispari
 
 bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification& rectification,
                    int disparity_offset) {
-  constexpr std::size_t kStep = 97;  // of entries looked at
+  constexpr std::size_t kStep = 97;  // between the entries that are compared
   const SourcePixels left(rig.left, rectification.r1, rectification.p1);
   const SourcePixels right(rig.right, rectification.r2, rectification.p2);
   const auto width = static_cast<std::size_t>(rig.width);
@@ -51,7 +51,7 @@ bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification&
     if (tables.left.entries[i] != table_entry(rig, left, {column + disparity_offset, row})) ++different;
     if (tables.right.entries[i] != table_entry(rig, right, {column, row})) ++different;
   }
-  // Another machine's arithmetic may decide a position half way between two pixels otherwise.
+  // Another machine's arithmetic may round a position half way between two pixels differently.
   return different <= tables.left.entries.size() / kStep / 1000;
 }
 

@@ -6,15 +6,15 @@
 namespace stereotlm {
 
 using InitiatorSocket = tlm::tlm_initiator_socket<32>;
-using TargetSocket = tlm::tlm_base_target_socket_b<32>;  // whether or not it may be left unbound
+using TargetSocket = tlm::tlm_base_target_socket_b<32>;  // also the base of optional target sockets
 
-// Binds a memory-mapped initiator to its target. The default binds them directly; a test or a tracer
-// overrides it to put a module of its own between the two (it owns that module, and binds both sides during
-// elaboration).
+// Binds a memory-mapped initiator to its target. The default binds them directly. A test or a tracer
+// overrides bind() to insert a module of its own between the two: it owns that module and binds both of its
+// sides during elaboration.
 class Binder {
  public:
   virtual ~Binder() = default;
-  // `link` names the connection, unique within one board: "left_pixel_to_crossbar", "crossbar_to_bank0".
+  // `link`: the name of the connection, unique within one board, such as "left_pixel_to_crossbar".
   virtual void bind(InitiatorSocket& from, TargetSocket& to, const std::string& link) {
     static_cast<void>(link);
     from.bind(to);

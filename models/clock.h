@@ -10,11 +10,11 @@
 namespace stereotlm {
 
 // A clock without drift: edge k lies at round(k * 10^6 / f_mhz) ps, halves up (contract section 3). f_mhz is
-// the decimal number that was written, not the binary one nearest to it.
+// the decimal number as written, not the binary number nearest to it.
 class Clock {
  public:
-  // Throws std::invalid_argument unless 0.001 <= mhz <= 1000, or if the kernel's time resolution is not 1 ps,
-  // its default.
+  // Throws std::invalid_argument unless 0.001 <= mhz <= 1000 and the kernel's time resolution is 1 ps, its
+  // default.
   explicit Clock(double mhz) : Clock(mhz, decimal_of(checked(mhz))) {
     if (sc_core::sc_get_time_resolution() != sc_core::sc_time(1, sc_core::SC_PS)) {
       throw std::invalid_argument("time resolution = " + sc_core::sc_get_time_resolution().to_string() +
@@ -28,7 +28,8 @@ class Clock {
   std::uint64_t edge_at_or_after(std::uint64_t time_ps) const {
     const double edges = static_cast<double>(time_ps) * edges_per_ps_;
     auto edge = static_cast<std::uint64_t>(edges);
-    // An edge lies up to half a ps off its exact place; twice that, and the error of `edges`, leave no doubt.
+    // Rounding moves an edge by at most half a ps. Farther than twice that, plus the error of `edges`, from
+    // an edge, the estimate is certain.
     const double past_edge = edges - static_cast<double>(edge);
     const double doubt = edges_per_ps_ + edges * 0x1p-50;
     if (past_edge > doubt && past_edge < 1 - doubt) return edge + 1;
@@ -37,11 +38,12 @@ class Clock {
     return edge;
   }
 
-  // Whether every edge of the two lies at the same time.
+  // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
 
   static sc_core::sc_time to_time(std::uint64_t ps) { return sc_core::sc_time::from_value(ps); }
   static std::uint64_t to_ps(const sc_core::sc_time& time) { return time.value(); }
+  static std::uint64_t now_ps() { return to_ps(sc_core::sc_time_stamp()); }
 
  private:
   static double checked(double mhz) {
@@ -52,7 +54,7 @@ class Clock {
       : period_(Wide{1'000'000} * exact_mhz.denominator, exact_mhz.numerator), edges_per_ps_(mhz / 1e6) {}
 
   Period period_;
-  double edges_per_ps_;  // near enough to guess from
+  double edges_per_ps_;  // approximate
 };
 
 }  // namespace stereotlm

@@ -15,13 +15,13 @@ Wide power_of_ten(int exponent) {
 
 }  // namespace
 
-// Its text is "d.ddde-dd", with at most 17 digits.
+// The text of `value` is "d.ddde-dd", with at most 17 digits.
 DecimalNumber decimal_of(double value) {
   std::array<char, 32> text{};
   const char* end =
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific).ptr;
   std::uint64_t digits = 0;
-  int decimals = -1;  // behind the first digit
+  int decimals = -1;  // digits behind the decimal point
   const char* next = text.data();
   for (; *next != 'e'; ++next) {
     if (*next == '.') continue;
@@ -36,7 +36,7 @@ DecimalNumber decimal_of(double value) {
 }
 
 Period::Period(Wide numerator, Wide denominator)
-    : near_(static_cast<double>(numerator) / static_cast<double>(denominator)) {
+    : approximate_(static_cast<double>(numerator) / static_cast<double>(denominator)) {
   Wide divisor = denominator;
   for (Wide rest = numerator; rest != 0;) {
     const Wide next = divisor % rest;

@@ -8,27 +8,27 @@ namespace stereotlm {
 
 __extension__ typedef unsigned __int128 Wide;
 
-// A decimal number, exactly: numerator / denominator.
+// The exact value numerator / denominator of a decimal number.
 struct DecimalNumber {
   Wide numerator = 0;
   Wide denominator = 1;
 };
 
-// The decimal number that was written where `value` was read: the shortest one that reads back equal. For
-// 0.001 <= value <= 1000: its numerator is below 10^17, its denominator at most 10^19.
+// The decimal number that was parsed as `value`: the shortest one that parses to the same double. For
+// 0.001 <= value <= 1000 its numerator is below 10^17 and its denominator at most 10^19.
 DecimalNumber decimal_of(double value);
 
-// A rational number of ps, and its multiples. Each multiple is rounded once, halves up, from its exact value,
-// so that nothing drifts.
+// A period of a rational number of ps. Each multiple is rounded once, halves up, from its exact value, so
+// that nothing drifts.
 class Period {
  public:
-  // numerator / denominator ps; both below 2^127.
+  // A period of numerator / denominator ps. Both are below 2^127.
   Period(Wide numerator, Wide denominator);
 
   std::uint64_t times(std::uint64_t count) const {
     if (rest_ == 0) return whole_ * count;
-    if (const auto time = rounded_if_certain(static_cast<double>(count) * near_)) return *time;
-    // A division of 128 bits takes several times as long.
+    if (const auto time = rounded_if_certain(static_cast<double>(count) * approximate_)) return *time;
+    // A division of 128 bits takes several times as long as one of 64.
     const std::uint64_t doubled_rest =
         count <= narrow_counts_
             ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)
@@ -41,11 +41,11 @@ class Period {
   }
 
  private:
-  double near_;  // the number, as near as a double is
-  std::uint64_t whole_;
-  Wide rest_;  // of denominator_, both without a common factor
+  double approximate_;   // ps, rounded to a double
+  std::uint64_t whole_;  // whole ps
+  Wide rest_;            // the rest is rest_ / denominator_ ps, in lowest terms
   Wide denominator_;
-  std::uint64_t narrow_counts_;  // up to which 64 bits are enough
+  std::uint64_t narrow_counts_;  // largest count for which 64-bit arithmetic is enough
 };
 
 }  // namespace stereotlm

@@ -4,20 +4,19 @@
 
 namespace stereotlm {
 
-// The protocol of the streams between the stages of a pipeline: a stage pushes one beat into the next, which
-// takes it in the same cycle. There is no back pressure; who may push when is decided by the pipeline's
-// control.
+// A stream between two stages of a pipeline. A stage pushes one beat into the next stage, which takes it in
+// the same cycle. There is no back pressure: the pipeline's control decides which stage pushes in a cycle.
 template <class Beat>
 class StreamIf : public virtual sc_core::sc_interface {
  public:
   virtual void push(const Beat& beat) = 0;
 };
 
-// The sockets of a stream. An output binds to one input: `stage.pixels_out.bind(next.pixels_in)`.
+// The output of a stream. It binds to one input: `stage.pixels_out.bind(next.pixels_in)`.
 template <class Beat>
 using StreamOut = sc_core::sc_port<StreamIf<Beat>>;
 
-// Calls a member function of its owner for each beat.
+// The input of a stream. It calls a member function of its owner for each beat.
 template <class Beat, class Owner, void (Owner::*Take)(const Beat&)>
 class StreamIn : public sc_core::sc_export<StreamIf<Beat>> {
  public:

@@ -12,19 +12,19 @@ namespace stereotlm {
 // The byte addresses of a buffer.
 struct AddressRange {
   std::uint64_t first = 0;
-  std::uint64_t end = 0;  // the first behind it
+  std::uint64_t end = 0;  // the first byte behind the range
 
   bool contains(std::uint64_t address) const { return first <= address && address < end; }
   bool overlaps(const AddressRange& other) const { return first < other.end && other.first < end; }
 };
 
-// How many words went to each of some ranges, which do not overlap, and to none of them. Plain C++.
+// Counts 32-bit words by the range in which they begin. The ranges do not overlap. Plain C++.
 class WordsByRange {
  public:
   explicit WordsByRange(std::vector<AddressRange> ranges)
       : ranges_(std::move(ranges)), words_(ranges_.size() + 1), latest_(ranges_.size()) {}
 
-  // Counts `words` words from `address` on.
+  // Counts consecutive words, the first of them at `address`.
   void add(std::uint64_t address, std::uint64_t words) {
     while (words > 0) {
       if (latest_ == ranges_.size() || !ranges_[latest_].contains(address)) latest_ = find(address);
@@ -34,7 +34,7 @@ class WordsByRange {
       address += 4 * here;
     }
   }
-  // [range], then those outside of all.
+  // Words of each range, in the order of the ranges, then the words outside all ranges.
   const std::vector<std::uint64_t>& words() const { return words_; }
   std::uint64_t total() const { return std::accumulate(words_.begin(), words_.end(), std::uint64_t{0}); }
 
@@ -44,7 +44,7 @@ class WordsByRange {
     while (range < ranges_.size() && !ranges_[range].contains(address)) ++range;
     return range;
   }
-  // The next address that belongs elsewhere than this one, which belongs to latest_; kNone: there is none.
+  // `address` belongs to latest_. The first address behind it that does not; kNone: there is none.
   std::uint64_t border_behind(std::uint64_t address) const {
     if (latest_ < ranges_.size()) return ranges_[latest_].end;
     std::uint64_t border = kNone;
@@ -53,7 +53,7 @@ class WordsByRange {
     }
     return border;
   }
-  // That begin before `end`.
+  // Consecutive words from `address` on that begin before `end`.
   static std::uint64_t words_until(std::uint64_t end, std::uint64_t address) {
     return (end - address - 1) / 4 + 1;
   }
@@ -62,7 +62,7 @@ class WordsByRange {
 
   std::vector<AddressRange> ranges_;
   std::vector<std::uint64_t> words_;
-  std::size_t latest_;  // the range of the last word: the next mostly follows it
+  std::size_t latest_;  // range of the last word counted, which the next word mostly shares
 };
 
 }  // namespace stereotlm

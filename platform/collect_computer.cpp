@@ -6,7 +6,7 @@
 
 #include "platform/audit.h"
 #include "platform/bounds.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -48,7 +48,7 @@ Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
 
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
   std::vector<std::string> names;
-  for (const Buffer& buffer : buffers(config.allocation)) names.push_back(buffer.path());
+  for (const PlacedBuffer& buffer : buffers(config.allocation)) names.push_back(buffer.path());
   names.emplace_back("no buffer");
   for (std::size_t i = 0; i < names.size(); ++i) {
     audit.equal("bytes written into the bridge for " + names[i], 4 * words.into_bridge[i],

@@ -24,7 +24,7 @@ struct Delivery {
 
 // Counters of a computer's modules up to now. Valid only while the core runs no frame.
 struct ComputerCounters {
-  // Words written to the board: one entry per buffer in the order of buffers() in board_rules.h, then one for
+  // Words written to the board: one entry per buffer in the order of buffers() in buffer_layout.h, then one for
   // words outside all buffers.
   struct Words {
     std::vector<std::uint64_t> into_bridge;

@@ -44,8 +44,8 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
 std::unique_ptr<pci::TrafficGenerator> make_load(const std::optional<PciLoadConfig>& load) {
   if (!load) return nullptr;
   const auto ps = [](double us) { return static_cast<std::uint64_t>(std::llround(us * 1e6)); };
-  const pci::PciLoadConfig config = {static_cast<std::uint32_t>(DeviceMap().load), load->burst_words,
-                                     ps(load->first_us), ps(load->interval_us), ps(load->access_us)};
+  const pci::TrafficGeneratorConfig config = {static_cast<std::uint32_t>(DeviceMap().load), load->burst_words,
+                                              ps(load->first_us), ps(load->interval_us), ps(load->access_us)};
   return std::make_unique<pci::TrafficGenerator>("load", config);
 }
 
@@ -55,9 +55,7 @@ pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
 }
 
 capture::CameraConfig camera_config(const BoardConfig& board) {
-  return {board.image.width, board.image.height, board.cameras.frame_rate_hz,
-          board.cameras.trigger == CameraTrigger::kOnDemand ? capture::CameraTrigger::kOnDemand
-                                                            : capture::CameraTrigger::kFreeRunning};
+  return {board.image.width, board.image.height, board.cameras.frame_rate_hz, board.cameras.trigger};
 }
 
 capture::CaptureBoardConfig capture_config(const BoardConfig& board) {

@@ -35,7 +35,7 @@ struct Core {
 
   const CoreConfig& config;
   fpga::FrameGeometry geometry;
-  bool columns_of_pixels;  // a whole column meets the matcher in a cycle, not one pixel after the other
+  bool columns_of_pixels;  // the matcher takes a whole column per cycle, not one pixel
   int column_sum_bits;
   int window_sum_bits;
   int disparity_bits;  // of 0..D-1
@@ -47,29 +47,29 @@ void add(const char* name, std::int64_t count, const Resources& all, Items& item
   if (count > 0) items.push_back({name, count, all});
 }
 
-// Contract section 2, "Lane": a slot waits as a table entry, then as a pixel; there may be `lane_fifo_slots`
-// of either. Of the valid bits the left one goes on, to the check. Paper section 3.2: an entry names a source
-// pixel. It is number row * W + column of the image, one of four in a word.
+// Contract section 2, "Lane": a slot waits as a table entry, then as a pixel, in queues of `lane_fifo_slots`
+// places. Only the left valid bit proceeds, to the check. Paper section 3.2: an entry names a source pixel.
+// Its address is row * W + column, and it is one of four in a word.
 void add_lanes(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   const int tables = core.tables();
   add("table entry queues", tables, tables * shift_register(config.lane_fifo_slots, kEntryBits), items);
   const int address_bits = bits_of(std::int64_t{config.width} * config.height - 1);
-  // Behind a power of two the column's bits are beside the row's.
+  // If the width is a power of two, the row's bits and the column's bits are the address.
   const bool is_power_of_two = bits_of(config.width) != bits_of(config.width - 1);
   const Resources address = is_power_of_two ? Resources{} : Resources{0, 0, 0, 1} + adder(address_bits);
   add("source addresses", tables, tables * address, items);
-  add("byte selectors", 2, 2 * (2 * selector(kPixelBits)), items);  // of 4: two LUTs a bit, and MUXF5
+  add("byte selectors", 2, 2 * (2 * selector(kPixelBits)), items);  // one of 4: two LUTs a bit, and MUXF5
   Resources queues;
   for (const bool left : {true, false})
     queues += shift_register(config.lane_fifo_slots, kPixelBits + core.valid_bit_of(left));
   add("pixel queues", 2, queues, items);
 }
 
-// Paper section 2.4, contract 1.2. Beside the new pixel the filter sees those of the m - 1 columns before in
-// the same row, of which there are n in a column of slots. The line memories keep, for each column of the
-// image, what stands for the rows above, with the valid bits of as many of them as the middle of the window
-// is above the newest n.
+// Paper section 2.4, contract 1.2. Beside the new pixel the filter reads the pixels of the m - 1 columns
+// before it in the same row; a column of slots has n rows. For each column of the image the line memories
+// hold the partial sums of the rows above, and a valid bit for each row that the middle of the window lies
+// above the newest n rows.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
@@ -87,8 +87,8 @@ void add_filter(const Core& core, Items& items) {
   add("filter line memories", 2, lines, items);
 }
 
-// Contract section 2, `line_buffer`: the n - 1 rows above the newest, filtered, and the left valid bits down
-// to the middle of the window.
+// Contract section 2, `line_buffer`: the n - 1 filtered rows above the newest row, and the left valid bits
+// from the newest row to the middle of the window.
 void add_row_buffers(const Core& core, Items& items) {
   if (!core.columns_of_pixels) return;
   Resources rows;
@@ -99,17 +99,17 @@ void add_row_buffers(const Core& core, Items& items) {
   add("row buffers", 2, rows, items);
 }
 
-// Adds up `count` pixel differences at once, in pairs.
+// Adders of `count` pixel differences in one cycle, in pairs.
 Resources sum_of_differences(int count) {
   if (count == 1) return {};
   const int half = count / 2;
   return sum_of_differences(half) + sum_of_differences(count - half) + adder(bits_of(kMostPixel * count));
 }
 
-// Paper figures 6 and 8. Left pixels go to all column modules, right ones from module to module, a column
-// later in each. A column module takes the absolute difference of two pixels and sums up n of them, one a
-// cycle; a window module adds its output and subtracts the one of n columns before. Candidates are told
-// whether their windows lie inside the images (contract 1.3): from column to column one more does.
+// Paper figures 6 and 8. Left pixels go to all column modules. Right pixels go from module to module, one
+// column later in each. A column module adds up n absolute differences of two pixels, one a cycle. A window
+// module adds its output and subtracts its output of n columns before. A mark for each candidate says whether
+// its window lies inside the images (contract 1.3); with each column one more does.
 void add_modules(const Core& core, Items& items) {
   const int n = core.config.window;
   const int disparities = core.config.disparities;
@@ -128,14 +128,14 @@ void add_modules(const Core& core, Items& items) {
   add("candidate marks", disparities, disparities * registers(1), items);
 }
 
-// What both units are made of: two sums are compared, one of them and its disparity are kept if both
-// candidates count.
+// One step of either unit: compares two sums and selects one of them with its disparity, if both candidates
+// are valid.
 Resources select_min(int sum_bits, int disparity_bits) {
   return comparator(sum_bits) + Resources{1} + selector(sum_bits) + selector(disparity_bits);
 }
 
-// Paper section 3.3, figure 6: a chain. Module d keeps what module d-1 held a column ago, a disparity up to
-// d-1, or its own. The first only holds its sum.
+// Paper section 3.3, figure 6: a chain. Module d keeps its own sum, or what module d-1 held a column ago with
+// a disparity of at most d-1. Module 0 only holds its own sum.
 void add_select_min_chain(const Core& core, Items& items) {
   const int sum_bits = core.window_sum_bits;
   Resources chain = registers(sum_bits + kValidBit);
@@ -146,13 +146,13 @@ void add_select_min_chain(const Core& core, Items& items) {
   add("select-min unit A", core.config.disparities, chain, items);
 }
 
-// Paper section 3.3: a tree of D-1 comparators, registered at every level. The comparison itself is the
-// highest bit of the disparity within a pair, those below are selected. One that is left over at a level
+// Paper section 3.3: a tree of D-1 comparators, registered at every level. The result of a comparison is the
+// highest bit of the pair's disparity; the lower bits are selected. A sum without a partner at its level
 // waits in registers.
 void add_select_min_tree(const Core& core, Items& items) {
   const int sum_bits = core.window_sum_bits;
   Resources tree;
-  int disparity_bits = 0;  // of the disparities that meet
+  int disparity_bits = 0;  // of the disparities at this level
   for (int at_level = core.config.disparities; at_level > 1; ++disparity_bits) {
     const int pairs = at_level / 2;
     const int left_over = at_level % 2;
@@ -164,11 +164,12 @@ void add_select_min_tree(const Core& core, Items& items) {
   add("select-min unit B", core.config.disparities - 1, tree, items);
 }
 
-// Contract 1.4. The left-based disparity waits D-1 columns for the right-based one; the last D of these are
-// in a block RAM, written in turn and read at the place that the left-based one names. They are compared:
-// absolute difference, then whether it is within the tolerance (a LUT sees 4 bits, each further one 3 more
-// beside what the one before found), then both valid bits with that. The valid bit of the left pixel itself
-// comes as late as the middle of its window. Without a check only the waits are left.
+// Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. A block RAM holds the
+// last D right-based disparities, and is read at the place that the left-based disparity names. The
+// comparison takes an absolute difference, LUTs that compare it with the tolerance (4 bits in the first LUT,
+// 3 more in each further one), and a LUT that joins the result with both valid bits. The valid bit of the
+// left pixel itself waits until its column is the middle of the window. Without a check only the delays
+// remain.
 void add_left_right_check(const Core& core, Items& items) {
   const int bits = core.disparity_bits;
   Resources check = shift_register(core.config.disparities - 1, bits + kValidBit);
@@ -182,8 +183,8 @@ void add_left_right_check(const Core& core, Items& items) {
   add("left-right check", 1, check, items);
 }
 
-// Contract 1.5 and section 2, "Matcher": the first three disparities of a word wait for the fourth, words in
-// the queue.
+// Contract 1.5 and section 2, "Matcher": the first three disparities of a word wait for the fourth; words
+// wait in the queue.
 void add_results(const Core& core, Items& items) {
   add("result packer", 1, registers(kWordBits - kDisparityBits), items);
   add("result queue", 1, shift_register(core.config.result_fifo_words, kWordBits), items);

@@ -8,36 +8,36 @@
 #include "models/area/parts.h"
 #include "models/fpga/core_config.h"
 
-// What the stereo core takes of its FPGA. The structure is counted: which adders, comparators, shift
-// registers and memories there are follows from the paper's figures 5, 6 and 8 and the contract's sections 1
-// and 2, and how wide they are from the pixels' 8 bits, the window and the disparities. One constant, for how
-// well LUTs fill slices, is fitted to the paper's Table 2 (sw/explore/area_fit.h).
+// The FPGA resources of the stereo core, counted part by part. The paper's figures 5, 6 and 8 and sections 1
+// and 2 of the contract give the adders, comparators, shift registers and memories. The 8 bits of a pixel,
+// the window and the disparities give their widths. One constant, how well LUTs fill slices, is fitted to the
+// paper's Table 2 (sw/paper/area_fit.h).
 //
-// Counted is what pixels, table entries, sums and disparities pass through. Not counted is what steers them:
-// counters, the addresses of tables and results, the repetition of edge pixels, arbiters and the multiplexers
-// of the banks, registers, the local bus. None of it grows with the disparities.
+// The count includes all parts that pixels, table entries, sums and disparities pass through. It leaves out
+// the parts that control them: counters, the addresses of tables and results, the repetition of edge pixels,
+// arbiters and the multiplexers of the banks, registers, the local bus. None of these grows with the
+// disparities.
 namespace stereotlm::area {
 
 // Parts of the same kind.
 struct Item {
   std::string name;
   std::int64_t count = 0;
-  Resources all;  // of all of them together
+  Resources all;  // of all `count` parts
 
-  // Places for a LUT and the flip-flop behind it: within an item each flip-flop is behind a LUT as long as
-  // there are any.
+  // Places of one LUT and the flip-flop behind it. Within an item flip-flops use the places of LUTs first.
   std::int64_t lut_equivalents() const;
 };
 
-// Of the core with this configuration, in the order of the data, without what it does not need. Throws
-// std::invalid_argument if the configuration has problems.
+// The parts of the core with this configuration, in the order of the data; parts that it does not need are
+// absent. Throws std::invalid_argument if the configuration has problems.
 std::vector<Item> items(const fpga::CoreConfig& config);
 
-// Slices a LUT-equivalent; 0.5 would be two in every slice. From the least squares of the three rows of Table
+// Slices per LUT-equivalent; 0.5 would be two in every slice. A least-squares fit to the three rows of Table
 // 2.
 inline constexpr double kSlicesPerLutEquivalent = 0.6218;
 
-// The sum of items. Percentages of what the device has; above 100 the core does not fit.
+// The sum of items. Percentages are shares of the device; above 100 the core does not fit.
 struct Area {
   std::int64_t lut_equivalents = 0;
   std::int64_t slices = 0;  // rounded up

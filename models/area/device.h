@@ -6,8 +6,8 @@
 
 namespace stereotlm::area {
 
-// What an FPGA has (Xilinx DS031). A slice holds two 4-input look-up tables and the two flip-flops behind
-// them.
+// The resources of an FPGA (Xilinx DS031). A slice holds two 4-input look-up tables and the two flip-flops
+// behind them.
 struct Device {
   std::string_view name;
   std::int64_t slices;
@@ -18,7 +18,7 @@ struct Device {
 // The devices that a board may name.
 inline constexpr std::array<Device, 1> kDevices = {{{"xc2v6000", 33'792, 144, 144}}};
 
-// Null if it is none of them.
+// The device of this name, or null.
 inline const Device* find_device(std::string_view name) {
   for (const Device& device : kDevices) {
     if (device.name == name) return &device;

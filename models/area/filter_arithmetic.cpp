@@ -27,7 +27,7 @@ Range weighted(std::int64_t weight, std::int64_t most) {
 
 Range sum(const Range& a, const Range& b) { return {a.low + b.low, a.high + b.high}; }
 
-// Of a number that is not 0: its sign does not matter.
+// `weight` is not 0, and may be negative.
 int trailing_zeros(int weight) {
   int zeros = 0;
   for (; weight % 2 == 0; weight /= 2) ++zeros;
@@ -36,7 +36,7 @@ int trailing_zeros(int weight) {
 
 bool is_power_of_two(int weight) { return bits_of(std::abs(weight)) == trailing_zeros(weight) + 1; }
 
-// Half a row of pairs and the pixel in the middle, or the row pixel by pixel.
+// A pair of pixels with equal weight, or a single pixel.
 struct Term {
   int weight;
   std::int64_t most;  // of the pixel or the pair
@@ -56,8 +56,8 @@ struct RowSum {
   Range range;
 };
 
-// Terms are added one by one, outermost first. A multiple of 2^z leaves the z lowest bits of the other addend
-// as they are: no adder there.
+// Adds terms one by one, outermost first. A multiple of 2^z does not change the z lowest bits of the other
+// addend, which need no adder.
 RowSum row_sum(const std::vector<Term>& terms) {
   RowSum result;
   int zeros = 0;  // lowest bits that are 0 in the sum so far
@@ -72,9 +72,9 @@ RowSum row_sum(const std::vector<Term>& terms) {
   return result;
 }
 
-// Of sums in this range: the bits above the 7 that always stay must be equal (a LUT sees 4 of them, each
-// further one 2 more, beside one of those and what the LUT before found); if they are not, they say which end
-// each of the 8 bits takes.
+// Clamps sums in this range to 8 bits. The 7 lowest bits stay. The bits above them must be equal: the first
+// LUT compares 4 of them, each further LUT 2 more. If they differ, each of the 8 bits takes the value of the
+// nearer end of the range.
 Resources clamp(const Range& range, int shift) {
   const int bits = bits_of(Range{range.low >> shift, range.high >> shift});
   if (bits <= kPixelBits) return {};

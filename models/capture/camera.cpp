@@ -1,6 +1,5 @@
 #include "models/capture/camera.h"
 
-#include <stdexcept>
 #include <string>
 
 #include "models/clock.h"
@@ -10,8 +9,6 @@ namespace {
 
 constexpr const char* kReport = "/stereotlm/camera";
 
-std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-
 std::string size_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
@@ -20,7 +17,7 @@ std::string size_text(int width, int height) {
 
 Camera::Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source)
     : sc_module(name), timing_(config), trigger_mode_(config.trigger), source_(source) {
-  static_cast<void>(Clock(1));  // refuses a time resolution other than 1 ps
+  static_cast<void>(Clock(1));  // throws if the time resolution is not 1 ps
   SC_HAS_PROCESS(Camera);
   SC_METHOD(begin_frame);
   sensitive << frame_begins_;
@@ -31,7 +28,7 @@ Camera::Camera(const sc_core::sc_module_name& name, const CameraConfig& config, 
 }
 
 void Camera::trigger(const Trigger& trigger) {
-  const std::uint64_t begin_ps = now_ps() + Clock::to_ps(trigger.delay);
+  const std::uint64_t begin_ps = Clock::now_ps() + Clock::to_ps(trigger.delay);
   if (trigger_mode_ == CameraTrigger::kFreeRunning || triggered_ || begin_ps < next_begin_ps_) {
     ++stats_.ignored_triggers;
     return;
@@ -42,7 +39,7 @@ void Camera::trigger(const Trigger& trigger) {
 
 void Camera::begin_frame() {
   triggered_ = false;
-  frame_begin_ps_ = now_ps();
+  frame_begin_ps_ = Clock::now_ps();
   next_begin_ps_ = frame_begin_ps_ + timing_.last_pixel_ps();
   image_ = nullptr;
   const std::uint64_t number = stats_.frames++;
@@ -75,7 +72,7 @@ void Camera::take(const TakeFrame& taken) {
 void Camera::send_line() {
   const int row = row_++;
   if (row_ < timing_.height())
-    line_begins_.notify(Clock::to_time(frame_begin_ps_ + timing_.row_ps(row_) - now_ps()));
+    line_begins_.notify(Clock::to_time(frame_begin_ps_ + timing_.row_ps(row_) - Clock::now_ps()));
   const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(timing_.width());
   lines_out->push({row, image_->pixels.data() + first});
 }

@@ -9,26 +9,29 @@
 
 namespace stereotlm::capture {
 
-// What a camera sees.
+// Supplies the pictures of a camera.
 class CameraSource {
  public:
   virtual ~CameraSource() = default;
-  // The picture of camera frame `number`, which began at `begin_ps`, of the camera's size; valid until the
-  // next call. Asked for taken frames only, in their order.
+  // The picture of camera frame `number`, which began at `begin_ps`. It has the camera's size and stays valid
+  // until the next call. Called only for taken frames, in their order.
   virtual const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) = 0;
 };
 
-// The camera of one side (contract section 3): its frames begin with the frame clock, or on demand when
-// triggered, and go out line by line with blanking. One event per frame, and one per line of a frame that is
-// taken. A trigger in the blanking behind the last pixel of a frame begins the next one at once; one that
-// comes before, or while a frame is about to begin, or to a free-running camera, is ignored and counted.
+// The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it
+// is triggered. A taken frame is sent line by line, with blanking. Cost: one event per frame, and one per
+// line of a taken frame.
 //
-// SC_REPORT_ERROR (type /stereotlm/camera): a picture of another size; TakeFrame for another frame than the
-// running one, or a second time.
+// A trigger is accepted from the last pixel of a frame on, and begins the next frame at once. The camera
+// ignores and counts a trigger that comes earlier, one that comes while another trigger is pending, and
+// every trigger if it runs freely.
+//
+// SC_REPORT_ERROR (type /stereotlm/camera): a picture of another size; TakeFrame for a frame that is not the
+// running one or has been taken already.
 class Camera : public sc_core::sc_module {
  public:
   struct Stats {
-    std::uint64_t frames = 0;  // begun
+    std::uint64_t frames = 0;  // frames that have begun
     std::uint64_t ignored_triggers = 0;
   };
 
@@ -43,7 +46,7 @@ class Camera : public sc_core::sc_module {
   StreamIn<TakeFrame, Camera, &Camera::take> takes_in{"takes_in", this};
   StreamIn<Trigger, Camera, &Camera::trigger> triggers_in{"triggers_in", this};
 
-  // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems, or the
+  // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems or the
   // kernel's time resolution is not 1 ps.
   Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source);
 
@@ -59,11 +62,11 @@ class Camera : public sc_core::sc_module {
   CameraSource& source_;
   sc_core::sc_event frame_begins_{"frame_begins"};
   sc_core::sc_event line_begins_{"line_begins"};
-  bool triggered_ = false;           // and not yet begun
-  std::uint64_t next_begin_ps_ = 0;  // the earliest for a trigger
+  bool triggered_ = false;           // a triggered frame is about to begin
+  std::uint64_t next_begin_ps_ = 0;  // earliest beginning of a triggered frame
   std::uint64_t frame_begin_ps_ = 0;
-  const kernels::GrayImage* image_ = nullptr;  // of the running frame, if it is taken
-  int row_ = 0;                                // the next to send
+  const kernels::GrayImage* image_ = nullptr;  // picture of the running frame; null: not taken
+  int row_ = 0;                                // next row to send
   Stats stats_;
 };
 

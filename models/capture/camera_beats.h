@@ -5,32 +5,32 @@
 
 #include "models/capture/camera_timing.h"
 
-// What passes between a camera and its capture board.
+// Messages between a camera and its capture board.
 namespace stereotlm::capture {
 
-// A frame begins now. The camera sends its lines if the receiver says TakeFrame before the frame's first word
-// is complete, and else nothing more of it.
+// A frame begins now. The camera sends its lines only if the receiver answers with TakeFrame before the
+// frame's first word is complete.
 struct VideoFrame {
-  std::uint64_t number = 0;  // frames begun before
+  std::uint64_t number = 0;  // 0 for the camera's first frame
   std::uint64_t begin_ps = 0;
-  const CameraTiming* timing = nullptr;  // of its pixels; lives as long as the camera
+  const CameraTiming* timing = nullptr;  // timing of its pixels; lives as long as the camera
 };
 
+// The capture board takes the running frame.
 struct TakeFrame {
   std::uint64_t number = 0;
 };
 
-// A line of the frame begins; row 0 may come later, when the frame is taken. Its pixels arrive when
-// VideoFrame::timing says so.
+// A line of the taken frame begins. Row 0 is sent when the frame is taken. The pixels arrive at the times of
+// VideoFrame::timing.
 struct VideoLine {
   int row = 0;
-  const std::uint8_t* pixels =
-      nullptr;  // all of the line, lowest column first; valid until the next TakeFrame
+  const std::uint8_t* pixels = nullptr;  // the whole line, column 0 first; valid until the next TakeFrame
 };
 
-// To cameras on demand: begin a frame.
+// A camera on demand is to begin a frame after `delay`.
 struct Trigger {
-  sc_core::sc_time delay{};  // from now
+  sc_core::sc_time delay{};
 };
 
 }  // namespace stereotlm::capture

@@ -1,23 +1,15 @@
 #include "models/capture/camera_timing.h"
 
 #include <algorithm>
-#include <stdexcept>
+
+#include "models/checked.h"
 
 namespace stereotlm::capture {
-namespace {
-
-const CameraConfig& checked(const CameraConfig& config) {
-  if (const auto found = problems(config); !found.empty())
-    throw std::invalid_argument("camera: " + found.front());
-  return config;
-}
-
-}  // namespace
 
 CameraTiming::CameraTiming(const CameraConfig& config)
-    : CameraTiming(config, decimal_of(checked(config).frame_rate_hz)) {}
+    : CameraTiming(config, decimal_of(checked("camera", config).frame_rate_hz)) {}
 
-// 525/480 lines per row are 35/32. The largest numbers, of a rate with 17 digits, stay below 2^127.
+// 525/480 line times per row are 35/32. With a frame rate of 17 digits all numbers stay below 2^127.
 CameraTiming::CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz)
     : width_(config.width),
       height_(config.height),
@@ -33,7 +25,8 @@ int CameraTiming::pixels_by(int row, std::uint64_t since_begin_ps) const {
   constexpr double kPixelsPerStep = 1.0 / kPixelSteps;
   const double arrived = (steps - row_steps) * kPixelsPerStep + 1;
   int pixels = static_cast<int>(std::clamp(arrived, 0.0, static_cast<double>(width_)));
-  // A pixel arrives up to half a ps off its exact time; twice that, and the error of `steps`, leave no doubt.
+  // Rounding moves an arrival by at most half a ps. Farther than twice that, plus the error of `steps`, from
+  // an arrival, the estimate is certain.
   const double doubt = (steps_per_ps_ + steps * 0x1p-49) * kPixelsPerStep;
   const double past_pixel = arrived - pixels;
   if (past_pixel > doubt && past_pixel < 1 - doubt) return pixels;

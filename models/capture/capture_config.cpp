@@ -1,11 +1,12 @@
 #include "models/capture/capture_config.h"
 
+#include <array>
 #include <charconv>
 
 namespace stereotlm::capture {
 namespace {
 
-// The shortest decimals that read back equal.
+// The shortest decimal number that parses to the same double.
 std::string text_of(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,21 +16,19 @@ inline constexpr kernels::IntegerRule kFifoWordsRule{1, 4096};
 
 enum class CameraTrigger : std::uint8_t {
   kFreeRunning,  // frame k begins at k / frame_rate_hz
-  kOnDemand,     // a frame begins when it is triggered
+  kOnDemand,     // a frame begins when the camera is triggered
 };
-inline constexpr std::array<const char*, 2> kCameraTriggerNames = {"free_running", "on_demand"};
 
 struct CameraConfig {
-  int width = 640;   // pixels, kWidthRule
-  int height = 480;  // pixels, kHeightRule
-  double frame_rate_hz =
-      29.97;  // kMinFrameRateHz..kMaxFrameRateHz; the decimal number that it is the nearest to
+  int width = 640;               // pixels, kWidthRule
+  int height = 480;              // pixels, kHeightRule
+  double frame_rate_hz = 29.97;  // kMinFrameRateHz..kMaxFrameRateHz; stands for the decimal number as written
   CameraTrigger trigger = CameraTrigger::kFreeRunning;
 };
 
 struct CaptureBoardConfig {
-  int fifo_words = 140;         // 32-bit words, kFifoWordsRule
-  int fifo_trigger_words = 32;  // so many in the FIFO ask for the bus, 1..fifo_words
+  int fifo_words = 140;         // capacity in 32-bit words, kFifoWordsRule
+  int fifo_trigger_words = 32;  // complete words at which the FIFO requests the bus, 1..fifo_words
 };
 
 // Every broken rule as `field = value: rule`; empty if the block can be built.

@@ -1,8 +1,8 @@
 #include "models/capture/capture_fifo.h"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "models/checked.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::capture {
@@ -10,10 +10,7 @@ namespace stereotlm::capture {
 using kernels::kPixelsPerWord;
 
 CaptureFifo::CaptureFifo(const CaptureBoardConfig& config)
-    : fifo_words_(config.fifo_words), trigger_words_(config.fifo_trigger_words) {
-  if (const auto found = problems(config); !found.empty())
-    throw std::invalid_argument("capture: " + found.front());
-}
+    : fifo_words_(checked("capture", config).fifo_words), trigger_words_(config.fifo_trigger_words) {}
 
 void CaptureFifo::begin_frame(const CameraTiming& timing, std::uint64_t begin_ps) {
   timing_ = &timing;
@@ -45,7 +42,7 @@ void CaptureFifo::take(std::uint64_t now_ps, const LeftBy* left_by) {
 }
 
 void CaptureFifo::take_words(int end, const LeftBy* left_by) {
-  // The first word that could find the FIFO full is the one that would if no word left.
+  // No word before this one can find the FIFO full, even if no word leaves.
   int word = std::min(end, word_ + std::max(0, fifo_words_ - occupancy_));
   const auto finds_it_full = [&] {
     const int left = left_by == nullptr ? 0 : (*left_by)(arrival_ps(word * kPixelsPerWord, row_));
@@ -83,7 +80,7 @@ int CaptureFifo::grant(std::vector<LineWords>& burst) {
   owed_ = complete_words();
   int granted = 0;
   for (const LineWords& line : lines_) {
-    const bool contiguous = burst.empty() || (line.row == burst.back().row + 1 && line.first == 0 &&
+    const bool contiguous = burst.empty() || (line.row == burst.back().row + 1 &&
                                               burst.back().first + burst.back().count == words_per_line_);
     const int count = std::min(owed_ - granted, line.count);
     if (!contiguous || count == 0) break;
@@ -110,7 +107,7 @@ void CaptureFifo::leave(std::uint64_t now_ps, int words, const LeftBy& left_by) 
 std::optional<std::uint64_t> CaptureFifo::next_ps() const {
   if (owed_ > 0 || complete_words() >= trigger_words_ || finished()) return now_ps_;
   if (!lines_.empty() && line_end_ps(lines_.front().row) <= now_ps_) return now_ps_;
-  // Below the trigger: the words in it are of the line that arrives, and none of its next ones finds it full.
+  // Below the trigger, all words are of the arriving line, and none of its next words finds the FIFO full.
   const int triggering = word_ + trigger_words_ - occupancy_ - 1;
   if (triggering < words_per_line_) return arrival_ps((triggering + 1) * kPixelsPerWord - 1, row_);
   const std::uint64_t line_end = line_end_ps(row_);

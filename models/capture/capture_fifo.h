@@ -14,53 +14,56 @@ namespace stereotlm::capture {
 // Consecutive words of one line.
 struct LineWords {
   int row = 0;
-  int first = 0;  // word of the line
+  int first = 0;  // number of the first word in its line
   int count = 0;
 };
 
-// What is in the FIFO of a capture board at which time, and when it asks for the bus (contract section 3,
-// "Capture board"): the timing of the pixels is known, so the state is computed only when somebody asks. No
-// SystemC, no pixels.
+// The FIFO of a capture board: its words at each time, and the time at which it requests the bus (contract
+// section 3, "Capture board"). The times of all pixels are known in advance, so the state is computed only
+// when it is needed. No SystemC, no pixels.
 //
-// A word enters with its first pixel and is complete when its last has arrived. A pixel that needs a new word
-// is dropped, and with it the rest of its line, if `fifo_words` words are in the FIFO at its arrival; a word
-// that leaves at that very time has left. The FIFO asks when `fifo_trigger_words` complete words are in it,
-// when a line has ended (its last pixel has arrived, or would have) and words are in it, and as long as words
-// are in it that were complete at a grant.
+// A word enters the FIFO with its first pixel, and is complete when its last pixel has arrived. A pixel that
+// needs a new word is dropped, with the rest of its line, if the FIFO holds `fifo_words` words when the pixel
+// arrives. A word that leaves at that very time makes room for it. The FIFO requests the bus
+// - when it holds `fifo_trigger_words` complete words,
+// - when it holds words at the end of a line, which is the arrival time of the line's last pixel,
+// - while it holds words that were complete at an earlier grant.
 //
-// Times are absolute, in ps, and never go back from call to call.
+// Times are absolute, in ps, and never decrease from call to call.
 class CaptureFifo {
  public:
-  // Of the words that were granted last, how many have left by a time.
+  // The number of words of the last grant that have left by a time.
   using LeftBy = std::function<int(std::uint64_t time_ps)>;
 
   // Throws std::invalid_argument if the configuration has problems.
   explicit CaptureFifo(const CaptureBoardConfig& config);
 
-  // `timing` outlives the frame. The FIFO is empty: the last frame has finished.
+  // The FIFO must be empty. `timing` outlives the frame.
   void begin_frame(const CameraTiming& timing, std::uint64_t begin_ps);
-  // Pixels arrive until now, and no word leaves.
+  // Pixels have arrived up to now, and no word has left.
   void advance(std::uint64_t now_ps);
-  // The bus is granted now, after advance(): the complete words as far as their addresses are contiguous.
-  // They stay in the FIFO until they leave. Returns how many.
+  // The bus is granted at the time of the last advance(). The burst takes the complete words as far as their
+  // addresses are contiguous; they stay in the FIFO until they leave. Returns their number.
   int grant(std::vector<LineWords>& burst);
-  // The burst ends now: its first `words` words have left, when left_by says.
+  // The burst ends now. Its first `words` words have left, at the times of left_by.
   void leave(std::uint64_t now_ps, int words, const LeftBy& left_by);
 
-  // As of the last advance() or leave(): when the bus is to be asked for, or the frame finishes; at that time
-  // itself if it has come. None if that waits for another line. Not while a burst is running.
+  // The queries give the state at the time of the last advance() or leave().
+
+  // The time at which the FIFO requests the bus, or the frame finishes; the present if that time has passed.
+  // None if it depends on the next line. Not while a burst runs.
   std::optional<std::uint64_t> next_ps() const;
-  // Whether that is the time at which the frame finishes, with nothing left to ask for.
+  // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && word_ == words_per_line_; }
   std::uint64_t words_per_line() const { return static_cast<std::uint64_t>(words_per_line_); }
-  // All pixels have arrived and all words left, or been dropped.
+  // Whether all pixels have arrived, and all words have left or been dropped.
   bool finished() const;
-  // Over all frames, as of the last advance() or leave(): a pixel is dropped when it arrives.
+  // Pixels dropped in all frames. A pixel counts from its arrival on.
   std::uint64_t dropped_pixels() const;
 
  private:
   void take(std::uint64_t now_ps, const LeftBy* left_by);
-  // The words of the arriving line up to word `end`, as far as there is room.
+  // Takes the words of the arriving line up to word `end`, while there is room.
   void take_words(int end, const LeftBy* left_by);
   std::uint64_t arrival_ps(int column, int row) const { return begin_ps_ + timing_->pixel_ps(column, row); }
   std::uint64_t line_end_ps(int row) const { return arrival_ps(timing_->width() - 1, row); }
@@ -72,13 +75,13 @@ class CaptureFifo {
   std::uint64_t begin_ps_ = 0;
   std::uint64_t now_ps_ = 0;
   int words_per_line_ = 0;
-  int row_ = 0;                  // the line that arrives, or did last
-  int word_ = 0;                 // the next of that line to begin; words_per_line_ if the rest is dropped
-  std::deque<LineWords> lines_;  // in the FIFO, oldest first, one entry per line
-  int occupancy_ = 0;            // words in it, complete or being filled
-  int owed_ = 0;                 // the oldest of them, complete at the last grant
-  bool drops_line_ = false;      // the rest of the line that arrives
-  std::uint64_t dropped_pixels_ = 0;  // to the end of that line
+  int row_ = 0;                  // the arriving line; between two lines, the last one
+  int word_ = 0;                 // next word of that line to begin; words_per_line_ if the rest is dropped
+  std::deque<LineWords> lines_;  // words in the FIFO, oldest first, one entry per line
+  int occupancy_ = 0;            // number of words in the FIFO, complete or being filled
+  int owed_ = 0;                 // oldest words, which were complete at the last grant
+  bool drops_line_ = false;      // the rest of the arriving line is dropped
+  std::uint64_t dropped_pixels_ = 0;  // pixels dropped up to the end of the arriving line
 };
 
 }  // namespace stereotlm::capture

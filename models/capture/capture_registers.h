@@ -2,26 +2,27 @@
 
 #include <cstdint>
 
-// The registers of a capture board, 32 bit each, at byte addresses on its `registers` socket (ours: the
-// Bt848's own map is that of a video decoder with a DMA program in memory).
+// The registers of a capture board, 32 bit each, at byte addresses on its `registers` socket. The map is
+// ours: the Bt848's own map is that of a video decoder with a DMA program in memory.
 //
 // | address | name             | access | meaning                                                           |
 // |---------|------------------|--------|-------------------------------------------------------------------|
 // | 0x00    | kControl         | write  | bit 0: arm a capture; bit 1: trigger the cameras (on demand)      |
 // | 0x04    | kStatus          | both   | bit 0: armed; 1: capturing; 2: done; 3: words lost; 4: arming     |
 // |         |                  |        | refused. Bits 2 to 4 stay until a 1 is written to them            |
-// | 0x08    | kBufferAddress   | both   | where the next capture goes: bus address, a multiple of 4         |
+// | 0x08    | kBufferAddress   | both   | bus address of the next capture's buffer, a multiple of 4         |
 // | 0x0c    | kFrameNumberLow  | read   | camera frame of the last capture that is done, bits 31..0         |
 // | 0x10    | kFrameNumberHigh | read   | bits 63..32                                                       |
-// | 0x14    | kDroppedPixels   | read   | pixels of that capture that were dropped: the FIFO was full       |
-// | 0x18    | kLostWords       | read   | words of that capture that the bus did not take: no target, or    |
-// |         |                  |        | its error                                                         |
+// | 0x14    | kDroppedPixels   | read   | pixels of that capture that a full FIFO dropped                   |
+// | 0x18    | kLostWords       | read   | words of that capture that the bus did not take: no target        |
+// |         |                  |        | answered, or it answered with an error                            |
 //
-// Arming takes the buffer address. The capture starts at the next beginning of a frame at which both boards
-// of a pair are armed and have no capture running; one armed at that very time takes part. It is done when
-// the last word of the frame has been written, dropped or lost. The next one may be armed meanwhile; arming
-// while armed, or with an address that is not a multiple of 4, is refused. A write may arm and trigger at
-// once. The interrupt is high while `done` or `words lost` is. Nothing ends a capture that runs or is armed.
+// Arming copies the buffer address. The capture starts at the next beginning of a frame at which both boards
+// of a pair are armed and neither has a capture running. A board that is armed at that very time takes part.
+// The capture is done when the last word of the frame has been written, dropped or lost. The next capture
+// may be armed meanwhile. Arming is refused while a capture is armed, or if the address is not a multiple of
+// 4. One write may both arm and trigger. The interrupt is asserted while `done` or `words lost` is set. A
+// capture that runs or is armed cannot be cancelled.
 namespace stereotlm::capture::registers {
 
 inline constexpr std::uint64_t kControl = 0x00;

@@ -11,7 +11,7 @@ namespace stereotlm::host {
 namespace {
 
 constexpr char kReport[] = "/stereotlm/cpu";
-constexpr int kStackBytes = 1 << 20;  // of the program, which is no SystemC code and may not know it is short
+constexpr int kStackBytes = 1 << 20;  // stack of the program, which does not know that it runs in a coroutine
 
 std::string hex(std::uint64_t value) {
   char text[24];
@@ -46,9 +46,9 @@ void Cpu::run() {
     finished_ = true;
     finished_event_.notify(sc_core::SC_ZERO_TIME);
   } catch (const sc_core::sc_unwind_exception&) {
-    throw;  // the kernel ends the process
+    throw;  // the SystemC kernel ends the process
   } catch (const sc_core::sc_report&) {
-    throw;  // a model has reported its own error
+    throw;  // a model reported an error of its own
   } catch (const std::exception& exception) {
     problem = exception.what();
   } catch (...) {

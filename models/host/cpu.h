@@ -16,27 +16,28 @@ namespace stereotlm::host {
 inline constexpr kernels::IntegerRule kInterruptCountRule{1, 64};
 
 struct CpuConfig {
-  int interrupts = 1;             // inputs, kInterruptCountRule
-  std::uint64_t memory_base = 0;  // address on the bus of the first byte of host_memory
+  int interrupts = 1;             // interrupt inputs, kInterruptCountRule
+  std::uint64_t memory_base = 0;  // bus address of the first byte of host_memory
 };
 
-// The host's processor, which runs one program (contract section 3, "Software"): the program takes no time of
-// its own, each of its accesses to a register is a transaction of one word that does. Host memory is reached
-// by DMI, which must not be revoked. One interrupt input that is asserted is enough (the shared INTA#).
+// The host's processor, which runs one program (contract section 3, "Software"). The program itself takes no
+// time. Each of its register accesses is a transaction of one word, and takes the time of that transaction.
+// The program reaches host memory by DMI, which the memory must not revoke. It is interrupted while at least
+// one interrupt input is asserted (the shared INTA#).
 //
-// An access that is answered with an error throws into the program. An exception that leaves the program ends
-// it, and is reported with SC_REPORT_ERROR (type /stereotlm/cpu).
+// If an access is answered with an error, the program receives a BusError. An exception that leaves the
+// program ends it and is reported with SC_REPORT_ERROR (type /stereotlm/cpu).
 class Cpu : public sc_core::sc_module, private HostBus {
  public:
   tlm_utils::simple_initiator_socket<Cpu> bus{"bus"};
   tlm_utils::simple_initiator_socket<Cpu> host_memory{"host_memory"};
   sc_core::sc_vector<InterruptIn> interrupts;
 
-  // `program` outlives the processor. Throws std::invalid_argument if the number of interrupts breaks its
-  // rule.
+  // `program` outlives the processor. Throws std::invalid_argument if the number of interrupt inputs breaks
+  // kInterruptCountRule.
   Cpu(const sc_core::sc_module_name& name, const CpuConfig& config, Program& program);
 
-  // Whether the program has returned, and when it does.
+  // Whether the program has returned, and an event for its return.
   bool finished() const { return finished_; }
   const sc_core::sc_event& finished_event() const { return finished_event_; }
 
@@ -53,7 +54,7 @@ class Cpu : public sc_core::sc_module, private HostBus {
   Program& program_;
   memory::WordAccess access_{bus};
   sc_core::sc_event_or_list interrupts_change_;
-  bool accessed_ = true;  // since the last return from wait_for_interrupt
+  bool accessed_ = true;  // a register was accessed since wait_for_interrupt() returned
   bool finished_ = false;
   sc_core::sc_event finished_event_{"finished"};
 };

@@ -11,18 +11,19 @@ struct StereoPair {
   kernels::GrayImage right;
 };
 
-// Where the pictures come from and the results go.
+// Supplies the pictures.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  // The pair that frame number `frame` works on, of the configured size; valid until the next call.
+  // The input pair of frame number `frame`. It has the configured size and stays valid until the next call.
   virtual const StereoPair& pair(std::uint64_t frame) = 0;
 };
 
+// Receives the results.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  // Frame number `frame` has ended; called at its last cycle's end.
+  // Called when frame number `frame` ends, at the end of its last cycle.
   virtual void take(std::uint64_t frame, const kernels::GrayImage& disparity) = 0;
 };
 

@@ -11,18 +11,24 @@ namespace stereotlm::host {
 
 inline constexpr kernels::IntegerRule kHostMemoryRule{4, std::int64_t{1} << 31, 4};
 
-// The memory of the host, for any number of initiators: any whole number of 32-bit words an access, byte
-// enables. b_transport never waits and takes no time: that is the business of the bus in front. Errors, all
-// without effect: a first byte that is not at a multiple of 4, or a byte outside, is answered
-// TLM_ADDRESS_ERROR_RESPONSE, a length that is no multiple of 4 (or 0) or a streaming width below it
-// TLM_BURST_ERROR_RESPONSE, byte enables of length 0 TLM_BYTE_ENABLE_ERROR_RESPONSE, a command that neither
-// reads nor writes TLM_COMMAND_ERROR_RESPONSE. nb_transport_fw completes at once, with the same effect. Debug
-// transport takes any length; DMI grants the whole memory, read and write, and is never revoked. Zeros at
-// first; pages that were never touched cost nothing.
+// The memory of the host, for any number of initiators. An access has any whole number of 32-bit words, with
+// or without byte enables. It takes no time, since the bus in front of the memory accounts for it, and
+// b_transport never waits. Refused accesses have no effect:
+//
+// | access                                                       | response                       |
+// |--------------------------------------------------------------|--------------------------------|
+// | an address that is not a multiple of 4, a byte outside       | TLM_ADDRESS_ERROR_RESPONSE     |
+// | a length of 0 or not a multiple of 4, a smaller stream width | TLM_BURST_ERROR_RESPONSE       |
+// | byte enables of length 0                                     | TLM_BYTE_ENABLE_ERROR_RESPONSE |
+// | neither read nor write                                       | TLM_COMMAND_ERROR_RESPONSE     |
+//
+// nb_transport_fw completes at once, with the same effect. Debug transport takes any length. DMI grants the
+// whole memory, for reads and writes, and is never revoked. The memory holds zeros at first; pages that were
+// never touched occupy no memory of the simulating machine.
 class HostMemory : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {
-    std::uint64_t reads = 0;  // accesses by transactions
+    std::uint64_t reads = 0;  // transactions; DMI and debug transport are not counted
     std::uint64_t writes = 0;
     std::uint64_t errors = 0;  // refused accesses
   };

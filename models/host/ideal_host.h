@@ -18,25 +18,26 @@ struct IdealHostConfig {
   int width = 0;   // pixels
   int height = 0;  // pixels
   std::uint64_t frames = 1;
-  bool pixels = true;  // false: pictures are neither asked for nor loaded, and results are empty
+  bool pixels = true;  // false: no pictures are requested or loaded, and results are empty
   fpga::FrameBuffers buffers;
 };
 
-// A host without a computer around it (contract section 2, `preloaded`): tables are in their banks before
-// cycle 0, pictures appear in their buffers and results leave them in zero time, and each frame starts when
-// the last one ends. It drives the core's registers, and reaches the memory by debug transport.
+// A host without a computer around it (contract section 2, `preloaded`). The tables are in their banks
+// before cycle 0. Pictures enter and results leave their buffers in zero time, and each frame starts when
+// the last one ends. The host drives the core's registers and reaches the memory by debug transport.
 //
-// A picture of the wrong size, a register or memory that refuses an access, a core that does not start and an
-// error that it raises are reported with SC_REPORT_ERROR (type /stereotlm/ideal_host). The host does no more
-// then: finished() stays false.
+// SC_REPORT_ERROR (type /stereotlm/ideal_host): a picture of the wrong size, a register or memory that
+// refuses an access, a core that does not start or that reports an error. The host then stops, and
+// finished() stays false.
 class IdealHost : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};
   tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
   sc_core::sc_in<bool> done{"done"};
 
-  // Tables, null for a side without one, `source` and `sink` outlive the host. Throws std::invalid_argument
-  // if a list of buffers is empty, or a side has a table but no buffer for it, or the other way round.
+  // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Throws
+  // std::invalid_argument if a list of buffers is empty, or a side has only one of a table and a buffer for
+  // it.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
@@ -48,11 +49,12 @@ class IdealHost : public sc_core::sc_module {
   void run();
   void load_tables();
   bool load_pictures(std::uint32_t left, std::uint32_t right);
-  bool start_frame();  // false, like end_frame(): an error has been reported, the host stops
+  // False: an error has been reported, and the host stops.
+  bool start_frame();
   bool end_frame();
   void write_register(std::uint64_t address, std::uint32_t value);
   std::uint32_t read_status();
-  // Moves whole buffers; reports an error if the memory does not take them.
+  // Move a whole buffer. They report an error if the memory refuses a part of it.
   void preload(std::uint32_t base, const void* bytes, std::size_t size);
   void read_back(std::uint32_t base, void* bytes, std::size_t size);
   void debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size);

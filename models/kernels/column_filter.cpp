@@ -6,15 +6,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/kernels/vector_loops.h"
-
 namespace stereotlm::kernels {
 namespace {
 
 constexpr std::size_t kColumnsBetweenMoves = 64;
 static_assert(kMostRows % kFilterBlock == 0);
 
-// At least `count` values; both sides have room for whole blocks.
+// Copies at least `count` values, in whole blocks, for which both sides have room.
 void copy_blocks(const float* from, int count, float* to) {
   for (int e = 0; e < count; e += kFilterBlock) std::memcpy(to + e, from + e, kFilterBlock * sizeof(float));
 }
@@ -22,8 +20,8 @@ void copy_blocks(const float* from, int count, float* to) {
 }  // namespace
 
 ColumnFilter::ColumnFilter(int width, int height, int rows_per_column,
-                           const std::optional<FilterKernel>& kernel)
-    : width_(width), height_(height), rows_per_column_(rows_per_column), kernel_(kernel) {
+                           const std::optional<FilterKernel>& kernel, const Simd& simd)
+    : simd_(simd.column), width_(width), height_(height), rows_per_column_(rows_per_column), kernel_(kernel) {
   if (width < 1 || height < 1) {
     throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
                                 ": must have pixels");
@@ -46,7 +44,7 @@ ColumnFilter::ColumnFilter(int width, int height, int rows_per_column,
     line_stride_ = static_cast<std::size_t>(padded_rows(2 * half_));
     line_values_.resize(static_cast<std::size_t>(width_) * line_stride_);
     line_valid_.resize(static_cast<std::size_t>(width_));
-    // Room for what the loops read and the block copies write beyond the last row.
+    // The filter loops read beyond the last row, and copies of whole blocks write there.
     stride_ = line_stride_ + static_cast<std::size_t>(padded_rows(rows_per_column_));
     columns_.resize((kColumnsBetweenMoves + size - 1) * stride_);
     columns_valid_.resize(kColumnsBetweenMoves + size - 1);
@@ -92,8 +90,7 @@ void ColumnFilter::finish_column() {
   std::uint64_t& valid = columns_valid_[position_];
   valid = line_valid | entered_valid_ << (2 * half_);
   repeat_edges();
-  // Of the 2h + rows_per_column rows in this column the next strip, one row down, starts with those from 1
-  // on.
+  // The next strip lies one row further down: the 2h rows above it begin at row 1 of this column.
   copy_blocks(column_at(position_) + 1, 2 * half_,
               line_values_.data() + static_cast<std::size_t>(column_) * line_stride_);
   line_valid = valid >> 1U & ((std::uint64_t{1} << (2 * half_)) - 1);
@@ -101,11 +98,11 @@ void ColumnFilter::finish_column() {
   ++column_count_;
 }
 
-// Rows beyond the image take the values of its first or last.
+// Rows outside the image take the values of its first or last row.
 void ColumnFilter::repeat_edges() {
   if (first_row_ <= 0) std::fill_n(entered_ - 2 * half_, 2 * half_ - first_row_, entered_[-first_row_]);
-  // k of the last row of the image, negative for an old row; so far below the image that it has left the
-  // column, the oldest row repeats it.
+  // k of the last row of the image; negative if it entered with an earlier strip. Once it has left the
+  // column, the oldest row of the column holds its value.
   const int last = std::max(height_ - 1 - first_row_, -2 * half_);
   if (last < rows_per_column_ - 1) {
     std::fill_n(entered_ + last + 1, rows_per_column_ - 1 - last, entered_[last]);
@@ -123,12 +120,13 @@ void ColumnFilter::leave() {
   if (wide_) {
     filter_wide(columns);
   } else {
-    filter_column(columns, static_cast<std::ptrdiff_t>(stride_), weights_.data(), kernel_->size,
-                  rows_per_column_, kernel_->shift, output_.values.data());
+    simd_.filter_column(columns, static_cast<std::ptrdiff_t>(stride_), weights_.data(), kernel_->size,
+                        rows_per_column_, kernel_->shift, output_.values.data());
   }
 }
 
-// The columns centre - h .. centre + h of the image, one stride apart; those beyond the edges are copies.
+// The columns centre - h .. centre + h of the image, one stride apart. Columns beyond the edges repeat the
+// edge.
 const float* ColumnFilter::columns_around(int centre, std::size_t centre_position) {
   if (centre >= half_ && centre + half_ < width_) {
     return column_at(centre_position - static_cast<std::size_t>(half_));

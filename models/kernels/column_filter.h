@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/kernels/filter_kernel.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 
@@ -22,23 +23,26 @@ inline constexpr int kMostRows = 32;
 // The rows of one column on their way to the matcher, top first.
 struct PixelColumn {
   std::array<std::uint8_t, kMostRows> values{};
-  std::uint32_t valid = 0;  // bit k: that of row k
+  std::uint32_t valid = 0;  // bit k: whether row k is valid
 };
 
-// The filter of contract 1.2 as the hardware runs it: pixels enter column by column, `rows_per_column` new
-// rows of each (n of them for the column fetch, 1 for line buffers), columns 0..width-1 of a strip, then the
-// next strip one row further down; the 2h rows above come from line memories. What leaves with column u are
-// the pixels of column u - h, h rows further up. Edge pixels repeat; what enters for rows outside the image
-// is ignored. Without a kernel a column leaves as it enters.
+// The filter of contract 1.2 as the hardware runs it. Pixels enter column by column: columns 0..width-1 of a
+// strip, then those of the next strip, one row further down. A column has `rows_per_column` new rows: n for
+// the column fetch, 1 for line buffers. The 2h rows above them come from line memories. With column u leave
+// the pixels of column u - h, h rows further up. Edge pixels repeat, and pixels of rows outside the image are
+// ignored. Without a kernel a column leaves as it enters.
 class ColumnFilter {
  public:
   // Throws std::invalid_argument if the kernel has problems, the image has no pixels, or `rows_per_column` is
   // outside 1..kMostRows.
-  ColumnFilter(int width, int height, int rows_per_column, const std::optional<FilterKernel>& kernel);
+  ColumnFilter(int width, int height, int rows_per_column, const std::optional<FilterKernel>& kernel,
+               const Simd& simd = best_simd());
 
-  // Next comes the first row of column 0 of a strip whose first new row is `first_row` (may be negative).
+  // Begins a frame. The next pixel is the first new row of column 0 of a strip; `first_row` is that row of
+  // the image, and may be negative.
   void start_frame(int first_row);
-  // True if the column is complete: then output() is what leaves with it, `rows_per_column` rows.
+  // Returns true if the pixel completes its column. output() then holds the `rows_per_column` rows that leave
+  // with it.
   bool push(MaskedPixel pixel) {
     if (k_ == rows_per_column_) begin_column();
     const auto k = static_cast<std::size_t>(k_);
@@ -52,7 +56,7 @@ class ColumnFilter {
     finish_column();
     return true;
   }
-  // Until the next push().
+  // Valid until the next push().
   const PixelColumn& output() const { return output_; }
 
  private:
@@ -64,6 +68,7 @@ class ColumnFilter {
   void filter_wide(const float* columns);
   float* column_at(std::size_t position) { return columns_.data() + position * stride_; }
 
+  const ColumnSimd& simd_;
   int width_;
   int height_;
   int rows_per_column_;
@@ -72,24 +77,24 @@ class ColumnFilter {
   bool wide_ = false;           // a sum may leave 24 bits, in which a float is exact
   std::vector<float> weights_;  // column by column
 
-  // Line memories: per image column 2h rows, in whole blocks, and the ninth bit of their words: bit e for row
-  // e.
+  // Line memories: 2h rows per image column, padded to whole blocks, and the valid bits of these rows (bit e:
+  // row e).
   std::size_t line_stride_ = 0;
   std::vector<float> line_values_;
   std::vector<std::uint64_t> line_valid_;
-  // The last columns, 2h + rows_per_column rows each, the newest at position_. At the end of the memory the
-  // last ones move to its beginning.
+  // The last columns, of 2h + rows_per_column rows each; the newest is at position_. When the memory is full,
+  // the last columns move to its beginning.
   std::size_t stride_ = 0;
   std::vector<float> columns_;
   std::vector<std::uint64_t> columns_valid_;
-  std::vector<float> repeated_;  // the columns around one near the left or right edge
+  std::vector<float> repeated_;  // copies of the columns around a column near the left or right edge
   std::size_t position_ = 0;
-  std::uint64_t column_count_ = 0;  // since the start of the frame, without the one that enters
+  std::uint64_t column_count_ = 0;  // columns completed since the start of the frame
 
-  int column_ = 0;            // of the image, of the pixel that entered last
-  int k_ = 0;                 // rows entered of the column
-  int first_row_ = 0;         // row of the image at k = 0
-  float* entered_ = nullptr;  // where they enter; null without kernel
+  int column_ = 0;            // image column of the pixel that entered last
+  int k_ = 0;                 // rows of that column that have entered
+  int first_row_ = 0;         // image row at k = 0
+  float* entered_ = nullptr;  // where these rows are stored; null without kernel
   std::uint64_t entered_valid_ = 0;
   PixelColumn output_;
 };

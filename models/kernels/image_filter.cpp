@@ -9,8 +9,8 @@
 
 namespace stereotlm::kernels {
 
-ImageFilter::ImageFilter(int width, int height, const FilterKernel& kernel, const ImageLoops& loops)
-    : width_(width), height_(height), half_(kernel.half()), loops_(loops) {
+ImageFilter::ImageFilter(int width, int height, const FilterKernel& kernel, const Simd& simd)
+    : width_(width), height_(height), half_(kernel.half()), simd_(simd.frame) {
   if (width < 1 || height < 1) {
     throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
                                 ": must have pixels");
@@ -35,7 +35,7 @@ ImageFilter::ImageFilter(int width, int height, const FilterKernel& kernel, cons
   }
   taps_ = {static_cast<int>(equal_rows_.size()), (kernel.size + 1) / 2, kernel.shift, nullptr};
   for (EqualRows& equal : equal_rows_) {
-    // Vectors run over the end, and with the last pair by one more column.
+    // Vectors read beyond the end, and the last pair reads one more column.
     equal.sums = VectorArray(static_cast<std::size_t>(width + kernel.size + 1) + kPadding);
     sums_.push_back(equal.sums.data());
     for (int column = 0; column < kernel.size; column += 2) {
@@ -54,7 +54,7 @@ void ImageFilter::add_rows(EqualRows& equal, const std::uint8_t* image, int row)
   for (const int offset : equal.rows)
     rows[count++] = image + std::ptrdiff_t{std::clamp(row + offset, 0, height_ - 1)} * width_;
   std::int16_t* sums = equal.sums.data();
-  loops_.add_rows(rows.data(), static_cast<int>(count), width_, sums + half_);
+  simd_.add_rows(rows.data(), static_cast<int>(count), width_, sums + half_);
   std::fill_n(sums, half_, sums[half_]);
   std::fill_n(sums + half_ + width_, half_, sums[half_ + width_ - 1]);
 }
@@ -76,7 +76,7 @@ void ImageFilter::run(const std::uint8_t* image, std::uint8_t* filtered) {
     if (wide_) {
       filter_row_wide(filtered);
     } else {
-      loops_.filter_row(sums_.data(), taps_, width_, filtered);
+      simd_.filter_row(sums_.data(), taps_, width_, filtered);
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/kernels/filter_kernel.h"
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/vector_array.h"
 
 namespace stereotlm::kernels {
@@ -15,11 +15,10 @@ namespace stereotlm::kernels {
 class ImageFilter {
  public:
   // Bytes behind the last pixel that run() may write.
-  static constexpr std::size_t kPadding = kMostImageVectorBytes;
+  static constexpr std::size_t kPadding = kMostFrameVectorBytes;
 
   // Throws std::invalid_argument if the kernel has problems or the image has no pixels.
-  ImageFilter(int width, int height, const FilterKernel& kernel,
-              const ImageLoops& loops = *image_loops().front());
+  ImageFilter(int width, int height, const FilterKernel& kernel, const Simd& simd = best_simd());
   ImageFilter(const ImageFilter&) = delete;
   ImageFilter& operator=(const ImageFilter&) = delete;
 
@@ -27,11 +26,11 @@ class ImageFilter {
   void run(const std::uint8_t* image, std::uint8_t* filtered);
 
  private:
-  // Kernel rows with the same weights: their pixels are added first.
+  // Kernel rows with the same weights: their pixels are added up before they are weighted.
   struct EqualRows {
     std::vector<int> rows;  // offsets from the centre
     std::vector<int> weights;
-    VectorArray sums;  // of their pixels, from `half` columns left of the image to as many right of it
+    VectorArray sums;  // of these pixels, with `half` more columns on each side of the image
   };
 
   void add_rows(EqualRows& equal, const std::uint8_t* image, int row);
@@ -40,7 +39,7 @@ class ImageFilter {
   int width_;
   int height_;
   int half_;
-  const ImageLoops& loops_;
+  const FrameSimd& simd_;
   std::vector<EqualRows> equal_rows_;
   std::vector<const std::int16_t*> sums_;
   std::vector<std::int32_t> pair_weights_;

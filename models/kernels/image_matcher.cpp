@@ -13,7 +13,7 @@ namespace {
 constexpr std::int16_t kSmallest = std::numeric_limits<std::int16_t>::min();
 constexpr std::int16_t kLargest = std::numeric_limits<std::int16_t>::max();
 
-// Column sums that are walked through once a row should stay in a core's second cache.
+// Column sums are read and written once a row, and should fit into a core's second-level cache.
 constexpr double kMostColumnSumBytes = 400e3;
 
 constexpr int divided_up(int value, int divisor) { return (value + divisor - 1) / divisor; }
@@ -22,8 +22,8 @@ constexpr int rounded_up(int value, int unit) { return divided_up(value, unit) *
 }  // namespace
 
 ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, bool right_based,
-                           const ImageLoops& loops)
-    : width_(width), height_(height), radius_((window - 1) / 2), loops_(loops) {
+                           const Simd& simd)
+    : width_(width), height_(height), radius_((window - 1) / 2), simd_(simd.frame) {
   plan_.window = kWindowRule.required("window", window);
   plan_.disparities = kDisparitiesRule.required("disparities", disparities);
   plan_.right_based = right_based;
@@ -38,23 +38,23 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
   const int positions = plan_.columns + window - 1;
   const int more = plan_.disparities - 1;
   row_stride_ = static_cast<std::size_t>(
-      rounded_up((segments_ - 1) * plan_.columns + rounded_up(positions + more, 8), kMostImageLanes));
-  row_stride_ = std::max(row_stride_, static_cast<std::size_t>(rounded_up(width, kMostImageLanes)));
+      rounded_up((segments_ - 1) * plan_.columns + rounded_up(positions + more, 8), kMostFrameLanes));
+  row_stride_ = std::max(row_stride_, static_cast<std::size_t>(rounded_up(width, kMostFrameLanes)));
   prepare(left_, positions + more, plan_.columns + more);
   prepare(right_, positions, plan_.columns);
   no_row_.resize(static_cast<std::size_t>(width));
 
-  const auto lanes = static_cast<std::size_t>(loops_.lanes);
+  const auto lanes = static_cast<std::size_t>(simd_.lanes);
   outside_ = VectorArray(static_cast<std::size_t>(plan_.columns + plan_.disparities) * lanes);
   for (int position = 0; position < plan_.columns + plan_.disparities; ++position) {
-    for (int lane = 0; lane < loops_.lanes; ++lane) {
+    for (int lane = 0; lane < simd_.lanes; ++lane) {
       const int window_column = lane % segments_ * plan_.columns + position;
       outside_.data()[static_cast<std::size_t>(position) * lanes + static_cast<std::size_t>(lane)] =
           window_column < windows_across_ ? kSmallest : kLargest;
     }
   }
   band_begins_ = VectorArray(lanes);
-  for (int lane = 0; lane < loops_.lanes; ++lane)
+  for (int lane = 0; lane < simd_.lanes; ++lane)
     band_begins_.data()[lane] = lane % segments_ == 0 ? kLargest : kSmallest;
   column_sums_ = VectorArray(static_cast<std::size_t>(plan_.disparities) *
                              static_cast<std::size_t>(plan_.columns + window) * lanes);
@@ -62,16 +62,16 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
              column_sums_.data(), right_.best.data(), left_.best.data()};
 }
 
-// Segments share window - 1 columns with the next, bands as many rows: what is shared is done twice, at about
-// half the work of a window. More segments keep less column sums.
+// Neighbouring segments share window - 1 columns, and neighbouring bands share as many rows. What they share
+// is computed twice, at about half the work of a window. More segments need fewer column sums.
 void ImageMatcher::choose_bands() {
   const double shared = plan_.window - 1;
   double least = std::numeric_limits<double>::max();
-  for (int bands = 1; bands <= loops_.lanes; bands *= 2) {
-    const int segments = loops_.lanes / bands;
+  for (int bands = 1; bands <= simd_.lanes; bands *= 2) {
+    const int segments = simd_.lanes / bands;
     const int columns = rounded_up(divided_up(windows_across_, segments), 8);
     const int rows = divided_up(windows_down_, bands);
-    const double bytes = 2.0 * loops_.lanes * plan_.disparities * (columns + plan_.window);
+    const double bytes = 2.0 * simd_.lanes * plan_.disparities * (columns + plan_.window);
     const double work = (rows + 0.5 * shared) * (columns + 0.5 * shared);
     if (work >= least || (bands > 1 && bytes > kMostColumnSumBytes)) continue;
     least = work;
@@ -83,7 +83,7 @@ void ImageMatcher::choose_bands() {
 }
 
 void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
-  const auto lanes = static_cast<std::size_t>(loops_.lanes);
+  const auto lanes = static_cast<std::size_t>(simd_.lanes);
   const auto rows = static_cast<std::size_t>(bands_) * row_stride_;
   side.positions = positions;
   side.rows = VectorArray(rows);
@@ -92,34 +92,34 @@ void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
   side.best = VectorArray(2 * static_cast<std::size_t>(best_positions) * lanes);
 }
 
-// Row `step` of each band enters its windows. Bands that end below the image take its last row again; nothing
-// of them is used.
+// Row `step` of each band enters its windows. Rows below the image repeat its last row; their results are not
+// used.
 void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
   const auto width = static_cast<std::size_t>(width_);
   const auto row_of = [&](int row) {
     return image + static_cast<std::size_t>(std::min(row, height_ - 1)) * width;
   };
-  std::array<const std::int16_t*, kMostImageLanes> lanes{};
+  std::array<const std::int16_t*, kMostFrameLanes> lanes{};
   std::size_t lane = 0;
   for (int band = 0; band < bands_; ++band) {
     const int row = band * band_rows_ + step;
     std::int16_t* pairs = side.rows.data() + static_cast<std::size_t>(band) * row_stride_;
-    loops_.pair_pixels(row_of(row), step < plan_.window ? no_row_.data() : row_of(row - plan_.window), width_,
-                       pairs);
+    simd_.pair_pixels(row_of(row), step < plan_.window ? no_row_.data() : row_of(row - plan_.window), width_,
+                      pairs);
     for (int segment = 0; segment < segments_; ++segment)
       lanes[lane++] = pairs + std::ptrdiff_t{segment} * plan_.columns;
   }
-  loops_.to_lanes(lanes.data(), side.positions, side.lanes.data());
+  simd_.to_lanes(lanes.data(), side.positions, side.lanes.data());
 }
 
 void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
-  std::array<std::uint8_t*, kMostImageLanes> lanes{};
-  for (int lane = 0; lane < loops_.lanes; ++lane) {
+  std::array<std::uint8_t*, kMostFrameLanes> lanes{};
+  for (int lane = 0; lane < simd_.lanes; ++lane) {
     lanes[static_cast<std::size_t>(lane)] = side.out.data() +
                                             static_cast<std::size_t>(lane / segments_) * row_stride_ +
                                             std::ptrdiff_t{lane % segments_} * plan_.columns;
   }
-  loops_.from_lanes(side.best.data(), plan_.columns, lanes.data());
+  simd_.from_lanes(side.best.data(), plan_.columns, lanes.data());
   for (int band = 0; band < bands_; ++band) {
     const int row = band * band_rows_ + step - (plan_.window - 1);
     if (row >= windows_down_) continue;
@@ -139,10 +139,10 @@ void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std:
     enter_rows(left_, left, step);
     enter_rows(right_, right, step);
     if (step < plan_.window - 1) {
-      loops_.add_row(plan_, memory_);
+      simd_.add_row(plan_, memory_);
       continue;
     }
-    loops_.match_row(plan_, memory_);
+    simd_.match_row(plan_, memory_);
     leave_rows(left_, step, left_disparity);
     if (plan_.right_based) leave_rows(right_, step, right_disparity);
   }

@@ -4,29 +4,29 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/vector_array.h"
 
 namespace stereotlm::kernels {
 
-// Contract 1.3 on whole images.
+// Matches whole images (contract 1.3).
 class ImageMatcher {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
   ImageMatcher(int width, int height, int window, int disparities, bool right_based,
-               const ImageLoops& loops = *image_loops().front());
+               const Simd& simd = best_simd());
   ImageMatcher(const ImageMatcher&) = delete;
   ImageMatcher& operator=(const ImageMatcher&) = delete;
 
-  // All width * height pixels, row-major. right_disparity is not touched without `right_based`.
+  // All width * height pixels, row-major. Without `right_based` right_disparity is not written.
   void run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
            std::uint8_t* right_disparity);
 
  private:
   struct Side {
-    VectorArray rows;               // per band: one row, each pixel with the one that leaves the window
-    VectorArray lanes;              // the same, one vector per position
-    VectorArray best;               // per position
+    VectorArray rows;   // per band: one row, each pixel paired with the pixel that leaves the window
+    VectorArray lanes;  // the same, as one vector per position
+    VectorArray best;   // per position: the best keys, then the disparities
     std::vector<std::uint8_t> out;  // per band: one row of disparities
     int positions = 0;
   };
@@ -39,7 +39,7 @@ class ImageMatcher {
   int width_;
   int height_;
   int radius_;
-  const ImageLoops& loops_;
+  const FrameSimd& simd_;
   MatchPlan plan_;
   int bands_ = 1;     // each of band_rows_ rows of windows
   int segments_ = 1;  // lanes of a band, each of plan_.columns columns of windows
@@ -52,7 +52,7 @@ class ImageMatcher {
   VectorArray outside_;
   VectorArray band_begins_;
   VectorArray column_sums_;
-  std::vector<std::uint8_t> no_row_;  // leaves the first windows
+  std::vector<std::uint8_t> no_row_;  // the black row that leaves the first windows
   MatchMemory memory_;
 };
 

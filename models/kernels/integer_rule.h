@@ -7,7 +7,7 @@
 
 namespace stereotlm::kernels {
 
-// What an integer field of a configuration may hold: min, min + step, .. up to max.
+// The allowed values of an integer field: min, min + step, .. up to max.
 struct IntegerRule {
   std::int64_t min;
   std::int64_t max;

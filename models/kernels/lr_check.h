@@ -11,7 +11,7 @@
 namespace stereotlm::kernels {
 
 // Contract 1.4: whether the left-based disparity of a left pixel survives, given the right-based disparity of
-// the right pixel that it points to. Without tolerance (`off`) every valid one does.
+// the right pixel that it points to. Without a tolerance (`off`) every valid disparity survives.
 inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_based,
                                   std::optional<int> tolerance) {
   if (left_based == kInvalidDisparity) return false;
@@ -19,9 +19,8 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
   return right_based != kInvalidDisparity && std::abs(int{left_based} - int{right_based}) <= *tolerance;
 }
 
-// The check as it runs behind the select-min units, one column after the other. Unit A is disparities-1
-// columns behind unit B, so that both belong to the same column once the left-based results have waited that
-// long.
+// The check behind the select-min units, column by column. Unit A is disparities-1 columns behind unit B. The
+// left-based results wait for that long, so that both results belong to the same column.
 class LrCheck {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule and kLrToleranceRule.

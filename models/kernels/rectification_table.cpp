@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "models/kernels/image_loops.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 namespace {
@@ -34,12 +34,12 @@ RectificationTable identity_table(int width, int height) {
   return table;
 }
 
-// Without branches, so that compilers use vectors.
+// Has no branches, so that the compiler can use vectors.
 bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int width, int height) {
   std::uint32_t outside = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t entry = entries[i];
-    // Negative where the position is beyond the last column or row.
+    // Negative if the position is beyond the last column or row.
     const auto columns_left = static_cast<std::uint32_t>(width - 1 - entry_column(entry));
     const auto rows_left = static_cast<std::uint32_t>(height - 1 - entry_row(entry));
     outside |= (columns_left | rows_left) & entry;
@@ -49,7 +49,7 @@ bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int w
 
 namespace {
 
-// Row by row: what has been read once is still in the cache when it is read again.
+// Works row by row, so that the second pass over a row finds it in the cache.
 bool is_valid(const RectificationTable& table) {
   const auto width = static_cast<std::size_t>(table.width);
   std::uint32_t bits = 0;
@@ -101,9 +101,8 @@ void require_usable(const RectificationTable& table, const GrayImage& image) {
 GrayImage rectify(const GrayImage& source, const RectificationTable& table) {
   require_usable(table, source);
   GrayImage rectified(table.width, table.height);
-  image_loops().front()->rectify(source.pixels.data(), table.entries.data(),
-                                 static_cast<int>(table.entries.size()), table.width,
-                                 rectified.pixels.data());
+  best_simd().frame.rectify(source.pixels.data(), table.entries.data(),
+                            static_cast<int>(table.entries.size()), table.width, rectified.pixels.data());
   return rectified;
 }
 

@@ -29,14 +29,13 @@ struct RectificationTable {
   std::vector<std::uint32_t> entries;
 };
 
-// Every pixel is its own source: the board without calibration.
+// Every pixel is its own source, as on a board without calibration.
 RectificationTable identity_table(int width, int height);
 
 // Whether all valid entries point inside an image of that size.
 bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int width, int height);
 
-// Every broken rule, as `entry (column, row) = 0x...: rule`, at most the first ten; empty if the table can be
-// loaded.
+// The first ten broken rules as `entry (column, row) = 0x...: rule`; empty if the table can be loaded.
 std::vector<std::string> problems(const RectificationTable& table);
 
 // Throws std::invalid_argument if the table has problems or is not of the image's size.

@@ -12,8 +12,9 @@ constexpr int kColumnsBetweenMoves = 1024;
 
 }  // namespace
 
-SadColumns::SadColumns(int window, int disparities)
-    : window_(kWindowRule.required("window", window)),
+SadColumns::SadColumns(int window, int disparities, const Simd& simd)
+    : simd_(simd.column),
+      window_(kWindowRule.required("window", window)),
       lanes_(padded_lanes(kDisparitiesRule.required("disparities", disparities))),
       right_histories_(static_cast<std::size_t>(window) *
                        static_cast<std::size_t>(kColumnsBetweenMoves + lanes_)),
@@ -35,7 +36,7 @@ void SadColumns::push_column(const std::uint8_t* left, const std::uint8_t* right
   const std::ptrdiff_t stride = kColumnsBetweenMoves + lanes_;
   std::uint8_t* history = right_histories_.data();
   if (position_ == 0) {
-    // Newest first means that a history grows downwards: at the bottom its live part moves to the top.
+    // A history grows downwards, newest pixel first. At the bottom its live part moves to the top.
     for (int row = 0; row < window_; ++row, history += stride) {
       std::copy_n(history, lanes_, history + kColumnsBetweenMoves);
     }
@@ -47,8 +48,8 @@ void SadColumns::push_column(const std::uint8_t* left, const std::uint8_t* right
     history[position_] = right[row];
     newest_[static_cast<std::size_t>(row)] = history + position_;
   }
-  step_windows(newest_.data(), left, window_, lanes_, column_sums_[static_cast<std::size_t>(oldest_)].data(),
-               window_sums_.data());
+  simd_.step_windows(newest_.data(), left, window_, lanes_,
+                     column_sums_[static_cast<std::size_t>(oldest_)].data(), window_sums_.data());
   oldest_ = oldest_ + 1 == window_ ? 0 : oldest_ + 1;
 }
 

@@ -3,12 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/kernels/vector_loops.h"
+#include "models/kernels/lane_array.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 
-// How many candidates d = 0, 1, .. the window of left pixel (column, row) has: those whose windows lie wholly
-// inside both images (contract 1.3). They are always the first ones.
+// The number of candidates of left pixel (column, row): disparities whose windows lie wholly inside both
+// images (contract 1.3). They are always 0, 1, .. without a gap.
 constexpr int candidate_count(int column, int row, int width, int height, int window, int disparities) {
   const int radius = (window - 1) / 2;
   if (row < radius || row >= height - radius || column < radius || column >= width - radius) return 0;
@@ -22,23 +23,24 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
 class SadColumns {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
-  SadColumns(int window, int disparities);
+  SadColumns(int window, int disparities, const Simd& simd = best_simd());
 
   void start_frame();
   // The next column of both sides: n pixels each, top first.
   void push_column(const std::uint8_t* left, const std::uint8_t* right);
-  // SAD of candidates 0..disparities-1 for the last column, as a padded array of lanes.
+  // SAD of candidates 0..disparities-1 for the last column, padded to lanes() values.
   const std::int32_t* window_sums() const { return window_sums_.data(); }
   int lanes() const { return lanes_; }
 
  private:
+  const ColumnSimd& simd_;
   int window_;
   int lanes_;
   int position_ = 0;                                  // of the newest right pixel in each history
-  int oldest_ = 0;                                    // which column sums leave the window next
+  int oldest_ = 0;                                    // index of the column sums that leave the window next
   std::vector<std::uint8_t> right_histories_;         // per row of the window: newest column first
   std::vector<const std::uint8_t*> newest_;           // per row: the newest pixel in its history
-  std::vector<LaneArray<std::int16_t>> column_sums_;  // of the last n columns; each at most 31 * 255
+  std::vector<LaneArray<std::int16_t>> column_sums_;  // of the last n columns; each sum is at most 31 * 255
   LaneArray<std::int32_t> window_sums_;               // at most 31 * 31 * 255
 };
 

@@ -19,12 +19,13 @@ constexpr std::uint8_t disparity_of(std::int32_t key) {
 
 }  // namespace
 
-std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes) {
-  return disparity_of(smallest_key(window_sums, candidates, lanes));
+std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes, const Simd& simd) {
+  return disparity_of(simd.column.smallest_key(window_sums, candidates, lanes));
 }
 
-SelectMinChain::SelectMinChain(int disparities)
-    : disparities_(kDisparitiesRule.required("disparities", disparities)),
+SelectMinChain::SelectMinChain(int disparities, const Simd& simd)
+    : simd_(simd.column),
+      disparities_(kDisparitiesRule.required("disparities", disparities)),
       lanes_(padded_lanes(disparities)),
       held_(kBefore + disparities),
       next_(kBefore + disparities) {
@@ -37,7 +38,7 @@ void SelectMinChain::start_frame() {
 }
 
 std::uint8_t SelectMinChain::step(const std::int32_t* window_sums, int candidates) {
-  step_chain(window_sums, candidates, lanes_, held_.data() + kBefore, next_.data() + kBefore);
+  simd_.step_chain(window_sums, candidates, lanes_, held_.data() + kBefore, next_.data() + kBefore);
   held_.swap(next_);
   return disparity_of(held_.data()[kBefore + disparities_ - 1]);
 }

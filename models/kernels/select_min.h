@@ -2,24 +2,25 @@
 
 #include <cstdint>
 
-#include "models/kernels/sad_columns.h"
-#include "models/kernels/vector_loops.h"
+#include "models/kernels/lane_array.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 
-// Select-min unit B (paper section 3.3): a tree of comparators. The disparity of the smallest of the first
-// `candidates` window sums, the first of equal ones; kInvalidDisparity if there is none. The sums of one
-// column belong to one left pixel: left-based matching.
-std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes);
+// Select-min unit B (paper section 3.3): a tree of comparators. Returns the disparity of the smallest of the
+// first `candidates` window sums, and of equal sums the smaller disparity; kInvalidDisparity without
+// candidates. The sums of one column belong to one left pixel: left-based matching.
+std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes,
+                             const Simd& simd = best_simd());
 
-// Select-min unit A: a chain of `disparities` compare-and-shift modules. Each column, module d compares what
-// module d-1 held a column ago with the sum of candidate d and keeps the smaller, the former of equal ones;
-// so the minimum that leaves the chain belongs to the right pixel disparities-1 columns back: right-based
-// matching.
+// Select-min unit A: a chain of `disparities` compare-and-shift modules. In each column module d compares the
+// sum that module d-1 held a column ago with the sum of candidate d, and keeps the smaller; of equal sums it
+// keeps the former. The minimum that leaves the chain belongs to the right pixel disparities-1 columns back:
+// right-based matching.
 class SelectMinChain {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule.
-  explicit SelectMinChain(int disparities);
+  explicit SelectMinChain(int disparities, const Simd& simd = best_simd());
 
   void start_frame();
   // One column: the first `candidates` window sums take part. Returns the disparity for the right pixel
@@ -27,9 +28,10 @@ class SelectMinChain {
   std::uint8_t step(const std::int32_t* window_sums, int candidates);
 
  private:
+  const ColumnSimd& simd_;
   int disparities_;
   int lanes_;
-  LaneArray<std::int32_t> held_;  // [kBefore + d]: what module d holds; before it, nothing
+  LaneArray<std::int32_t> held_;  // [kBefore + d]: what module d holds; no candidates before that
   LaneArray<std::int32_t> next_;
 };
 

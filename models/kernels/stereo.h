@@ -11,8 +11,9 @@
 
 namespace stereotlm::kernels {
 
-// The whole of contract section 1 on whole images, without memories and time, one image at a time; for many
-// frames see StereoPipeline. Disparity images hold kInvalidDisparity where there is none.
+// The arithmetic of contract section 1 on whole images, without memories and time, one image at a time.
+// StereoPipeline does the same for many frames. Disparity images hold kInvalidDisparity where there is no
+// disparity.
 struct StereoConfig {
   int window = 7;        // n: kWindowRule
   int disparities = 80;  // D: kDisparitiesRule
@@ -34,9 +35,9 @@ struct Matches {
 // the number of disparities breaks its rule.
 Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities);
 
-// Rectify, filter, match, check. A table that is null does not exist. Throws std::invalid_argument if the
-// images or tables differ in size, the images are to be filtered but empty, or the configuration or a table
-// has problems.
+// Rectifies, filters, matches and checks. A null table means that this side has none. Throws
+// std::invalid_argument if the images or tables differ in size, the images are to be filtered but empty, or
+// the configuration or a table has problems.
 GrayImage disparity_image(const GrayImage& left, const GrayImage& right, const RectificationTable* left_table,
                           const RectificationTable* right_table, const StereoConfig& config);
 

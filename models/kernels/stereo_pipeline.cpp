@@ -18,14 +18,14 @@ const StereoConfig& checked(const StereoConfig& config) {
 
 }  // namespace
 
-StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config, const ImageLoops& loops)
+StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config, const Simd& simd)
     : width_(width),
       height_(height),
       radius_((checked(config).window - 1) / 2),
       tolerance_(config.lr_tolerance),
-      loops_(loops),
-      matcher_(width, height, config.window, config.disparities, config.lr_tolerance.has_value(), loops) {
-  if (config.filter) filter_.emplace(width, height, *config.filter, loops);
+      simd_(simd.frame),
+      matcher_(width, height, config.window, config.disparities, config.lr_tolerance.has_value(), simd) {
+  if (config.filter) filter_.emplace(width, height, *config.filter, simd);
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   for (Side* side : {&left_, &right_}) {
     side->rectified.resize(pixels);
@@ -38,7 +38,7 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
 const std::uint8_t* StereoPipeline::prepare(Side& side, const std::uint8_t* image,
                                             const std::uint32_t* table) {
   if (table != nullptr) {
-    loops_.rectify(image, table, width_ * height_, width_, side.rectified.data());
+    simd_.rectify(image, table, width_ * height_, width_, side.rectified.data());
     image = side.rectified.data();
   }
   if (filter_) {
@@ -63,7 +63,7 @@ void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* dispar
     return static_cast<std::uint8_t>(condition ? kInvalidDisparity : 0);
   };
   if (tolerance_) {
-    // Where windows are, every pixel has a left-based disparity, which points to another of them.
+    // Every pixel with a window has a left-based disparity, which points to a pixel with a window.
     const int tolerance = *tolerance_;
     const int count = width_ - 2 * radius_;
     for (int row = radius_; row < height_ - radius_; ++row) {

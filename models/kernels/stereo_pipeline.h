@@ -5,23 +5,22 @@
 #include <vector>
 
 #include "models/kernels/image_filter.h"
-#include "models/kernels/image_loops.h"
 #include "models/kernels/image_matcher.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/stereo.h"
 
 namespace stereotlm::kernels {
 
-// The whole of contract section 1 on whole images, frame after frame: rectify, filter, match, check. All
-// memory is taken at construction.
+// The arithmetic of contract section 1 on whole images, frame after frame: rectify, filter, match, check. The
+// constructor allocates all memory.
 class StereoPipeline {
  public:
   // Throws std::invalid_argument if the configuration has problems, or the images are to be filtered but
-  // empty. `loops`: one of image_loops().
-  StereoPipeline(int width, int height, const StereoConfig& config,
-                 const ImageLoops& loops = *image_loops().front());
+  // empty. `simd`: one of simd_sets().
+  StereoPipeline(int width, int height, const StereoConfig& config, const Simd& simd = best_simd());
 
-  // Images hold width * height pixels, tables as many entries, row-major; a table that is null does not
-  // exist. The caller has checked the tables: valid entries lie inside the image.
+  // Images hold width * height pixels, tables as many entries, row-major. A null table means that this side
+  // has none. The caller has checked that valid entries lie inside the image.
   void run(const std::uint8_t* left, const std::uint8_t* right, const std::uint32_t* left_table,
            const std::uint32_t* right_table, std::uint8_t* disparity);
 
@@ -29,7 +28,7 @@ class StereoPipeline {
   struct Side {
     std::vector<std::uint8_t> rectified;
     std::vector<std::uint8_t> filtered;
-    std::vector<std::uint8_t> disparity;  // of the match based on this side
+    std::vector<std::uint8_t> disparity;  // of the matches that are based on this side
   };
 
   const std::uint8_t* prepare(Side& side, const std::uint8_t* image, const std::uint32_t* table);
@@ -39,13 +38,13 @@ class StereoPipeline {
   int height_;
   int radius_;
   std::optional<int> tolerance_;
-  const ImageLoops& loops_;
+  const FrameSimd& simd_;
   std::optional<ImageFilter> filter_;
   ImageMatcher matcher_;
   Side left_;
   Side right_;
-  std::vector<std::uint8_t>
-      pointed_to_;  // a row: the right-based disparity of what the left-based one points to
+  // One row: the right-based disparity at the pixel to which each left-based disparity points.
+  std::vector<std::uint8_t> pointed_to_;
 };
 
 }  // namespace stereotlm::kernels

@@ -5,15 +5,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/kernels/image_loops.h"
+#include "models/kernels/frame_simd.h"
 
 namespace stereotlm::kernels {
 
-// 16-bit numbers for ImageLoops, zeros at first, aligned to the longest vector.
+// An array of 16-bit numbers for FrameSimd, at first zeros, aligned to the longest vector.
 class VectorArray {
  public:
   VectorArray() = default;
-  explicit VectorArray(std::size_t size) : blocks_((size + kMostImageLanes - 1) / kMostImageLanes) {}
+  explicit VectorArray(std::size_t size) : blocks_((size + kMostFrameLanes - 1) / kMostFrameLanes) {}
   std::int16_t* data() { return blocks_.data()->data(); }
   const std::int16_t* data() const { return blocks_.data()->data(); }
   void clear() {
@@ -21,7 +21,7 @@ class VectorArray {
   }
 
  private:
-  struct alignas(kMostImageVectorBytes) Block : std::array<std::int16_t, kMostImageLanes> {};
+  struct alignas(kMostFrameVectorBytes) Block : std::array<std::int16_t, kMostFrameLanes> {};
   std::vector<Block> blocks_;
 };
 

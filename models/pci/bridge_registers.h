@@ -4,24 +4,24 @@
 
 // The PCI bridge on the FPGA board, as a program sees it (PLX PCI 9656 class; the map is ours).
 //
-// Two windows on the PCI bus. The slave window leads to the local bus:
+// The bridge has two windows on the PCI bus. The slave window leads to the local bus:
 //
 // | offset                       | leads to                                                         |
 // |------------------------------|------------------------------------------------------------------|
-// | i * kApertureBytes, i = 0..3 | the banks, from the word on that page register i names           |
+// | i * kApertureBytes, i = 0..3 | the banks, beginning with the word that page register i names    |
 // | kCoreRegisters               | the registers of the FPGA core (fpga/register_map.h)             |
 //
-// The register window has registers of 32 bits; c is a channel:
+// The register window has registers of 32 bits. c is the number of a DMA channel:
 //
 // | offset      | name             | access | meaning                                                   |
 // |-------------|------------------|--------|-----------------------------------------------------------|
 // | 0x00 + 4 i  | kPage            | both   | first word of aperture i: bits 31..26 bank, 25..0 word    |
-// | 0x10        | kInterruptStatus | both   | kDoorbell, kDmaDone << c, kDmaError << c, kPostedError;   |
-// |             |                  |        | writing a 1 clears a bit                                  |
+// | 0x10        | kInterruptStatus | both   | kDoorbell, kDmaDone << c, kDmaError << c, kPostedError.   |
+// |             |                  |        | Writing a 1 clears a bit                                  |
 // | 0x14        | kInterruptEnable | both   | the bits of kInterruptStatus that raise INTA#             |
 // | 0x20 + 16 c | kDmaDescriptor   | both   | PCI address of the first descriptor of the channel's      |
 // |             |                  |        | chain, a multiple of 16                                   |
-// | 0x24 + 16 c | kDmaControl      | write  | 1: start; a start while the channel is busy raises        |
+// | 0x24 + 16 c | kDmaControl      | write  | 1: start. A start while the channel is busy raises        |
 // |             |                  |        | kDmaError                                                 |
 // | 0x28 + 16 c | kDmaStatus       | read   | 1: busy                                                   |
 //
@@ -34,11 +34,11 @@
 // | 2    | bit 31: from the board to PCI, else from PCI to the board; bits 30..0: words, at least 1  |
 // | 3    | PCI address of the next descriptor, a multiple of 16; 0: this is the last                 |
 //
-// A channel that meets an error stops there. Its last words may still be on their way when it has raised it.
+// A channel stops at an error. When it raises kDmaError, its last words may still be on their way.
 namespace stereotlm::pci::bridge {
 
 inline constexpr int kApertures = 4;
-inline constexpr std::uint64_t kApertureBytes = std::uint64_t{1} << 22U;  // the largest picture
+inline constexpr std::uint64_t kApertureBytes = std::uint64_t{1} << 22U;  // holds the largest picture
 inline constexpr std::uint64_t kCoreRegisters = kApertures * kApertureBytes;
 inline constexpr std::uint64_t kSlaveWindowBytes = kCoreRegisters + 4096;
 
@@ -53,19 +53,19 @@ inline constexpr std::uint64_t kChannelStride = 0x10;
 inline constexpr std::uint64_t kRegisterWindowBytes = 0x40;
 
 inline constexpr std::uint32_t kDoorbell = 1U << 0U;
-inline constexpr std::uint32_t kDmaDone = 1U << 1U;      // channel 0; channel 1 in the bit above
-inline constexpr std::uint32_t kDmaError = 1U << 3U;     // channel 0; channel 1 in the bit above
+inline constexpr std::uint32_t kDmaDone = 1U << 1U;      // channel 0; channel 1 has the bit above
+inline constexpr std::uint32_t kDmaError = 1U << 3U;     // channel 0; channel 1 has the bit above
 inline constexpr std::uint32_t kPostedError = 1U << 5U;  // the local bus refused a posted write
 inline constexpr std::uint32_t kAllInterrupts = (1U << 6U) - 1;
 
 inline constexpr std::uint32_t kToPci = 1U << 31U;
 
-// Byte address on the local bus of a word on the board, as registers name it.
+// Byte address on the local bus of a word on the board, which registers name as bank and word.
 constexpr std::uint64_t local_address(std::uint32_t board_word) {
   return static_cast<std::uint64_t>(board_word >> 26U) << 28U | (board_word & 0x03FF'FFFFULL) << 2U;
 }
 
-// A burst on the local bus stays in one bank.
+// Addresses of one bank on the local bus. A burst stays in one bank.
 inline constexpr std::uint64_t kBankBytes = std::uint64_t{1} << 28U;
 
 }  // namespace stereotlm::pci::bridge

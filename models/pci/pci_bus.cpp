@@ -1,38 +1,20 @@
 #include "models/pci/pci_bus.h"
 
 #include <algorithm>
-#include <cstring>
-#include <stdexcept>
 #include <utility>
+
+#include "models/checked.h"
 
 namespace stereotlm::pci {
 namespace {
 
 constexpr char kReport[] = "/stereotlm/pci_bus";
 constexpr std::size_t kNobody = SIZE_MAX;
-constexpr std::uint64_t kDevselClocks = 4;  // that a master waits for DEVSEL# after its address clock
+constexpr std::uint64_t kDevselClocks = 4;  // clocks for which a master waits for DEVSEL#
 
-const PciBusConfig& checked(const char* name, const PciBusConfig& config) {
-  if (const auto found = problems(config); !found.empty()) {
-    throw std::invalid_argument(std::string(name) + ": " + found.front());
-  }
-  return config;
-}
-
-std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-
-// The first of all buses below these objects; null if there is none.
-PciBus* first_bus(const std::vector<sc_core::sc_object*>& objects) {
-  for (sc_core::sc_object* const object : objects) {
-    if (auto* const bus = dynamic_cast<PciBus*>(object)) return bus;
-    if (PciBus* const bus = first_bus(object->get_child_objects())) return bus;
-  }
-  return nullptr;
-}
-
-BurstEnd end_of(std::size_t words, std::size_t taken, std::size_t asked) {
+BurstEnd end_of(std::size_t words, std::size_t accepted, std::size_t asked) {
   if (words == asked) return BurstEnd::kComplete;
-  return words == taken ? BurstEnd::kDisconnect : BurstEnd::kLatencyTimer;
+  return words == accepted ? BurstEnd::kDisconnect : BurstEnd::kLatencyTimer;
 }
 
 }  // namespace
@@ -56,14 +38,7 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
   SC_METHOD(step);
   sensitive << step_;
   dont_initialize();
-  SC_METHOD(decide);
-  sensitive << decision_;
-  dont_initialize();
   SC_THREAD(run_transports);
-}
-
-void PciBus::start_of_simulation() {
-  if (PciBus* const first = first_bus(sc_core::sc_get_top_level_objects())) decider_ = first;
 }
 
 // Requests.
@@ -100,7 +75,7 @@ std::uint64_t PciBus::earliest_request(std::size_t except) const {
 void PciBus::step() {
   switch (state_) {
     case State::kFree:
-      decider_->decide_when_settled(*this);
+      arbitration_.request();
       break;
     case State::kWords:
       end_words();
@@ -113,22 +88,12 @@ void PciBus::step() {
   }
 }
 
-void PciBus::decide_when_settled(PciBus& bus) {
-  undecided_.push_back(&bus);
-  decide();
-}
-
-void PciBus::decide() {
-  if (sc_core::sc_pending_activity_at_current_time()) return decision_.notify(sc_core::SC_ZERO_TIME);
-  for (PciBus* const bus : std::exchange(undecided_, {})) bus->arbitrate();
-}
-
-// Grants the clock to its requests in turn until one is used.
+// Grants decision_clock_ to the requests in turn until one of them is used.
 void PciBus::arbitrate() {
   const std::uint64_t clock = decision_clock_;
   const std::uint64_t edge_ps = clock_.edge_ps(clock);
   decision_clock_ = kNever;
-  free_clock_ = clock + 1;  // for who asks from now on, if nobody uses this one
+  free_clock_ = clock + 1;  // in case that no request is used
   state_ = State::kOccupied;
   std::size_t master = last_granted_;
   for (std::size_t tried = 0; tried < requests_.size(); ++tried) {
@@ -157,25 +122,25 @@ void PciBus::begin(std::size_t master, const PciBurst& burst) {
     end_at(end_clock, {BurstEnd::kMasterAbort, 0, end_clock});
   } else if (!burst.write) {
     read_words_.assign(burst.words->size(), 0);
-    access(read_words_, running_.taken);
-  } else if (running_.taken = writable_words(); running_.taken == 0) {
+    access(read_words_, running_.accepted);
+  } else if (running_.accepted = writable_words(); running_.accepted == 0) {
     end_at(address_clock + 1, {BurstEnd::kDisconnect, 0, address_clock + 1});
   } else {
     begin_words(address_clock + 1 + static_cast<std::uint64_t>(config_.windows[*window].wait_clocks),
-                running_.taken);
+                running_.accepted);
   }
 }
 
 void PciBus::begin_words(std::uint64_t first_clock, std::size_t words) {
   running_.result.first_data_clock = first_clock;
   running_.end_clock = first_clock + words;
-  running_.transported = running_.burst.write && memories_[running_.window].data == nullptr;
+  running_.transported = running_.burst.write && !memories_.has(running_.window);
   state_ = State::kWords;
   end_words_at(running_.end_clock);
   cut_words();
 }
 
-// Only the earliest request of the others matters: a later one cuts no earlier.
+// The earliest request of another master decides: a later one cuts no earlier.
 void PciBus::cut_words() {
   const std::uint64_t request = earliest_request(running_.master);
   if (request == kNever) return;
@@ -187,7 +152,7 @@ void PciBus::cut_words() {
 
 void PciBus::end_words_at(std::uint64_t clock) {
   running_.end_clock = clock;
-  (running_.transported ? transport_ : step_).notify(Clock::to_time(clock_.edge_ps(clock) - now_ps()));
+  (running_.transported ? transport_ : step_).notify(Clock::to_time(clock_.edge_ps(clock) - Clock::now_ps()));
 }
 
 void PciBus::end_words() {
@@ -195,7 +160,7 @@ void PciBus::end_words() {
   const std::uint64_t first = running_.result.first_data_clock;
   const auto words = static_cast<std::size_t>(running_.end_clock - first);
   std::vector<std::uint32_t>& to = *running_.burst.words;
-  running_.result = {end_of(words, running_.taken, to.size()), words, first};
+  running_.result = {end_of(words, running_.accepted, to.size()), words, first};
   if (running_.burst.write) {
     access(to, words);
   } else {
@@ -204,7 +169,6 @@ void PciBus::end_words() {
   }
 }
 
-// In a clock to come.
 void PciBus::end_at(std::uint64_t clock, const BurstResult& result) {
   running_.result = result;
   running_.end_clock = clock;
@@ -225,14 +189,14 @@ void PciBus::end() {
 
 // The access to the target.
 
-// A write, when its words have been transferred; a read, from the end of the address clock on.
+// A write is accessed when its words have been transferred, a read at the end of the address clock.
 void PciBus::access(std::vector<std::uint32_t>& words, std::size_t count) {
   const bool write = running_.burst.write;
   access_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
   access_.set_address(running_.burst.address - config_.windows[running_.window].base);
   access_.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
   access_.set_data_length(static_cast<unsigned>(count * sizeof(std::uint32_t)));
-  if (access_memory()) {
+  if (memories_.access(running_.window, access_)) {
     answered(true, access_clock());
   } else {
     transport_is_due_ = true;
@@ -244,18 +208,7 @@ std::uint64_t PciBus::access_clock() const {
   return running_.burst.write ? running_.end_clock : running_.address_clock + 1;
 }
 
-bool PciBus::access_memory() {
-  const Memory& memory = memories_[running_.window];
-  const std::uint64_t first = access_.get_address();
-  const std::size_t bytes = access_.get_data_length();
-  if (memory.data == nullptr || first < memory.first || first + bytes - 1 > memory.last) return false;
-  unsigned char* const stored = memory.data + (first - memory.first);
-  unsigned char* const words = access_.get_data_ptr();
-  std::memcpy(access_.is_write() ? stored : words, access_.is_write() ? words : stored, bytes);
-  return true;
-}
-
-// b_transport may wait. The words of a write that needs it end here.
+// b_transport may wait and needs a thread. A write that ends in this thread costs no further event.
 void PciBus::run_transports() {
   for (;;) {
     wait(transport_);
@@ -271,25 +224,16 @@ void PciBus::transport() {
   access_.set_dmi_allowed(false);
   access_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   const std::uint64_t access_ps = clock_.edge_ps(access_clock());
-  sc_core::sc_time delay = Clock::to_time(access_ps - now_ps());
+  sc_core::sc_time delay = Clock::to_time(access_ps - Clock::now_ps());
   targets[running_.window]->b_transport(access_, delay);
-  if (access_.is_dmi_allowed()) learn_memory();
-  const std::uint64_t answer_ps = now_ps() + Clock::to_ps(delay);
+  if (access_.is_dmi_allowed())
+    memories_.request(running_.window, *targets[running_.window].operator->(), access_);
+  const std::uint64_t answer_ps = Clock::now_ps() + Clock::to_ps(delay);
   answered(access_.is_response_ok(),
            answer_ps == access_ps ? access_clock() : clock_.edge_at_or_after(answer_ps));
 }
 
-void PciBus::learn_memory() {
-  tlm::tlm_dmi dmi;
-  const bool granted = targets[running_.window]->get_direct_mem_ptr(access_, dmi);
-  if (!granted || !dmi.is_read_write_allowed() || dmi.get_read_latency() != sc_core::SC_ZERO_TIME ||
-      dmi.get_write_latency() != sc_core::SC_ZERO_TIME) {
-    return;
-  }
-  memories_[running_.window] = {dmi.get_dmi_ptr(), dmi.get_start_address(), dmi.get_end_address()};
-}
-
-// `clock`: the first that begins with or after the response.
+// `clock`: the first clock that begins at or after the response.
 void PciBus::answered(bool ok, std::uint64_t clock) {
   BurstResult result = running_.result;
   if (running_.burst.write) {
@@ -303,7 +247,7 @@ void PciBus::answered(bool ok, std::uint64_t clock) {
       running_.address_clock + 1 + static_cast<std::uint64_t>(config_.windows[running_.window].wait_clocks),
       clock);
   if (ok) {
-    begin_words(first, running_.taken);
+    begin_words(first, running_.accepted);
   } else {
     end_at(first + 1, {BurstEnd::kTargetError, 0, first});
   }
@@ -327,10 +271,10 @@ void PciBus::count(std::size_t master, const BurstResult& result) {
   ++stats.transactions;
   stats.words += result.words;
   if (result.end == BurstEnd::kDisconnect && result.words == 0) ++stats.retries;
-  if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) ++stats.aborts;
+  if (is_error(result.end)) ++stats.aborts;
 }
 
-// Before the first data clock, and between the last one and the end of the burst, the result says it.
+// Outside the data clocks, the words of the result stand.
 BurstResult PciBus::transferred(std::size_t master) const {
   if (!address_clock_ || running_.master != master) return {};
   BurstResult so_far = running_.result;
@@ -339,7 +283,7 @@ BurstResult PciBus::transferred(std::size_t master) const {
   return so_far;
 }
 
-std::uint64_t PciBus::whole_clocks() const { return clock_.edge_at_or_after(now_ps() + 1) - 1; }
+std::uint64_t PciBus::whole_clocks() const { return clock_.edge_at_or_after(Clock::now_ps() + 1) - 1; }
 
 PciBus::Stats PciBus::stats() const {
   Stats stats;
@@ -363,6 +307,6 @@ std::optional<std::size_t> PciBus::window_of(const PciBurst& burst) const {
   return std::nullopt;
 }
 
-void PciBus::step_at(std::uint64_t time_ps) { step_.notify(Clock::to_time(time_ps - now_ps())); }
+void PciBus::step_at(std::uint64_t time_ps) { step_.notify(Clock::to_time(time_ps - Clock::now_ps())); }
 
 }  // namespace stereotlm::pci

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/pci/decision_point.h"
+#include "models/pci/direct_memories.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot.h"
 
@@ -19,56 +21,53 @@ namespace stereotlm::pci {
 
 using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 
-// A 32-bit PCI bus (contract section 3). A burst is an address clock, the target's wait clocks, one clock a
-// word and an idle clock; the next address clock can be the one after that, since arbitration is hidden
-// behind the burst. It costs two events, however long it is: where it is granted, and where it ends. A
-// request that cuts it moves its end.
+// A 32-bit PCI bus (contract section 3). Targets see addresses relative to their window.
 //
-// Arbitration is round robin, from the slot after the last one granted (at first from slot 0), among the
-// requests made at or before the beginning of the clock. It is decided when nothing else is pending at that
-// time, so that whatever happens at the very time of the edge counts: requests, and what the target's registers
-// hold. A grant that its master gives back unused costs no clock; the next one is asked in the same. If another master waits, the burst ends with the first word transferred in clock
-// latency_timer_clocks or later, the address clock being clock 0; a request in the middle counts from the
-// first clock that begins at or after it.
+// Burst: an address clock, the target's wait clocks, one clock per word and an idle clock. The next address
+// clock can follow at once, because arbitration is hidden behind the burst. A burst of any length costs two
+// events: its grant and its end. A request that cuts the burst moves the second one.
 //
-// Targets see addresses relative to their window.
+// Arbitration: round robin, from the slot after the last one granted, at first from slot 0. It considers the
+// requests made at or before the beginning of the clock, and decides when nothing else is pending at that
+// time (DecisionPoint): requests and target registers count as they stand after everything that happens at
+// the clock's edge. If a master returns its grant unused, the next request is granted in the same clock.
 //
-// A write reaches its target by one b_transport at the end of the last data clock, with the words
-// transferred. At the address clock `stops` says how many words the target can take; with 0 (a retry) the
-// burst ends with its address clock. Time that b_transport takes keeps the bus waiting behind the last word,
-// and end_burst() with it.
+// Latency timer: the address clock is clock 0. If another master waits, the burst ends with the first word
+// transferred in clock latency_timer_clocks or later. A request made during the burst counts from the first
+// clock that begins at or after it.
 //
-// A read is one b_transport in its address clock, of all words, with the end of that clock as its delay. The
-// first word comes after the window's wait clocks, and not before the first clock that begins at or after
-// the time that b_transport returns with (by waiting, or by its delay). The master's words are filled as far
-// as transferred.
+// Write: the target receives one b_transport at the end of the last data clock, with the words transferred.
+// At the address clock, `stops` returns how many words the target can take; with 0 (a retry) the burst ends
+// with its address clock. Time that b_transport takes keeps the bus occupied and delays end_burst().
 //
-// A memory that allows DMI, and whose DMI takes no time, is accessed by it, at these times.
+// Read: the target receives one b_transport for all words in the address clock, with the end of that clock
+// as its delay. The first word is transferred after the window's wait clocks, and not before the first clock
+// that begins at or after the time at which b_transport returns, its delay included. The master receives the
+// words that have been transferred.
 //
-// A response other than OK ends the burst with kTargetError: a write after its words, a read (target abort)
-// with the clock that the first word would have had. A burst that lies in no window, or not wholly inside
-// one, is a master abort after the address clock and 4 clocks without DEVSEL# (common knowledge, no source at
-// hand).
+// A memory that grants DMI without latency is accessed directly, at the same times.
 //
-// An address that is not a multiple of 4, and a target that can take more words than asked, are reported with
-// SC_REPORT_ERROR (type /stereotlm/pci_bus).
+// Errors: a response other than OK ends the burst with kTargetError: a write after its words, a read (target
+// abort) with the clock of its first word. A burst that is not inside one window ends with kMasterAbort after
+// the address clock and 4 clocks without DEVSEL# (common knowledge, no source at hand). SC_REPORT_ERROR (type
+// /stereotlm/pci_bus): an address that is not a multiple of 4; a target that can take more words than asked.
 class PciBus : public sc_core::sc_module {
  public:
   struct MasterStats {
     std::string name;
-    std::uint64_t transactions = 0;  // address clocks
-    std::uint64_t words = 0;         // transferred
+    std::uint64_t transactions = 0;  // bursts, counted at their end
+    std::uint64_t words = 0;         // words transferred
     std::uint64_t wait_clocks = 0;   // from the first clock at or after a request to its address clock
-    std::uint64_t retries = 0;       // disconnected with no word transferred
-    std::uint64_t aborts = 0;        // master aborts and errors of targets
+    std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
+    std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
   };
   struct Stats {
     std::uint64_t clocks = 0;          // whole clocks since time 0
-    std::uint64_t busy_clocks = 0;     // of these: address, wait and data clocks
-    std::vector<MasterStats> masters;  // [slot]; a burst counts when it has ended
+    std::uint64_t busy_clocks = 0;     // address, wait and data clocks among them
+    std::vector<MasterStats> masters;  // [slot]
   };
 
-  sc_core::sc_vector<PciSlotExport> slots;  // [master]; one that nobody uses may stay unbound
+  sc_core::sc_vector<PciSlotExport> slots;  // [master]; an unused slot may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket<PciBus>> targets;  // [window]
   sc_core::sc_vector<PciStopPort> stops;  // [window]; unbound: the target takes bursts of any length
 
@@ -76,7 +75,7 @@ class PciBus : public sc_core::sc_module {
   PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config);
 
   const Clock& clock() const { return clock_; }
-  // Up to now.
+  // Counts up to the current time.
   Stats stats() const;
 
  private:
@@ -96,33 +95,25 @@ class PciBus : public sc_core::sc_module {
     PciBus& bus_;
     std::size_t master_;
   };
-  // Of one master.
   struct Request {
     PciMasterIf* from = nullptr;
-    std::uint64_t clock = kNever;  // the first that it can have, while it waits
+    std::uint64_t clock = kNever;  // the first clock that can be granted; kNever: no request
   };
   enum class State : std::uint8_t {
-    kFree,      // step_ comes when a request can be granted
-    kOccupied,  // a master or a target is being asked: requests are noted
-    kWords,     // step_ or transport_ comes when the words have been transferred; a request may cut them
-    kEnding,    // step_ comes when the burst ends, whatever is requested
+    kFree,      // step_ is due when a request can be granted
+    kOccupied,  // a master or a target is being called; requests are recorded
+    kWords,     // step_ or transport_ is due at the end of the last data clock; a request may cut the words
+    kEnding,    // step_ is due at the end of the burst, which no request changes
   };
-  // The burst that has the bus.
   struct Running {
     std::size_t master = 0;
     PciBurst burst;
     std::size_t window = 0;
-    std::size_t taken = 0;  // words that the target takes, or is read
+    std::size_t accepted = 0;  // words that the target takes of a write; all words of a read
     std::uint64_t address_clock = 0;
-    std::uint64_t end_clock = 0;  // the idle clock, as far as known
-    bool transported = false;     // its words end with transport_
+    std::uint64_t end_clock = 0;  // the idle clock, as planned so far
+    bool transported = false;     // transport_, not step_, is due at the end of the last data clock
     BurstResult result;
-  };
-  // What the target behind a window has granted.
-  struct Memory {
-    unsigned char* data = nullptr;  // of address `first`
-    std::uint64_t first = 0;
-    std::uint64_t last = 0;
   };
 
   // Requests.
@@ -132,9 +123,6 @@ class PciBus : public sc_core::sc_module {
 
   // The steps of a burst.
   void step();
-  void start_of_simulation() override;
-  void decide_when_settled(PciBus& bus);
-  void decide();
   void arbitrate();
   void begin(std::size_t master, const PciBurst& burst);
   void begin_words(std::uint64_t first_clock, std::size_t words);
@@ -143,48 +131,40 @@ class PciBus : public sc_core::sc_module {
   void end_words();
   void end_at(std::uint64_t clock, const BurstResult& result);
   void end();
+  void step_at(std::uint64_t time_ps);
 
-  // Its access to the target, in the clock that begins with it.
+  // The access to the target.
+  std::optional<std::size_t> window_of(const PciBurst& burst) const;
+  std::size_t writable_words() const;
   void access(std::vector<std::uint32_t>& words, std::size_t count);
   std::uint64_t access_clock() const;
-  bool access_memory();
   void run_transports();
   void transport();
-  void learn_memory();
-  void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) {
-    memories_.assign(memories_.size(), {});
-  }
   void answered(bool ok, std::uint64_t clock);
+  void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) { memories_.forget(); }
 
-  BurstResult transferred(std::size_t master) const;
-  std::uint64_t whole_clocks() const;  // since time 0
-  std::size_t writable_words() const;
   void count(std::size_t master, const BurstResult& result);
-  std::optional<std::size_t> window_of(const PciBurst& burst) const;
-  void step_at(std::uint64_t time_ps);
+  BurstResult transferred(std::size_t master) const;
+  std::uint64_t whole_clocks() const;
 
   PciBusConfig config_;
   Clock clock_;
   std::deque<Slot> slots_;
   std::vector<Request> requests_;  // [master]
-  std::size_t last_granted_;
+  std::size_t last_granted_;       // master
+  DecisionPoint arbitration_{"arbitration", [this] { arbitrate(); }};
   State state_ = State::kFree;
-  std::uint64_t free_clock_ = 0;           // the first that can be an address clock
-  std::uint64_t decision_clock_ = kNever;  // that step_ is to grant, in kFree
-  // The bus whose process decides for all of a simulation: two that wait until nothing else is pending would
-  // wait for each other.
-  PciBus* decider_ = this;
-  std::vector<PciBus*> undecided_;  // of the decider: the buses that it is to decide now
-  sc_core::sc_event decision_{"decision"};
+  std::uint64_t free_clock_ = 0;           // the first clock that can be an address clock
+  std::uint64_t decision_clock_ = kNever;  // in kFree: the clock that arbitrate() is to grant
   Running running_;
   sc_core::sc_event step_{"next_step"};
-  sc_core::sc_event transport_{"next_transport"};  // or the end of words that are transported
+  sc_core::sc_event transport_{"next_transport"};
   bool transport_is_due_ = false;
   tlm::tlm_generic_payload access_;
-  std::vector<Memory> memories_;  // [window]
+  DirectMemories memories_;
   std::vector<std::uint32_t> read_words_;
-  std::optional<std::uint64_t> address_clock_;  // of the burst that runs
-  std::uint64_t busy_clocks_ = 0;               // of those that have ended
+  std::optional<std::uint64_t> address_clock_;  // of the running burst; none: no burst runs
+  std::uint64_t busy_clocks_ = 0;               // clocks of the bursts that have ended
   std::vector<MasterStats> master_stats_;
 };
 

@@ -52,7 +52,14 @@ std::vector<std::string> problems(const PciBusConfig& config) {
   return found;
 }
 
-std::vector<std::string> problems(const PciLoadConfig& config) {
+std::vector<std::string> problems(const PciBridgeConfig& config) {
+  std::vector<std::string> found;
+  kDmaBurstRule.check("dma_burst_words", config.dma_burst_words, found);
+  kPostedWordsRule.check("posted_words", config.posted_words, found);
+  return found;
+}
+
+std::vector<std::string> problems(const TrafficGeneratorConfig& config) {
   std::vector<std::string> found;
   const auto as_signed = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
   kAddressRule.check("address", config.address, found);

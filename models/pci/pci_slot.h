@@ -7,31 +7,34 @@
 
 #include "models/clock.h"
 
-// What passes between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Targets
-// are reached by the base protocol.
+// The protocol between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Targets
+// use the base protocol.
 namespace stereotlm::pci {
 
-// What a master does with the bus that it has been granted.
+// The burst for which a master uses its grant.
 struct PciBurst {
   bool write = true;
-  std::uint64_t address = 0;  // of the first byte; a multiple of 4
-  std::vector<std::uint32_t>* words =
-      nullptr;  // to write; or of the length to read, and where the words go. The
-                // master's own, untouched by it until the end of the burst
+  std::uint64_t address = 0;  // address of the first byte, a multiple of 4
+  // The words to write, or a buffer as long as the read. The master owns them and leaves them untouched until
+  // the end of the burst.
+  std::vector<std::uint32_t>* words = nullptr;
 };
 
 enum class BurstEnd : std::uint8_t {
-  kComplete,      // all words transferred
-  kLatencyTimer,  // cut: the timer has expired and another master waits
-  kDisconnect,    // the target takes no more now; with no word transferred, a retry
-  kMasterAbort,   // no target at this address: nothing transferred
-  kTargetError,   // the target answered with an error: nothing transferred
+  kComplete,      // all words were transferred
+  kLatencyTimer,  // the latency timer has expired and another master waits
+  kDisconnect,    // the target accepts no more words now; if it accepted none, a retry
+  kMasterAbort,   // no target at this address; no word was transferred
+  kTargetError,   // the target answered with an error; no word was transferred
 };
+constexpr bool is_error(BurstEnd end) {
+  return end == BurstEnd::kMasterAbort || end == BurstEnd::kTargetError;
+}
 
-// How a burst went. Word i was transferred in clock first_data_clock + i of the bus, and had left at its end.
+// The result of a burst. Word i was transferred in bus clock first_data_clock + i, and left at its end.
 struct BurstResult {
   BurstEnd end = BurstEnd::kComplete;
-  std::size_t words = 0;  // transferred
+  std::size_t words = 0;  // words transferred
   std::uint64_t first_data_clock = 0;
 };
 
@@ -39,33 +42,34 @@ struct BurstResult {
 class PciMasterIf {
  public:
   virtual ~PciMasterIf() = default;
-  // GNT#: the address clock begins now, at `address_clock_ps`. Without words the bus is given back unused.
+  // GNT#: the address clock begins now, at `address_clock_ps`. A burst without words returns the grant
+  // unused.
   virtual PciBurst begin_burst(std::uint64_t address_clock_ps) = 0;
-  // At the end of the last data clock. The master may request again at once.
+  // The last data clock has ended. The master may request again at once.
   virtual void end_burst(const BurstResult& result) = 0;
 };
 
-// A place on the bus, as its master sees it.
+// A slot of the bus, as its master sees it.
 class PciSlotIf : public virtual sc_core::sc_interface {
  public:
-  // REQ#, until the bus is granted: from the first clock that begins now or later, or at or after a time that
-  // is to come. Asking again meanwhile changes nothing.
-  void request(PciMasterIf& master) { request(master, Clock::to_ps(sc_core::sc_time_stamp())); }
+  // REQ#, asserted until the bus is granted. The request counts from the first clock that begins at or after
+  // `from_ps`, now or later. A second request before the grant changes nothing.
+  void request(PciMasterIf& master) { request(master, Clock::now_ps()); }
   virtual void request(PciMasterIf& master, std::uint64_t from_ps) = 0;
-  // The words of the master's running burst that have been transferred by now, and the clock of the first.
-  // `end` says nothing yet.
+  // The words of the master's running burst that have been transferred by now, and the clock of the first
+  // word. `end` has no meaning yet.
   virtual BurstResult transferred() const = 0;
   virtual const Clock& clock() const = 0;
 };
 
-// The sockets of a place: `capture.pci.bind(bus.slots[0])`.
+// Sockets of the slot: `capture.pci.bind(bus.slots[0])`.
 using PciMasterPort = sc_core::sc_port<PciSlotIf>;
 using PciSlotExport = sc_core::sc_export<PciSlotIf>;
 
-// What a target tells the bus beside the base protocol: STOP#. One without it takes bursts of any length.
+// STOP#, which the base protocol has no phase for. A target without it takes bursts of any length.
 class PciStopIf : public virtual sc_core::sc_interface {
  public:
-  // At the address clock of a write of `words` words: how many of them the target can take, 0..words.
+  // Called at the address clock of a write. Returns how many of its `words` words the target takes, 0..words.
   virtual std::size_t writable_words(std::uint64_t address, std::size_t words) const = 0;
 };
 

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 
+#include "models/checked.h"
 #include "models/clock.h"
 
 namespace stereotlm::pci {
 
-TrafficGenerator::TrafficGenerator(const sc_core::sc_module_name& name, const PciLoadConfig& config)
-    : sc_module(name), config_(config) {
-  if (const auto found = problems(config); !found.empty()) {
-    throw std::invalid_argument(std::string(this->name()) + ": " + found.front());
-  }
+TrafficGenerator::TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config)
+    : sc_module(name), config_(checked(this->name(), config)) {
   device.register_b_transport(this, &TrafficGenerator::answer);
 }
 
@@ -23,7 +20,7 @@ PciBurst TrafficGenerator::begin_burst(std::uint64_t /*address_clock_ps*/) {
 }
 
 void TrafficGenerator::end_burst(const BurstResult& result) {
-  if (result.end == BurstEnd::kMasterAbort || result.end == BurstEnd::kTargetError) {
+  if (is_error(result.end)) {
     SC_REPORT_ERROR(
         "/stereotlm/traffic_generator",
         (std::string(name()) + ": address = " + std::to_string(config_.address) + ": " +
@@ -39,7 +36,7 @@ void TrafficGenerator::end_burst(const BurstResult& result) {
   words_done_ = 0;
   ++transfers_;
   const std::uint64_t due_ps = config_.first_request_ps + transfers_ * config_.interval_ps;
-  pci->request(*this, std::max(due_ps, Clock::to_ps(sc_core::sc_time_stamp())));
+  pci->request(*this, std::max(due_ps, Clock::now_ps()));
 }
 
 void TrafficGenerator::answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {

@@ -12,23 +12,24 @@
 
 namespace stereotlm::pci {
 
-// A third-party master that loads the bus (PciLoadConfig). It reads, so that it changes nothing in its
-// target: either its own device, or any other that answers its address. A transfer that was cut, disconnected
-// or told to retry goes on at once. One that is aborted is reported with SC_REPORT_ERROR (type
-// /stereotlm/traffic_generator) and is the last.
+// A PCI master that loads the bus (TrafficGeneratorConfig). It only reads, so its target is not changed: its
+// own device, or any other target at its address. A transfer that the bus has cut, disconnected or retried
+// continues at once. An aborted transfer is reported with SC_REPORT_ERROR (type
+// /stereotlm/traffic_generator) and is the last one.
 class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
  public:
   PciMasterPort pci{"pci"};
-  // The device: any length of whole words reads as zeros, after access_ps; a write or another command is
-  // answered TLM_COMMAND_ERROR_RESPONSE, another length or a streaming width below it
-  // TLM_BURST_ERROR_RESPONSE, byte enables TLM_BYTE_ENABLE_ERROR_RESPONSE. Unbound if the load reads from
-  // another target.
+  // The device. A read of whole words returns zeros after access_ps. It answers a write or another command
+  // with TLM_COMMAND_ERROR_RESPONSE, another length or a streaming width below it with
+  // TLM_BURST_ERROR_RESPONSE, and byte enables with TLM_BYTE_ENABLE_ERROR_RESPONSE. Unbound if the master
+  // reads from another target.
   tlm_utils::simple_target_socket_optional<TrafficGenerator> device{"device"};
 
   // Throws std::invalid_argument if the configuration has problems.
-  TrafficGenerator(const sc_core::sc_module_name& name, const PciLoadConfig& config);
+  TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config);
 
-  std::uint64_t transfers() const { return transfers_; }  // completed
+  // Completed transfers.
+  std::uint64_t transfers() const { return transfers_; }
 
  private:
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
@@ -36,9 +37,9 @@ class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
   void start_of_simulation() override { pci->request(*this, config_.first_request_ps); }
   void answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
-  PciLoadConfig config_;
+  TrafficGeneratorConfig config_;
   std::vector<std::uint32_t> words_;
-  std::size_t words_done_ = 0;  // of the running transfer
+  std::size_t words_done_ = 0;  // words of the running transfer that have been read
   std::uint64_t transfers_ = 0;
 };
 

@@ -14,6 +14,7 @@
 #include "models/kernels/stereo.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -66,19 +67,14 @@ class FieldChecker {
     report(key.path, key.path == "fpga.device" ? board_.fpga.device : std::to_string(index), key.rule_text);
   }
   void check_key(const Key& key, const OtherKey&) {
-    const AllocationConfig& allocation = board_.allocation;
     if (key.path == "name") {
       if (!is_board_name(board_.name)) report(key.path, board_.name, key.rule_text);
     } else if (key.path == "fpga.priority") {
       check_priority(key);
     } else if (key.path == "ssram.banks.NAME.words") {
       check_banks();
-    } else if (key.path == "allocation.left_image") {
-      check_list(key, allocation.left_image);
-    } else if (key.path == "allocation.right_image") {
-      check_list(key, allocation.right_image);
-    } else if (key.path == "allocation.disparity") {
-      check_list(key, allocation.disparity);
+    } else if (const auto buffer = buffer_of_key(key.path)) {
+      visit_buffer(board_.allocation, *buffer, [&](const auto& banks) { check_buffer(key, banks); });
     } else if (key.path == "matcher.filter" && board_.matcher.filter) {
       for (const std::string& text : kernels::problems(*board_.matcher.filter)) {
         found.emplace(order_of(key.path), "matcher.filter." + text);
@@ -128,14 +124,18 @@ class FieldChecker {
     }
   }
 
-  void check_list(const Key& key, const std::vector<std::string>& banks) {
+  void check_buffer(const Key& key, const std::vector<std::string>& banks) {
     if (banks.empty() || banks.size() > kMaximumBuffers) report(key.path, list_text(banks), key.rule_text);
   }
+  void check_buffer(const Key&, const std::optional<std::string>&) {}  // a table may be absent
 
   const BoardConfig& board_;
   BoardConfig writable_;  // a copy, because the keys' accessors need a mutable board
   std::set<std::string> broken_;
 };
+
+void add(std::vector<BufferPlace>& list, const BufferPlace& place) { list.push_back(place); }
+void add(std::optional<BufferPlace>& table, const BufferPlace& place) { table = place; }
 
 void require_valid(const BoardConfig& board) {
   const std::vector<std::string> found = problems(board);
@@ -188,18 +188,14 @@ BufferLayout layout_buffers(const BoardConfig& board) {
   require_valid(board);
   std::vector<std::uint64_t> used(board.banks.size(), 0);
   BufferLayout layout;
-  for (const Buffer& buffer : buffers(board.allocation)) {
+  for (const PlacedBuffer& buffer : buffers(board.allocation)) {
     const auto bank = std::find_if(board.banks.begin(), board.banks.end(), [&](const BankConfig& candidate) {
       return candidate.name == buffer.bank;
     });
     const auto index = static_cast<std::size_t>(bank - board.banks.begin());
     const BufferPlace place{static_cast<int>(index), static_cast<std::uint32_t>(used[index])};
     used[index] += buffer_words(buffer, board.image);
-    if (buffer.key == "allocation.left_image") layout.left_image.push_back(place);
-    if (buffer.key == "allocation.right_image") layout.right_image.push_back(place);
-    if (buffer.key == "allocation.disparity") layout.disparity.push_back(place);
-    if (buffer.key == "allocation.left_lut") layout.left_lut = place;
-    if (buffer.key == "allocation.right_lut") layout.right_lut = place;
+    visit_buffer(layout, buffer.buffer, [&place](auto& places) { add(places, place); });
   }
   return layout;
 }

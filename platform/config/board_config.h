@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "models/capture/capture_config.h"
 #include "models/fpga/core_config.h"
 #include "models/kernels/filter_kernel.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::platform {
 
-enum class CameraTrigger { kFreeRunning, kOnDemand };
+using capture::CameraTrigger;
 enum class CaptureDestination { kBoard, kHostMemory };
 
 // One board as its YAML file describes it (contract section 4). Plain values; the defaults are the paper's

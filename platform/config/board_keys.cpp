@@ -16,6 +16,7 @@
 #include "models/area/device.h"
 #include "models/kernels/stereo.h"
 #include "models/pci/pci_config.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/yaml_tree.h"
 
 namespace stereotlm::platform {
@@ -184,11 +185,11 @@ std::vector<Key> make_keys() {
       optional(other_integer("ssram.banks.NAME.turnaround_cycles",
                              "cycles lost when the bank NAME changes between reads and writes", "cycles",
                              memory::kTurnaroundRule, turnaround_rule)),
-      other("allocation.left_image", "banks of the left input buffers, used in turn", "", image_rule),
-      other("allocation.right_image", "banks of the right input buffers, used in turn", "", image_rule),
-      other("allocation.disparity", "banks of the result buffers, used in turn", "", list_rule),
-      other("allocation.left_lut", "bank of the left rectification table", "", table_rule),
-      other("allocation.right_lut", "bank of the right rectification table", "", table_rule),
+      other(key_of(Buffer::kLeftImage), "banks of the left input buffers, used in turn", "", image_rule),
+      other(key_of(Buffer::kRightImage), "banks of the right input buffers, used in turn", "", image_rule),
+      other(key_of(Buffer::kDisparity), "banks of the result buffers, used in turn", "", list_rule),
+      other(key_of(Buffer::kLeftLut), "bank of the left rectification table", "", table_rule),
+      other(key_of(Buffer::kRightLut), "bank of the right rectification table", "", table_rule),
       integer("matcher.window", "rows and columns of the matching window", "pixels", kernels::kWindowRule,
               member<&B::matcher, &MatcherConfig::window>),
       integer("matcher.disparities", "number of candidate disparities", "pixels", kernels::kDisparitiesRule,

@@ -10,6 +10,7 @@
 #include "models/kernels/stereo.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/value_reader.h"
 #include "platform/config/yaml_values.h"
 
@@ -87,16 +88,12 @@ class BoardReader {
     if (const auto index = values_.read_word(key.path, entry.value, rule.words)) rule.set(board_, *index);
   }
   void read_key(const Key& key, const OtherKey&, const YamlNode::Entry& entry) {
-    AllocationConfig& allocation = board_.allocation;
     const YamlNode& node = entry.value;
     if (key.path == "name") read_name(key, node);
     if (key.path == "pci.load") read_load(key, entry);
     if (key.path == "fpga.priority") read_priority(key, node);
-    if (key.path == "allocation.left_image") read_banks_of(key, node, allocation.left_image);
-    if (key.path == "allocation.right_image") read_banks_of(key, node, allocation.right_image);
-    if (key.path == "allocation.disparity") read_banks_of(key, node, allocation.disparity);
-    if (key.path == "allocation.left_lut") read_bank_of(key, node, allocation.left_lut);
-    if (key.path == "allocation.right_lut") read_bank_of(key, node, allocation.right_lut);
+    if (const auto buffer = buffer_of_key(key.path))
+      visit_buffer(board_.allocation, *buffer, [&](auto& banks) { read_banks_of(key, node, banks); });
     if (key.path == "matcher.filter") read_filter(key, entry);
     if (key.path == "matcher.lr_tolerance") read_tolerance(key, node);
   }
@@ -171,7 +168,7 @@ class BoardReader {
     if (all_read) values_.accept(key.path, node.place);
   }
 
-  void read_bank_of(const Key& key, const YamlNode& node, std::optional<std::string>& bank) {
+  void read_banks_of(const Key& key, const YamlNode& node, std::optional<std::string>& bank) {
     const YamlNode& item = node.is_list() && node.items.size() == 1 ? node.items[0] : node;
     if (!values_.check_use(key.path, item)) return;
     if (!item.is_scalar()) return values_.report(key.path, item, key.rule_text);

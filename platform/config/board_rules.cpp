@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "platform/config/board_keys.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -39,27 +40,28 @@ class RuleChecker {
 
   void check_bank_depths() {
     if (!all_valid({"image.width", "image.height", "ssram.banks"})) return;
-    std::vector<Buffer> known = buffers(board_.allocation);
-    known.erase(std::remove_if(known.begin(), known.end(),
-                               [this](const Buffer& buffer) { return !is_valid_(buffer.key); }),
-                known.end());
+    std::vector<PlacedBuffer> known = buffers(board_.allocation);
+    known.erase(
+        std::remove_if(known.begin(), known.end(),
+                       [this](const PlacedBuffer& buffer) { return !is_valid_(key_of(buffer.buffer)); }),
+        known.end());
     for (const BankConfig& bank : board_.banks) {
       std::uint64_t needed = 0;
-      for (const Buffer& buffer : known) {
+      for (const PlacedBuffer& buffer : known) {
         if (buffer.bank == bank.name) needed += buffer_words(buffer, board_.image);
       }
       if (needed > static_cast<std::uint64_t>(bank.words)) report_depth(bank, known, needed);
     }
   }
 
-  void report_depth(const BankConfig& bank, const std::vector<Buffer>& known, std::uint64_t needed) {
+  void report_depth(const BankConfig& bank, const std::vector<PlacedBuffer>& known, std::uint64_t needed) {
     std::vector<std::string> involved = {fmt::format("ssram.banks.{}.words", bank.name)};
     if (!is_valid_(involved.front())) return;
     std::vector<std::string> held;
-    for (const Buffer& buffer : known) {
+    for (const PlacedBuffer& buffer : known) {
       if (buffer.bank != bank.name) continue;
       involved.push_back(buffer.path());
-      held.push_back(buffer.path().substr(buffer.path().find('.') + 1));
+      held.push_back(buffer.label());
     }
     involved.insert(involved.end(), {"image.width", "image.height"});
     found_.push_back(
@@ -69,7 +71,7 @@ class RuleChecker {
   }
 
   void check_list_lengths() {
-    const std::vector<std::string> involved = {"allocation.right_image", "allocation.left_image"};
+    const std::vector<std::string> involved = {key_of(Buffer::kRightImage), key_of(Buffer::kLeftImage)};
     const AllocationConfig& allocation = board_.allocation;
     if (!all_valid(involved) || allocation.right_image.size() == allocation.left_image.size()) return;
     found_.push_back({fmt::format("allocation.right_image = {}: must be as long as left_image, which is {}",
@@ -82,10 +84,11 @@ class RuleChecker {
     std::vector<std::string> names;
     names.reserve(board_.banks.size());
     for (const BankConfig& bank : board_.banks) names.push_back(bank.name);
-    for (const Buffer& buffer : buffers(board_.allocation)) {
-      if (!is_valid_(buffer.key) || std::find(names.begin(), names.end(), buffer.bank) != names.end())
+    for (const PlacedBuffer& buffer : buffers(board_.allocation)) {
+      if (!is_valid_(key_of(buffer.buffer)) ||
+          std::find(names.begin(), names.end(), buffer.bank) != names.end())
         continue;
-      found_.push_back({fmt::format("{} = {}: not a bank of this board{}", buffer.key, buffer.bank,
+      found_.push_back({fmt::format("{} = {}: not a bank of this board{}", key_of(buffer.buffer), buffer.bank,
                                     nearest_text(buffer.bank, names)),
                         {buffer.path(), "ssram.banks"}});
     }
@@ -101,27 +104,6 @@ class RuleChecker {
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
                                      const std::function<bool(const std::string&)>& is_valid) {
   return RuleChecker(board, is_valid).check();
-}
-
-std::vector<Buffer> buffers(const AllocationConfig& allocation) {
-  std::vector<Buffer> all;
-  const auto add_list = [&all](const char* key, const std::vector<std::string>& banks) {
-    for (std::size_t i = 0; i < banks.size(); ++i) all.push_back({key, static_cast<int>(i), banks[i]});
-  };
-  const auto add_table = [&all](const char* key, const std::optional<std::string>& bank) {
-    if (bank) all.push_back({key, -1, *bank});
-  };
-  add_list("allocation.left_image", allocation.left_image);
-  add_list("allocation.right_image", allocation.right_image);
-  add_list("allocation.disparity", allocation.disparity);
-  add_table("allocation.left_lut", allocation.left_lut);
-  add_table("allocation.right_lut", allocation.right_lut);
-  return all;
-}
-
-std::uint64_t buffer_words(const Buffer& buffer, const ImageConfig& image) {
-  const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-  return buffer.index < 0 ? pixels : pixels / 4;
 }
 
 std::string list_text(const std::vector<std::string>& words) {

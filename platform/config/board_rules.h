@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,22 +20,6 @@ struct BrokenRule {
 // own rule. A rule is checked only if all values that take part do.
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
                                      const std::function<bool(const std::string&)>& is_valid);
-
-// One buffer of the allocation.
-struct Buffer {
-  std::string key;   // "allocation.left_image"
-  int index;         // index in its list; -1: a table, which is not a list
-  std::string bank;  // name of the bank
-
-  // "allocation.left_image[0]", "allocation.left_lut"
-  std::string path() const { return index < 0 ? key : key + '[' + std::to_string(index) + ']'; }
-};
-
-// All buffers, in the order of their places in a shared bank (contract 1.5).
-std::vector<Buffer> buffers(const AllocationConfig& allocation);
-
-// Depth of a buffer in 32-bit words.
-std::uint64_t buffer_words(const Buffer& buffer, const ImageConfig& image);
 
 // "[bank0, bank1]"
 std::string list_text(const std::vector<std::string>& words);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
 #include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/value_reader.h"
 #include "platform/config/yaml_values.h"
 
@@ -18,6 +20,7 @@ std::string banks_text(std::vector<std::string> banks) {
   for (std::string& bank : banks) bank = scalar_text(bank);
   return list_text(banks);
 }
+std::string banks_text(const std::optional<std::string>& bank) { return scalar_text(bank.value_or("none")); }
 
 std::vector<std::string> filter_rows(const kernels::FilterKernel& filter) {
   std::vector<std::string> rows;
@@ -77,8 +80,8 @@ class BoardWriter {
   Value value(const Key& key, const WordKey& word) { return value_text(key, word); }
   Value value(const Key& key, const OtherKey& other) {
     if (key.path == "name") return board_.name;
-    if (key.path == "allocation.left_lut") return board_.allocation.left_lut.value_or("none");
-    if (key.path == "allocation.right_lut") return board_.allocation.right_lut.value_or("none");
+    if (key.path == key_of(Buffer::kLeftLut)) return board_.allocation.left_lut.value_or("none");
+    if (key.path == key_of(Buffer::kRightLut)) return board_.allocation.right_lut.value_or("none");
     if (key.path == "matcher.filter")
       return board_.matcher.filter ? filter_flow_text(*board_.matcher.filter) : "none";
     if (key.path == "matcher.lr_tolerance") {
@@ -127,18 +130,14 @@ class BoardWriter {
     return word.words[static_cast<std::size_t>(word.get(board_))];
   }
   std::string value_text(const Key& key, const OtherKey&) {
-    const AllocationConfig& allocation = board_.allocation;
     if (key.path == "name") return scalar_text(board_.name);
     if (key.path == "fpga.priority") {
       std::vector<std::string> ports;
       for (const memory::Port port : board_.fpga.arbiter.priority) ports.emplace_back(memory::name_of(port));
       return list_text(ports);
     }
-    if (key.path == "allocation.left_image") return banks_text(allocation.left_image);
-    if (key.path == "allocation.right_image") return banks_text(allocation.right_image);
-    if (key.path == "allocation.disparity") return banks_text(allocation.disparity);
-    if (key.path == "allocation.left_lut") return scalar_text(allocation.left_lut.value_or("none"));
-    if (key.path == "allocation.right_lut") return scalar_text(allocation.right_lut.value_or("none"));
+    if (const auto buffer = buffer_of_key(key.path))
+      return visit_buffer(board_.allocation, *buffer, [](const auto& banks) { return banks_text(banks); });
     if (key.path == "matcher.lr_tolerance") {
       const auto& tolerance = board_.matcher.lr_tolerance;
       return tolerance ? std::to_string(*tolerance) : "\"off\"";

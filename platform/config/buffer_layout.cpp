@@ -1,10 +1,21 @@
 #include "platform/config/buffer_layout.h"
 
 #include "models/fpga/register_map.h"
-#include "platform/config/board_rules.h"
 
 namespace stereotlm::platform {
 namespace {
+
+void add(std::vector<PlacedBuffer>& all, Buffer buffer, const std::vector<std::string>& banks) {
+  for (std::size_t i = 0; i < banks.size(); ++i) all.push_back({buffer, static_cast<int>(i), banks[i]});
+}
+void add(std::vector<PlacedBuffer>& all, Buffer buffer, const std::optional<std::string>& bank) {
+  if (bank) all.push_back({buffer, -1, *bank});
+}
+
+std::string& bank_at(std::vector<std::string>& banks, int index) {
+  return banks[static_cast<std::size_t>(index)];
+}
+std::string& bank_at(std::optional<std::string>& bank, int /*index*/) { return *bank; }
 
 std::uint32_t word_of(const BufferPlace& place) {
   return fpga::registers::base(static_cast<std::uint32_t>(place.bank), place.first_word);
@@ -22,6 +33,34 @@ std::optional<std::uint32_t> word_of(const std::optional<BufferPlace>& place) {
 
 }  // namespace
 
+std::optional<Buffer> buffer_of_key(std::string_view key) {
+  for (const BufferKey& known : kBufferKeys) {
+    if (known.key == key) return known.buffer;
+  }
+  return std::nullopt;
+}
+
+std::string PlacedBuffer::label() const {
+  const std::string name = name_of(buffer);
+  return index < 0 ? name : name + '[' + std::to_string(index) + ']';
+}
+
+std::vector<PlacedBuffer> buffers(const AllocationConfig& allocation) {
+  std::vector<PlacedBuffer> all;
+  for (const BufferKey& known : kBufferKeys)
+    visit_buffer(allocation, known.buffer, [&](const auto& banks) { add(all, known.buffer, banks); });
+  return all;
+}
+
+void move_buffer(AllocationConfig& allocation, const PlacedBuffer& buffer, const std::string& bank) {
+  visit_buffer(allocation, buffer.buffer, [&](auto& banks) { bank_at(banks, buffer.index) = bank; });
+}
+
+std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image) {
+  const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  return buffer.index < 0 ? pixels : pixels / 4;
+}
+
 fpga::FrameBuffers frame_buffers(const BoardConfig& board) {
   const BufferLayout layout = layout_buffers(board);
   return {words_of(layout.left_image), words_of(layout.right_image), words_of(layout.disparity),
@@ -37,7 +76,7 @@ std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
     if (table) first_words.push_back(*table);
   }
   std::vector<AddressRange> ranges;
-  for (const Buffer& buffer : buffers(board.allocation)) {
+  for (const PlacedBuffer& buffer : buffers(board.allocation)) {
     const std::uint64_t first = fpga::registers::base_address(first_words[ranges.size()]);
     ranges.push_back({first, first + 4 * buffer_words(buffer, board.image)});
   }

@@ -1,5 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "models/fpga/frame_buffers.h"
@@ -8,11 +14,73 @@
 
 namespace stereotlm::platform {
 
+// The members of an allocation: lists of buffers that are used in turn, and tables of one buffer each. Their
+// order is that in which buffers lie in a bank that they share (contract 1.5).
+enum class Buffer { kLeftImage, kRightImage, kDisparity, kLeftLut, kRightLut };
+
+struct BufferKey {
+  Buffer buffer;
+  const char* key;  // in a board file
+};
+inline constexpr std::array<BufferKey, 5> kBufferKeys = {{{Buffer::kLeftImage, "allocation.left_image"},
+                                                          {Buffer::kRightImage, "allocation.right_image"},
+                                                          {Buffer::kDisparity, "allocation.disparity"},
+                                                          {Buffer::kLeftLut, "allocation.left_lut"},
+                                                          {Buffer::kRightLut, "allocation.right_lut"}}};
+
+// "allocation.left_image"
+constexpr const char* key_of(Buffer buffer) { return kBufferKeys[static_cast<std::size_t>(buffer)].key; }
+
+// "left_image"
+constexpr const char* name_of(Buffer buffer) {
+  return key_of(buffer) + std::string_view("allocation.").size();
+}
+
+// Nothing if the key is not one of an allocation.
+std::optional<Buffer> buffer_of_key(std::string_view key);
+
+// Calls `visit` with the member of `all` for the buffer, and returns what it returns: a std::vector for a
+// list, a std::optional for a table. `all`: an AllocationConfig or a BufferLayout.
+template <typename All, typename Visit>
+decltype(auto) visit_buffer(All& all, Buffer buffer, const Visit& visit) {
+  switch (buffer) {
+    case Buffer::kLeftImage:
+      return visit(all.left_image);
+    case Buffer::kRightImage:
+      return visit(all.right_image);
+    case Buffer::kDisparity:
+      return visit(all.disparity);
+    case Buffer::kLeftLut:
+      return visit(all.left_lut);
+    case Buffer::kRightLut:
+      break;
+  }
+  return visit(all.right_lut);
+}
+
+// One buffer, and the bank that holds it.
+struct PlacedBuffer {
+  Buffer buffer;
+  int index;         // in its list, from 0; -1: a table
+  std::string bank;  // name
+
+  std::string label() const;                                    // "left_image[0]", "left_lut"
+  std::string path() const { return "allocation." + label(); }  // "allocation.left_image[0]"
+};
+
+// All buffers, in the order of Buffer, those of a list in the order of the list.
+std::vector<PlacedBuffer> buffers(const AllocationConfig& allocation);
+
+// Puts a buffer of the allocation into another bank.
+void move_buffer(AllocationConfig& allocation, const PlacedBuffer& buffer, const std::string& bank);
+
+// Size of a buffer in 32-bit words.
+std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
+
 // Throws as layout_buffers() does.
 fpga::FrameBuffers frame_buffers(const BoardConfig& board);
 
-// The addresses of the buffers on the local bus, in the order of buffers() in board_rules.h. Throws as
-// layout_buffers() does.
+// The addresses of the buffers on the local bus, in the order of buffers(). Throws as layout_buffers() does.
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "platform/config/buffer_layout.h"
+
 namespace stereotlm::platform {
 namespace {
 
@@ -24,6 +26,19 @@ void check(const std::optional<kernels::RectificationTable>& table, const BoardC
 }
 
 }  // namespace
+
+std::optional<std::string> calibration_size_problem(const BoardConfig& board, int width, int height) {
+  if (width == board.image.width && height == board.image.height) return std::nullopt;
+  return fmt::format("image size = {}x{}: must be that of the board's images, {}x{}", width, height,
+                     board.image.width, board.image.height);
+}
+
+std::optional<std::string> calibration_buffer_problem(const BoardConfig& board) {
+  const AllocationConfig& allocation = board.allocation;
+  if (allocation.left_lut && allocation.right_lut) return std::nullopt;
+  return fmt::format("goes with a board that has both tables; {} = none",
+                     key_of(allocation.left_lut ? Buffer::kRightLut : Buffer::kLeftLut));
+}
 
 void check_tables(const BoardConfig& board, const Tables& tables) {
   check(tables.left, board, board.allocation.left_lut.has_value(), "left");

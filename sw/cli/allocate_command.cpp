@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "platform/bounds.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
@@ -23,8 +23,8 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/process/interrupt.h"
+#include "sw/process/program.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 
@@ -37,7 +37,7 @@ using explore::Placement;
 using platform::BoardConfig;
 
 constexpr double kDefaultKeepPercent = 99;
-constexpr const char* kGoesOn = "interrupted: the same command goes on where this one has ended";
+constexpr const char* kInterruptedNote = "interrupted: run the same command to resume";
 
 struct AllocateOptions {
   BoardOptions board;
@@ -88,7 +88,7 @@ struct AllocateOptions {
   }
 };
 
-// A source with a different pair for each frame.
+// A different synthetic pair for each frame.
 class ScenePairs : public host::FrameSource {
  public:
   explicit ScenePairs(const BoardConfig& board)
@@ -109,7 +109,7 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
   return explore::allocation_text(explore::placed(board, placement));
 }
 
-// The subject of the table's lines.
+// The search and its board, from which the lines of the report are made.
 struct Context {
   const AllocationSearch& search;
   const BoardConfig& board;
@@ -138,9 +138,10 @@ std::string table(const Context& context, const std::vector<BestPlacement>& all)
   return text;
 }
 
-// Repeats the best allocation for each number of banks with pixels and an ideal host, each frame with another
-// pair. All must give the same disparities, and the cycles that the search found. Returns how many do; an empty
-// text when interrupted.
+// Runs the best allocation for each number of banks with pixels, fed by an ideal host with a different pair
+// in each frame. Throws unless all compute the same disparities, and, for the core alone, need the cycles
+// that the search has found. Returns a line with the number of allocations; empty if there are none or after
+// an interrupt.
 std::string check_pixels(const Context& context, const platform::Tables& tables,
                          const std::vector<BestPlacement>& all) {
   ScenePairs pairs(context.board);
@@ -173,7 +174,7 @@ std::string check_pixels(const Context& context, const platform::Tables& tables,
                      checked, frames);
 }
 
-// What the search has proved.
+// The result of the search: the best rate of all, and the fewest banks that keep `keep_percent` of it.
 std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
   const auto is_out = [](const BestPlacement& best) { return best.reached_by == 0; };
   const bool holds_buffers_only = !all.empty() && is_out(all.front());
@@ -188,7 +189,7 @@ std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
     text += fmt::format(": the best with fewer gives {}",
                         rate_text(rate(*std::max_element(all.begin(), top, by_rate))));
   } else {
-    text += holds_buffers_only ? ", the fewest of which an allocation counts"
+    text += holds_buffers_only ? ", the fewest with an allocation that counts"
                                : ", the fewest that hold the buffers";
   }
   text += ".\n";
@@ -200,9 +201,9 @@ std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
                      keep_percent, kept->banks, rate_text(rate(*kept)), 100 * rate(*kept) / rate(*top));
 }
 
-// Allocations that were simulated but do not count.
-std::string out_text(const Context& context, const std::vector<BestPlacement>& all,
-                     const std::string& store) {
+// The numbers of allocations that do not count.
+std::string not_counted_text(const Context& context, const std::vector<BestPlacement>& all,
+                             const std::string& store) {
   std::uint64_t losing = 0;
   std::uint64_t failed = 0;
   for (const BestPlacement& best : all) {
@@ -221,7 +222,7 @@ std::string out_text(const Context& context, const std::vector<BestPlacement>& a
   return text;
 }
 
-// The number of simulated allocations, and why no other can be better.
+// The allocations that were tried, and the reason why no others are needed.
 std::string space_text(const Context& context, int banks) {
   const AllocationSearch& search = context.search;
   std::string text =
@@ -259,7 +260,7 @@ AllocationSearch search_of(const BoardConfig& board, int banks, const explore::P
   }
 }
 
-// The number of further banks.
+// "; with N some do": the fewest banks above `banks` into which allocations fit; empty if there are none.
 std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run) {
   const auto most = static_cast<int>(board.banks.size());
   const auto no_bound = [](const BoardConfig&) { return 0.0; };
@@ -324,18 +325,19 @@ int allocate(const AllocateOptions& options) {
   const bool is_whole = explore::simulate(search, evaluate, sweep, keep_going);
   progress.erase();
   if (!is_whole) {
-    process::say("note", kGoesOn);
+    process::say("note", kInterruptedNote);
     return kInterrupted;
   }
   const Context context = {search, *board, bound};
   const std::vector<BestPlacement> all = search.best();
   const std::string pixels = check_pixels(context, tables, all);
   if (process::interrupted()) {
-    process::say("note", kGoesOn);
+    process::say("note", kInterruptedNote);
     return kInterrupted;
   }
   process::print(space_text(context, *options.banks) + table(context, all) +
-                 certificate(all, options.keep_percent) + out_text(context, all, sweep.store) + pixels);
+                 certificate(all, options.keep_percent) + not_counted_text(context, all, sweep.store) +
+                 pixels);
   return kDone;
 }
 

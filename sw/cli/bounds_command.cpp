@@ -9,7 +9,7 @@
 
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/tables.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
@@ -21,7 +21,7 @@ namespace stereotlm::cli {
 namespace {
 
 using platform::BoardConfig;
-using platform::Buffer;
+using platform::PlacedBuffer;
 using platform::ResourceBound;
 
 using Names = std::vector<std::string>;
@@ -53,34 +53,32 @@ struct Group {
 };
 
 // The buffers of a frame.
-std::vector<Buffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
-  std::vector<Buffer> all = platform::buffers(board.allocation);
-  std::map<std::string, std::uint64_t> lengths;
-  for (const Buffer& buffer : all) ++lengths[buffer.key];
-  const auto is_of_another = [&](const Buffer& buffer) {
-    return buffer.index >= 0 && static_cast<std::uint64_t>(buffer.index) != frame % lengths[buffer.key];
+std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
+  std::vector<PlacedBuffer> all = platform::buffers(board.allocation);
+  std::map<platform::Buffer, std::uint64_t> lengths;
+  for (const PlacedBuffer& buffer : all) ++lengths[buffer.buffer];
+  const auto is_of_another = [&](const PlacedBuffer& buffer) {
+    return buffer.index >= 0 && static_cast<std::uint64_t>(buffer.index) != frame % lengths[buffer.buffer];
   };
   all.erase(std::remove_if(all.begin(), all.end(), is_of_another), all.end());
   return all;
 }
 
-std::string short_name(const Buffer& buffer) { return buffer.key.substr(buffer.key.find('.') + 1); }
-
 Group group_of(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frame) {
   const std::string bank = "bank ";
   Group group;
   group.frames = {frame};
-  const std::vector<Buffer> buffers = buffers_of(board, frame);
-  for (const Buffer& buffer : buffers) {
-    if (buffer.index >= 0) group.lists.push_back({short_name(buffer), {buffer.bank}});
+  const std::vector<PlacedBuffer> buffers = buffers_of(board, frame);
+  for (const PlacedBuffer& buffer : buffers) {
+    if (buffer.index >= 0) group.lists.push_back({platform::name_of(buffer.buffer), {buffer.bank}});
   }
   for (const ResourceBound& bound : platform::frame_bounds(board, tables, frame)) {
     Row row{bound.resource, bound.cycles, {}};
     if (bound.resource.compare(0, bank.size(), bank) == 0) {
       row.banks = {bound.resource.substr(bank.size())};
       row.role = bank + "of";
-      for (const Buffer& buffer : buffers) {
-        if (buffer.bank == row.banks.front()) row.role += ' ' + short_name(buffer);
+      for (const PlacedBuffer& buffer : buffers) {
+        if (buffer.bank == row.banks.front()) row.role += std::string(" ") + platform::name_of(buffer.buffer);
       }
     }
     group.rows.push_back(std::move(row));

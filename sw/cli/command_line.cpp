@@ -14,7 +14,7 @@
 #include "sw/cli/unbuilt.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 
 namespace stereotlm::cli {
 namespace {

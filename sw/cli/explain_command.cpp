@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "platform/bounds.h"
-#include "platform/config/board_rules.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
@@ -22,11 +21,11 @@
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
 #include "sw/explore/plan/knobs.h"
-#include "sw/explore/slurm/batch.h"
 #include "sw/explore/store/bank_names.h"
+#include "sw/explore/sweep/batch.h"
 #include "sw/process/interrupt.h"
+#include "sw/process/program.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 
@@ -37,12 +36,12 @@ using explore::KnobStep;
 using platform::BoardConfig;
 
 constexpr int kMostBlames = 5;
-constexpr double kVisible = 0.0005;  // frames per second: half of the last digit printed
+constexpr double kVisible = 0.0005;  // frames per second: half of the last printed digit
 
 struct ExplainOptions {
   BoardOptions board;
   Typed source;
-  bool camera = true;  // as check_usage() leaves it
+  bool camera = true;  // set by check_usage()
 
   void add_to(CLI::App& command) {
     board.add_to(command);
@@ -60,11 +59,11 @@ struct ExplainOptions {
   }
 };
 
-// What came of one board.
+// The result of one board.
 struct Rate {
   double frames_per_second = 0;
   bool loses_pixels = false;
-  std::string failure;  // the reason; empty: the run has ended well
+  std::string failure;  // the reason if the run has failed; else empty
 };
 
 struct StepRate {
@@ -72,7 +71,7 @@ struct StepRate {
   Rate rate;
 };
 
-// The boards of one `explain`: the board itself, and one for each step.
+// Simulates the board itself and one board for each step of a knob, and makes the report.
 class Explanation {
  public:
   Explanation(const BoardConfig& board, const platform::Tables& tables, bool camera)
@@ -82,7 +81,7 @@ class Explanation {
         steps_(explore::knob_steps(board, camera)),
         points_(boards(), run_) {}
 
-  // False if it was interrupted.
+  // Returns false if interrupted.
   bool simulate(runs::PointSimulator simulator) {
     runs::ProgressLine progress;
     return batch_.run(
@@ -134,17 +133,18 @@ class Explanation {
                        now.loses_pixels ? "; captures lose pixels" : "");
   }
 
-  // What a resource would allow, and how much more than now.
+  // A resource of the board and its bound.
   struct Resource {
     std::string name;
-    double frames_per_second = 0;
-    double headroom_percent = 0;
-    std::uint64_t frame = 0;
-    bool varies = false;  // has more in other frames
+    double frames_per_second = 0;  // the bound
+    double headroom_percent = 0;   // of the bound over the present rate
+    std::uint64_t frame = 0;       // the frame of the turn with the least headroom
+    bool varies = false;           // the headroom is larger in other frames
   };
 
-  // Of the core's own in the frame in which they have the least headroom. A frame lasts as long as its
-  // cycles; in a computer it is longer by its share of the time between frames.
+  // All resources, the least headroom first. A resource of the core has its least headroom over the frames of
+  // one turn. The time of a frame is its number of cycles; in a computer it also has its share of the time
+  // between frames.
   std::vector<Resource> resources_of(const Rate& now) {
     const auto frame_cycles = nlohmann::json::parse(batch_.row_of(points_.point(0)).text("frame_cycles"))
                                   .get<std::vector<double>>();
@@ -182,7 +182,7 @@ class Explanation {
     return all;
   }
 
-  // Equal ones of a kind in one line.
+  // The table of resources. Resources of one kind with the same values share a line.
   std::string resources(const Rate& now) {
     const std::vector<Resource> all = resources_of(now);
     const std::uint64_t turn = platform::allocation_period_frames(board_);
@@ -223,7 +223,7 @@ class Explanation {
     return rows > 0 ? text : "no port waits for another\n";
   }
 
-  // The steps whose effect can be seen, the best first.
+  // The table of the steps with a visible effect, the best first.
   std::string prices(const Rate& now, std::vector<StepRate> rates) const {
     std::stable_sort(rates.begin(), rates.end(), [](const StepRate& a, const StepRate& b) {
       return a.rate.frames_per_second > b.rate.frames_per_second;
@@ -261,7 +261,7 @@ class Explanation {
     return gained >= kVisible ? Effect::kSeen : gained > 0 ? Effect::kTooSmall : Effect::kNone;
   }
 
-  // The knobs of which no step does more than that.
+  // A paragraph with the knobs whose steps have at most this effect.
   std::string knobs_with(Effect effect, const char* head, const Rate& now,
                          const std::vector<StepRate>& rates) const {
     std::vector<std::string> knobs;
@@ -291,7 +291,7 @@ int explain(const ExplainOptions& options) {
   process::Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
-  temporary_folder(problems);  // there can be one
+  temporary_folder(problems);  // reports early if there cannot be one
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();

@@ -14,7 +14,7 @@
 #include "sw/files/sha256.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/sources/media_library.h"

@@ -52,9 +52,8 @@ void add_merge(CLI::App& program, Action& action) {
   };
   CLI::App& command = add_command(
       program, "merge", "Put the points of several databases of sweep into one", parsed,
-      "The bytes of OUT depend on nothing but the points: not on the number of databases, nor on who made "
-      "them\n"
-      "in which order. OUT may be one of them. Points that differ in what they hold are an error.");
+      "The bytes of OUT depend on nothing but the points: neither on the number of databases nor on their\n"
+      "order. OUT may be one of them. Databases that hold different results of one point are an error.");
   options->out.add_to(command, "OUT", " ", "The database to write");
   options->inputs.add_to(command, "DB", "...", "Databases of sweep, such as those of its shards");
 }

@@ -23,7 +23,7 @@
 #include "sw/process/problems.h"
 #include "sw/process/python_script.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"

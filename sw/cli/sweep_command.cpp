@@ -8,28 +8,23 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include "calib/calibration.h"
-#include "platform/config/board_draft.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/sweep_on_slurm.h"
+#include "sw/cli/sweep_options.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
-#include "sw/explore/slurm/shard_folder.h"
-#include "sw/explore/slurm/slurm_sweep.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
+#include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/replaced_file.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/process/version.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
@@ -37,12 +32,9 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr unsigned kMostJobs = 1024;
-constexpr std::uint64_t kMostShards = 1000;  // of a job array: merge opens all their files
-constexpr std::uint64_t kDefaultShards = 16;
 constexpr std::chrono::seconds kBetweenCounts{2};
-constexpr std::chrono::seconds kBriefPatience{
-    5};  // with who keeps a database locked that is looked at once more
+// How long to wait for a process that locks a database of which only the readability is checked.
+constexpr std::chrono::seconds kBriefTimeout{5};
 
 constexpr const char* kFooter =
     "A plan is a YAML file, such as\n"
@@ -70,181 +62,8 @@ constexpr const char* kFooter =
     "again what has failed:\n"
     "  sqlite3 DB \"DELETE FROM points WHERE status = 'failed'\"\n\n"
     "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into\n"
-    "DB; it waits, and submits again what is lost. The machines share the file system of DB and of this\n"
+    "DB; it waits, and submits lost shards again. The machines share the file system of DB and of this\n"
     "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
-
-// Also of files that are not there yet.
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code none;
-  if (std::filesystem::equivalent(a, b, none)) return true;
-  const auto whole = [&none](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path), none);
-  };
-  return whole(a) == whole(b);
-}
-
-// Whether it is one of --progress, or empty.
-bool is_counts_file(const std::string& path) {
-  try {
-    const std::string text = files::read_whole_file(path);
-    return text.empty() || text == explore::counts_text(explore::read_counts(text));
-  } catch (const std::runtime_error&) {
-    return false;
-  }
-}
-
-struct SweepCommandOptions {
-  Typed plan;
-  Typed out;
-  Typed jobs;
-  Typed shard;
-  Typed board;
-  Typed calibration;
-  Typed known;
-  Typed progress;
-  Typed launcher;
-  Typed shards_option;
-  TypedList sbatch;
-
-  void add_to(CLI::App& command) {
-    plan.add_to(command, "PLAN", " ", "The plan's file");
-    out.add_to(command, "--out", "DB", "The database to write, or to continue");
-    jobs.add_to(command, "--jobs", "N", "Worker processes; default: the processors of this machine");
-    shard.add_to(command, "--shard", "I/N",
-                 "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge");
-    board.add_to(command, "--board", "BOARD", "In place of the board that the plan names");
-    calibration.add_to(command, "--calibration", "F", "In place of the calibration that the plan names");
-    known.add_to(command, "--known", "DB2", "A database, only read, whose points are not run either");
-    progress.add_to(command, "--progress", "F", "Keep in this file how many points are done");
-    launcher.add_to(command, "--launcher", "WHERE", "Where it runs: local, the default, or slurm");
-    shards_option.add_to(command, "--shards", "N",
-                         fmt::format("With slurm: the tasks of the job array (default {})", kDefaultShards));
-    sbatch.add_to(
-        command, "--sbatch", "NAME=VALUE",
-        "With slurm: an option of sbatch for all jobs, such as partition=long or time=8:00:00; again "
-        "for further ones");
-    sbatch.takes_one_at_a_time();
-  }
-
-  // As check_usage() leaves them.
-  explore::SweepOptions sweep;
-  bool is_slurm = false;
-  std::uint64_t shards = kDefaultShards;
-  std::vector<std::string> sbatch_options;
-
-  void check_usage() {
-    process::Problems problems;
-    if (!plan.is_given()) problems.add("PLAN: missing: the path of a plan");
-    if (!out.is_given()) problems.add("--out: missing: the database to write, or to continue");
-    sweep.store = out.text;
-    sweep.version = process::kVersion;
-    sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
-    if (jobs.is_given()) {
-      const auto number = number_of<unsigned>(jobs.text);
-      if (!number || *number < 1 || *number > kMostJobs) {
-        problems.add(fmt::format("--jobs = {}: must be 1..{}", jobs.text, kMostJobs));
-      } else {
-        sweep.jobs = *number;
-      }
-    }
-    if (shard.is_given()) check_shard(problems);
-    sweep.known = known.text;
-    if (launcher.is_given()) is_one_of({"local", "slurm"}, "--launcher", launcher.text, problems);
-    is_slurm = launcher.text == "slurm";
-    check_launcher(problems);
-    for (const auto& [option, name] : {std::pair{&board, "--board"},
-                                       {&calibration, "--calibration"},
-                                       {&known, "--known"},
-                                       {&progress, "--progress"}}) {
-      if (option->is_given() && option->text.empty()) problems.add(fmt::format("{}: empty", name));
-    }
-    if (!progress.text.empty()) check_progress(problems);
-    problems.check();
-  }
-
- private:
-  // It replaces the file: that must be none of a user's.
-  void check_progress(process::Problems& problems) {
-    for (const auto& [file, name] : {std::pair{&out, "--out"}, {&plan, "PLAN"}, {&known, "--known"}}) {
-      if (file->text.empty() || !is_same_file(progress.text, file->text)) continue;
-      problems.add(fmt::format("--progress = {}: is the file of {}", progress.text, name));
-      return;
-    }
-    std::error_code none;
-    const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(progress.text, none));
-    if (is_there && !is_counts_file(progress.text)) {
-      problems.add(
-          fmt::format("--progress = {}: is there, and not as a file of --progress: remove it, or give "
-                      "another file",
-                      progress.text));
-    }
-  }
-
-  void check_launcher(process::Problems& problems) {
-    const auto refuse_given = [&problems](bool is_given, const char* name, const char* rule) {
-      if (is_given) problems.add(fmt::format("{}: {}", name, rule));
-    };
-    if (!is_slurm) {
-      refuse_given(shards_option.is_given(), "--shards", "goes with --launcher slurm");
-      refuse_given(sbatch.is_given(), "--sbatch", "goes with --launcher slurm");
-      return;
-    }
-    refuse_given(jobs.is_given(), "--jobs", "not with --launcher slurm: --sbatch cpus-per-task=N");
-    refuse_given(shard.is_given(), "--shard", "not with --launcher slurm, which submits all shards");
-    refuse_given(known.is_given(), "--known", "not with --launcher slurm");
-    refuse_given(progress.is_given(), "--progress", "not with --launcher slurm");
-    if (shards_option.is_given()) {
-      const auto number = number_of<std::uint64_t>(shards_option.text);
-      if (!number || *number < 1 || *number > kMostShards) {
-        problems.add(fmt::format("--shards = {}: must be 1..{}", shards_option.text, kMostShards));
-      } else {
-        shards = *number;
-      }
-    }
-    for (const std::string& option : sbatch.text) {
-      check_sbatch(option, problems);
-      sbatch_options.push_back("--" + option);
-    }
-  }
-
-  // What the launcher gives sbatch itself cannot be given.
-  static void check_sbatch(const std::string& option, process::Problems& problems) {
-    const std::vector<std::string> own = {"array",  "dependency", "error", "job-name",
-                                          "output", "wait",       "wrap"};
-    const std::string name = option.substr(0, option.find('='));
-    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
-    if (name.empty() || name[0] == '-' || !std::all_of(name.begin(), name.end(), is_letter)) {
-      problems.add(fmt::format(
-          "--sbatch = {}: must be a long option of sbatch without its dashes, such as partition=long",
-          option));
-    } else if (std::find(own.begin(), own.end(), name) != own.end()) {
-      problems.add(fmt::format("--sbatch = {}: given by the launcher; others may be given", option));
-    }
-  }
-
-  void check_shard(process::Problems& problems) {
-    const std::size_t slash = shard.text.find('/');
-    const auto index = number_of<std::uint64_t>(shard.text.substr(0, slash));
-    const auto count = slash == std::string::npos
-                           ? std::nullopt
-                           : number_of<std::uint64_t>(std::string_view(shard.text).substr(slash + 1));
-    if (!index || !count || *index >= *count) {
-      problems.add(fmt::format("--shard = {}: must be I/N with I in 0 .. N-1, such as 0/4", shard.text));
-      return;
-    }
-    sweep.shard = *index;
-    sweep.shards = *count;
-  }
-};
-
-// `before`: points that were done when the seconds began.
-std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
-  const auto done = static_cast<double>(counts.done());
-  const double rate = (done - static_cast<double>(before)) / seconds;
-  return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
-                     100 * done / static_cast<double>(counts.total), rate,
-                     runs::time_text((static_cast<double>(counts.total) - done) / rate));
-}
 
 explore::Plan load_plan(const SweepCommandOptions& options) {
   try {
@@ -257,8 +76,8 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
   }
 }
 
-// The calibration of all points, if they have one; the plan is given its tables. Refused if no point can have
-// them.
+// The calibration of all points, if they have one. Gives the plan its tables. Throws Refused if no point can
+// have them.
 std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& options,
                                                      explore::Plan& plan) {
   const bool is_option = !options.calibration.text.empty();
@@ -288,7 +107,7 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The first points of that status, with their reasons.
+// The most frequent reasons of points with this status, and the numbers of these points.
 std::string reasons(explore::Database& store, const std::string& status) {
   constexpr int kMost = 3;
   std::string text;
@@ -312,22 +131,22 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   }
   process::print(text);
   if (counts.done() == counts.total) return kDone;
-  process::say("note", "interrupted: the same command goes on where this one has ended");
+  process::say("note", "interrupted: run the same command to resume");
   return kInterrupted;
 }
 
-// What follows the text of an error; empty if the database cannot be read.
+// The end of an error message: finished points are kept. Empty if the database cannot be read.
 std::string kept_text(const std::string& store, const std::string& advice) {
   try {
-    explore::Database(store, explore::Database::Access::kRead, kBriefPatience)
+    explore::Database(store, explore::Database::Access::kRead, kBriefTimeout)
         .number("SELECT count(*) FROM points");
-    return "; what is done is kept: " + advice;
+    return "; finished points are kept: " + advice;
   } catch (const explore::DatabaseError&) {
     return "";
   }
 }
 
-// The file of --progress, if there is any.
+// The file of --progress, if that is given.
 class ProgressFile {
  public:
   explicit ProgressFile(const std::string& path) : path_(path) {
@@ -358,8 +177,8 @@ void check_open_files(std::uint64_t jobs, std::uint64_t points) {
                   (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
 }
 
-int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
-               const std::optional<runs::CalibrationInput>& calibration) {
+explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
+                                const std::optional<runs::CalibrationInput>& calibration) {
   check_open_files(options.sweep.jobs, plan.size());
   ProgressFile file(options.progress.text);
   try {
@@ -376,7 +195,7 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
     };
     if (std::filesystem::file_size(options.sweep.store) > 0) open_store();
     file.write({});
-    open_store();  // a new one is made when nothing else is wrong
+    open_store();  // makes a new store once nothing else is wrong
   } catch (const explore::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::system_error& error) {
@@ -391,7 +210,7 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
     counts = explore::sweep(
         plan, [&simulator](const explore::Point& point) { return simulator(point); }, options.sweep,
         [&progress, &file](const explore::SweepCounts& done) {
-          progress.show([&done](double seconds) { return progress_text(done, 0, seconds); });
+          progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
           file.show(done);
           return !process::interrupted();
         });
@@ -405,79 +224,17 @@ int sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
     throw std::runtime_error(error.what() + kept_text(options.sweep.store, "correct the plan"));
   } catch (const std::exception& error) {
     progress.erase();
-    throw std::runtime_error(error.what() +
-                             kept_text(options.sweep.store, "the same command goes on with it"));
+    throw std::runtime_error(error.what() + kept_text(options.sweep.store, "run the same command to resume"));
   }
-  return report(counts, options);
-}
-
-// What tasks on other machines need of the files that the plan is made of.
-explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
-                              const std::optional<runs::CalibrationInput>& calibration) {
-  explore::ShardedSweep sweep;
-  sweep.plan = files::read_whole_file(plan.path());
-  if (platform::is_board_file(plan.board())) sweep.board = files::read_whole_file(plan.board());
-  if (calibration) {
-    const runs::InputCalibration& files = calibration->described;
-    sweep.calibration = {files::read_whole_file(files.file.path), files::read_whole_file(files.left_lut.path),
-                         files::read_whole_file(files.right_lut.path)};
-  }
-  sweep.banks = plan.banks();
-  sweep.version = options.sweep.version;
-  sweep.points = plan.size();
-  sweep.shards = std::min(options.shards, plan.size());
-  return sweep;
-}
-
-std::string progress_text(const explore::SlurmProgress& progress, std::uint64_t before, double seconds) {
-  std::string text = progress_text(progress.counts, before, seconds);
-  text += fmt::format("   {} running", progress.running);
-  if (progress.waiting > 0) text += fmt::format(", {} waiting", progress.waiting);
-  if (!progress.reason.empty()) text += fmt::format(" ({})", progress.reason);
-  return text;
-}
-
-int sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
-                   const std::optional<runs::CalibrationInput>& calibration) {
-  runs::ProgressLine progress;
-  const auto say_note = [&progress](const std::string& note) {
-    progress.erase();
-    process::say("note", note);
-  };
-  const auto opened = [&] {
-    try {
-      return explore::SlurmSweep(sharded(options, plan, calibration), options.sweep.store,
-                                 options.sbatch_options, say_note);
-    } catch (const explore::DatabaseError& error) {
-      process::refuse(fmt::format("--out {}", error.what()));
-    } catch (const std::system_error& error) {
-      process::refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
-    }
-  };
-  explore::SlurmSweep sweep = opened();
-  process::catch_interrupts();
-  try {
-    sweep.begin();
-  } catch (const explore::DatabaseError& error) {
-    process::refuse(fmt::format("--out {}", error.what()));
-  } catch (const std::exception& error) {
-    process::refuse(fmt::format("--launcher slurm: {}", error.what()));
-  }
-  std::optional<std::uint64_t> before;
-  const auto counts = sweep.wait([&](const explore::SlurmProgress& now) {
-    if (!before) before = now.counts.done();
-    progress.show([&](double seconds) { return progress_text(now, *before, seconds); });
-    return !process::interrupted();
-  });
-  progress.erase();
-  return report(counts, options);
+  return counts;
 }
 
 int sweep(const SweepCommandOptions& options) {
   explore::Plan plan = load_plan(options);
   const auto calibration = calibration_of(options, plan);
-  return options.is_slurm ? sweep_on_slurm(options, plan, calibration)
-                          : sweep_here(options, plan, calibration);
+  const explore::SweepCounts counts =
+      options.is_slurm ? sweep_on_slurm(options, plan, calibration) : sweep_here(options, plan, calibration);
+  return report(counts, options);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/search/allocation_run.h"
@@ -26,7 +26,7 @@ bool reaches(double rate, double best) { return rate >= best * (1 - kRounding); 
 
 int banks_of(const BoardConfig& board) {
   std::vector<std::string> names;
-  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.bank);
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.bank);
   std::sort(names.begin(), names.end());
   return static_cast<int>(std::unique(names.begin(), names.end()) - names.begin());
 }

@@ -13,8 +13,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/process/ended_by_signal.h"
-
 namespace stereotlm::process {
 namespace {
 
@@ -31,8 +29,8 @@ void send(int to, Kind kind, const std::string& text) {
   if (!is_heard) _exit(1);
 }
 
-// Its exit status.
-int be_child(const std::function<void(const Child::Tell&)>& work, int to) {
+// Runs the work in the child; returns its exit status.
+int run_child(const std::function<void(const Child::Tell&)>& work, int to) {
   std::string failure;
   try {
     work([to](const std::string& message) { send(to, Kind::kMessage, message); });
@@ -55,15 +53,15 @@ int be_child(const std::function<void(const Child::Tell&)>& work, int to) {
 Child::Child(const std::function<void(const Tell& tell)>& work)
     : process_([&] {
         messages_.close_read_end();
-        return be_child(work, messages_.write_end());
+        return run_child(work, messages_.write_end());
       }) {
   messages_.close_write_end();
 }
 
 bool Child::has_news(std::chrono::milliseconds wait) {
   pollfd messages = {messages_.read_end(), POLLIN, 0};
-  const int ready =
-      poll(&messages, 1, static_cast<int>(wait.count()));  // a signal ends it, whatever its flags
+  // A caught signal ends poll() even with SA_RESTART.
+  const int ready = poll(&messages, 1, static_cast<int>(wait.count()));
   if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
   return ready > 0;
 }

@@ -9,22 +9,23 @@
 
 namespace stereotlm::process {
 
-// A child process for one piece of work that tells this one about it, message by message. SystemC elaborates
-// once a process; forked from one that has everything loaded, a run begins without the start of a program.
+// A child process that does one piece of work and sends messages about it. A process can elaborate SystemC
+// only once; a child that is forked from a process in which everything is loaded starts a run without loading
+// a program.
 class Child {
  public:
   using Tell = std::function<void(const std::string& message)>;
 
-  // Forks. The child has a copy of everything but the threads, as explore::ChildProcess says, does the work,
-  // and leaves. Throws std::system_error if there can be no child.
+  // Forks. The child has a copy of everything but the threads (see ChildProcess). It runs `work` and exits.
+  // Throws std::system_error if the system cannot fork.
   explicit Child(const std::function<void(const Tell& tell)>& work);
 
-  // Waits for as long at most, or until a signal has been caught, and tells whether next() has something to
-  // say.
+  // Waits until next() would return without waiting, a signal has been caught, or the time is over. Returns
+  // whether next() would return without waiting.
   bool has_news(std::chrono::milliseconds wait);
-  // Waits for the next message; nothing once the work is done. Throws std::runtime_error that says how the
-  // child has failed: what it threw; explore::EndedBySignal if a signal has ended it; std::bad_alloc if it
-  // threw that.
+  // Waits for the next message. Returns nothing once the work is done. If the child fails, throws
+  // std::runtime_error with the text of the exception that `work` threw, std::bad_alloc if it threw that, or
+  // EndedBySignal if a signal ended the child.
   std::optional<std::string> next();
 
  private:

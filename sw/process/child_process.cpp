@@ -60,12 +60,12 @@ void Pipe::close_end(std::size_t end) {
 
 ChildProcess::ChildProcess(const std::function<int()>& work) {
   const pid_t parent = getpid();
-  std::fflush(nullptr);  // or both processes would write what is in the buffers
+  std::fflush(nullptr);  // otherwise both processes would write the contents of the buffers
   pid_ = fork();
   if (pid_ < 0) throw_errno("fork");
   if (pid_ > 0) return;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it has ended before that
+  if (getppid() != parent) _exit(1);  // the parent ended before prctl()
   _exit(work());
 }
 

@@ -5,15 +5,29 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
+#include <string>
 
 namespace stereotlm::process {
 
-// All bytes, whatever signals are caught meanwhile. False at the end; throws std::system_error.
+// A signal ended the process that did a piece of work.
+class EndedBySignal : public std::runtime_error {
+ public:
+  EndedBySignal(const std::string& text, int signal) : std::runtime_error(text), signal_(signal) {}
+  int signal() const { return signal_; }
+
+ private:
+  int signal_;
+};
+
+// Reads `count` bytes; caught signals do not end the read. Returns false at the end of the file. Throws
+// std::system_error.
 bool read_all(int from, void* bytes, std::size_t count);
-// False if nobody reads them any more: where SIGPIPE is ignored, else that ends the process.
+// Writes all bytes; caught signals do not end the write. Returns false if the read end is closed; where
+// SIGPIPE is not ignored, that signal ends this process instead.
 bool write_all(int to, const void* bytes, std::size_t count);
 
-// A pipe that no other program gets. What is not closed before is closed with it.
+// A pipe that programs started by exec do not inherit. The destructor closes the ends that are still open.
 class Pipe {
  public:
   Pipe();  // throws std::system_error
@@ -32,23 +46,24 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// A process that is forked from this one, and never outlives it.
+// A process that is forked from this one and ends with it.
 class ChildProcess {
  public:
-  // Forks. The child has a copy of everything but the threads (open files are the same, with their
-  // positions), does the work, which must not throw, and leaves with the status that it gives, without
-  // running destructors of static objects. Throws std::system_error if there can be no child.
+  // Forks. The child has a copy of everything but the threads; it shares open files and their positions with
+  // this process. It runs `work`, which must not throw, and exits with the status that `work` returns,
+  // without running destructors of static objects. Throws std::system_error if the system cannot fork.
   explicit ChildProcess(const std::function<int()>& work);
-  // Ends it if it still works.
+  // Kills the child if it still runs.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // Waits for its end, once; gives its status as waitpid() does. Throws std::system_error.
+  // Waits until the child has ended, and returns its status as waitpid() gives it. May be called once. Throws
+  // std::system_error.
   int wait();
 
  private:
-  pid_t pid_ = -1;  // -1: it has been waited for
+  pid_t pid_ = -1;  // -1 after wait()
 };
 
 }  // namespace stereotlm::process

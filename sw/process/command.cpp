@@ -18,15 +18,15 @@ namespace {
   throw std::system_error(error, std::generic_category(), what);
 }
 
-// A file without a name.
-class Aside {
+// A file in memory that takes the output of a program.
+class OutputFile {
  public:
-  Aside() : descriptor_(memfd_create("said", MFD_CLOEXEC)) {
+  OutputFile() : descriptor_(memfd_create("output", MFD_CLOEXEC)) {
     if (descriptor_ < 0) fail(errno, "memfd_create");
   }
-  ~Aside() { close(descriptor_); }
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
+  ~OutputFile() { close(descriptor_); }
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
 
   int descriptor() const { return descriptor_; }
   std::string text() const {
@@ -40,29 +40,29 @@ class Aside {
   int descriptor_;
 };
 
-// How the process begins.
-class Beginning {
+// The open files and the attributes that the process starts with.
+class SpawnSetup {
  public:
-  Beginning(int out, int errors) {
+  SpawnSetup(int out, int errors) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions_, out, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
     posix_spawnattr_init(&attributes_);
     posix_spawnattr_setpgroup(&attributes_, 0);
-    sigset_t ignored_here;  // a program expects them to end it
+    sigset_t ignored_here;  // by default these signals end a program
     sigemptyset(&ignored_here);
     sigaddset(&ignored_here, SIGPIPE);
     sigaddset(&ignored_here, SIGXFSZ);
     posix_spawnattr_setsigdefault(&attributes_, &ignored_here);
     posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   }
-  ~Beginning() {
+  ~SpawnSetup() {
     posix_spawn_file_actions_destroy(&actions_);
     posix_spawnattr_destroy(&attributes_);
   }
-  Beginning(const Beginning&) = delete;
-  Beginning& operator=(const Beginning&) = delete;
+  SpawnSetup(const SpawnSetup&) = delete;
+  SpawnSetup& operator=(const SpawnSetup&) = delete;
 
   const posix_spawn_file_actions_t* actions() const { return &actions_; }
   const posix_spawnattr_t* attributes() const { return &attributes_; }
@@ -86,15 +86,15 @@ std::vector<char*> shown_variables(const std::vector<std::string>& hidden) {
 }  // namespace
 
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden) {
-  const Aside out;
-  const Aside errors;
-  const Beginning beginning(out.descriptor(), errors.descriptor());
+  const OutputFile out;
+  const OutputFile errors;
+  const SpawnSetup setup(out.descriptor(), errors.descriptor());
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t pid = -1;
-  const int error = posix_spawnp(&pid, arguments[0], beginning.actions(), beginning.attributes(),
-                                 arguments.data(), shown_variables(hidden).data());
+  const int error = posix_spawnp(&pid, arguments[0], setup.actions(), setup.attributes(), arguments.data(),
+                                 shown_variables(hidden).data());
   if (error == ENOENT) throw CommandMissing(words[0] + ": not found in PATH");
   if (error != 0) fail(error, words[0].c_str());
   int status = 0;

@@ -6,22 +6,23 @@
 
 namespace stereotlm::process {
 
-// There is no such program.
+// The program was not found.
 class CommandMissing : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// What a program has said, and how it has ended.
+// The output of a program and the way in which it ended.
 struct CommandEnd {
-  int status = 0;  // of its exit; 128 + number of the signal that has ended it
+  int status = 0;  // exit status, or 128 + the number of the signal that ended it
   std::string out;
   std::string errors;
 };
 
-// Runs words[0], found in PATH, with these words, and waits for its end. No shell reads them. It has nothing
-// to read, the environment of this process but for variables that begin with one of `hidden`, and is not
-// reached by a terminal's Ctrl-C. Throws CommandMissing, std::system_error.
+// Runs the program words[0], which is looked for in PATH, with these words and without a shell, and waits
+// until it ends. Its standard input is empty. It has the environment of this process without the variables
+// that begin with one of `hidden`. Ctrl-C in a terminal does not reach it. Throws CommandMissing and
+// std::system_error.
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden = {});
 
 }  // namespace stereotlm::process

@@ -6,16 +6,16 @@
 namespace stereotlm::process {
 namespace {
 
-// A signal handler can reach nothing but a variable of this kind.
+// A signal handler may write only to a variable of this type.
 volatile std::sig_atomic_t caught = 0;
 
-void remember(int /*signal*/) { caught = 1; }
+void record(int /*signal*/) { caught = 1; }
 
 }  // namespace
 
 void catch_interrupts() {
   struct sigaction action = {};
-  action.sa_handler = remember;
+  action.sa_handler = record;
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM}) {

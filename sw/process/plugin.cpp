@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "models/fpga/core_config.h"
-#include "sw/process/installed_path.h"
+#include "sw/process/program.h"
 
 namespace stereotlm::process {
 namespace {
 
-// OpenCV takes settings from variables of the environment when it is loaded: one that it cannot read ends the
-// process. Ours alone remain, so that the results depend on nobody's environment.
+// OpenCV reads variables of the environment when it is loaded, and an unreadable value ends the process. Only
+// the variables that are set here remain, so that results do not depend on the environment.
 void set_up_opencv() {
   const std::string beginning = "OPENCV_";
   std::vector<std::string> names;
@@ -23,7 +23,7 @@ void set_up_opencv() {
     if (text.rfind(beginning, 0) == 0) names.push_back(text.substr(0, text.find('=')));
   }
   for (const std::string& name : names) unsetenv(name.c_str());
-  // Where a decoder reads another size than sw/media has read from the header.
+  // Limits for a decoder that reads another size than sw/media has read from the header.
   setenv("OPENCV_IO_MAX_IMAGE_WIDTH", std::to_string(fpga::kWidthRule.max).c_str(), 1);
   setenv("OPENCV_IO_MAX_IMAGE_HEIGHT", std::to_string(fpga::kHeightRule.max).c_str(), 1);
 }

@@ -10,7 +10,7 @@
 
 namespace stereotlm::process {
 
-// A command is refused before it has done anything: exit status 2. Lines for standard error.
+// A command is refused before it has done anything (exit status 2). Holds the lines for standard error.
 class Refused : public std::exception {
  public:
   explicit Refused(std::vector<std::string> lines) : lines_(std::move(lines)) {}
@@ -21,17 +21,17 @@ class Refused : public std::exception {
   std::vector<std::string> lines_;
 };
 
-// Everything wrong with a command, collected so that it can be said at once.
+// Collects everything that is wrong with a command, so that one message can report it all.
 class Problems {
  public:
   void add(const std::string& text) { lines_.push_back("stereotlm: error: " + text); }
-  // The diagnostics of a board name file and position themselves.
+  // The lines of a BoardError name the file and the position; they are added as they are.
   void add(const platform::BoardError& error) { lines_.emplace_back(error.what()); }
 
-  // Not a problem, but of use to whoever has it.
+  // Adds a hint about the problems.
   void add_note(const std::string& text) { lines_.push_back("stereotlm: note: " + text); }
   bool empty() const { return lines_.empty(); }
-  // Without the name of the program, separated by semicolons.
+  // All lines, separated by semicolons, without the name of the program.
   std::string in_one_line() const {
     constexpr std::string_view kPrefix = "stereotlm: error: ";
     std::string text;
@@ -42,7 +42,7 @@ class Problems {
     return text;
   }
 
-  // Throws Refused if there is any.
+  // Throws Refused if there are any problems.
   void check() const {
     if (!lines_.empty()) throw Refused(lines_);
   }
@@ -51,7 +51,7 @@ class Problems {
   std::vector<std::string> lines_;
 };
 
-// One problem alone.
+// Refuses the command because of one problem.
 [[noreturn]] inline void refuse(const std::string& text) { throw Refused({"stereotlm: error: " + text}); }
 
 }  // namespace stereotlm::process

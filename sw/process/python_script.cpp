@@ -9,20 +9,20 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/process/installed_path.h"
+#include "sw/process/program.h"
 
 namespace stereotlm::process {
 namespace {
 
-// The words of a command that runs a script. Throws std::runtime_error if there is no such script.
+// The words of the command that runs a script. Throws std::runtime_error if the script does not exist.
 std::vector<std::string> words_of(const std::string& script, const std::vector<std::string>& arguments,
                                   const std::string& python) {
   const std::string path = installed_path(STEREOTLM_SCRIPT_FOLDER) / script;
   if (!std::filesystem::is_regular_file(path)) {
     throw std::runtime_error(fmt::format("'{}': not found: it is installed with the program", path));
   }
-  // -E, -s: neither variables of the environment (PYTHON..) nor packages of the user have an effect.
-  // -B: writes nothing beside the script.
+  // -E and -s: variables of the environment (PYTHON..) and packages of the user have no effect. -B: Python
+  // writes no file beside the script.
   std::vector<std::string> words = {python, "-E", "-s", "-B", path};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;

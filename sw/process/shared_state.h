@@ -6,7 +6,7 @@
 
 namespace stereotlm::process {
 
-// What the processes of a sweep share: memory that is the same on both sides of fork().
+// Memory that the processes of a sweep share: it is the same on both sides of fork().
 class SharedState {
  public:
   SharedState();  // throws std::system_error
@@ -14,11 +14,11 @@ class SharedState {
   SharedState(const SharedState&) = delete;
   SharedState& operator=(const SharedState&) = delete;
 
-  // No further point is to be begun.
+  // Once it is true, no process begins another point.
   std::atomic<bool>& stop() const { return page_->stop; }
 
-  // While it lives no other process has one: they wait, and if this one dies the next has its turn. SQLite
-  // would let them wait too, but for milliseconds at a time.
+  // A lock that one process holds at a time. The others wait; if the holder dies, the next process gets the
+  // lock. (SQLite's own wait polls every few milliseconds.)
   class Turn {
    public:
     explicit Turn(const SharedState& state);

@@ -5,16 +5,16 @@
 
 namespace stereotlm::process {
 
-// To standard output. A reader that has closed its end of the pipe has seen enough: no error. Throws
-// std::runtime_error if the text cannot be written for another reason (disk full).
+// Writes to standard output. A reader that has closed its end of the pipe is no error. Throws
+// std::runtime_error if the text cannot be written for another reason, such as a full disk.
 void print(std::string_view text);
 
-// One line on standard error: "stereotlm: KIND: text".
+// Writes one line to standard error: "stereotlm: KIND: text".
 void say(const std::string& kind, const std::string& text);
 
-// Reserves descriptors 0, 1 and 2 where the caller has closed them, so that no file of ours gets one of them,
-// and makes a write that fails (closed pipe, file size limit) an error code instead of the end of the
-// process.
+// Opens descriptors 0, 1 and 2 where the caller has closed them, so that no other file gets one of them.
+// After it, a write that fails because of a closed pipe or of the limit on file sizes returns an error
+// instead of ending the process.
 void prepare_streams();
 
 }  // namespace stereotlm::process

@@ -43,6 +43,14 @@ std::string progress_text(const RunState& state, double seconds) {
                      time_text((frames - position) * frame_cycles / rate));
 }
 
+std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
+  const auto done = static_cast<double>(counts.done());
+  const double rate = (done - static_cast<double>(before)) / seconds;
+  return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
+                     100 * done / static_cast<double>(counts.total), rate,
+                     time_text((static_cast<double>(counts.total) - done) / rate));
+}
+
 std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
   return fmt::format("verifying: {}/{} frames", frames_compared, frames);
 }

@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "sw/explore/sweep/sweep.h"
+
 namespace stereotlm::runs {
 
 // The progress of a run. A running frame counts in proportion to its simulated cycles.
@@ -18,6 +20,10 @@ struct RunState {
 
 // "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
+
+// "3/10 points   30.0 %   2.0 points/s   0:04 left", of a sweep. `before`: points that were done when the
+// time began.
+std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds);
 
 // "0:08", "1:02:03", "years"
 std::string time_text(double seconds);

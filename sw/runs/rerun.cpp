@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/binder.h"
-#include "sw/process/version.h"
+#include "sw/process/program.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"

@@ -1,11 +1,11 @@
-// stereotlm_bench: how fast the simulation is. One thread, wall time. StereoBM runs beside it, so that
-// figures of different machines can be compared by their ratio to it.
+// stereotlm_bench measures how fast the simulation is: one thread, wall time. StereoBM runs beside it, so
+// that figures of different machines can be compared as ratios.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <opencv2/calib3d.hpp>
@@ -15,12 +15,15 @@
 #include <systemc>
 #include <vector>
 
+#include "calib/lut_file.h"
+#include "calib/opencv_types.h"
 #include "models/kernels/image_filter.h"
-#include "models/kernels/image_loops.h"
 #include "models/kernels/image_matcher.h"
+#include "models/kernels/simd.h"
 #include "models/kernels/stereo.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "platform/config/board_yaml.h"
+#include "sw/files/whole_file.h"
 #include "sw/process/child.h"
 #include "sw/report/stats_json.h"
 #include "sw/runs/simulation/make_simulation.h"
@@ -32,7 +35,7 @@ namespace {
 
 using fpga::Fidelity;
 
-// A contended board has lists of one bank, so that every frame is contended, not only those of some buffers.
+// The buffers of a contended board lie in one bank each, so that every frame is contended.
 struct Case {
   std::string name;
   std::string board;
@@ -40,7 +43,7 @@ struct Case {
   bool contended = false;
 };
 
-// The five buffers of a frame in one bank, which is large enough for them.
+// Puts the five buffers of a frame into one bank that is large enough for them.
 std::vector<std::string> one_bank(std::vector<std::string> sets) {
   sets.emplace_back("ssram.default.words=1048576");
   for (const char* buffer : {"left_image", "right_image", "disparity", "left_lut", "right_lut"})
@@ -67,15 +70,11 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-cv::Mat view(const kernels::GrayImage& image) {
-  // OpenCV has no read-only view; an input array is not written to.
-  return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data())};
-}
-
 // OpenCV's matcher on the same pair.
 class StereoBm {
  public:
-  explicit StereoBm(const host::StereoPair& pair) : left_(view(pair.left)), right_(view(pair.right)) {}
+  explicit StereoBm(const host::StereoPair& pair)
+      : left_(calib::view(pair.left)), right_(calib::view(pair.right)) {}
   void run() { matcher_->compute(left_, right_, disparity_); }
   double seconds() {
     const auto start = std::chrono::steady_clock::now();
@@ -95,15 +94,16 @@ void stereo_bm(benchmark::State& state, const host::StereoPair& pair) {
   for (auto _ : state) matcher.run();
 }
 
-// One iteration is as many frames as make up some ms; frame_ms is one of them. Between the iterations
-// StereoBM runs once: what slows the machine down for a while slows both down, and `ratio` is of the two.
+// An iteration simulates enough frames to last some milliseconds; frame_ms is the time of one. StereoBM runs
+// once between iterations, so that other load on the machine slows down both; `ratio` is the quotient of the
+// two times.
 void run_frames(benchmark::State& state, const Case& c, const BoardProcess::Setting& setting,
                 const host::StereoPair& pair) {
   const std::uint32_t frames = setting.fidelity == Fidelity::kTiming ? 20
                                : setting.fidelity == Fidelity::kFast ? 5
                                                                      : 1;
   BoardProcess board(setting, pair);
-  board.run_frames(1);  // its pages are in memory now
+  board.run_frames(1);  // brings its pages into memory
   const BoardProcess::Count before = board.count();
   double seconds = 0;
   StereoBm matcher(pair);
@@ -141,7 +141,7 @@ void start(benchmark::State& state, const host::StereoPair& pair) {
   for (auto _ : state) state.SetIterationTime(BoardProcess({"fpl2003", {}}, pair).count().start_seconds);
 }
 
-// A point of a sweep: a child of this process simulates a frame without pixels, and tells its statistics.
+// A point of a sweep: a child of this process simulates a frame without pixels, and sends its statistics.
 void run_point(benchmark::State& state, const std::vector<std::string>& sets, bool camera) {
   for (auto _ : state) {
     process::Child child([&](const process::Child::Tell& tell) {
@@ -167,25 +167,25 @@ void add_kernels(const host::StereoPair& pair) {
   const int width = pair.left.width;
   const int height = pair.left.height;
   const auto table = std::make_shared<kernels::RectificationTable>(kernels::identity_table(width, height));
-  for (const kernels::ImageLoops* loops : kernels::image_loops()) {
-    const std::string end = std::string("_") + loops->name;
+  for (const kernels::Simd* simd : kernels::simd_sets()) {
+    const std::string end = std::string("_") + simd->name;
     add("kernels/two_tables" + end, [=, &pair](benchmark::State& state) {
       kernels::GrayImage out(width, height);
       for (auto _ : state) {
         for (const auto* image : {&pair.left, &pair.right})
-          loops->rectify(image->pixels.data(), table->entries.data(), width * height, width,
-                         out.pixels.data());
+          simd->frame.rectify(image->pixels.data(), table->entries.data(), width * height, width,
+                              out.pixels.data());
       }
     });
     add("kernels/two_filters" + end, [=, &pair](benchmark::State& state) {
-      kernels::ImageFilter filter(width, height, kernels::log7(), *loops);
+      kernels::ImageFilter filter(width, height, kernels::log7(), *simd);
       std::vector<std::uint8_t> out(pair.left.pixels.size() + kernels::ImageFilter::kPadding);
       for (auto _ : state) {
         for (const auto* image : {&pair.left, &pair.right}) filter.run(image->pixels.data(), out.data());
       }
     });
     add("kernels/match" + end, [=, &pair](benchmark::State& state) {
-      kernels::ImageMatcher matcher(width, height, 7, 80, true, *loops);
+      kernels::ImageMatcher matcher(width, height, 7, 80, true, *simd);
       kernels::GrayImage left_based(width, height);
       kernels::GrayImage right_based(width, height);
       for (auto _ : state) {
@@ -194,7 +194,7 @@ void add_kernels(const host::StereoPair& pair) {
       }
     });
     add("kernels/pipeline" + end, [=, &pair](benchmark::State& state) {
-      kernels::StereoPipeline pipeline(width, height, {}, *loops);
+      kernels::StereoPipeline pipeline(width, height, {}, *simd);
       kernels::GrayImage out(width, height);
       for (auto _ : state) {
         pipeline.run(pair.left.pixels.data(), pair.right.pixels.data(), table->entries.data(),
@@ -229,28 +229,25 @@ void add_frames(const host::StereoPair& pair, const platform::Tables* rig_tables
   }
 }
 
-// Takes `--left-lut F --right-lut F` (calibrate writes them), of images of 640x480, off the command line.
+// The value of `option`, which leaves the command line; empty without it.
+std::string take_option(const std::string& option, int& argc, char** argv) {
+  char** const found = std::find(argv + 1, argv + argc, option);
+  if (found + 1 >= argv + argc) return {};
+  const std::string value = found[1];
+  std::copy(found + 2, argv + argc, found);
+  argc -= 2;
+  return value;
+}
+
+// The tables that `--left-lut F --right-lut F` name, of images of 640x480.
 std::optional<platform::Tables> take_tables(int& argc, char** argv) {
-  std::vector<std::string> files;
-  for (const char* option : {"--left-lut", "--right-lut"}) {
-    for (int i = 1; i + 1 < argc; ++i) {
-      if (std::string(argv[i]) != option) continue;
-      files.emplace_back(argv[i + 1]);
-      std::copy(argv + i + 2, argv + argc, argv + i);
-      argc -= 2;
-      break;
-    }
-  }
-  if (files.size() != 2) return std::nullopt;
+  const std::string left = take_option("--left-lut", argc, argv);
+  const std::string right = take_option("--right-lut", argc, argv);
+  if (left.empty() || right.empty()) return std::nullopt;
   const auto table = [](const std::string& file) {
-    kernels::RectificationTable read{640, 480, std::vector<std::uint32_t>(std::size_t{640} * 480)};
-    std::ifstream in(file, std::ios::binary);
-    in.read(reinterpret_cast<char*>(read.entries.data()),
-            static_cast<std::streamsize>(read.entries.size() * 4));
-    if (!in) throw std::runtime_error(file + ": must hold 640 x 480 entries");
-    return read;
+    return calib::parse_lut(files::read_whole_file(file), 640, 480);
   };
-  return platform::Tables{table(files[0]), table(files[1])};
+  return platform::Tables{table(left), table(right)};
 }
 
 int run(int argc, char** argv) {
@@ -260,7 +257,7 @@ int run(int argc, char** argv) {
   cv::setNumThreads(1);
   const BenchPair input = bench_pair(STEREOTLM_PICTURES);
   benchmark::AddCustomContext("pair", input.origin);
-  benchmark::AddCustomContext("vectors", kernels::image_loops().front()->name);
+  benchmark::AddCustomContext("vectors", kernels::best_simd().name);
   add_timed("start/fpl2003", [&input](benchmark::State& state) { start(state, input.pair); });
   add("opencv/stereo_bm", [&input](benchmark::State& state) { stereo_bm(state, input.pair); });
   add_kernels(input.pair);
@@ -279,7 +276,7 @@ int run(int argc, char** argv) {
 
 int sc_main(int argc, char** argv) { return stereotlm::bench::run(argc, argv); }
 
-// Takes the place of libsystemc's own main, which prints the copyright banner before sc_main can turn it off.
+// Replaces libsystemc's main, which prints the copyright banner before sc_main can turn it off.
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
   return sc_core::sc_elab_and_sim(argc, argv);

@@ -11,8 +11,8 @@ struct BenchPair {
   std::string origin;     // "aloe" or "random texture"
 };
 
-// The pair of ./demo, made from the pictures in `folder`; if the folder has no such pictures, a random
-// texture and its copy shifted by 20 columns.
+// The pair of ./demo, made from the pictures in `folder`. Without these pictures it is a random texture and a
+// copy that is shifted by 20 columns.
 BenchPair bench_pair(const std::string& folder);
 
 }  // namespace stereotlm::bench

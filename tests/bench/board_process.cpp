@@ -1,17 +1,10 @@
 #include "tests/bench/board_process.h"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
-#include <exception>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
-#include <system_error>
 #include <systemc>
 
 #include "platform/config/board_yaml.h"
@@ -34,7 +27,7 @@ class OnePair : public host::FrameSource {
   const host::StereoPair& pair_;
 };
 
-// The one board of a process.
+// A process can elaborate only one board.
 class SteppedBoard {
  public:
   SteppedBoard(const BoardProcess::Setting& setting, const host::StereoPair& pair)
@@ -52,7 +45,7 @@ class SteppedBoard {
       simulation_->advance();
   }
 
-  // The board alone; a computer is seldom between two frames.
+  // For a board without computer: a computer is seldom between two frames.
   BoardProcess::Count count() const {
     const platform::Statistics found = simulation_->statistics();
     if (!found.failed.empty()) throw std::runtime_error(found.failed.front());
@@ -72,17 +65,18 @@ class SteppedBoard {
   std::unique_ptr<runs::Simulation> simulation_;
 };
 
-// Until the parent wants no more frames.
-void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, int orders, int counts) {
-  const auto tell = [counts](const BoardProcess::Count& count) {
-    if (write(counts, &count, sizeof count) != sizeof count) throw std::runtime_error("nobody listens");
+// Sends the counts at the start and after each order, until the parent closes its end.
+void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, int orders,
+           const process::Child::Tell& tell) {
+  const auto send = [&tell](const BoardProcess::Count& count) {
+    tell({reinterpret_cast<const char*>(&count), sizeof count});
   };
   const auto start = std::chrono::steady_clock::now();
   SteppedBoard board(setting, pair);
   BoardProcess::Count ready;
   ready.start_seconds = seconds_since(start);
-  tell(ready);
-  for (std::uint32_t frames = 0; read(orders, &frames, sizeof frames) == sizeof frames;) {
+  send(ready);
+  for (std::uint32_t frames = 0; process::read_all(orders, &frames, sizeof frames);) {
     const auto begin = std::chrono::steady_clock::now();
     board.run_frames(frames);
     const double seconds = seconds_since(begin);
@@ -90,59 +84,30 @@ void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, i
     if (!setting.camera) count = board.count();
     count.frames = board.frames();
     count.seconds = seconds;
-    tell(count);
+    send(count);
   }
-}
-
-std::array<int, 2> make_pipe() {
-  std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
-  return ends;
 }
 
 }  // namespace
 
-BoardProcess::BoardProcess(const Setting& setting, const host::StereoPair& pair) {
-  const std::array<int, 2> orders = make_pipe();
-  const std::array<int, 2> counts = make_pipe();
-  child_ = fork();
-  if (child_ < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  if (child_ == 0) {
-    close(orders[1]);
-    close(counts[0]);
-    try {
-      serve(setting, pair, orders[0], counts[1]);
-    } catch (const std::exception& exception) {
-      std::fprintf(stderr, "%s: %s\n", setting.board.c_str(), exception.what());
-      _exit(1);
-    }
-    _exit(0);
-  }
-  close(orders[0]);
-  close(counts[1]);
-  orders_ = orders[1];
-  counts_ = counts[0];
-  read_count();
-}
-
-BoardProcess::~BoardProcess() {
-  close(orders_);
-  close(counts_);
-  waitpid(child_, nullptr, 0);
+BoardProcess::BoardProcess(const Setting& setting, const host::StereoPair& pair)
+    : child_([&](const process::Child::Tell& tell) {
+        orders_.close_write_end();
+        serve(setting, pair, orders_.read_end(), tell);
+      }) {
+  orders_.close_read_end();
+  receive_count();
 }
 
 void BoardProcess::run_frames(std::uint32_t frames) {
-  if (write(orders_, &frames, sizeof frames) != sizeof frames)
-    throw std::runtime_error("the board's process has ended");
-  read_count();
+  process::write_all(orders_.write_end(), &frames, sizeof frames);
+  receive_count();
 }
 
-void BoardProcess::read_count() {
-  Count count;
-  if (read(counts_, &count, sizeof count) != sizeof count) {
-    throw std::runtime_error("the board's process has ended");
-  }
-  count_ = count;
+void BoardProcess::receive_count() {
+  const auto message = child_.next();
+  if (!message) throw std::runtime_error("the board's process has ended");
+  message->copy(reinterpret_cast<char*>(&count_), sizeof count_);
 }
 
 }  // namespace stereotlm::bench

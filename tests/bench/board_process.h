@@ -1,19 +1,20 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "models/fpga/stereo_core.h"
 #include "models/host/frame_source.h"
 #include "platform/config/tables.h"
+#include "sw/process/child.h"
+#include "sw/process/child_process.h"
 
 namespace stereotlm::bench {
 
-// A run of a board in a child process, because SystemC elaborates once per process. It works when it is told
-// to, and sleeps in between. Every failure of the child, an identity of contract section 6 that does not hold
-// included, is a std::runtime_error here.
+// Runs a board in a child process, because SystemC elaborates once per process. The child simulates on order
+// and sleeps in between. A failure of the child is a std::runtime_error here; a broken identity of contract
+// section 6 is one too.
 class BoardProcess {
  public:
   struct Setting {
@@ -25,29 +26,26 @@ class BoardProcess {
   };
   struct Count {
     double start_seconds = 0;  // board file, modules, elaboration, tables into their banks
-    double seconds = 0;        // of the last run_frames()
-    std::uint64_t frames = 0;  // and the rest: of all frames so far
-    std::uint64_t cycles = 0;  // sum of frame_cycles
+    double seconds = 0;        // duration of the last run_frames()
+    // Sums over all frames so far.
+    std::uint64_t frames = 0;
+    std::uint64_t cycles = 0;  // FPGA cycles
     std::uint64_t accesses = 0;
     std::uint64_t stalls = 0;  // stall cycles of all ports
   };
 
-  // `pair` is for every frame. Returns when the board can begin. To be made in sc_main.
+  // Every frame shows `pair`. Returns when the board is ready. Must be constructed in sc_main.
   BoardProcess(const Setting& setting, const host::StereoPair& pair);
-  ~BoardProcess();
-  BoardProcess(const BoardProcess&) = delete;
-  BoardProcess& operator=(const BoardProcess&) = delete;
 
   const Count& count() const { return count_; }
-  // Simulates until at least so many more frames are done.
+  // Simulates until at least `frames` more frames are done.
   void run_frames(std::uint32_t frames);
 
  private:
-  void read_count();
+  void receive_count();
 
-  pid_t child_ = -1;
-  int orders_ = -1;  // to the child: a number of frames
-  int counts_ = -1;  // from the child
+  process::Pipe orders_;  // to the child: numbers of frames
+  process::Child child_;
   Count count_;
 };
 

@@ -1,5 +1,5 @@
-// stereotlm-grid-check: how right a board's disparities are at the corners of the grid that its rig was
-// calibrated with, and the distances that follow from them.
+// stereotlm-grid-check measures how right a board's disparities are at the corners of the grid with which its
+// rig was calibrated, and how right the distances that follow from them are.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 #include "calib/calibration_reader.h"
 #include "calib/grid.h"
-#include "calib/grid_assessment.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
 #include "sw/runs/result_folder.h"
+#include "tests/support/grid_assessment.h"
 
 namespace stereotlm::bench {
 namespace {
@@ -32,13 +32,13 @@ calib::Corners corners_in(const std::string& picture, const calib::GridShape& sh
   return *found.corners;
 }
 
-Json lengths(const calib::Deviations& deviations) {
+Json lengths(const test::Deviations& deviations) {
   return {{"count", deviations.percent.size()},
           {"mean_percent", deviations.mean()},
           {"mean_absolute_percent", deviations.mean_absolute()}};
 }
 
-Json to_json(const std::string& name, const calib::GridAssessment& found) {
+Json to_json(const std::string& name, const test::GridAssessment& found) {
   return {{"pair", name},
           {"corners", found.corners},
           {"right", found.right},
@@ -52,13 +52,13 @@ Json to_json(const std::string& name, const calib::GridAssessment& found) {
           {"plane_floor_percent", found.plane_floor_percent}};
 }
 
-void add(calib::Deviations& all, const calib::Deviations& more) {
+void add(test::Deviations& all, const test::Deviations& more) {
   all.percent.insert(all.percent.end(), more.percent.begin(), more.percent.end());
 }
 
 void run(const std::string& rig, const std::filesystem::path& result) {
   const calib::Calibration calibration = calib::parse_calibration(files::read_whole_file(rig));
-  calib::GridAssessment all;
+  test::GridAssessment all;
   Json pairs = Json::array();
   for (std::size_t i = 0; i < calibration.sources.size(); ++i) {
     const calib::Source& source = calibration.sources[i];
@@ -66,7 +66,7 @@ void run(const std::string& rig, const std::filesystem::path& result) {
                                corners_in(source.right, calibration.grid)};
     corners.right = calib::ordered_like(corners.left, calibration.grid, corners.right);
     const auto disparity = media::load_gray((result / runs::frame_file_name(i)).string()).image;
-    const calib::GridAssessment found = calib::assess(calibration, corners, disparity);
+    const test::GridAssessment found = test::assess(calibration, corners, disparity);
     pairs.push_back(to_json(std::filesystem::path(source.left).filename(), found));
     all.corners += found.corners;
     all.right += found.right;

@@ -1,6 +1,5 @@
-// stereotlm-sequence-stereobm DIR: what a user of OpenCV does with a sequence of pairs, to be timed beside
-// `stereotlm run --sequence DIR`: reads left_*.png and right_*.png as grey pictures, and matches each pair.
-// One thread.
+// stereotlm-sequence-stereobm DIR matches a sequence of pairs as a user of OpenCV does, to be timed beside
+// `stereotlm run --sequence DIR`: it reads left_*.png and right_*.png as grey pictures, in one thread.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -1,5 +1,5 @@
-// stereotlm-stereobm: OpenCV's StereoBM on a pair with ground truth, measured as `stereotlm run --truth`
-// measures.
+// stereotlm-stereobm runs OpenCV's StereoBM on a pair with ground truth, and measures it as `stereotlm run
+// --truth` does.
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "calib/opencv_types.h"
 #include "sw/media/load.h"
 #include "sw/report/accuracy.h"
 
@@ -43,12 +44,7 @@ int parse_integer(const char* name, std::string_view text) {
   return value;
 }
 
-cv::Mat view(const GrayImage& image) {
-  // OpenCV has no read-only view; an input array is not written to.
-  return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data())};
-}
-
-// StereoBM gives sixteenths, and one whole below its smallest candidate where it has no answer.
+// StereoBM returns sixteenths of a pixel, and -1 pixel where it has no disparity.
 GrayImage whole_disparities(const cv::Mat& sixteenths) {
   GrayImage disparity(sixteenths.cols, sixteenths.rows, 255);
   for (int row = 0; row < disparity.height; ++row) {
@@ -70,7 +66,7 @@ GrayImage match(const GrayImage& left, const GrayImage& right, int disparities, 
     matcher->setTextureThreshold(0);
   }
   cv::Mat sixteenths;
-  matcher->compute(view(left), view(right), sixteenths);
+  matcher->compute(calib::view(left), calib::view(right), sixteenths);
   return whole_disparities(sixteenths);
 }
 

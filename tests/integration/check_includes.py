@@ -30,7 +30,7 @@ ROOMS = {
     "sw/report": ["sw/files", "sw/media"],
     "sw/explore/store": ["sw/files"],
     "sw/explore/plan": ["sw/explore/store", "sw/files"],
-    "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/process"],
+    "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/files", "sw/process"],
     "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep"],
     "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
     "sw/paper": ["sw/explore", "sw/files"],

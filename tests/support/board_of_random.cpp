@@ -1,6 +1,7 @@
 #include "tests/support/board_of_random.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -8,34 +9,24 @@ namespace stereotlm::test {
 namespace {
 
 memory::Port port_of(PlainPort port) {
-  switch (port) {
-    case PlainPort::kLeftLut:
-      return memory::Port::kLeftLut;
-    case PlainPort::kRightLut:
-      return memory::Port::kRightLut;
-    case PlainPort::kLeftPixel:
-      return memory::Port::kLeftPixel;
-    case PlainPort::kRightPixel:
-      return memory::Port::kRightPixel;
-    case PlainPort::kResult:
-      return memory::Port::kResult;
-    case PlainPort::kHost:
-      break;
-  }
-  return memory::Port::kHost;
+  using memory::Port;
+  static constexpr std::array<Port, kPlainPortCount> kPorts = {
+      Port::kLeftLut, Port::kRightLut, Port::kLeftPixel, Port::kRightPixel, Port::kResult, Port::kHost};
+  return kPorts[static_cast<std::size_t>(port)];
 }
 
 memory::BankKind kind_of(PlainBankKind kind) {
-  switch (kind) {
-    case PlainBankKind::kZbtPipelined:
-      return memory::BankKind::kZbtPipelined;
-    case PlainBankKind::kZbtFlowThrough:
-      return memory::BankKind::kZbtFlowThrough;
-    case PlainBankKind::kSyncBurst:
-      break;
-  }
-  return memory::BankKind::kSyncBurst;
+  using memory::BankKind;
+  static constexpr std::array<BankKind, 3> kKinds = {BankKind::kZbtPipelined, BankKind::kZbtFlowThrough,
+                                                     BankKind::kSyncBurst};
+  return kKinds[static_cast<std::size_t>(kind)];
 }
+
+double value_of(const PlainNumber& number) {
+  return static_cast<double>(number.numerator) / static_cast<double>(number.denominator);
+}
+
+double us_of(PlainTime ps) { return static_cast<double>(ps) / 1e6; }
 
 std::string bank_name(int bank) { return "bank" + std::to_string(bank); }
 
@@ -135,8 +126,6 @@ platform::BoardConfig board_config(const RandomBoard& board) {
   return config;
 }
 
-platform::Tables board_tables(const RandomBoard& board) { return board_tables(cycle_input(board)); }
-
 host::StereoPair stereo_pair(const RandomBoard& board, int frame) {
   return stereo_pair(board, board.pictures_of_frame(frame));
 }
@@ -146,28 +135,28 @@ host::StereoPair stereo_pair(const RandomBoard& board, const PicturePair& pictur
 }
 
 platform::BoardConfig board_config(const RandomComputer& computer) {
+  const PlainComputerInput& input = computer.input;
   platform::BoardConfig board = board_config(computer.board);
-  board.cameras.frame_rate_hz = std::stod(computer.frame_rate_hz);
+  board.cameras.frame_rate_hz = value_of(input.frame_rate_hz);
   board.cameras.trigger =
-      computer.on_demand ? platform::CameraTrigger::kOnDemand : platform::CameraTrigger::kFreeRunning;
-  board.capture.destination = computer.capture_to_host ? platform::CaptureDestination::kHostMemory
-                                                       : platform::CaptureDestination::kBoard;
-  board.capture.host_frames = computer.host_frames;
-  board.capture.fifo_words = computer.fifo_words;
-  board.capture.fifo_trigger_words = computer.fifo_trigger_words;
-  board.pci.clock_mhz = std::stod(computer.pci_clock_mhz);
-  board.pci.latency_timer_clocks = computer.latency_timer_clocks;
-  board.pci.bridge_wait_clocks = computer.bridge_wait_clocks;
-  board.pci.memory_wait_clocks = computer.memory_wait_clocks;
-  if (computer.load) {
-    board.pci.load =
-        platform::PciLoadConfig{computer.load->burst_words, std::stod(computer.load->interval_us),
-                                std::stod(computer.load->first_us), std::stod(computer.load->access_us)};
+      input.on_demand ? platform::CameraTrigger::kOnDemand : platform::CameraTrigger::kFreeRunning;
+  board.capture.destination = input.capture_to_host ? platform::CaptureDestination::kHostMemory
+                                                    : platform::CaptureDestination::kBoard;
+  board.capture.host_frames = input.host_frames;
+  board.capture.fifo_words = input.fifo_words;
+  board.capture.fifo_trigger_words = input.fifo_trigger_words;
+  board.pci.clock_mhz = value_of(input.pci_clock_mhz);
+  board.pci.latency_timer_clocks = input.latency_timer_clocks;
+  board.pci.bridge_wait_clocks = input.bridge_wait_clocks;
+  board.pci.memory_wait_clocks = input.memory_wait_clocks;
+  if (input.load) {
+    board.pci.load = platform::PciLoadConfig{input.load->burst_words, us_of(input.load->interval_ps),
+                                             us_of(input.load->first_ps), us_of(input.load->access_ps)};
   }
-  board.bridge.local_clock_mhz = std::stod(computer.local_clock_mhz);
-  board.bridge.dma_burst_words = computer.dma_burst_words;
-  board.bridge.posted_words = computer.posted_words;
-  board.fpga.clock_mhz = std::stod(computer.fpga_clock_mhz);
+  board.bridge.local_clock_mhz = value_of(input.local_clock_mhz);
+  board.bridge.dma_burst_words = input.dma_burst_words;
+  board.bridge.posted_words = input.posted_words;
+  board.fpga.clock_mhz = value_of(input.board.clock_mhz);
   return board;
 }
 

@@ -4,16 +4,15 @@
 
 namespace stereotlm::test {
 
-// In a test that runs inside sc_main (stereotlm_add_test with SYSTEMC) every SystemC warning, error or fatal
-// report fails the running test, unless it was announced:
+// Announces a SystemC report. In a test that runs inside sc_main (stereotlm_add_test with SYSTEMC) every
+// warning, error or fatal report that is not announced fails the running test:
 //
 //   ExpectedReport expected("/stereotlm/fpga/sequencer");
 //   EXPECT_THROW(sequencer.start(), sc_core::sc_report);
 //
-// An announcement stands for `count` reports with this message type, of any of the three severities; further
-// ones fail the test, and so does one that has not come when the announcement goes out of scope. An announced
-// report keeps the effect it has in SystemC: an error is thrown, a fatal one aborts. Info reports are
-// ignored.
+// An announcement covers `count` reports of this message type, of any of the three severities. The test fails
+// if more reports come, or if fewer have come when the announcement goes out of scope. An announced report
+// keeps its effect: SystemC throws an error and aborts at a fatal one. Info reports are ignored.
 class ExpectedReport {
  public:
   explicit ExpectedReport(std::string message_type, int count = 1);
@@ -21,10 +20,10 @@ class ExpectedReport {
   ExpectedReport(const ExpectedReport&) = delete;
   ExpectedReport& operator=(const ExpectedReport&) = delete;
 
-  // The text of the last report that came; empty before the first.
+  // The text of the last report; empty before the first.
   const std::string& text() const { return text_; }
 
-  // Called by the report handler: true if this announcement stands for the report.
+  // For the report handler: true if this announcement covers the report.
   bool takes(const std::string& message_type, const std::string& text);
 
  private:

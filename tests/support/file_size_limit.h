@@ -7,7 +7,7 @@
 
 namespace stereotlm::test {
 
-// No file can grow beyond `bytes` until the end of the object: write() stores a part, then fails with EFBIG.
+// While the object lives, no file can grow beyond `bytes`: write() stores what fits, then fails with EFBIG.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -28,8 +28,7 @@ constexpr int kThrew = 2;
 constexpr int kTimedOut = 124;
 constexpr int kSignalled = 128;
 
-// Sent after the text by a child whose work came to its end, so that one which left early is not taken for a
-// success.
+// A child sends it behind the text when its work has returned. A child that exits early does not.
 constexpr char kEnd = '\0';
 
 [[noreturn]] void throw_errno(const char* what) {
@@ -42,7 +41,7 @@ void write_all(int fd, const std::string& text) {
     if (count > 0) {
       done += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
-      return;  // the parent misses the end mark and says so
+      return;  // the parent reports the missing end mark
     }
   }
 }
@@ -52,7 +51,7 @@ void write_all(int fd, const std::string& text) {
   std::string text;
   int status = 0;
   {
-    // The parent's test cannot see an expectation that fails here, so it travels with the text.
+    // GoogleTest in the parent does not see failures of the child: they are sent with the text.
     testing::TestPartResultArray parts;
     const testing::ScopedFakeTestPartResultReporter reporter(
         testing::ScopedFakeTestPartResultReporter::INTERCEPT_ALL_THREADS, &parts);
@@ -92,7 +91,7 @@ struct Child {
 Child start(std::size_t job, const ChildWork& work, std::chrono::milliseconds timeout) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe2");
-  std::fflush(nullptr);  // or both processes would write what is in the buffers
+  std::fflush(nullptr);  // otherwise both processes write the contents of the buffers
   const pid_t pid = fork();
   if (pid < 0) {
     const int error = errno;
@@ -109,7 +108,7 @@ Child start(std::size_t job, const ChildWork& work, std::chrono::milliseconds ti
   return {job, pid, ends[0], Clock::now() + timeout, {}};
 }
 
-// False at the end of the child's text.
+// Returns false at the end of the child's text.
 bool read_some(Child& child) {
   std::array<char, 4096> buffer{};
   const ssize_t count = read(child.fd, buffer.data(), buffer.size());
@@ -149,7 +148,7 @@ ChildResult give_up(Child& child, std::chrono::milliseconds timeout) {
   return {kTimedOut, "still running after " + std::to_string(timeout.count()) + " ms"};
 }
 
-// Until a child has something to say or the first deadline passes.
+// Waits until a child has written something or the first deadline passes.
 std::vector<pollfd> wait_for_any(const std::vector<Child>& children) {
   std::vector<pollfd> fds;
   auto deadline = Clock::time_point::max();

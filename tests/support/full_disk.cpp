@@ -1,6 +1,5 @@
-// Loaded before the libraries of a program (LD_PRELOAD), makes the folder FULL_DISK_FOLDER look like a disk
-// of FULL_DISK_BYTES: a write that makes its files larger than that in all fails with ENOSPC, as on a real
-// one.
+// A library for LD_PRELOAD that turns the folder FULL_DISK_FOLDER into a disk of FULL_DISK_BYTES: a write
+// that would need more than that for all files together fails with ENOSPC.
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -17,7 +16,7 @@
 
 namespace {
 
-// Of all files in the folder, which has no folders in it.
+// The size of all files in a folder without subfolders.
 off_t bytes_in(const std::string& folder) {
   off_t bytes = 0;
   DIR* const entries = opendir(folder.c_str());
@@ -31,7 +30,7 @@ off_t bytes_in(const std::string& folder) {
   return bytes;
 }
 
-// Whether the file may be as long as that.
+// Whether the file may grow to this length; sets errno if not.
 bool has_room(int file, off_t length) {
   const char* const folder = std::getenv("FULL_DISK_FOLDER");
   const char* const most = std::getenv("FULL_DISK_BYTES");

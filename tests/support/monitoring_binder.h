@@ -9,17 +9,17 @@
 
 namespace stereotlm::test {
 
-// Puts a ProtocolMonitor, named "<link>_monitor", into every link, and owns the monitors: it must outlive the
-// simulation, and the violations fail the test when it is destroyed.
+// Puts a ProtocolMonitor, named "<link>_monitor", into every link. It owns the monitors and must outlive the
+// simulation. Its destructor fails the test if there are violations.
 class MonitoringBinder : public Binder {
  public:
   explicit MonitoringBinder(const ProtocolOptions& options = {}) : options_(options) {}
 
   void bind(InitiatorSocket& from, TargetSocket& to, const std::string& link) override;
 
-  // In the order in which the links were bound.
+  // In the order of bind().
   const std::vector<std::unique_ptr<ProtocolMonitor>>& monitors() const { return monitors_; }
-  // The monitor of one link; std::out_of_range if no link has that name.
+  // Throws std::out_of_range if no link has that name.
   ProtocolMonitor& monitor(const std::string& link) const;
   std::vector<std::string> violations() const;
   std::vector<std::string> take_violations();

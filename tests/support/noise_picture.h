@@ -6,8 +6,7 @@
 
 namespace stereotlm::test {
 
-// Noise, another one for each `number`; with another `shift` the same one, moved to the left by so many
-// columns.
+// A picture of noise. `number` selects the noise, `shift` moves it to the left by so many columns.
 inline kernels::GrayImage noise_picture(int width, int height, std::uint64_t number, int shift = 0) {
   kernels::GrayImage picture(width, height);
   for (int row = 0; row < height; ++row) {

@@ -18,7 +18,7 @@ bool transfers_data(const tlm::tlm_generic_payload& payload) {
   return payload.get_command() != tlm::TLM_IGNORE_COMMAND;
 }
 
-// The enumerations are open to any value that fits; only these are legal.
+// A payload can hold values that are not enumerators.
 bool is_command(tlm::tlm_command command) {
   return command == tlm::TLM_READ_COMMAND || command == tlm::TLM_WRITE_COMMAND ||
          command == tlm::TLM_IGNORE_COMMAND;

@@ -16,12 +16,15 @@ void append(Problems& problems, Problems more) {
   for (auto& problem : more) problems.push_back(std::move(problem));
 }
 
-bool is_sync_value(tlm::tlm_sync_enum status) {
-  return status == tlm::TLM_ACCEPTED || status == tlm::TLM_UPDATED || status == tlm::TLM_COMPLETED;
-}
-
-// TLM_ACCEPTED says that nothing was touched.
-void check_accepted(const PhaseTracker::Call& call, const PhaseTracker::Call& answer, Problems& problems) {
+// Rules for every return of `function`. False if the value is none.
+bool check_return(const char* function, tlm::tlm_sync_enum status, const PhaseTracker::Call& call,
+                  const PhaseTracker::Call& answer, Problems& problems) {
+  if (status != tlm::TLM_ACCEPTED && status != tlm::TLM_UPDATED && status != tlm::TLM_COMPLETED) {
+    problems.push_back(std::string(function) + " returned " + std::to_string(status) +
+                       ": must be a tlm_sync_enum (11.1.2.7)");
+    return false;
+  }
+  if (status != tlm::TLM_ACCEPTED) return true;
   if (answer.phase != call.phase) {
     problems.push_back("TLM_ACCEPTED with phase " + text_of(answer.phase) + ": must leave the phase, " +
                        text_of(call.phase) + " (11.1.2.7)");
@@ -29,6 +32,7 @@ void check_accepted(const PhaseTracker::Call& call, const PhaseTracker::Call& an
   if (answer.time != call.time) {
     problems.emplace_back("TLM_ACCEPTED with another delay: must leave the delay (11.1.2.7)");
   }
+  return true;
 }
 
 }  // namespace
@@ -58,12 +62,7 @@ Problems PhaseTracker::forward_call(const Payload& payload, const Call& call) {
 Problems PhaseTracker::forward_return(const Payload& payload, const Call& call, const Call& answer,
                                       tlm::tlm_sync_enum status) {
   Problems problems;
-  if (!is_sync_value(status)) {
-    problems.push_back("nb_transport_fw returned " + std::to_string(status) +
-                       ": must be a tlm_sync_enum (11.1.2.7)");
-    return problems;
-  }
-  if (status == tlm::TLM_ACCEPTED) check_accepted(call, answer, problems);
+  if (!check_return("nb_transport_fw", status, call, answer, problems)) return problems;
   if (call.phase == tlm::END_RESP) {
     if (status == tlm::TLM_UPDATED)
       problems.emplace_back("TLM_UPDATED for END_RESP: nothing may follow it (15.2.4)");
@@ -71,7 +70,7 @@ Problems PhaseTracker::forward_return(const Payload& payload, const Call& call, 
   }
   Transaction* transaction = find(payload);
   if (transaction == nullptr) {
-    // Ended by nb_transport_bw calls made inside this one, or its phase was refused above.
+    // Calls of nb_transport_bw within this one have ended it, or its phase was refused above.
     if (call.phase == tlm::BEGIN_REQ && status != tlm::TLM_ACCEPTED) {
       problems.emplace_back("a phase returned for a transaction that was complete (15.2.4)");
     }
@@ -107,12 +106,7 @@ Problems PhaseTracker::backward_call(const Payload& payload, const Call& call) {
 Problems PhaseTracker::backward_return(const Payload& payload, const Call& call, const Call& answer,
                                        tlm::tlm_sync_enum status) {
   Problems problems;
-  if (!is_sync_value(status)) {
-    problems.push_back("nb_transport_bw returned " + std::to_string(status) +
-                       ": must be a tlm_sync_enum (11.1.2.7)");
-    return problems;
-  }
-  if (status == tlm::TLM_ACCEPTED) check_accepted(call, answer, problems);
+  if (!check_return("nb_transport_bw", status, call, answer, problems)) return problems;
   if (call.phase == tlm::END_REQ) {
     if (status != tlm::TLM_ACCEPTED)
       problems.emplace_back("END_REQ: only TLM_ACCEPTED may be returned (15.2.4)");
@@ -151,7 +145,7 @@ void PhaseTracker::begin_request(const Payload& payload, const sc_core::sc_time&
   request_ = &payload;
 }
 
-// END_REQ and BEGIN_RESP, called or returned.
+// END_REQ or BEGIN_RESP, as a call or as a return.
 void PhaseTracker::answer_phase(const Payload& payload, Transaction& transaction, const tlm::tlm_phase& phase,
                                 Problems& problems) {
   if (phase == tlm::END_REQ) {

@@ -9,18 +9,18 @@
 
 namespace stereotlm::test {
 
-// The four-phase handshake of the base protocol on one link (IEEE 1666-2011, 15.2): which phase may follow
-// which in which direction, what a call may return, the two exclusion rules, and time that does not run
-// backwards. After a broken rule it follows what was said last, so that one mistake is told once.
+// Checks the four-phase handshake of the base protocol on one link (IEEE 1666-2011, 15.2): the order and
+// direction of phases, return values, the two exclusion rules, and times that must not decrease. After a
+// broken rule it continues from the last call, so that one mistake is reported once.
 class PhaseTracker {
  public:
   explicit PhaseTracker(const ProtocolOptions& options) : options_(options) {}
 
-  // `time` is sc_time_stamp() plus the annotated delay. A return is told with the phase and time of its call.
   struct Call {
     tlm::tlm_phase phase;
-    sc_core::sc_time time;
+    sc_core::sc_time time;  // sc_time_stamp() plus the annotated delay
   };
+  // `answer`: phase and time as the callee returns them.
   Problems forward_call(const tlm::tlm_generic_payload& payload, const Call& call);
   Problems forward_return(const tlm::tlm_generic_payload& payload, const Call& call, const Call& answer,
                           tlm::tlm_sync_enum status);

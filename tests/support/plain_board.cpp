@@ -75,7 +75,7 @@ void PlainBoard::await_cycle() {
 }
 
 void PlainBoard::run_cycle(std::uint64_t cycle) {
-  if (cycle < next_cycle_) return;  // it has been run for somebody else
+  if (cycle < next_cycle_) return;  // another event has run it
   std::optional<PlainHostRequest> request;
   if (host_ && host_->from_ps <= events_.now()) request = PlainHostRequest{host_->bank, host_->write};
   const bool ran = core_.runs();
@@ -101,8 +101,7 @@ void PlainBoard::grant_host(std::uint64_t cycle) {
   host.granted(clock_.edge(cycle), clock_.edge(cycle + latency));
 }
 
-// The disparities of the frame that begins. The program touches none of its buffers before its end, so that
-// they may be there from its beginning on.
+// Computes the disparities as the frame begins: the program accesses none of its buffers before its end.
 void PlainBoard::compute(int frame) {
   const PlainCycleInput& core = input_.core;
   const auto input_entry = static_cast<std::size_t>(frame) % core.left_image.size();

@@ -12,17 +12,17 @@
 #include "tests/support/plain_events.h"
 #include "tests/support/reference_arithmetic.h"
 
-// The FPGA and its banks, with their words, behind the local bus: contract sections 1 to 3.
+// The FPGA and its banks with their words, as the local bus reaches them: contract sections 1 to 3.
 namespace stereotlm::test {
 
 struct PlainBoardInput {
-  PlainCycleInput core;  // a table of std::nullopt on a side that has one: the identity
+  PlainCycleInput core;  // on a side with a bank for its table, entries of nullopt are the identity
   PlainNumber clock_mhz;
   std::optional<ReferenceKernel> filter;
   std::optional<int> lr_tolerance;
 };
 
-// First words of the buffers, in their banks.
+// The first word of each buffer in its bank.
 struct PlainPlaces {
   std::vector<std::uint64_t> left_image;  // in the order of the list
   std::vector<std::uint64_t> right_image;
@@ -32,18 +32,18 @@ struct PlainPlaces {
 };
 PlainPlaces plain_places(const PlainCycleInput& input);
 
-// The entries of a table, as the banks hold them; empty for a side without table.
+// The entries of a table; none for a side without table.
 std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
                                        const std::optional<std::vector<std::uint32_t>>& entries);
 
 class PlainBoard {
  public:
-  // `input` is valid and outlives the board. `frame_ends` is called at the end of each frame.
+  // `input` must outlive the board. Calls `frame_ends` at the end of each frame.
   PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::function<void()> frame_ends);
 
-  // A word of a bank asks for it from the first cycle that begins at or after `from_ps`. `granted(begin,
-  // usable)`: when the cycle of the grant begins, and when the word is usable, if it is read (into `word`).
-  // One word at a time.
+  // The host requests a word of a bank from the first cycle that begins at or after `from_ps`, one word at a
+  // time. Calls `granted` with the begin of the cycle of the grant and, for a read, the time from which
+  // `word` is usable.
   void host_asks(int bank, std::uint64_t place, bool write, std::uint32_t& word, PlainTime from_ps,
                  std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
   // The local-bus clock that carries the start strobe ends now.
@@ -80,7 +80,7 @@ class PlainBoard {
   PlainCore core_;
   std::optional<HostWord> host_;
   std::uint64_t next_cycle_ = 0;
-  std::uint64_t first_cycle_ = 0;  // of the frame that runs
+  std::uint64_t first_cycle_ = 0;  // of the running frame
   std::vector<std::uint64_t> frame_cycles_;
 };
 

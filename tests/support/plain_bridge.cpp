@@ -40,7 +40,7 @@ void PlainBridge::Slave::write(std::uint64_t word, const PlainWords& words) {
   bridge_.ask();
 }
 
-// Of the core's registers.
+// A read of the core's registers.
 void PlainBridge::Slave::read(std::uint64_t word, std::size_t count, PlainTime end_ps,
                               std::function<void(PlainWords)> answer) {
   bridge_.events_.at(end_ps, PlainPhase::kEffects, [this, word, count, answer] {
@@ -80,7 +80,7 @@ void PlainBridge::ask() {
   });
 }
 
-// Posted writes, then reads, then the channels in turn. False if nobody asks.
+// Begins a burst: posted writes before reads before the channels in turn. False if nothing is pending.
 bool PlainBridge::serve() {
   if (!posted_.empty()) {
     LocalBurst burst{true, posted_.front().word, {}, [](const PlainWords&) {}};
@@ -175,7 +175,7 @@ void PlainBridge::fetch(std::size_t channel) {
   start_on_pci(channel, false, 0, PlainWords(4));
 }
 
-// When what was on both buses has ended.
+// Continues once the transfers of the channel on both buses have ended.
 void PlainBridge::proceed(std::size_t number) {
   Channel& channel = channels_[number];
   if (channel.on_pci || channel.on_local) return;

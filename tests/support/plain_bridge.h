@@ -16,14 +16,14 @@
 // The PCI bridge and its local bus of contract section 3, one word at a time.
 namespace stereotlm::test {
 
-// On the local bus, in words.
+// Addresses on the local bus, in words.
 inline constexpr std::uint64_t kPlainBankWords = std::uint64_t{1} << 26U;
 inline constexpr std::uint64_t kPlainCoreRegisters = 64 * kPlainBankWords;
 constexpr std::uint64_t plain_board_word(int bank, std::uint64_t place) {
   return static_cast<std::uint64_t>(bank) * kPlainBankWords + place;
 }
 
-// Of the core, as words behind kPlainCoreRegisters.
+// The core's registers, in words from kPlainCoreRegisters.
 enum class PlainCoreRegister : std::uint64_t {
   kControl = 0,
   kStatus = 1,
@@ -35,28 +35,26 @@ enum class PlainCoreRegister : std::uint64_t {
 };
 inline constexpr std::uint32_t kPlainStart = 1;
 
-// In the bridge's slave window, in words.
+// Addresses in the bridge's slave window, in words.
 inline constexpr std::uint64_t kPlainApertureWords = std::uint64_t{1} << 20U;
 inline constexpr std::uint64_t kPlainCoreWindow = 4 * kPlainApertureWords;
 
-// Of the bridge, as words of its register window.
+// The bridge's registers, in words of its register window.
 enum class PlainBridgeRegister : std::uint64_t {
   kPage0 = 0,
   kPage1 = 1,
   kInterruptStatus = 4,
   kInterruptEnable = 5,
-  kDescriptor0 = 8,  // channel 1: 4 words on
+  kDescriptor0 = 8,  // that of channel 1 is kPlainChannelWords further
   kControl0 = 9,
 };
 inline constexpr std::uint64_t kPlainChannelWords = 4;
 inline constexpr std::uint32_t kPlainDoorbell = 1;
 inline constexpr std::uint32_t kPlainDmaDone = 2;  // channel 1: the bit above
 
-// Descriptors: word of host memory, word of the board, direction and number of words, word of host memory of
-// the next descriptor (0: none).
 struct PlainDescriptor {
-  std::uint64_t host = 0;
-  std::uint64_t board = 0;
+  std::uint64_t host = 0;   // word of host memory
+  std::uint64_t board = 0;  // word of the local bus
   bool to_host = false;
   std::uint64_t words = 0;
 };
@@ -70,13 +68,12 @@ struct PlainBridgeConfig {
 
 class PlainBridge : private PlainMaster {
  public:
-  // Chains are given to start_dma() as they are; the channel fetches each descriptor all the same.
   PlainBridge(PlainEvents& events, PlainPciBus& bus, PlainBoard& board, PlainTarget& host_memory,
               const PlainBridgeConfig& config);
 
   PlainTarget& slave() { return slave_; }
   PlainTarget& registers() { return registers_; }
-  // The chain that a channel finds at its descriptor address.
+  // The chain of a channel from its next start on. The channel fetches each descriptor over PCI all the same.
   void set_chain(std::size_t channel, std::vector<PlainDescriptor> chain) {
     channels_[channel].chain = std::move(chain);
   }
@@ -130,10 +127,10 @@ class PlainBridge : private PlainMaster {
     bool busy = false;
     std::size_t descriptor = 0;  // of the chain
     bool fetching = false;
-    std::uint64_t moved = 0;  // words of the descriptor that have been read and written, or are being written
+    std::uint64_t moved = 0;  // words of the descriptor whose write has begun
     bool on_pci = false;
     bool on_local = false;
-    PlainWords words;  // read, and not yet on their way
+    PlainWords words;  // read, and their write has not begun
     std::optional<LocalBurst> asks;
   };
 
@@ -170,7 +167,7 @@ class PlainBridge : private PlainMaster {
   std::uint32_t status_ = 0;
   std::uint32_t enable_ = 0;
 
-  std::deque<PostedWord> posted_;  // waiting
+  std::deque<PostedWord> posted_;  // not yet on the local bus
   std::size_t posted_on_local_ = 0;
   std::optional<LocalBurst> read_;  // of the slave window
   std::array<Channel, 2> channels_;

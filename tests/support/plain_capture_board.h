@@ -19,7 +19,7 @@ struct PlainCaptureConfig {
   int fifo_trigger_words = 0;
 };
 
-// Where a picture goes.
+// The destination of a picture.
 struct PlainPicturePlace {
   PlainTarget* target = nullptr;
   int wait_clocks = 0;
@@ -41,24 +41,23 @@ class PlainCaptureBoard : private PlainMaster {
   PlainCaptureBoard(PlainEvents& events, PlainBus& bus, const PlainCaptureConfig& config)
       : events_(events), bus_(bus), config_(config), master_(bus.add(*this)) {}
 
-  // For the program.
   void arm(const PlainPicturePlace& place);
   bool done() const { return done_; }
   void clear_done() { done_ = false; }
   std::uint64_t frame_number() const { return done_frame_; }
   PlainTime done_ps() const { return done_ps_; }
 
-  // A frame of the camera begins now; `partner_is_ready`: the other side can start with it.
+  // A camera frame begins now. `partner_is_ready`: the other side can capture it.
   Readiness readiness() const;
   void frame_begins(std::uint64_t number, bool partner_is_ready, const std::vector<std::uint8_t>& pixels);
-  // A frame that begins as the run ends: no capture takes it.
+  // Counts a frame that begins as the run ends.
   void drop_frame() { ++stats_.dropped_not_armed; }
 
   const Stats& stats() const { return stats_; }
 
  private:
   struct Word {
-    std::uint64_t place = 0;  // of the picture
+    std::uint64_t place = 0;  // in the picture
     std::uint32_t value = 0;
     int pixels = 0;
     int row = 0;
@@ -95,14 +94,14 @@ class PlainCaptureBoard : private PlainMaster {
   int row_ = 0;
   bool drops_line_ = false;
   std::deque<Word> fifo_;
-  std::size_t owed_ = 0;  // words in it that were complete at the last grant
+  std::size_t owed_ = 0;  // words of the FIFO that were complete at the last grant
   bool asks_ = false;
   bool has_bus_ = false;
   std::size_t burst_words_ = 0;  // of the burst that has the bus
   Stats stats_;
 };
 
-// Its registers on the PCI bus, in words.
+// The registers of a capture board on the PCI bus, in words.
 enum class PlainCaptureRegister : std::uint64_t { kControl, kStatus, kBuffer, kFrameLow, kFrameHigh };
 inline constexpr std::uint32_t kPlainArm = 1;
 inline constexpr std::uint32_t kPlainTrigger = 2;
@@ -110,7 +109,7 @@ inline constexpr std::uint32_t kPlainDone = 4;
 
 class PlainCaptureRegisters : public PlainTarget {
  public:
-  // `place_of` says what a buffer address stands for; `trigger` begins a frame of the cameras.
+  // `place_of` decodes a buffer address; `trigger` begins a frame of the cameras.
   PlainCaptureRegisters(PlainCaptureBoard& board, std::function<PlainPicturePlace(std::uint32_t)> place_of,
                         std::function<void()> trigger)
       : board_(board), place_of_(std::move(place_of)), trigger_(std::move(trigger)) {}

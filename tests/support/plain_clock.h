@@ -3,19 +3,18 @@
 #include <cstdint>
 #include <string>
 
-// The times of contract section 3, in ps from time 0, each rounded once (halves up) from its exact value.
+// The times of contract section 3, in ps from time 0. Each is rounded once, halves up, from its exact value.
 namespace stereotlm::test {
 
 using PlainTime = std::uint64_t;  // ps
 
-// numerator / denominator: a decimal number, exactly
+// An exact decimal number: numerator / denominator.
 struct PlainNumber {
   std::int64_t numerator = 1;
   std::int64_t denominator = 1;
 };
 
-// The number that `decimal` writes, such as "33.333". Throws std::invalid_argument unless it is digits with at
-// most one point.
+// `decimal`: digits with at most one point, such as "33.333".
 PlainNumber plain_number(const std::string& decimal);
 
 class PlainClock {

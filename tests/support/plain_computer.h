@@ -14,9 +14,9 @@
 #include "tests/support/plain_pci_bus.h"
 #include "tests/support/random_board.h"
 
-// The whole computer of contract section 3 as a plain loop over events, one pixel, one word and one cycle at
-// a time, with the program of the driver's guide (sw/driver/README.md). It shares no code with the models and
-// exists to be compared with them.
+// The whole computer of contract section 3 as a plain loop over events: one pixel, one word and one cycle at
+// a time, with the program of sw/driver/README.md. It shares no code with the models, which tests compare
+// with it.
 namespace stereotlm::test {
 
 struct PlainComputerInput {
@@ -42,7 +42,7 @@ struct PlainComputerInput {
 struct PlainDelivery {
   std::uint64_t camera_frame = 0;
   PlainTime begin_ps = 0;  // of the camera frame
-  PlainTime host_ps = 0;   // the program has handled the end of the read-back
+  PlainTime host_ps = 0;   // when the program has handled the end of the read-back
   std::vector<std::uint8_t> disparity;
 };
 
@@ -63,8 +63,7 @@ struct PlainComputerResult {
   std::array<Camera, 2> cameras;  // left, right
 };
 
-// From time 0 to the delivery of `frames` frames. Throws std::invalid_argument if the core's input is not
-// valid, std::runtime_error if the frames never come.
+// From time 0 to the delivery of `frames` frames. Throws std::runtime_error if the frames never come.
 PlainComputerResult run_plain_computer(const PlainComputerInput& input);
 
 }  // namespace stereotlm::test

@@ -11,15 +11,15 @@ using Cycle = std::int64_t;
 
 enum class Direction { kRead, kWrite };
 
-// What a port wants in a cycle, decided from the state at the beginning of that cycle. Every port is in one
-// of these; kAccess becomes granted or stalled, the others are port states as they stand.
+// The wish of a port follows from the state at the beginning of a cycle. kAccess becomes granted or stalled,
+// each other wish is the port's state in that cycle.
 enum class Wish { kIdle, kBlocked, kStarved, kPass, kAccess };
 
 std::size_t index_of(PlainPort port) { return static_cast<std::size_t>(port); }
 
 int read_latency(PlainBankKind kind) { return kind == PlainBankKind::kZbtFlowThrough ? 1 : 2; }
 
-// One bank, its arbiter, and what both remember from frame to frame.
+// One bank and its arbiter; both keep their state from frame to frame.
 class BankAndArbiter {
  public:
   BankAndArbiter(const PlainBank& bank, const PlainCycleInput& input)
@@ -39,7 +39,7 @@ class BankAndArbiter {
     return std::nullopt;
   }
 
-  // Whether an access in this direction may not be granted yet because of one in the other direction.
+  // Whether an earlier access in the other direction still forbids one in this direction.
   bool is_turning_round(Direction direction, Cycle now) const {
     if (bank_.kind != PlainBankKind::kSyncBurst) return false;
     const std::optional<Cycle>& other = direction == Direction::kRead ? last_write_ : last_read_;
@@ -448,9 +448,14 @@ bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& ho
 }
 PlainCycleResult PlainCore::result() const { return cycles_->result(); }
 
-std::size_t plain_slot_count(const PlainCycleInput& input) {
-  require_valid(input);
-  return slots_of_a_frame(input).size();
+const char* name_of(PlainPort port) {
+  static constexpr std::array<const char*, kPlainPortCount> kNames = {
+      "left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"};
+  return kNames[index_of(port)];
+}
+
+const char* name_of(PlainArbitration arbitration) {
+  return arbitration == PlainArbitration::kFixedPriority ? "fixed_priority" : "round_robin";
 }
 
 int plain_read_latency(PlainBankKind kind) { return read_latency(kind); }

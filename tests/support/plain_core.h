@@ -12,8 +12,8 @@
 #include "tests/support/plain_cycle_input.h"
 
 // The timing of the FPGA core, cycle by cycle, written from contract section 2 alone. It shares no code with
-// the models and exists to be compared with them, so it keeps a time stamp for everything that the page dates
-// and applies every rule in every cycle.
+// the models, which tests compare with it: it keeps a time stamp for every event that the page dates, and
+// applies every rule in every cycle.
 namespace stereotlm::test {
 
 struct PlainPortStates {
@@ -34,7 +34,7 @@ struct PlainBankStates {
   std::uint64_t contended = 0;
 };
 
-// Who lost a cycle, where, and to whom.
+// The cause of a lost cycle.
 struct PlainBlame {
   PlainPort port = PlainPort::kHost;  // the victim
   int bank = 0;
@@ -45,14 +45,13 @@ struct PlainBlame {
   }
 };
 
-// A row of results is whole with the write of its last word.
+// A row of results is complete with the write of its last word.
 struct PlainRowEnd {
-  std::uint64_t cycles = 0;                             // of its frame, that write's included
-  std::array<std::uint64_t, kPlainPortCount> stalls{};  // of these cycles, in the order of PlainPort
+  std::uint64_t cycles = 0;                             // of the frame up to and including that write
+  std::array<std::uint64_t, kPlainPortCount> stalls{};  // in these cycles, in the order of PlainPort
 };
 
-// Counters are sums over the frames and cover the counted cycles, 0 .. frame_cycles - 1 -
-// pipeline_latency_cycles of each frame.
+// Counters are sums over the counted cycles of all frames: 0 .. frame_cycles - 1 - pipeline_latency_cycles.
 struct PlainCycleResult {
   bool hang = false;                        // a frame did not end in max_frame_cycles; the figures end there
   std::vector<std::uint64_t> frame_cycles;  // of the frames that ended
@@ -69,7 +68,7 @@ struct PlainCycleResult {
   }
 };
 
-// A word that the local bus asks for in a cycle.
+// A word that the local bus requests in a cycle.
 struct PlainHostRequest {
   int bank = 0;
   bool write = false;
@@ -77,7 +76,7 @@ struct PlainHostRequest {
 
 class PlainCore {
  public:
-  // `input` is valid (require_valid) and outlives the core.
+  // `input` outlives the core.
   explicit PlainCore(const PlainCycleInput& input);
   ~PlainCore();
 
@@ -85,10 +84,10 @@ class PlainCore {
   void start_frame(int frame);
   // From start_frame() to the last result write.
   bool runs() const;
-  // Cycle number `now`, greater than the last one. Cycles in which nobody asks may be left out. True if the
+  // Steps cycle number `now`, greater than the last one. Cycles without requests may be left out. True if the
   // host's word is granted.
   bool step(std::int64_t now, const std::optional<PlainHostRequest>& host);
-  // `hang` and `frame_cycles` are the caller's.
+  // All but `hang` and `frame_cycles`, which the caller fills in.
   PlainCycleResult result() const;
 
  private:
@@ -98,8 +97,5 @@ class PlainCore {
 
 // From the cycle of the grant to the first in which the word can be used.
 int plain_read_latency(PlainBankKind kind);
-
-// The number of slots of one frame, empty ones included.
-std::size_t plain_slot_count(const PlainCycleInput& input);
 
 }  // namespace stereotlm::test

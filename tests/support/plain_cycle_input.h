@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-// What the plain cycle loop is told about a board: all that contract section 2 depends on, in types of its
-// own.
+// The part of a board on which contract section 2 depends, in types that share nothing with the models.
+// Nothing checks it: a board must keep the rules of contract section 4.
 namespace stereotlm::test {
 
 // In the order of "Ports" in the contract.
@@ -16,11 +16,7 @@ inline constexpr std::size_t kPlainPortCount = 6;
 const char* name_of(PlainPort port);  // as in the contract: "left_lut"
 
 enum class PlainBankKind { kZbtPipelined, kZbtFlowThrough, kSyncBurst };
-const char* name_of(PlainBankKind kind);
-
 enum class PlainFetch { kColumn, kLineBuffer };
-const char* name_of(PlainFetch fetch);
-
 enum class PlainArbitration { kFixedPriority, kRoundRobin };
 const char* name_of(PlainArbitration arbitration);
 
@@ -54,11 +50,5 @@ struct PlainCycleInput {
   std::optional<std::vector<std::uint32_t>> left_table;
   std::optional<std::vector<std::uint32_t>> right_table;
 };
-
-// Throws std::invalid_argument if a list is empty or longer than three, the image lists differ in length, a
-// bank does not exist, the priority list does not name each port once, a table has the wrong length or no
-// bank, or a number is out of its range in contract section 4; the message names the field, the value and the
-// rule.
-void require_valid(const PlainCycleInput& input);
 
 }  // namespace stereotlm::test

@@ -1,18 +1,11 @@
 #include "tests/support/plain_cycle_loop.h"
 
-#include <stdexcept>
-#include <string>
-
-#include "tests/support/plain_core.h"
+#include <vector>
 
 namespace stereotlm::test {
 
 PlainCycleResult run_plain_cycle_loop(const PlainCycleInput& input, int frames,
                                       std::uint64_t max_frame_cycles) {
-  require_valid(input);
-  if (frames < 1) {
-    throw std::invalid_argument("plain cycle loop: frames = " + std::to_string(frames) + ": at least 1");
-  }
   PlainCore core(input);
   std::vector<std::uint64_t> frame_cycles;
   std::int64_t start = 0;

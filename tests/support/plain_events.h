@@ -11,16 +11,16 @@
 
 namespace stereotlm::test {
 
-// What happens at one time happens in this order, whatever it is that causes it.
+// The order of events at the same time.
 enum class PlainPhase {
-  kLocalBusEnds,    // what asks at the very time of a burst's end comes after that end
+  kLocalBusEnds,    // a burst ends before others request the local bus at that time
   kEffects,         // words and bursts of the PCI bus end, registers are written, frames end and begin
-  kPixels,          // a word that leaves the FIFO as a pixel arrives has left
-  kLocalBusBegins,  // the local bus decides among all that ask by then
-  kDecisions,       // so do the banks and the PCI bus, and whether a capture begins
+  kPixels,          // a pixel arrives after a word has left the FIFO at that time
+  kLocalBusBegins,  // the local bus decides among all requests up to that time
+  kDecisions,       // the banks and the PCI bus decide likewise; captures begin
 };
 
-// The loop over all events of a simulation. Plain: it keeps one list, and an event is a function.
+// The loop over all events of a simulation: one queue of functions.
 class PlainEvents {
  public:
   PlainTime now() const { return now_; }
@@ -30,7 +30,7 @@ class PlainEvents {
     events_.push({time, phase, next_number_++, std::move(action)});
   }
 
-  // Throws std::runtime_error if there is no event, or too many have been run: something waits for ever.
+  // Throws std::runtime_error if there is no event, or if too many have been run: something waits for ever.
   void run_next() {
     if (events_.empty() || ++events_run_ > kMostEvents) {
       throw std::runtime_error("plain events: nothing goes on at " + std::to_string(now_) + " ps");
@@ -41,7 +41,7 @@ class PlainEvents {
     event.action();
   }
 
-  // All that happens now, but for the decisions that see it.
+  // Runs the events of the present time up to the decisions, which it leaves.
   void run_effects_of_now() {
     while (!events_.empty() && events_.top().time == now_ && events_.top().phase != PlainPhase::kDecisions)
       run_next();

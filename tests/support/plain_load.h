@@ -11,7 +11,7 @@
 
 namespace stereotlm::test {
 
-// A third party on the bus (board key `pci.load`).
+// A third-party master on the bus (board key `pci.load`).
 struct PlainLoad {
   int burst_words = 0;
   PlainTime first_ps = 0;
@@ -19,7 +19,7 @@ struct PlainLoad {
   PlainTime access_ps = 0;
 };
 
-// It reads its own device again and again.
+// The master reads its own device again and again.
 class PlainLoadMaster : private PlainMaster, private PlainTarget {
  public:
   PlainLoadMaster(PlainEvents& events, PlainPciBus& bus, const PlainLoad& load)

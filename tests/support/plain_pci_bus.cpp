@@ -26,7 +26,7 @@ void PlainPciBus::await_grant() {
 }
 
 void PlainPciBus::grant(std::uint64_t clock) {
-  if (busy_) return;  // somebody else was granted meanwhile
+  if (busy_) return;  // another master has been granted
   for (std::size_t turn = 0; turn < slots_.size(); ++turn) {
     const std::size_t master = (next_turn_ + turn) % slots_.size();
     Slot& slot = slots_[master];
@@ -45,6 +45,11 @@ void PlainPciBus::begin(std::uint64_t clock) {
   address_clock_ = clock;
   burst_ = slots_[owner_].master->burst();
   words_done_ = 0;
+  if (burst_.target == nullptr) {
+    const std::uint64_t idle_clock = clock + 1 + 4;  // 4 clocks without DEVSEL#
+    events_.at(clock_.edge(idle_clock), PlainPhase::kEffects, [this, idle_clock] { end(idle_clock); });
+    return;
+  }
   const std::uint64_t first_data_clock = clock + 1 + static_cast<std::uint64_t>(burst_.wait_clocks);
   if (burst_.write) {
     const std::size_t taken = burst_.target->takes(burst_.words.size());
@@ -83,7 +88,7 @@ void PlainPciBus::end_word(std::uint64_t clock) {
   }
 }
 
-// Its request was there as the clock began.
+// Whether another master's request was pending as the clock began.
 bool PlainPciBus::another_waits(std::uint64_t clock) const {
   for (std::size_t master = 0; master < slots_.size(); ++master) {
     const auto& request_ps = slots_[master].request_ps;
@@ -92,7 +97,7 @@ bool PlainPciBus::another_waits(std::uint64_t clock) const {
   return false;
 }
 
-// Now, as the idle clock begins.
+// Called as the idle clock begins.
 void PlainPciBus::end(std::uint64_t idle_clock) {
   busy_clocks_ += idle_clock - address_clock_;
   free_clock_ = idle_clock + 1;

@@ -17,22 +17,22 @@ using PlainWords = std::vector<std::uint32_t>;
 class PlainTarget {
  public:
   virtual ~PlainTarget() = default;
-  // At the address clock of a write: how many of so many words it takes.
+  // Asked at the address clock of a write: how many of so many words the target takes.
   virtual std::size_t takes(std::size_t words) const { return words; }
   virtual void write(std::uint64_t word, const PlainWords& words) = 0;
-  // At the address clock, which ends at `end_ps`. The target calls `answer` when it has the words; the first is
-  // on the bus in the first clock after that, or after the wait clocks.
+  // Called at the address clock, which ends at `end_ps`. The target calls `answer` when it has the words. The
+  // first is on the bus in the first clock after that, and not before the wait clocks have passed.
   virtual void read(std::uint64_t word, std::size_t count, PlainTime end_ps,
                     std::function<void(PlainWords)> answer) = 0;
 };
 
-// What a master does with the bus.
+// A burst of a master.
 struct PlainBurst {
   bool write = true;
-  PlainTarget* target = nullptr;
+  PlainTarget* target = nullptr;  // null: no target answers
   int wait_clocks = 0;
   std::uint64_t word = 0;  // the first, of the target
-  PlainWords words;        // to write; to read, only their number counts
+  PlainWords words;        // of a read only their number counts
 };
 
 class PlainMaster {
@@ -42,18 +42,17 @@ class PlainMaster {
   virtual PlainBurst burst() = 0;
   // The data clock of a word has ended.
   virtual void word_gone() {}
-  // Nobody has taken the words of the burst, which ends now.
+  // No target has taken the words of the burst, which ends now.
   virtual void lost() {}
-  // The last data clock has ended, or the address clock of a burst of which no word was taken. `words`: those
-  // transferred.
+  // The last data clock has ended, or the address clock if no word was taken. `words`: those transferred.
   virtual void ended(const PlainWords& words) = 0;
 };
 
-// A bus, as its masters see it.
+// The interface of a bus to its masters.
 class PlainBus {
  public:
   virtual ~PlainBus() = default;
-  // Masters take turns in the order in which they are added.
+  // Masters take turns in the order of add().
   virtual std::size_t add(PlainMaster& master) = 0;
   // From now on, until it is granted.
   virtual void request(std::size_t master) = 0;
@@ -75,7 +74,7 @@ class PlainPciBus : public PlainBus {
   std::size_t add(PlainMaster& master) override;
   void request(std::size_t master) override;
 
-  // Up to now.
+  // Both up to now.
   std::uint64_t clocks() const { return clock_.clocks_by(events_.now()); }
   std::uint64_t busy_clocks() const { return busy_clocks_ + (busy_ ? clocks() - address_clock_ : 0); }
   const MasterStats& stats(std::size_t master) const { return slots_[master].stats; }
@@ -103,13 +102,13 @@ class PlainPciBus : public PlainBus {
   std::size_t next_turn_ = 0;
   std::uint64_t free_clock_ = 0;  // the first that can be an address clock
   bool busy_ = false;
-  std::uint64_t busy_clocks_ = 0;  // of the bursts that have ended
+  std::uint64_t busy_clocks_ = 0;  // of bursts that have ended
 
   // The burst that has the bus.
   std::size_t owner_ = 0;
   std::uint64_t address_clock_ = 0;
   PlainBurst burst_;
-  std::size_t words_taken_ = 0;  // that the target takes, or answers
+  std::size_t words_taken_ = 0;  // those that the target takes, or answers
   std::size_t words_done_ = 0;
 };
 

@@ -12,8 +12,8 @@ using Payload = tlm::tlm_generic_payload;
 
 constexpr std::size_t kViolationsKept = 100;
 
-// Keeps a counted payload alive while the monitor still has to look at it. A count of 0 is left alone: the
-// first release would free what the initiator never acquired.
+// Keeps a counted payload alive while the monitor needs it. It leaves a count of 0 alone: its release would
+// free a payload that the initiator never acquired.
 class Hold {
  public:
   explicit Hold(Payload& payload)
@@ -25,14 +25,14 @@ class Hold {
   }
   Hold(const Hold&) = delete;
   Hold& operator=(const Hold&) = delete;
-  // References of others; 0 without a memory manager.
+  // References apart from this one; 0 without a memory manager.
   int others() const { return payload_ == nullptr ? 0 : payload_->get_ref_count() - 1; }
 
  private:
   Payload* payload_;
 };
 
-// The list of b_transport calls in progress, also when the callee throws.
+// Lists a payload while its b_transport call is in progress, also if the callee throws.
 class Listed {
  public:
   Listed(std::vector<const Payload*>& list, const Payload& payload) : list_(list), payload_(&payload) {
@@ -47,7 +47,7 @@ class Listed {
   const Payload* payload_;
 };
 
-// The moment of a call that may not wait.
+// The time and delta cycle of a call that must not wait.
 struct Moment {
   sc_core::sc_time time = sc_core::sc_time_stamp();
   sc_dt::uint64 delta = sc_core::sc_delta_count();

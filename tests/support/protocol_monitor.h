@@ -11,16 +11,15 @@
 
 namespace stereotlm::test {
 
-// Sits between an initiator and a target, passes every call on unchanged, and checks that both keep the base
-// protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. What is broken is
-// collected as
-// "<monitor> at <time>: <call>: <what was found and the rule>" and fails the running test when the monitor is
-// destroyed; a test that provokes a violation takes it out first.
+// Forwards every call between an initiator and a target unchanged, and checks that both keep the base
+// protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. A violation reads
+// "<monitor> at <time>: <call>: <value found and the rule>". The destructor fails the running test if there
+// are violations: a test that provokes one takes it out first.
 class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {
  public:
-  // Calls seen. Reads and writes count blocking and non-blocking transactions.
+  // `reads` and `writes` count blocking and non-blocking transactions.
   struct Counts {
     std::uint64_t b_transport_calls = 0;
     std::uint64_t nb_transactions = 0;
@@ -39,9 +38,9 @@ class ProtocolMonitor : public sc_core::sc_module,
   ~ProtocolMonitor() override;
 
   const Counts& counts() const { return counts_; }
-  // Every violation so far, the first hundred in words and the number of the others.
+  // The first hundred violations, and the number of the others.
   std::vector<std::string> violations() const;
-  // The same, and forgets them.
+  // Returns and removes the violations.
   std::vector<std::string> take_violations();
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;

@@ -266,50 +266,6 @@ void draw_priority(RandomBoard& board, SplitMix64& random) {
   }
 }
 
-template <typename T, typename ToText>
-std::string flow_list(const std::vector<T>& items, ToText to_text) {
-  std::string text = "[";
-  for (std::size_t item = 0; item < items.size(); ++item)
-    text += (item > 0 ? ", " : "") + to_text(items[item]);
-  return text + "]";
-}
-
-std::string bank_name(int bank) { return "bank" + std::to_string(bank); }
-std::string bank_or_none(const std::optional<int>& bank) { return bank ? bank_name(*bank) : "none"; }
-
-std::string filter_text(const std::optional<ReferenceKernel>& filter) {
-  if (!filter) return "none";
-  std::vector<std::vector<int>> rows;
-  for (int row = 0; row < filter->size; ++row) {
-    const auto first = filter->weights.begin() + std::ptrdiff_t{row} * filter->size;
-    rows.emplace_back(first, first + filter->size);
-  }
-  const auto row_text = [](const std::vector<int>& row) {
-    return flow_list(row, [](int weight) { return std::to_string(weight); });
-  };
-  return "{kernel: " + flow_list(rows, row_text) + ", shift: " + std::to_string(filter->shift) + "}";
-}
-
-std::string banks_text(const std::vector<PlainBank>& banks) {
-  std::string text;
-  for (std::size_t index = 0; index < banks.size(); ++index) {
-    text += (index > 0 ? ", " : "") + bank_name(static_cast<int>(index)) +
-            ": {kind: " + name_of(banks[index].kind);
-    if (banks[index].kind == PlainBankKind::kSyncBurst) {
-      text += ", turnaround_cycles: " + std::to_string(banks[index].turnaround_cycles);
-    }
-    text += "}";
-  }
-  return text;
-}
-
-std::string table_text(const std::optional<std::vector<std::uint32_t>>& table) {
-  if (!table) return "none";
-  const auto valid =
-      std::count_if(table->begin(), table->end(), [](std::uint32_t entry) { return entry >> 31U == 1; });
-  return std::to_string(valid) + " of " + std::to_string(table->size()) + " entries valid";
-}
-
 }  // namespace
 
 RandomBoard make_random_board(std::uint64_t seed) {
@@ -340,66 +296,9 @@ RandomBoard make_random_board(std::uint64_t seed) {
   return board;
 }
 
-std::string describe(const RandomBoard& board) {
-  const auto name = [](int bank) { return bank_name(bank); };
-  std::string priority;
-  for (const PlainPort port : board.priority) {
-    priority += (priority.empty() ? "" : ", ") + std::string(name_of(port));
-  }
-  const std::string tolerance = board.lr_tolerance ? std::to_string(*board.lr_tolerance) : "off";
-  std::string text;
-  text += "# random board, seed " + std::to_string(board.seed) + "; frames: " + std::to_string(board.frames) +
-          ", picture pairs: " + std::to_string(board.pictures.size()) + "\n";
-  text += "# left table: " + table_text(board.left_table) +
-          "; right table: " + table_text(board.right_table) + "\n";
-  text += "extends: fpl2003\n";
-  text += "name: random-" + std::to_string(board.seed) + "\n";
-  text +=
-      "image: {width: " + std::to_string(board.width) + ", height: " + std::to_string(board.height) + "}\n";
-  text += "fpga:\n";
-  text += "  arbitration: " + std::string(name_of(board.arbitration)) + "\n";
-  text += "  priority: [" + priority + "]\n";
-  text += "  lane_fifo_slots: " + std::to_string(board.lane_fifo_slots) + "\n";
-  text += "  result_fifo_words: " + std::to_string(board.result_fifo_words) + "\n";
-  text += "  pipeline_latency_cycles: " + std::to_string(board.pipeline_latency_cycles) + "\n";
-  text += "ssram:\n";
-  text += "  banks: {" + banks_text(board.banks) + "}\n";
-  text += "allocation:\n";
-  text += "  left_image: " + flow_list(board.left_image, name) + "\n";
-  text += "  right_image: " + flow_list(board.right_image, name) + "\n";
-  text += "  disparity: " + flow_list(board.disparity, name) + "\n";
-  text += "  left_lut: " + bank_or_none(board.left_lut) + "\n";
-  text += "  right_lut: " + bank_or_none(board.right_lut) + "\n";
-  text += "matcher:\n";
-  text += "  window: " + std::to_string(board.window) + "\n";
-  text += "  disparities: " + std::to_string(board.disparities) + "\n";
-  text += "  filter: " + filter_text(board.filter) + "\n";
-  text += "  fetch: " + std::string(name_of(board.fetch)) + "\n";
-  text += "  lr_tolerance: " + tolerance + "\n";
-  return text;
-}
-
 PlainCycleInput cycle_input(const RandomBoard& board) {
-  PlainCycleInput input;
-  input.width = board.width;
-  input.height = board.height;
-  input.window = board.window;
-  input.disparities = board.disparities;
+  PlainCycleInput input = board;
   input.filter_half = board.filter ? (board.filter->size - 1) / 2 : 0;
-  input.fetch = board.fetch;
-  input.arbitration = board.arbitration;
-  input.priority = board.priority;
-  input.lane_fifo_slots = board.lane_fifo_slots;
-  input.result_fifo_words = board.result_fifo_words;
-  input.pipeline_latency_cycles = board.pipeline_latency_cycles;
-  input.banks = board.banks;
-  input.left_image = board.left_image;
-  input.right_image = board.right_image;
-  input.disparity = board.disparity;
-  input.left_lut = board.left_lut;
-  input.right_lut = board.right_lut;
-  input.left_table = board.left_table;
-  input.right_table = board.right_table;
   return input;
 }
 

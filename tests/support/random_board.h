@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,7 +9,7 @@
 #include "tests/support/reference_arithmetic.h"
 
 // Small random boards with tables and pictures for tests that compare the models with the references. Every
-// board is legal in contract section 4, and one seed gives the same board on every platform and compiler.
+// board keeps the rules of contract section 4. A seed gives the same board on every platform.
 namespace stereotlm::test {
 
 // The splitmix64 generator (Steele, Lea and Flood, 2014), and the few draws that tests need. The C++ standard
@@ -33,39 +32,14 @@ struct PicturePair {
   std::vector<std::uint8_t> right;
 };
 
-// Fields are named after the keys of a board file; units and meaning as there. Buffers name their bank by its
-// index in `banks`; the bank of index i is called "bank<i>".
-struct RandomBoard {
+// 4..64 x 1..40 pixels, 1..10 banks, a latency of the pipeline of up to 40 cycles, all else in its whole range.
+// Each side with a bank for its table has entries; filter_half is not set.
+struct RandomBoard : PlainCycleInput {
   std::uint64_t seed = 0;
-
-  int width = 0;   // 4..64
-  int height = 0;  // 1..40
-
-  PlainArbitration arbitration = PlainArbitration::kFixedPriority;
-  std::array<PlainPort, kPlainPortCount> priority{};
-  int lane_fifo_slots = 0;          // 1..64
-  int result_fifo_words = 0;        // 1..64
-  int pipeline_latency_cycles = 0;  // 0..40
-
-  std::vector<PlainBank> banks;  // 1..10
-  std::vector<int> left_image;   // 1..3 entries
-  std::vector<int> right_image;  // as many
-  std::vector<int> disparity;    // 1..3 entries
-  std::optional<int> left_lut;   // nullopt: none
-  std::optional<int> right_lut;
-
-  int window = 0;                         // 3..31
-  int disparities = 0;                    // 1..254
   std::optional<ReferenceKernel> filter;  // nullopt: none
-  PlainFetch fetch = PlainFetch::kColumn;
-  std::optional<int> lr_tolerance;  // nullopt: off
-
-  // Entries, row-major; set exactly where the side has a left_lut or right_lut.
-  std::optional<std::vector<std::uint32_t>> left_table;
-  std::optional<std::vector<std::uint32_t>> right_table;
-
-  int frames = 0;                     // 1..4
-  std::vector<PicturePair> pictures;  // 1..frames pairs; frame f shows pair f mod length
+  std::optional<int> lr_tolerance;        // nullopt: off
+  int frames = 0;                         // 1..4
+  std::vector<PicturePair> pictures;      // 1..frames pairs; frame f shows pair f mod length
 
   const PicturePair& pictures_of_frame(int frame) const {
     return pictures[static_cast<std::size_t>(frame) % pictures.size()];
@@ -74,10 +48,12 @@ struct RandomBoard {
 
 RandomBoard make_random_board(std::uint64_t seed);
 
-// The seed, the frames and what the tables and pictures are in YAML comments, then a complete board file.
-std::string describe(const RandomBoard& board);
+// For the message of a failure.
+inline std::string describe(const RandomBoard& board) {
+  return "random board of seed " + std::to_string(board.seed);
+}
 
-// The board as the two references take it.
+// The board as input of the two references.
 PlainCycleInput cycle_input(const RandomBoard& board);
 ReferenceInput reference_input(const RandomBoard& board, int frame);
 

@@ -1,6 +1,7 @@
 #include "tests/support/random_computer.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace stereotlm::test {
@@ -17,42 +18,43 @@ std::string odd_number(SplitMix64& random, int low, int high) {
   return std::to_string(random.between(low, high - 1)) + '.' + decimals;
 }
 
-std::string usual_or_odd(SplitMix64& random, const std::vector<std::string>& usual, int low, int high) {
-  return random.chance(70) ? one_of(random, usual) : odd_number(random, low, high);
-}
-
-PlainTime ps_of_us(const std::string& us) {
-  const PlainNumber number = plain_number(us);
-  return static_cast<PlainTime>(number.numerator * 1'000'000 / number.denominator);
+PlainNumber usual_or_odd(SplitMix64& random, const std::vector<std::string>& usual, int low, int high) {
+  return plain_number(random.chance(70) ? one_of(random, usual) : odd_number(random, low, high));
 }
 
 }  // namespace
 
 RandomComputer make_random_computer(std::uint64_t seed) {
-  RandomComputer computer;
-  computer.board = make_random_board(seed);
+  constexpr PlainTime kPsOfUs = 1'000'000;
+  const RandomBoard board = make_random_board(seed);
   SplitMix64 random(seed + 1'000'000);
-  computer.frame_rate_hz = usual_or_odd(random, {"1000", "500", "299.7", "99.9"}, 100, 1000);
-  computer.on_demand = random.chance(25);
-  computer.capture_to_host = random.chance(40);
-  computer.host_frames = random.between(1, 4);
-  computer.fifo_words = one_of<int>(random, {1, 2, 3, 16, 140, 4096});
-  computer.fifo_trigger_words = random.between(1, std::min(computer.fifo_words, 32));
-  computer.pci_clock_mhz = usual_or_odd(random, {"33.333", "33.333", "40", "66", "10", "133.7"}, 5, 150);
-  computer.latency_timer_clocks = one_of<int>(random, {0, 1, 5, 16, 64, 255});
-  computer.bridge_wait_clocks = one_of<int>(random, {0, 1, 4, 4, 40});
-  computer.memory_wait_clocks = one_of<int>(random, {0, 1, 8, 8, 40});
-  computer.local_clock_mhz = usual_or_odd(random, {"40", "40", "10", "66.6", "160"}, 5, 170);
-  computer.dma_burst_words = one_of<int>(random, {1, 2, 7, 32, 1024});
-  computer.posted_words = one_of<int>(random, {1, 2, 5, 64, 4096});
-  computer.fpga_clock_mhz = usual_or_odd(random, {"40", "40", "12.5", "100"}, 12, 120);
-  computer.frames = random.between(1, 8);
+  PlainComputerInput input;
+  input.frame_rate_hz = usual_or_odd(random, {"1000", "500", "299.7", "99.9"}, 100, 1000);
+  input.on_demand = random.chance(25);
+  input.capture_to_host = random.chance(40);
+  input.host_frames = random.between(1, 4);
+  input.fifo_words = one_of<int>(random, {1, 2, 3, 16, 140, 4096});
+  input.fifo_trigger_words = random.between(1, std::min(input.fifo_words, 32));
+  input.pci_clock_mhz = usual_or_odd(random, {"33.333", "33.333", "40", "66", "10", "133.7"}, 5, 150);
+  input.latency_timer_clocks = one_of<int>(random, {0, 1, 5, 16, 64, 255});
+  input.bridge_wait_clocks = one_of<int>(random, {0, 1, 4, 4, 40});
+  input.memory_wait_clocks = one_of<int>(random, {0, 1, 8, 8, 40});
+  input.local_clock_mhz = usual_or_odd(random, {"40", "40", "10", "66.6", "160"}, 5, 170);
+  input.dma_burst_words = one_of<int>(random, {1, 2, 7, 32, 1024});
+  input.posted_words = one_of<int>(random, {1, 2, 5, 64, 4096});
+  const PlainNumber fpga_clock_mhz = usual_or_odd(random, {"40", "40", "12.5", "100"}, 12, 120);
+  input.board = {cycle_input(board), fpga_clock_mhz, board.filter, board.lr_tolerance};
+  input.frames = random.between(1, 8);
   if (random.chance(30)) {
-    computer.load = RandomComputer::Load{
-        one_of<int>(random, {1, 32, 500}), one_of<std::string>(random, {"0", "5", "100"}),
-        one_of<std::string>(random, {"0", "777.7"}), one_of<std::string>(random, {"0", "0", "1", "60"})};
+    PlainLoad load;
+    load.burst_words = one_of<int>(random, {1, 32, 500});
+    load.interval_ps = one_of<PlainTime>(random, {0, 5 * kPsOfUs, 100 * kPsOfUs});
+    load.first_ps = one_of<PlainTime>(random, {0, 777'700'000});
+    load.access_ps = one_of<PlainTime>(random, {0, 0, kPsOfUs, 60 * kPsOfUs});
+    input.load = load;
   }
-  return computer;
+  input.pictures = [board](std::uint64_t frame) { return camera_pictures(board, frame); };
+  return {board, input};
 }
 
 PicturePair camera_pictures(const RandomBoard& board, std::uint64_t frame) {
@@ -68,32 +70,6 @@ PicturePair camera_pictures(const RandomBoard& board, std::uint64_t frame) {
                                            : pair.left[from]);
   }
   return pair;
-}
-
-PlainComputerInput plain_input(const RandomComputer& computer) {
-  PlainComputerInput input;
-  input.board = {cycle_input(computer.board), plain_number(computer.fpga_clock_mhz), computer.board.filter,
-                 computer.board.lr_tolerance};
-  input.frame_rate_hz = plain_number(computer.frame_rate_hz);
-  input.on_demand = computer.on_demand;
-  input.capture_to_host = computer.capture_to_host;
-  input.host_frames = computer.host_frames;
-  input.fifo_words = computer.fifo_words;
-  input.fifo_trigger_words = computer.fifo_trigger_words;
-  input.pci_clock_mhz = plain_number(computer.pci_clock_mhz);
-  input.latency_timer_clocks = computer.latency_timer_clocks;
-  input.bridge_wait_clocks = computer.bridge_wait_clocks;
-  input.memory_wait_clocks = computer.memory_wait_clocks;
-  if (computer.load) {
-    input.load = PlainLoad{computer.load->burst_words, ps_of_us(computer.load->first_us),
-                           ps_of_us(computer.load->interval_us), ps_of_us(computer.load->access_us)};
-  }
-  input.local_clock_mhz = plain_number(computer.local_clock_mhz);
-  input.dma_burst_words = computer.dma_burst_words;
-  input.posted_words = computer.posted_words;
-  input.frames = computer.frames;
-  input.pictures = [board = computer.board](std::uint64_t frame) { return camera_pictures(board, frame); };
-  return input;
 }
 
 }  // namespace stereotlm::test

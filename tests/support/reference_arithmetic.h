@@ -5,8 +5,8 @@
 #include <vector>
 
 // The arithmetic of contract section 1 as literal nested loops, written from that page alone. It shares no
-// code with the models and exists to be compared with them: each function below is one sentence or formula of
-// the page, and nothing is done for speed.
+// code with the models, which tests compare with it. Each function is one sentence or formula of the page,
+// without regard to speed. Nothing checks the input, which must keep the rules of the page.
 namespace stereotlm::test {
 
 // K of contract 1.2.
@@ -42,11 +42,9 @@ struct ReferenceResult {
   std::vector<std::uint32_t> disparity_words;  // the output as it lies in its buffer, W * H / 4 words
 };
 
-// Throws std::invalid_argument if a vector has the wrong length, a size breaks a rule of the page, or a table
-// is one that the page refuses; the message names the field, the value and the rule.
 ReferenceResult compute_reference(const ReferenceInput& input);
 
-// The stages alone, for tests that look at one of them. `width` and `height` as in ReferenceInput.
+// Single stages. `width` and `height` as in ReferenceInput.
 
 // Contract 1.1. `table` nullopt: P = source.
 std::vector<std::uint8_t> reference_rectify(int width, int height, const std::vector<std::uint8_t>& source,

@@ -14,7 +14,7 @@
 
 namespace stereotlm::test {
 
-// A new folder for the files of one test, removed with it.
+// A new folder for the files of one test. The destructor removes it.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -35,7 +35,7 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-// Creates the folders on the way. Returns the path.
+// Creates missing parent folders. Returns the path.
 inline std::string write_file(const std::filesystem::path& path, std::string_view bytes) {
   std::filesystem::create_directories(path.parent_path());
   std::ofstream file(path, std::ios::binary);
@@ -50,7 +50,7 @@ inline std::string read_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The message of the std::exception that `action` throws; a failed test and "" if it throws none.
+// The message of the std::exception that `action` throws. Fails the test if it throws none.
 template <typename Action>
 std::string message_of(const Action& action) {
   try {

@@ -9,8 +9,8 @@
 
 namespace stereotlm::test {
 
-// An initiator that a test drives: words by b_transport, words and bursts by nb_transport, blocks by debug
-// transport, and DMI. It ends a response of nb_transport as `ending` says, and records every answer.
+// An initiator under control of a test: words by b_transport, words and bursts by nb_transport, blocks by
+// debug transport, and DMI. It ends each response of nb_transport by `ending`, and records the answer.
 class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
  public:
   struct Answer {
@@ -19,11 +19,11 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     sc_core::sc_time at;               // absolute
     std::vector<std::uint32_t> words;  // of a burst, `word` first
   };
-  enum class Ending { kCompleted, kUpdated, kAccepted };  // what it returns to BEGIN_RESP
+  enum class Ending { kCompleted, kUpdated, kAccepted };  // the return value to BEGIN_RESP
 
   tlm::tlm_initiator_socket<32> socket{"socket"};
   Ending ending = Ending::kCompleted;
-  std::vector<Answer> answers;  // of nb_transport, in the order in which they came
+  std::vector<Answer> answers;  // of nb_transport, in the order of their arrival
   std::vector<std::pair<sc_dt::uint64, sc_dt::uint64>> invalidations;
 
   explicit TestHost(const sc_core::sc_module_name& name) : sc_module(name) { socket.bind(*this); }
@@ -35,8 +35,15 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   Answer write(std::uint64_t address, std::uint32_t word, sc_core::sc_time delay = {}) {
     return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
   }
+  // Words by b_transport.
+  Answer read_words(std::uint64_t address, std::size_t count) {
+    return block(tlm::TLM_READ_COMMAND, address, std::vector<std::uint32_t>(count), {});
+  }
+  Answer write_words(std::uint64_t address, std::vector<std::uint32_t> words) {
+    return block(tlm::TLM_WRITE_COMMAND, address, std::move(words), {});
+  }
 
-  // Words by nb_transport, from now + delay on; does not wait. Returns what the target returned.
+  // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
                              sc_core::sc_time delay = {}) {
     return request(command, address, std::vector<std::uint32_t>{word}, delay);
@@ -126,7 +133,11 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return transaction;
   }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word, sc_core::sc_time delay) {
-    Transaction& transaction = prepare(command, address, {word});
+    return block(command, address, std::vector<std::uint32_t>{word}, delay);
+  }
+  Answer block(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words,
+               sc_core::sc_time delay) {
+    Transaction& transaction = prepare(command, address, std::move(words));
     socket->b_transport(transaction.payload, delay);
     return answer_of(transaction, delay);
   }

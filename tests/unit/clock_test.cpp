@@ -12,29 +12,25 @@
 namespace stereotlm {
 namespace {
 
-// The contract's definition in whole numbers, without the short ways.
+// The contract's definition in whole numbers.
 test::PlainClock definition(const std::string& mhz) { return test::PlainClock(test::plain_number(mhz)); }
 
-TEST(Clock, PutsTheEdgesOfAWholePeriodAtItsMultiples) {
-  const Clock clock(40);
-  EXPECT_EQ(clock.edge_ps(0), 0U);
-  EXPECT_EQ(clock.edge_ps(1), 25'000U);
-  EXPECT_EQ(clock.edge_ps(1'000'000'000), 25'000'000'000'000U);
-}
-
-TEST(Clock, RoundsAnEdgeToTheNearestPicosecond) {
-  const Clock clock(33.333);
-  EXPECT_EQ(clock.edge_ps(1), 30'000U);  // 30000.30
-  EXPECT_EQ(clock.edge_ps(2), 60'001U);  // 60000.60
-  EXPECT_EQ(clock.edge_ps(3), 90'001U);  // 90000.90
-  EXPECT_EQ(clock.edge_ps(4), 120'001U);
-}
-
-TEST(Clock, RoundsAHalfPicosecondUp) {
-  const Clock clock(640);  // 1562.5 ps
-  EXPECT_EQ(clock.edge_ps(1), 1'563U);
-  EXPECT_EQ(clock.edge_ps(2), 3'125U);
-  EXPECT_EQ(clock.edge_ps(3), 4'688U);
+TEST(Clock, RoundsEachEdgeOfTheDecimalFrequencyToTheNearestPsAndHalvesUp) {
+  struct Edge {
+    double mhz;
+    std::uint64_t edge;
+    std::uint64_t ps;
+  };
+  for (const auto& [mhz, edge, ps] :
+       {Edge{40, 0, 0}, Edge{40, 1, 25'000}, Edge{40, 1'000'000'000, 25'000'000'000'000},
+        Edge{33.333, 1, 30'000},                                                 // 30000.30
+        Edge{33.333, 2, 60'001},                                                 // 60000.60
+        Edge{33.333, 3, 90'001}, Edge{33.333, 4, 120'001}, Edge{640, 1, 1'563},  // 1562.5
+        Edge{640, 2, 3'125}, Edge{640, 3, 4'688},
+        // The doubles next to 25.6 and 13.7047 would put these edges 1 ps earlier.
+        Edge{25.6, 1, 39'063}, Edge{13.7047, 930'277, 67'880'143'309}}) {
+    EXPECT_EQ(Clock(mhz).edge_ps(edge), ps) << mhz << " MHz, " << edge;
+  }
 }
 
 TEST(Clock, DoesNotDrift) {
@@ -42,12 +38,6 @@ TEST(Clock, DoesNotDrift) {
     for (const std::uint64_t edge : {1U, 7U, 999'983U, 999'999'999U, 1'000'000'000U})
       EXPECT_EQ(Clock(std::stod(mhz)).edge_ps(edge), definition(mhz).edge(edge)) << mhz << " MHz, " << edge;
   }
-}
-
-// No double is 25.6 or 13.7047; the nearest ones would put these edges 1 ps earlier.
-TEST(Clock, HasTheDecimalFrequencyThatWasWritten) {
-  EXPECT_EQ(Clock(25.6).edge_ps(1), 39'063U);  // 39062.5
-  EXPECT_EQ(Clock(13.7047).edge_ps(930'277), 67'880'143'309U);
 }
 
 TEST(Clock, FindsTheEdgeAtATimeAndTheNextOneAPicosecondLater) {
@@ -64,7 +54,7 @@ TEST(Clock, FindsTheEdgeAtATimeAndTheNextOneAPicosecondLater) {
   }
 }
 
-TEST(Clock, TakesNoShortWayPastTheDefinition) {
+TEST(Clock, EqualsTheDefinitionAtRandomEdgesAndTimes) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> rate(1, 1000);
   for (int i = 0; i < 400; ++i) {
@@ -84,7 +74,7 @@ TEST(Clock, TakesNoShortWayPastTheDefinition) {
   }
 }
 
-// Periods of 1562.5 ps and nearly so, and of 2^k / 3 ps: many edges lie at a half, or near one.
+// Periods of nearly 1562.5 ps, and of 2^k / 3 ps: many edges lie at half a ps, or near it.
 TEST(Clock, RoundsEdgesNearAHalfAsDefined) {
   for (const char* mhz : {"640", "640.00000000004096", "639.99999999995904", "25.6", "1.5", "91.552734375"}) {
     const Clock clock(std::stod(mhz));
@@ -97,7 +87,7 @@ TEST(Clock, RoundsEdgesNearAHalfAsDefined) {
   }
 }
 
-TEST(Clock, HasTheEdgesOfOneWithItsFrequency) {
+TEST(Clock, HasTheEdgesOfAClockWithTheSameFrequency) {
   for (const double mhz : {40.0, 62.5, 33.333}) EXPECT_TRUE(Clock(mhz).has_edges_of(Clock(mhz))) << mhz;
   EXPECT_FALSE(Clock(40).has_edges_of(Clock(80)));
   EXPECT_FALSE(Clock(80).has_edges_of(Clock(40)));

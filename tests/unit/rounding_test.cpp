@@ -15,7 +15,7 @@ TEST(RoundedIfCertain, IsTheNearestWholeNumber) {
   EXPECT_EQ(rounded_if_certain(1e9 + 0.501), 1'000'000'001U);
 }
 
-TEST(RoundedIfCertain, LeavesAHalfToTheExactComputation) {
+TEST(RoundedIfCertain, IsUnknownNearAHalf) {
   EXPECT_EQ(rounded_if_certain(0.5), std::nullopt);
   for (const double half : {1.5, 3'000'000.5, 1e12 + 0.5}) {
     EXPECT_EQ(rounded_if_certain(half), std::nullopt);
@@ -26,7 +26,7 @@ TEST(RoundedIfCertain, LeavesAHalfToTheExactComputation) {
   }
 }
 
-TEST(RoundedIfCertain, LeavesLargeNumbersToTheExactComputation) {
+TEST(RoundedIfCertain, IsUnknownForLargeNumbers) {
   EXPECT_EQ(rounded_if_certain(0x1p47), std::uint64_t{1} << 47U);
   EXPECT_EQ(rounded_if_certain(0x1p48), std::nullopt);
   EXPECT_EQ(rounded_if_certain(1e19), std::nullopt);

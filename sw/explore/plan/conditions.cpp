@@ -17,7 +17,7 @@ using platform::BoardValue;
 
 constexpr const char* kBankCount = "ssram.banks";
 
-// What conditions may name, "table.column", in the order of the parameters.
+// The names that a condition may use, "table.column", in the order of the parameters.
 const std::vector<std::string>& names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> all;
@@ -32,7 +32,7 @@ const std::vector<std::string>& names() {
   return kNames;
 }
 
-// The tables of a point: "(SELECT ?1 AS width, ..) AS image, .."; without a point all values are NULL.
+// The tables of a point: "(SELECT ?1 AS width, ..) AS image, ..". Without a point all values are NULL.
 std::string tables_text(bool has_point) {
   std::vector<std::string> tables;
   std::map<std::string, std::string> columns;
@@ -52,8 +52,8 @@ std::string tables_text(bool has_point) {
   return text;
 }
 
-// The functions whose result depends on nothing but their arguments. SQLite lists the functions of dates too,
-// but their argument may be 'now'.
+// The functions whose result depends only on their arguments. SQLite also lists the functions of dates, but
+// their argument may be 'now'.
 std::set<std::string> pure_functions(const Database& database) {
   Statement list(database,
                  fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));
@@ -74,9 +74,9 @@ bool is_bank_words(const std::string& path) {
 
 }  // namespace
 
-// Each text is compiled twice. The first time it ends the statement: quotes and brackets that do not match
-// are errors, and SQLite's message quotes nothing but the text. The second time it stands in brackets: a
-// clause behind the expression, such as LIMIT, and a comment without end are errors.
+// Compiles each text twice. First at the end of a statement: unbalanced quotes and brackets are errors there,
+// and SQLite's message quotes nothing but the text. Then in brackets: a clause behind the expression, such as
+// LIMIT, and a comment that does not end are errors there.
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
@@ -115,11 +115,11 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
   return SQLITE_DENY;
 }
 
-// SQLite quotes the text from an error on, with all its lines.
+// SQLite's message quotes the text from the error to its end, which may be many lines.
 std::string Conditions::reason_of(const DatabaseError& error) const {
   platform::YamlNode reason;
   reason.kind = platform::YamlNode::Kind::kScalar;
-  reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // behind "where: "
+  reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // without "where: "
   return short_text(reason);
 }
 

@@ -8,15 +8,15 @@
 
 namespace stereotlm::explore {
 
-// What stats.json says, as a row of numbers.
+// The contents of stats.json as one row of a database.
 struct Figures {
-  // By the dotted path of their keys; an element of a list goes by its name: "banks.bank0.reads". A list of
-  // numbers is one text, "[1, 2]".
+  // Each with the dotted path of its key; an element of a list is named by its member `name`, as in
+  // "banks.bank0.reads". A list of numbers is one text, "[1,2]".
   std::vector<platform::BoardValue> values;
   std::vector<StoredBlame> blame;
 };
 
-// `document`: of report::stats_document().
+// `document`: as report::stats_document() returns it.
 Figures figures_of(const nlohmann::ordered_json& document);
 
 }  // namespace stereotlm::explore

@@ -9,7 +9,7 @@
 
 #include "models/kernels/filter_kernel.h"
 #include "platform/config/board_keys.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/explore/store/bank_names.h"
 
 namespace stereotlm::explore {
@@ -19,6 +19,7 @@ using platform::BankConfig;
 using platform::BoardConfig;
 using platform::Buffer;
 using platform::Key;
+using platform::PlacedBuffer;
 
 constexpr int kTurnaroundCycles = 2;  // typical, contract section 2
 
@@ -81,7 +82,7 @@ class Steps {
     }
   }
 
-  // Of all banks that turn round, together.
+  // Changes the turnaround of all banks that have any at the same time.
   void add_turnarounds() {
     std::set<int> cycles;
     for (const BankConfig& bank : board_.banks) {
@@ -103,7 +104,7 @@ class Steps {
 
   void add_buffers() {
     using List = std::vector<std::string>;
-    const auto add_lists = [this](const char* knob,
+    const auto add_lists = [this](const std::string& knob,
                                   const std::vector<List platform::AllocationConfig::*>& lists) {
       const std::size_t size = (board_.allocation.*lists.front()).size();
       for (const bool more : {true, false}) {
@@ -119,25 +120,25 @@ class Steps {
         add({knob, counted(size), counted(more ? size + 1 : size - 1), std::move(changed)});
       }
     };
-    add_lists("allocation.left_image, right_image",
+    add_lists(fmt::format("{}, {}", key_of(Buffer::kLeftImage), name_of(Buffer::kRightImage)),
               {&platform::AllocationConfig::left_image, &platform::AllocationConfig::right_image});
-    add_lists("allocation.disparity", {&platform::AllocationConfig::disparity});
+    add_lists(key_of(Buffer::kDisparity), {&platform::AllocationConfig::disparity});
   }
 
-  // A new bank is like the one that its buffer comes from.
+  // The new bank is like the bank that the buffer leaves.
   void add_banks_more() {
     std::string name = "new_bank";
     const auto is_name = [&](const BankConfig& bank) {
       return bank.name == name || differ_in_case(bank.name, name);
     };
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
-    for (const Buffer& buffer : platform::buffers(board_.allocation)) {
+    for (const PlacedBuffer& buffer : platform::buffers(board_.allocation)) {
       if (buffers_in(buffer.bank) < 2) continue;
       BoardConfig changed = board_;
       changed.banks.push_back(bank_of(buffer.bank));
       changed.banks.back().name = name;
-      move(buffer, name, changed);
-      KnobStep step{"a bank more", fmt::format("{} in {}", label(buffer), buffer.bank), "in one of its own",
+      move_buffer(changed.allocation, buffer, name);
+      KnobStep step{"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), "in one of its own",
                     std::move(changed)};
       step.only_best = true;
       add(std::move(step));
@@ -149,8 +150,8 @@ class Steps {
       for (const BankConfig& taking : board_.banks) {
         if (left.name == taking.name || buffers_in(left.name) == 0 || buffers_in(taking.name) == 0) continue;
         BoardConfig changed = board_;
-        for (const Buffer& buffer : platform::buffers(board_.allocation)) {
-          if (buffer.bank == left.name) move(buffer, taking.name, changed);
+        for (const PlacedBuffer& buffer : platform::buffers(board_.allocation)) {
+          if (buffer.bank == left.name) move_buffer(changed.allocation, buffer, taking.name);
         }
         KnobStep step{"a bank less", left.name, "into " + taking.name, std::move(changed)};
         step.only_best = true;
@@ -211,27 +212,14 @@ class Steps {
 
   std::size_t buffers_in(const std::string& bank) const {
     std::size_t count = 0;
-    for (const Buffer& buffer : platform::buffers(board_.allocation)) count += buffer.bank == bank ? 1 : 0;
+    for (const PlacedBuffer& buffer : platform::buffers(board_.allocation))
+      count += buffer.bank == bank ? 1 : 0;
     return count;
   }
   const BankConfig& bank_of(const std::string& name) const {
     return *std::find_if(board_.banks.begin(), board_.banks.end(),
                          [&](const BankConfig& bank) { return bank.name == name; });
   }
-  static std::string label(const Buffer& buffer) {
-    const std::string name = buffer.key.substr(buffer.key.find('.') + 1);
-    return buffer.index < 0 ? name : fmt::format("{}[{}]", name, buffer.index);
-  }
-  static void move(const Buffer& buffer, const std::string& bank, BoardConfig& board) {
-    platform::AllocationConfig& allocation = board.allocation;
-    const auto index = static_cast<std::size_t>(buffer.index);
-    if (buffer.key == "allocation.left_image") allocation.left_image[index] = bank;
-    if (buffer.key == "allocation.right_image") allocation.right_image[index] = bank;
-    if (buffer.key == "allocation.disparity") allocation.disparity[index] = bank;
-    if (buffer.key == "allocation.left_lut") allocation.left_lut = bank;
-    if (buffer.key == "allocation.right_lut") allocation.right_lut = bank;
-  }
-
   const BoardConfig& board_;
   std::vector<KnobStep> steps_;
 };

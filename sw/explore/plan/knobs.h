@@ -14,38 +14,36 @@ struct KnobStep {
   std::string from;
   std::string to;
   platform::BoardConfig board;
-  bool changes_disparities = false;  // other disparities come out of it
-  // Of the steps of a knob that stand for one decision (which buffer gets the new bank) only the best
-  // matters.
+  bool changes_disparities = false;  // the board computes other disparities
+  // The steps of this knob are alternatives (which buffer gets the new bank), and only the best of them
+  // counts.
   bool only_best = false;
 };
 
-// One step of every knob of a board, as far as there is such a board:
+// One step of every knob of a board, as long as the changed board is valid:
 //   a number: up and down by one (the window by two); a word: each other one
 //   fpga.priority: two neighbours exchanged
-//   ssram.banks.*.kind: all banks of another kind (a new sync_burst has 2 turnaround cycles)
-//   ssram.banks.*.turnaround_cycles: of all banks that have any, up and down by one
-//   allocation.left_image, right_image, and allocation.disparity: a buffer more, in the bank of the first,
-//   or less
-//   a bank more: a buffer that shares its bank gets a new one, like that
-//   a bank less: the buffers of one bank move into another that is used
-// The size of the images, the depth of banks and the device stay. `camera`: of the whole computer, else the
-// knobs of the board alone.
+//   ssram.banks.*.kind: all banks get another kind (a new sync_burst has 2 turnaround cycles)
+//   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
+//   allocation.left_image, right_image, and allocation.disparity: a buffer more, in the bank of the first, or
+//   one less
+//   a bank more: a buffer that shares its bank gets a new bank, which is like the shared one
+//   a bank less: all buffers of one bank move into another bank that is used
+// The size of the images, the depth of banks and the device do not change. `camera`: all knobs of the
+// computer, else only those of the board.
 std::vector<KnobStep> knob_steps(const platform::BoardConfig& board, bool camera);
 
-// These boards, in their order.
+// A list of boards as points, in the order of the list.
 class BoardPoints : public Points {
  public:
   BoardPoints(std::vector<platform::BoardConfig> boards, const PointRun& run)
       : boards_(std::move(boards)), run_(run) {}
   std::uint64_t size() const override { return boards_.size(); }
   Point point(std::uint64_t number) const override { return make_point(number, boards_.at(number), run_); }
-  const std::vector<Condition>& conditions() const override { return none_; }
 
  private:
   std::vector<platform::BoardConfig> boards_;
   PointRun run_;
-  std::vector<Condition> none_;
 };
 
 }  // namespace stereotlm::explore

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform/config/yaml_values.h"
+#include "platform/config/tables.h"
 #include "sw/explore/plan/shuffled_numbers.h"
 
 namespace stereotlm::explore {
 namespace {
-
-using platform::BoardValue;
 
 std::string rules_of(const std::vector<platform::Diagnostic>& problems) {
   std::string text;
@@ -19,28 +17,17 @@ std::string rules_of(const std::vector<platform::Diagnostic>& problems) {
   return text;
 }
 
-bool is_of_run(const std::string& path) { return path == kSourcePath || path == kFramesPath; }
-
 }  // namespace
-
-void Plan::apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
-                 platform::BoardDraft& draft, PointRun& run) {
-  if (is_of_run(path)) {
-    apply_to_run(path, value, run);
-  } else {
-    draft.replace(path, value, file);
-  }
-}
-
-void Plan::apply_to_run(const std::string& path, const platform::YamlNode& value, PointRun& run) {
-  if (path == kSourcePath) run.camera = value.text == "camera";
-  if (path == kFramesPath) run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
-}
 
 Plan::Combination Plan::combination(std::uint64_t number) const {
   Combination made = {*base_, run_};
-  for (const PlanValue& value : values_at(number))
-    apply(value.path, value.value, path_, made.draft, made.run);
+  for (const PlanValue& value : values_at(number)) {
+    if (may_vary(value.path)) {
+      apply_run_key(value.path, value.value, made.run);
+    } else {
+      made.draft.replace(value.path, value.value, path_);
+    }
+  }
   return made;
 }
 
@@ -50,8 +37,8 @@ Point Plan::point(std::uint64_t number) const {
   if (!reading.problems.empty()) {
     return impossible_point(number, draft.to_yaml(), reading.board, run, rules_of(reading.problems));
   }
-  auto problem = wrong_size(reading.board);
-  if (!problem) problem = missing_table(reading.board);
+  auto problem = size_problem(reading.board);
+  if (!problem) problem = buffer_problem(reading.board);
   if (!problem) return make_point(number, reading.board, run);
   return impossible_point(number, to_yaml(reading.board), reading.board, run,
                           fmt::format("{}: {}", kCalibrationPath, *problem));
@@ -61,23 +48,19 @@ std::optional<std::string> Plan::use_calibration(const std::string& sha256, int 
   run_.calibration = sha256;
   tables_width_ = width;
   tables_height_ = height;
-  const auto problem = varies("image") ? std::nullopt : wrong_size(*base_board_);
+  const auto problem = varies("image") ? std::nullopt : size_problem(*base_board_);
   if (problem || varies("allocation")) return problem;
-  return missing_table(*base_board_);
+  return buffer_problem(*base_board_);
 }
 
-std::optional<std::string> Plan::wrong_size(const platform::BoardConfig& board) const {
-  const bool is_right = tables_width_ == board.image.width && tables_height_ == board.image.height;
-  if (run_.calibration.empty() || is_right) return std::nullopt;
-  return fmt::format("image size = {}x{}: must be that of the board's images, {}x{}", tables_width_,
-                     tables_height_, board.image.width, board.image.height);
+std::optional<std::string> Plan::size_problem(const platform::BoardConfig& board) const {
+  if (run_.calibration.empty()) return std::nullopt;
+  return platform::calibration_size_problem(board, tables_width_, tables_height_);
 }
 
-std::optional<std::string> Plan::missing_table(const platform::BoardConfig& board) const {
-  const platform::AllocationConfig& allocation = board.allocation;
-  if (run_.calibration.empty() || (allocation.left_lut && allocation.right_lut)) return std::nullopt;
-  return fmt::format("goes with a board that has both tables; allocation.{} = none",
-                     allocation.left_lut ? "right_lut" : "left_lut");
+std::optional<std::string> Plan::buffer_problem(const platform::BoardConfig& board) const {
+  if (run_.calibration.empty()) return std::nullopt;
+  return platform::calibration_buffer_problem(board);
 }
 
 bool Plan::varies(const std::string& path) const {

@@ -19,41 +19,43 @@ struct PlanValue {
   platform::YamlNode value;
 };
 
-// A plan of a sweep: a board, values for some of its keys, and which combinations of them are its points.
-// Points are made one by one, from their numbers: a plan takes as much memory for a million as for ten.
+// The plan of a sweep: a board, values for some of its keys, and the combinations of these values that are
+// points. Each point is made from its number, so that a plan takes as much memory for a million points as for
+// ten.
 class Plan : public Points {
  public:
-  // Reads a plan file; `board`, if it is given, in place of the board that the plan names. Throws
+  // Reads a plan file. `board`: a board in place of the one that the plan names; empty: none. Throws
   // platform::BoardError with everything that is wrong, and with the number of points that the plan would
   // have.
   static Plan load(const std::string& path, const std::string& board = "");
 
-  // Points before conditions.
+  // The number of points before conditions.
   std::uint64_t size() const override { return sample_ ? sample_->points : product_; }
-  // number: 0..size()-1. What it costs is reading a board.
+  // number: 0..size()-1. Reads a board each time.
   Point point(std::uint64_t number) const override;
   const std::vector<Condition>& conditions() const override { return conditions_; }
-  // Paths that vary, in the order of the file.
+  // Paths whose values vary, in the order of the file.
   std::vector<std::string> varied() const;
-  // Of the banks of all points.
+  // Names of all banks of all points, sorted.
   const std::vector<std::string>& banks() const { return banks_; }
   const std::string& path() const { return path_; }
-  const std::string& board() const { return board_; }  // a preset, or the path of a board file
+  const std::string& board() const { return board_; }  // name of a preset, or path of a board file
 
-  // The file of the calibration that `run` names, and where; empty: none.
+  // Path of the calibration that `run` names; empty: none. And the place of that value in the plan.
   const std::string& calibration() const { return calibration_; }
   const std::string& calibration_place() const { return calibration_place_; }
-  // Gives all points the tables of a calibration, of images of that size, in place of the identity. Points
-  // that they do not fit are impossible; if no point can be another one this gives the rule, else nothing.
+  // Gives all points the tables of a calibration of images of that size, in place of the identity. Points
+  // whose boards cannot have them become impossible. Returns the rule that is broken if no point can have
+  // them. `sha256`: of the tables.
   std::optional<std::string> use_calibration(const std::string& sha256, int width, int height);
 
  private:
   friend class PlanReader;
 
-  // Values that move together: at place i each path takes its value i.
+  // Values that vary together: at place i each path takes its value i.
   struct Axis {
     std::vector<std::string> paths;
-    std::vector<PlanValues> values;  // of each path, equally many
+    std::vector<PlanValues> values;  // [path]; all have the same size
 
     std::uint64_t size() const { return values.front().size(); }
   };
@@ -64,26 +66,24 @@ class Plan : public Points {
 
   Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
   std::vector<PlanValue> values_at(std::uint64_t number) const;
-  // What the plan asks for in a point.
+  // The values that the plan gives a point.
   struct Combination {
     platform::BoardDraft draft;
     PointRun run;
   };
   Combination combination(std::uint64_t number) const;
-  // Why a board cannot have the tables of the calibration.
-  std::optional<std::string> wrong_size(const platform::BoardConfig& board) const;
-  std::optional<std::string> missing_table(const platform::BoardConfig& board) const;
-  bool varies(const std::string& path) const;  // the key, or one in it
-  static void apply(const std::string& path, const platform::YamlNode& value, const std::string& file,
-                    platform::BoardDraft& draft, PointRun& run);
-  static void apply_to_run(const std::string& path, const platform::YamlNode& value, PointRun& run);
+  // The reason for which a board cannot have the tables of the calibration: its image size, or a side without
+  // a buffer for a table. Nothing without a calibration.
+  std::optional<std::string> size_problem(const platform::BoardConfig& board) const;
+  std::optional<std::string> buffer_problem(const platform::BoardConfig& board) const;
+  bool varies(const std::string& path) const;  // the key or a key below it varies
 
   std::string path_;
   std::string board_;
   std::string calibration_;
   std::string calibration_place_;
-  int tables_width_ = 0;
-  int tables_height_ = 0;
+  int tables_width_ = 0;   // pixels
+  int tables_height_ = 0;  // pixels
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
   std::vector<std::string> banks_;

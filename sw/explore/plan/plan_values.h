@@ -2,16 +2,43 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "platform/config/board_keys.h"
 #include "platform/config/yaml_tree.h"
-#include "sw/explore/plan/decimal_range.h"
+#include "sw/explore/plan/plan_findings.h"
 
 namespace stereotlm::explore {
 
-// The values that a plan gives one key: a list, or a range, whose values are made one by one by at().
+// The numbers from, from + step, .. : `count` of them, each an exact decimal number with the same number of
+// places.
+struct DecimalRange {
+  std::int64_t from = 0;  // digits without the decimal point
+  std::int64_t step = 1;
+  std::uint64_t count = 0;
+  int places = 0;  // digits behind the decimal point
+
+  std::int64_t digits(std::uint64_t number) const { return from + static_cast<std::int64_t>(number) * step; }
+  // The number as a board file has it, such as "39.9".
+  std::string text(std::uint64_t number) const;
+};
+
+// Reads a range such as {from: 16, to: 128, step: 16}. Returns nothing, and reports the problems, if it is
+// not one. `name`: of the range in messages.
+std::optional<DecimalRange> read_range(const std::string& name, const platform::YamlNode& node,
+                                       PlanFindings& findings);
+
+// The numbers of a range that break a rule.
+struct RefusedNumbers {
+  std::uint64_t count = 0;
+  std::uint64_t first = 0;  // place of the first in the range
+};
+RefusedNumbers refused_numbers(const DecimalRange& range, const platform::IntegerRule& rule);
+RefusedNumbers refused_numbers(const DecimalRange& range, const platform::DecimalKey& rule);
+
+// The values that a plan gives one key: a list, or a range, whose values are made one by one.
 class PlanValues {
  public:
   explicit PlanValues(std::vector<platform::YamlNode> list) : list_(std::move(list)) {}
@@ -25,13 +52,5 @@ class PlanValues {
   std::optional<DecimalRange> range_;
   platform::Place place_;  // of the range
 };
-
-// How many numbers of a range break a rule.
-struct RefusedOfRange {
-  std::uint64_t count = 0;
-  std::uint64_t first = 0;  // the place of the first in the range
-};
-RefusedOfRange refused_of(const DecimalRange& range, const platform::IntegerRule& rule);
-RefusedOfRange refused_of(const DecimalRange& range, const platform::DecimalKey& rule);
 
 }  // namespace stereotlm::explore

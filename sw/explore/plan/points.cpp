@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "platform/config/yaml_values.h"
 #include "sw/files/sha256.h"
 
 namespace stereotlm::explore {
@@ -11,9 +12,28 @@ std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board)
   return run.camera ? kCameraFrames : platform::allocation_period_frames(board);
 }
 
+bool may_vary(const std::string& run_key) { return run_key == kSourcePath || run_key == kFramesPath; }
+
+std::string run_key_problem(const std::string& run_key, const platform::YamlNode& value) {
+  const bool is_source = value.is_scalar() && (value.text == "preloaded" || value.text == "camera");
+  if (run_key == kSourcePath && !is_source)
+    return "preloaded (the board alone) or camera (the whole computer)";
+  if (run_key == kFramesPath && !kFramesRule.allows(platform::integer_of(value).value_or(0)))
+    return kFramesRule.text() + ", the frames of each point";
+  if (run_key == kCalibrationPath && (!value.is_scalar() || value.text.empty()))
+    return "the file of a calibration, as written by stereotlm calibrate";
+  return "";
+}
+
+void apply_run_key(const std::string& run_key, const platform::YamlNode& value, PointRun& run) {
+  if (run_key == kSourcePath) run.camera = value.text == "camera";
+  if (run_key == kFramesPath)
+    run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
+}
+
 namespace {
 
-// What is the same for each.
+// The members that possible and impossible points have in common.
 Point point_of(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& board,
                const PointRun& run) {
   Point point;
@@ -46,6 +66,11 @@ Point impossible_point(std::uint64_t number, const std::string& yaml, const plat
   Point point = point_of(number, yaml, asked_for, run);
   point.reason = reason;
   return point;
+}
+
+const std::vector<Condition>& Points::conditions() const {
+  static const std::vector<Condition> kNone;
+  return kNone;
 }
 
 }  // namespace stereotlm::explore

@@ -5,14 +5,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "platform/config/board_rules.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/database.h"
 
 namespace stereotlm::explore {
 namespace {
 
-// What the database says of some boards, to the search.
+// Records the results of some boards, which the database holds, in the search.
 void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path,
                      AllocationSearch& search) {
   Database store(path, Database::Access::kRead);

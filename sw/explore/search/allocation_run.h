@@ -10,10 +10,10 @@
 
 namespace stereotlm::explore {
 
-// Simulates all that a search asks for, with the database `sweep.store`, and tells the search what comes out.
-// `keep_going` is called several times a second with the boards that are done and those that are left at
-// most; false, and the search not at its end, if that has ended it. A board that could not be simulated is
-// recorded as one that has failed. Throws as sweep() does.
+// Simulates the boards that a search asks for, and records the results in the search. The results are stored
+// in `sweep.store`. `keep_going` is called several times a second with the number of simulated boards and the
+// largest number that may be left. Returns false if `keep_going` has ended the search before its end. A board
+// that could not be simulated is recorded as failed. Throws as sweep() does.
 bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOptions& sweep,
               const std::function<bool(std::uint64_t done, std::uint64_t most_left)>& keep_going);
 

@@ -6,22 +6,23 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/explore/search/allocations.h"
 
 namespace stereotlm::explore {
 namespace {
 
-// Of each number of banks at a time: enough to keep processors busy, few enough not to run many that the
-// others would have left out.
+// The number of boards that next() returns for each number of banks: enough to keep the processors busy, and
+// few enough that not many runs start which the results of the others would have left out.
 constexpr std::uint64_t kBoardsAtOnce = 8;
 
-// A bound and a rate are quotients, each rounded; what they differ by then is not a difference.
+// Tolerance between a bound and a rate, relative: both are rounded quotients.
 constexpr double kRounding = 1e-9;
 
+// The banks of all buffers, in one text.
 std::string key_of(const platform::BoardConfig& board) {
   std::string key;
-  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) key += buffer.bank + ' ';
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) key += buffer.bank + ' ';
   return key;
 }
 
@@ -102,7 +103,7 @@ double AllocationSearch::rate_to_reach(std::size_t number) const {
   return rate == best.end() ? 0 : rate->second * (1 - kRounding);
 }
 
-// Of those that are known, where boards are placements.
+// The best known rate for each number of banks; empty if by_frames_.
 std::map<int, double> AllocationSearch::best_rates() const {
   std::map<int, double> best;
   for (std::size_t place = 0; place < fitting_.size() && !by_frames_; ++place) {

@@ -13,46 +13,47 @@
 
 namespace stereotlm::explore {
 
-// What the run of a board has given.
+// The result of the run of a board.
 struct AllocationOutcome {
-  std::uint64_t cycles = 0;      // frame_cycles of all frames of the run
-  double frames_per_second = 0;  // of the core alone, or delivered by time 0 .. last delivery
-  std::optional<double> steady;  // of a computer, between the first and the last delivery
-  bool loses_pixels = false;     // of a computer: a capture has dropped some
-  std::string failure;           // what a run has ended with that could not be simulated; the rest is empty
+  std::uint64_t cycles = 0;      // sum of frame_cycles of all frames
+  double frames_per_second = 0;  // of the core alone; or of a computer, from time 0 to the last delivery
+  std::optional<double> steady;  // frames per second of a computer, from the first to the last delivery
+  bool loses_pixels = false;     // a capture of a computer has dropped pixels
+  std::string failure;  // the reason if the board could not be simulated; the other members are empty
 };
 
-// The best of the placements that use so many banks.
+// The best of the placements that use a given number of banks. Placements that lose pixels or have failed do
+// not count.
 struct BestPlacement {
   int banks = 0;
-  std::uint64_t placements = 0;  // that use so many banks and fit
-  std::uint64_t known = 0;       // of them, those whose frame rate has been simulated
-  std::uint64_t given_up = 0;    // of the others, those whose run was given up
-  std::uint64_t losing = 0;      // of those known, those that lose pixels ..
-  std::uint64_t failed = 0;      // .. and those whose run has failed: they are out of the competition
-  std::uint64_t reached_by = 0;  // how many reach the best; 0: all are out, and what follows is empty
-  double frames_per_second = 0;
-  AllocationOutcome outcome;  // of its run; where frames are simulated one by one only the cycles, of a turn
-  Placement witness;          // the first that reaches it
+  std::uint64_t placements = 0;  // placements that use so many banks and fit
+  std::uint64_t known = 0;       // placements whose frame rate was simulated
+  std::uint64_t given_up = 0;    // placements whose run was given up
+  std::uint64_t losing = 0;      // known placements that lose pixels
+  std::uint64_t failed = 0;      // known placements whose run has failed
+  std::uint64_t reached_by = 0;  // placements with the best rate; 0: no placement counts, the rest is empty
+  double frames_per_second = 0;  // the best rate
+  AllocationOutcome outcome;     // of the witness; if by_frames(), only the cycles, of one turn of the lists
+  Placement witness;             // the first placement with the best rate
 };
 
-// All placements of a board's buffers, and the boards that have to be simulated to know the best of them for
-// each number of banks.
+// Finds the best placement of a board's buffers for each number of banks. It selects the boards to simulate,
+// and the caller records their results.
 //
-// Of the core alone, where a frame leaves nothing behind (frames_are_independent()), these are one frame for
-// each way in which the buffers of a frame share banks: all are simulated, and every frame rate is known.
-// Else each placement is a run of its own; then those whose bound is below the best known for as many banks
-// are left out, and a run may be given up as soon as it cannot reach that any more.
+// If frames_are_independent() and the core runs alone, the search is by frames: it needs one frame for each
+// way in which the buffers of a frame share banks, and gets the rate of every placement from those. Otherwise
+// each placement is a run. Placements whose bound is below the best known rate for as many banks are left
+// out, and a run may be given up as soon as it can no longer reach that rate.
 class AllocationSearch {
  public:
-  // Frames per second that a run of the board cannot exceed without losing pixels.
+  // An upper bound of the frames per second of a board that loses no pixels.
   using BoundOf = std::function<double(const platform::BoardConfig& board)>;
 
-  // Of more different placements, fitting or not, there is no search.
+  // Limit of different placements, whether they fit or not.
   static constexpr std::uint64_t kMostPlacements = 5'000'000;
 
-  // most_banks: 1..banks of the board. run: of every point; its frames are 0 (see frames_of()). Throws
-  // std::length_error if there are too many placements.
+  // most_banks: 1..banks of the board. run: the run of every point; its number of frames is 0 (see
+  // frames_of()). Throws std::length_error if there are more than kMostPlacements placements.
   AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
                    const BoundOf& bound);
 
@@ -61,31 +62,31 @@ class AllocationSearch {
   bool by_frames() const { return by_frames_; }
   const PointRun& run() const { return run_; }
 
-  // The boards to simulate next, by numbers below size(), after what has been recorded; none at the end. They
-  // depend on nothing else.
+  // The numbers, below size(), of the boards to simulate next; none at the end of the search. They depend
+  // only on the results recorded so far.
   std::vector<std::size_t> next() const;
   // Throws std::logic_error if a run is faster than its bound.
   void record(std::size_t number, const AllocationOutcome& outcome);
-  // Its run could not reach rate_to_reach() any more.
+  // Records that the run was given up, because it could no longer reach rate_to_reach().
   void record_given_up(std::size_t number) { given_up_.at(number) = true; }
-  // What a board has to reach to be the best for its number of banks, as far as is known; 0 where that does
-  // not matter.
+  // The frames per second that a board must reach to be the best for its number of banks, among the results
+  // so far. 0: the board is simulated in any case.
   double rate_to_reach(std::size_t number) const;
-  // Boards that may have to be simulated at most: all, but those that were recorded and those left out so
-  // far.
+  // The largest number of boards that may still have to be simulated: all boards without those that were
+  // recorded or left out so far.
   std::uint64_t most_left() const;
 
   std::size_t size() const { return outcomes_.size(); }
   Point point(std::size_t number) const;
 
-  // For each number of banks that some placement fits into, the fewest first. Once next() has come to its
-  // end.
+  // The best placement for each number of banks that can hold the buffers, the fewest banks first. Final once
+  // next() returns no boards.
   std::vector<BestPlacement> best() const;
-  // The first board whose run has failed, if any: "ALLOCATION: what it has ended with".
+  // "ALLOCATION: REASON" of the first board whose run has failed; empty if none has.
   std::string first_failure() const;
 
  private:
-  AllocationOutcome outcome_of(std::size_t placement) const;  // known
+  AllocationOutcome outcome_of(std::size_t placement) const;  // of a known placement
   bool is_known(std::size_t placement) const { return by_frames_ || outcomes_[placement].has_value(); }
   bool is_done(std::size_t placement) const {
     return outcomes_[placement].has_value() || given_up_[placement];
@@ -99,28 +100,27 @@ class AllocationSearch {
   std::uint64_t turn_frames_;
   std::uint64_t placements_ = 0;
   std::vector<Placement> fitting_;
-  std::vector<std::size_t> by_bound_;  // places in fitting_, the highest bound first
-  std::vector<double> bounds_;         // of fitting_
+  std::vector<std::size_t> by_bound_;  // indices of fitting_, the highest bound first
+  std::vector<double> bounds_;         // [index of fitting_]: frames per second
   std::vector<platform::BoardConfig> frame_boards_;
-  std::map<std::string, std::size_t> frame_numbers_;        // of frame boards, by what tells them apart
-  std::vector<bool> given_up_;                              // of fitting_
-  std::vector<std::optional<AllocationOutcome>> outcomes_;  // of frame boards, or of fitting_
+  std::map<std::string, std::size_t> frame_numbers_;  // [key_of(board)]: index of frame_boards_
+  // [number of a board: index of frame_boards_ if by_frames_, else of fitting_]
+  std::vector<bool> given_up_;
+  std::vector<std::optional<AllocationOutcome>> outcomes_;
 };
 
-// Some boards of a search.
+// Some boards of a search as points.
 class AllocationPoints : public Points {
  public:
-  // `search` outlives it.
+  // `search` must outlive this object.
   AllocationPoints(const AllocationSearch& search, std::vector<std::size_t> numbers)
       : search_(search), numbers_(std::move(numbers)) {}
   std::uint64_t size() const override { return numbers_.size(); }
   Point point(std::uint64_t number) const override { return search_.point(numbers_.at(number)); }
-  const std::vector<Condition>& conditions() const override { return none_; }
 
  private:
   const AllocationSearch& search_;
   std::vector<std::size_t> numbers_;
-  std::vector<Condition> none_;
 };
 
 }  // namespace stereotlm::explore

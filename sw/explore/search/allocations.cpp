@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::explore {
 namespace {
 
 using platform::BankConfig;
 using platform::BoardConfig;
-using platform::Buffer;
+using platform::PlacedBuffer;
 
 bool are_alike(const BankConfig& a, const BankConfig& b) {
   return a.words == b.words && a.kind == b.kind && a.turnaround_cycles == b.turnaround_cycles;
@@ -41,7 +42,7 @@ class Placements {
   }
 
  private:
-  // Of those like it that are not used.
+  // Whether no unused bank before it is like it.
   bool is_first_of_its_kind(std::size_t bank) const {
     for (std::size_t other = 0; other < bank; ++other) {
       if (used_[other] == 0 && are_alike(board_.banks[other], board_.banks[bank])) return false;
@@ -53,12 +54,12 @@ class Placements {
   int most_banks_;
   const std::function<void(const Placement&)>& visit_;
   std::size_t buffers_;
-  std::vector<int> used_;  // [bank]: buffers in it
-  int banks_ = 0;          // that are used
+  std::vector<int> used_;  // [bank]: number of buffers in it
+  int banks_ = 0;          // number of banks with buffers
   Placement placement_;
 };
 
-// Takes for each bank the first one that is like it and not taken for another.
+// Replaces each bank by the first bank that is like it and does not replace another.
 class FirstBanks {
  public:
   explicit FirstBanks(const BoardConfig& board) : board_(board) {}
@@ -79,8 +80,8 @@ class FirstBanks {
 
  private:
   const BoardConfig& board_;
-  std::map<int, int> taken_;
-  std::set<int> given_;
+  std::map<int, int> taken_;  // [bank]: the bank that replaces it
+  std::set<int> given_;       // banks that replace one
 };
 
 }  // namespace
@@ -91,7 +92,7 @@ int banks_used(const Placement& placement) {
 
 bool fits(const BoardConfig& board, const Placement& placement) {
   std::vector<std::uint64_t> words(board.banks.size());
-  const std::vector<Buffer> buffers = platform::buffers(board.allocation);
+  const std::vector<PlacedBuffer> buffers = platform::buffers(board.allocation);
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     words[static_cast<std::size_t>(placement[i])] += platform::buffer_words(buffers[i], board.image);
   }
@@ -108,14 +109,10 @@ void for_each_placement(const BoardConfig& board, int most_banks,
 
 BoardConfig placed(const BoardConfig& board, const Placement& placement) {
   BoardConfig result = board;
-  auto bank = placement.begin();
-  const auto next = [&] { return board.banks[static_cast<std::size_t>(*bank++)].name; };
-  platform::AllocationConfig& allocation = result.allocation;
-  for (auto* list : {&allocation.left_image, &allocation.right_image, &allocation.disparity}) {
-    for (std::string& name : *list) name = next();
-  }
-  for (auto* table : {&allocation.left_lut, &allocation.right_lut}) {
-    if (*table) *table = next();
+  const std::vector<PlacedBuffer> buffers = platform::buffers(board.allocation);
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const BankConfig& bank = board.banks[static_cast<std::size_t>(placement[i])];
+    platform::move_buffer(result.allocation, buffers[i], bank.name);
   }
   return result;
 }
@@ -129,7 +126,7 @@ bool frames_are_independent(const BoardConfig& board) {
 BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement, std::uint64_t frame) {
   BoardConfig result = board;
   FirstBanks banks(board);
-  std::size_t first = 0;
+  std::size_t first = 0;  // of the list or table, as an index of the placement
   platform::AllocationConfig& allocation = result.allocation;
   for (auto* list : {&allocation.left_image, &allocation.right_image, &allocation.disparity}) {
     const std::size_t length = list->size();
@@ -144,12 +141,11 @@ BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement,
 
 std::string allocation_text(const platform::BoardConfig& board) {
   std::string text;
-  std::string last;
-  for (const platform::Buffer& buffer : platform::buffers(board.allocation)) {
-    const std::string name = buffer.key.substr(buffer.key.find('.') + 1);
-    if (name != last) text += (text.empty() ? "" : ", ") + name;
+  std::optional<platform::Buffer> last;
+  for (const PlacedBuffer& buffer : platform::buffers(board.allocation)) {
+    if (buffer.buffer != last) text += (text.empty() ? "" : ", ") + std::string(name_of(buffer.buffer));
     text += ' ' + buffer.bank;
-    last = name;
+    last = buffer.buffer;
   }
   return text;
 }

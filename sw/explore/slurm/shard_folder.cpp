@@ -53,7 +53,7 @@ constexpr const char* kMergeScript =
 program=$1 folder=$2 shards=$3 store=$4
 for shard in $(seq 0 $((shards - 1))); do
   [ -e "$folder/shard_$shard.db" ] && continue
-  echo "shard $shard is not whole: the command that has submitted it goes on with it" >&2
+  echo "shard $shard is not finished: run the command that submitted it to resume" >&2
   exit 1
 done
 set -- "$folder"/shard_*.db
@@ -63,7 +63,7 @@ set -- "$folder"/shard_*.db
 
 std::string sha(const std::string& text) { return files::sha256_hex(text.data(), text.size()); }
 
-// What makes a sweep another one.
+// A text that differs between different sweeps.
 std::string identity(const ShardedSweep& sweep) {
   const auto& calibration = sweep.calibration;
   const std::string tables = calibration
@@ -78,7 +78,7 @@ std::string shard_file(std::uint64_t shard, const char* ending) {
   return fmt::format("shard_{}{}", shard, ending);
 }
 
-// Empty if it is not there.
+// The contents of a file; empty if it does not exist.
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -106,7 +106,7 @@ void ShardFolder::lock() {
   const std::string path = file(kLock);
   if (!fs::is_empty(path_) && !fs::exists(path)) {
     throw std::runtime_error(path_ +
-                             ": is there, and not as a folder of shards: remove it, or give another --out");
+                             ": exists, and is not a folder of shards: remove it, or give another --out");
   }
   lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) throw std::system_error(errno, std::generic_category(), path);
@@ -127,7 +127,7 @@ void ShardFolder::keep_points(const std::string& version) {
   for (const std::string& path : stores) {
     if (fs::path(path).extension() != ".work") continue;
     { const Store completed(path, version); }
-    merge_stores({path}, path);  // without a journal, which would take two more open files than it does
+    merge_stores({path}, path);  // removes its journal, with which the merge below would open two more files
   }
   const StoreLock lock(store_);
   if (fs::file_size(store_) > 0) stores.push_back(store_);
@@ -164,8 +164,9 @@ void ShardFolder::remove() {
   fs::remove_all(path_);
 }
 
-// NFS may say for a minute of a single name that it is not there; the list of a folder is fresh.
-void ShardFolder::look() {
+// On NFS a query for a single name may fail for a minute after the file was made; the list of a folder is
+// current.
+void ShardFolder::refresh() {
   names_.clear();
   for (const auto& entry : fs::directory_iterator(path_)) names_.insert(entry.path().filename().string());
 }

@@ -6,21 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "sw/explore/sweep/sweep_counts.h"
+#include "sw/explore/sweep/sweep.h"
 
 namespace stereotlm::explore {
 
-// What the tasks of a sweep on several machines are given.
+// A sweep on several machines: the data that its tasks need.
 struct ShardedSweep {
-  std::string plan;                  // the text of its file
-  std::optional<std::string> board;  // that of the board file that it names; nothing: it names a preset
+  std::string plan;                  // contents of its file
+  std::optional<std::string> board;  // contents of the board file that it names; nothing: it names a preset
   struct Calibration {
     std::string file;
     std::string left_lut;
     std::string right_lut;
   };
-  std::optional<Calibration> calibration;  // the bytes of its files; nothing: tables are the identity
-  std::vector<std::string> banks;          // of all points
+  std::optional<Calibration> calibration;  // contents of its files; nothing: tables are the identity
+  std::vector<std::string> banks;          // names of the banks of all points
   std::string version;                     // of the program
   std::uint64_t points = 0;
   std::uint64_t shards = 1;
@@ -28,13 +28,13 @@ struct ShardedSweep {
   std::uint64_t points_of(std::uint64_t shard) const;
 };
 
-// The folder STORE.shards, on a file system that all machines share. There lie copies of the plan, of its
-// board and of its calibration, the scripts of the tasks, and for each shard its store, its counts and its
-// log: some files a shard, none a point. A shard is whole when shard_I.db is there. Member functions throw
+// The folder STORE.shards, on a file system that all machines share. It holds copies of the plan, its board
+// and its calibration, the scripts of the tasks, and the store, the counts and the log of each shard: some
+// files for each shard, none for each point. A shard is whole once shard_I.db exists. Member functions throw
 // std::runtime_error that names the file.
 class ShardFolder {
  public:
-  explicit ShardFolder(const std::string& store);  // does not touch it
+  explicit ShardFolder(const std::string& store);  // neither makes nor changes the folder
   ~ShardFolder();
   ShardFolder(const ShardFolder&) = delete;
   ShardFolder& operator=(const ShardFolder&) = delete;
@@ -47,26 +47,26 @@ class ShardFolder {
   static constexpr const char* kMergeLog = "merge.log";
 
   bool exists() const;
-  // Makes it if it is not there, and keeps other processes out until this object or the process ends.
+  // Makes the folder if there is none. Locks it until this object or the process ends.
   void lock();
-  // Whether it is there for this sweep and not for another.
+  // Whether the folder exists and belongs to this sweep.
   bool is_of(const ShardedSweep& sweep) const;
-  // Puts the points of all shards, whole or not, into the store. Nobody may write to them.
+  // Merges the points of all shards, whole or not, into the store. No process may write to the shards.
   void keep_points(const std::string& version);
-  // Leaves in it what the tasks of this sweep need, and nothing else; and gives the store, if it is there,
-  // the form in which many may read it.
+  // Puts the files that the tasks of this sweep need into the folder, and removes all others. If the store
+  // exists, gives it the form that many processes may read.
   void begin(const ShardedSweep& sweep);
   void remove();
 
   bool is_whole(std::uint64_t shard) const;
-  bool is_merged() const;  // the last task has put all shards into the store
-  // As the shard's task has last said it: `total` 0 if it has said nothing yet.
+  bool is_merged() const;  // the last job has merged all shards into the store
+  // The counts that the task of the shard has written last; all 0 if it has written none yet.
   SweepCounts counts(std::uint64_t shard) const;
-  // What a log says at its end; empty if it is not there.
+  // The last line of a log; empty if there is no log.
   static std::string last_line(const std::string& log);
 
-  // Looks what is there: is_whole() and is_merged() are as of the last look.
-  void look();
+  // Lists the folder; is_whole() and is_merged() refer to the last list.
+  void refresh();
 
  private:
   std::string file(const std::string& name) const { return path_ + '/' + name; }

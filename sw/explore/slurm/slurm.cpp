@@ -19,7 +19,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-// "sbatch: error: one\nsbatch: error: another\n" as "sbatch: one; another".
+// Turns "sbatch: error: one\nsbatch: error: another\n" into "sbatch: one; another".
 std::string words_of(const std::string& program, const process::CommandEnd& end) {
   std::string words;
   for (std::string line : split(end.errors.empty() ? end.out : end.errors, '\n')) {
@@ -34,7 +34,7 @@ std::string words_of(const std::string& program, const process::CommandEnd& end)
 
 std::string run(const std::vector<std::string>& words) {
   try {
-    // What a user has set for the eyes is not for programs. SBATCH_.. is for any job.
+    // A user sets SQUEUE_.. and SCANCEL_.. for interactive use; SBATCH_.. also applies to jobs of programs.
     const process::CommandEnd end = process::run_command(words, {"SQUEUE_", "SCANCEL_"});
     if (end.status != 0) throw SlurmError(words_of(words[0], end));
     return end.out;
@@ -54,10 +54,10 @@ std::optional<std::uint64_t> number_of(const std::string& text) {
 }  // namespace
 
 bool SlurmTask::is_live() const {
-  // From "JOB STATE CODES" of squeue's manual: what is over.
-  constexpr std::array kOver = {"BOOT_FAIL", "CANCELLED",     "COMPLETED", "DEADLINE", "FAILED",
-                                "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED",  "TIMEOUT"};
-  return std::find(kOver.begin(), kOver.end(), state) == kOver.end();
+  // The states of ended jobs, from "JOB STATE CODES" in the manual of squeue.
+  constexpr std::array kEnded = {"BOOT_FAIL", "CANCELLED",     "COMPLETED", "DEADLINE", "FAILED",
+                                 "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED",  "TIMEOUT"};
+  return std::find(kEnded.begin(), kEnded.end(), state) == kEnded.end();
 }
 
 std::vector<SlurmTask> read_squeue(const std::string& text) {
@@ -65,7 +65,7 @@ std::vector<SlurmTask> read_squeue(const std::string& text) {
   for (const std::string& line : split(text, '\n')) {
     const std::vector<std::string> parts = split(line, '|');
     if (parts.size() != 4 || !number_of(parts[0])) {
-      throw SlurmError(fmt::format("squeue: not what it was asked for: {}", line));
+      throw SlurmError(fmt::format("squeue: unexpected output: {}", line));
     }
     tasks.push_back({parts[0], number_of(parts[1]), parts[2], parts[3]});
   }
@@ -85,7 +85,7 @@ std::string submit_to_slurm(const std::vector<std::string>& options, const std::
   words.insert(words.end(), arguments.begin(), arguments.end());
   const std::string said = run(words);  // "12", or "12;cluster"
   const std::string job = said.substr(0, said.find_first_of(";\n"));
-  if (!number_of(job)) throw SlurmError(fmt::format("sbatch: has not said the number of a job: {}", job));
+  if (!number_of(job)) throw SlurmError(fmt::format("sbatch: no job number in its output: {}", job));
   return job;
 }
 

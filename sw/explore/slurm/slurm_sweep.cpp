@@ -18,12 +18,12 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr int kMostLosses = 3;
-constexpr int kMostFailures = 10;   // of Slurm's commands, one after another
-constexpr auto kBusyTimeout = 60s;  // with jobs that are cancelled
-constexpr auto kLook = 100ms;
-constexpr const char* kJobsGoOn = "the jobs go on, and the same command waits for them";
+constexpr int kMostFailures = 10;     // of Slurm's commands, in a row
+constexpr auto kCancelTimeout = 60s;  // until the cancelled jobs have ended
+constexpr auto kPollInterval = 100ms;
+constexpr const char* kJobsContinue = "the jobs continue; run the same command to wait for them";
 
-// Between two questions to Slurm, which many ask: a twentieth of the time that the sweep has taken.
+// The time between two queries to Slurm, which serves many users: a twentieth of the elapsed time.
 Clock::duration interval(Clock::duration elapsed) {
   return std::clamp<Clock::duration>(elapsed / 20, 1s, 30s);
 }
@@ -33,7 +33,7 @@ std::string name_of(const std::string& folder) {
   return "sweep-" + files::sha256_hex(folder.data(), folder.size()).substr(0, kDigits);
 }
 
-// sbatch replaces %a and the like in paths of logs.
+// Escapes a path for sbatch, which replaces %a and the like in paths of logs.
 std::string without_patterns(const std::string& path) {
   std::string text;
   for (const char c : path) text += c == '%' ? "%%" : std::string(1, c);
@@ -56,7 +56,7 @@ SlurmSweep::SlurmSweep(const ShardedSweep& sweep, const std::string& store,
       shards_(sweep.shards),
       done_(sweep.shards) {}
 
-// What can be refused is refused before anything is touched.
+// Refuses the sweep, if it must, before it changes anything.
 void SlurmSweep::begin() {
   const std::vector<SlurmTask> tasks = slurm_jobs(name_);
   const bool is_at_work =
@@ -64,8 +64,7 @@ void SlurmSweep::begin() {
   if (is_at_work && !folder_.is_of(sweep_)) {
     throw std::runtime_error(
         fmt::format("{}: jobs of another plan, board, number of shards or version are at work for it: wait "
-                    "for them, or cancel "
-                    "them (scancel --name={})",
+                    "for them, or cancel them (scancel --name={})",
                     folder_.store(), name_));
   }
   bool is_new = !folder_.exists();
@@ -76,7 +75,7 @@ void SlurmSweep::begin() {
       is_new = true;
       folder_.begin(sweep_);
     }
-    look();
+    refresh();
     if (is_at_work) say_(fmt::format("the jobs are there already: {}", fmt::join(live_jobs_, ", ")));
     submit_missing();
   } catch (...) {
@@ -92,22 +91,22 @@ SweepCounts SlurmSweep::wait(const std::function<bool(const SlurmProgress&)>& ke
   const auto start = Clock::now();
   int failures = 0;
   for (;;) {
-    const auto next_look = Clock::now() + interval(Clock::now() - start);
-    while (Clock::now() < next_look) {
+    const auto next_query = Clock::now() + interval(Clock::now() - start);
+    while (Clock::now() < next_query) {
       if (!keep_going(progress_)) {
         cancel();
         return progress_.counts;
       }
-      std::this_thread::sleep_for(kLook);
+      std::this_thread::sleep_for(kPollInterval);
     }
     try {
-      look();
+      refresh();
       if (folder_.is_merged() && live_jobs_.empty()) break;
       submit_missing();
       failures = 0;
     } catch (const SlurmError& error) {
       if (++failures == kMostFailures) {
-        throw SlurmError(fmt::format("{}; {}", error.what(), kJobsGoOn));
+        throw SlurmError(fmt::format("{}; {}", error.what(), kJobsContinue));
       }
       if (failures == 1) say_(fmt::format("{}: asking again", error.what()));
       continue;
@@ -118,15 +117,15 @@ SweepCounts SlurmSweep::wait(const std::function<bool(const SlurmProgress&)>& ke
   return progress_.counts;
 }
 
-// Slurm first: a task that has left it has written all its files.
-void SlurmSweep::look() {
+// Queries Slurm before it lists the folder: a task that has ended in Slurm has written all its files.
+void SlurmSweep::refresh() {
   const std::vector<SlurmTask> tasks = slurm_jobs(name_);
-  folder_.look();
+  folder_.refresh();
   live_jobs_.clear();
   progress_ = {};
   merge_.is_live = false;
   for (Work& shard : shards_) shard.is_live = false;
-  for (const SlurmTask& task : tasks) look_at(task);
+  for (const SlurmTask& task : tasks) take(task);
   for (std::uint64_t shard = 0; shard < sweep_.shards; ++shard) {
     SweepCounts counts = folder_.counts(shard);
     done_[shard] = counts.done();
@@ -135,9 +134,9 @@ void SlurmSweep::look() {
   }
 }
 
-void SlurmSweep::look_at(const SlurmTask& task) {
+void SlurmSweep::take(const SlurmTask& task) {
   if (task.is_live()) live_jobs_.insert(task.job);
-  if (task.index && *task.index >= sweep_.shards) return;  // of another sweep to this store
+  if (task.index && *task.index >= sweep_.shards) return;  // belongs to another sweep into this store
   Work& work = task.index ? shards_[*task.index] : merge_;
   if (!task.is_live()) {
     if (work.job == task.job) work.end = task.state;
@@ -152,7 +151,7 @@ void SlurmSweep::look_at(const SlurmTask& task) {
   if (waits && progress_.reason.empty()) progress_.reason = task.reason;
 }
 
-// What is neither done nor in Slurm's hands: at first all, later what is lost.
+// Submits the shards that are neither finished nor live: all shards at first, lost shards later.
 void SlurmSweep::submit_missing() {
   std::vector<std::uint64_t> missing;
   std::vector<std::uint64_t> lost;
@@ -194,7 +193,7 @@ void SlurmSweep::submit_shards(const std::vector<std::uint64_t>& shards) {
   say_(fmt::format("job {}: {} of {}", job, shards_text(shards), sweep_.shards));
 }
 
-// After all that is under way; the script itself looks whether they have all come to a good end.
+// Submits the merge, which starts after all live jobs. Its script checks that all shards are whole.
 void SlurmSweep::submit_merge() {
   if (merge_.is_live) {
     cancel_in_slurm({merge_.job});
@@ -223,9 +222,9 @@ std::string SlurmSweep::submit(const std::string& script, const std::string& log
   return job;
 }
 
-// False, and given up, if it is lost for the last time.
+// Counts a loss if the work was submitted before. Returns false, and gives the work up, at the last loss.
 bool SlurmSweep::may_continue(Work& work, std::uint64_t done) const {
-  if (work.job.empty()) return true;  // not lost: not submitted yet
+  if (work.job.empty()) return true;
   work.losses = done > work.most_done ? 1 : work.losses + 1;
   work.most_done = std::max(work.most_done, done);
   work.is_given_up = work.losses == kMostLosses;
@@ -235,15 +234,15 @@ bool SlurmSweep::may_continue(Work& work, std::uint64_t done) const {
 void SlurmSweep::cancel() {
   try {
     if (!live_jobs_.empty()) cancel_in_slurm({live_jobs_.begin(), live_jobs_.end()});
-    for (const auto end = Clock::now() + kBusyTimeout; !live_jobs_.empty(); look()) {
+    for (const auto end = Clock::now() + kCancelTimeout; !live_jobs_.empty(); refresh()) {
       if (Clock::now() > end) {
-        say_(fmt::format("the jobs take long to end; what they have done is in {}", folder_.path()));
+        say_(fmt::format("the jobs have not ended yet; their finished points are in {}", folder_.path()));
         return;
       }
       std::this_thread::sleep_for(1s);
     }
   } catch (const SlurmError& error) {
-    throw SlurmError(fmt::format("{}; {}", error.what(), kJobsGoOn));
+    throw SlurmError(fmt::format("{}; {}", error.what(), kJobsContinue));
   }
   folder_.keep_points(sweep_.version);
   folder_.remove();
@@ -258,9 +257,9 @@ void SlurmSweep::give_up() const {
       folder_.path() + '/' + (is_merge ? ShardFolder::kMergeLog : ShardFolder::task_log(number));
   const std::string& end = is_merge ? merge_.end : shard->end;
   throw std::runtime_error(fmt::format(
-      "{} has been lost {} times without a further point ({}); {}; what is done is kept in {}: the same "
-      "command "
-      "goes on with it",
+      "{} has been lost {} times without a further point ({}); {}; finished points are kept in {}: run the "
+      "same "
+      "command to resume",
       is_merge ? "the merge" : "shard " + number, kMostLosses, end.empty() ? "gone from the queue" : end,
       std::filesystem::exists(log) ? fmt::format("its log {} ends with: {}", log, ShardFolder::last_line(log))
                                    : fmt::format("there is no {}: the nodes must share this folder", log),

@@ -8,52 +8,52 @@
 
 #include "sw/explore/slurm/shard_folder.h"
 #include "sw/explore/slurm/slurm.h"
-#include "sw/explore/sweep/sweep_counts.h"
+#include "sw/explore/sweep/sweep.h"
 
 namespace stereotlm::explore {
 
-// How far the jobs of a sweep are.
+// The progress of the jobs of a sweep.
 struct SlurmProgress {
   SweepCounts counts;
   std::uint64_t running = 0;  // shards
-  std::uint64_t waiting = 0;
-  std::string reason;  // for which the first of them waits, in Slurm's word; empty: not known
+  std::uint64_t waiting = 0;  // shards
+  std::string reason;         // Slurm's reason for which the first of them waits; empty: not known
 };
 
-// A sweep whose shards are the tasks of a job array of Slurm, and whose last job merges them into the store.
-// The jobs do not need this process: it shows how far they are and submits again what is lost. Started anew
-// it finds them by their name.
+// A sweep on a cluster: its shards are the tasks of a job array of Slurm, and its last job merges them into
+// the store. This process reports the progress and submits lost work again. The jobs continue without it, and
+// a new process finds them by their name.
 class SlurmSweep {
  public:
   using Say = std::function<void(const std::string& note)>;
 
-  // `options`: of sbatch, for all jobs, such as --partition=long. `say` is given what is worth a line.
+  // `options`: of sbatch, for all jobs, such as --partition=long. `say` is called with notes for the user.
   SlurmSweep(const ShardedSweep& sweep, const std::string& store, const std::vector<std::string>& options,
              Say say);
 
-  // Submits the jobs, or finds them. Throws SlurmError, DatabaseError, std::runtime_error: then nothing has
-  // been submitted, and nothing is left behind.
+  // Submits the jobs, or finds those of an earlier process. Throws SlurmError, DatabaseError, or
+  // std::runtime_error; no new job and no new folder is left then.
   void begin();
 
-  // Waits until all points are in the store; the folder of the shards is gone then. `keep_going` is called
-  // several times a second; once it returns false the jobs are cancelled, and what they have done is put into
-  // the store. Throws SlurmError, DatabaseError, std::runtime_error, among others if a shard is lost again
-  // and again; what is done is kept in the folder.
+  // Waits until all points are in the store, and removes the folder of the shards. `keep_going` is called
+  // several times a second; once it returns false the jobs are cancelled, and their finished points are
+  // merged into the store. Throws SlurmError, DatabaseError, or std::runtime_error, also if a shard is lost
+  // repeatedly; the finished points stay in the folder then.
   SweepCounts wait(const std::function<bool(const SlurmProgress&)>& keep_going);
 
  private:
-  // A shard's task, or the merge.
+  // The task of a shard, or the merge.
   struct Work {
-    std::string job;       // of Slurm, as this object has last seen or submitted it
-    bool is_live = false;  // in Slurm's hands
+    std::string job;       // number of the job that was listed or submitted last; empty: none
+    bool is_live = false;  // the job waits or runs
     bool is_given_up = false;
-    int losses = 0;               // in a row, without a further point
-    std::uint64_t most_done = 0;  // points, when it was lost
-    std::string end;              // of its job, in Slurm's word; empty: not known
+    int losses = 0;               // successive losses without a further point
+    std::uint64_t most_done = 0;  // points that were done at a loss, the maximum
+    std::string end;              // Slurm's state of the ended job; empty: not known
   };
 
-  void look();
-  void look_at(const SlurmTask& task);
+  void refresh();
+  void take(const SlurmTask& task);
   void submit_missing();
   void submit_shards(const std::vector<std::uint64_t>& shards);
   void submit_merge();
@@ -67,11 +67,11 @@ class SlurmSweep {
   std::vector<std::string> options_;
   Say say_;
   ShardFolder folder_;
-  std::string name_;  // of all jobs
+  std::string name_;  // of the jobs
   std::vector<Work> shards_;
-  std::vector<std::uint64_t> done_;  // points of each shard
+  std::vector<std::uint64_t> done_;  // [shard]: points
   Work merge_;
-  std::set<std::string> live_jobs_;
+  std::set<std::string> live_jobs_;  // numbers
   SlurmProgress progress_;
 };
 

@@ -26,7 +26,7 @@ std::optional<std::string> bank_names_problem(const platform::BoardConfig& board
 
 std::string bank_names_problem(const std::string& one, const std::string& other) {
   return fmt::format(
-      "ssram.banks = {}, {}: the names differ only in case: a database could not tell their columns apart",
+      "ssram.banks = {}, {}: the names differ only in case: a database could not distinguish their columns",
       one, other);
 }
 

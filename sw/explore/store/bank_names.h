@@ -8,18 +8,19 @@
 
 namespace stereotlm::explore {
 
-// Names of columns of a database ignore the case of letters, names of banks do not.
+// SQLite ignores the case of letters in names of columns. Names of banks are case-sensitive.
 
-// The same for names that differ in nothing but the case of letters.
+// The name with letters A to Z in lower case.
 std::string without_case(std::string name);
 
-// Whether they differ, but in nothing else.
+// Whether two different names become equal without_case().
 bool differ_in_case(const std::string& a, const std::string& b);
 
-// Why a database cannot have columns for all banks of a board: `key = value: rule`. Nothing: it can.
+// The rule that the bank names of a board break, as `key = value: rule`, if a database cannot have a column
+// for each bank; nothing if it can.
 std::optional<std::string> bank_names_problem(const platform::BoardConfig& board);
 
-// The same of two names that differ_in_case().
+// The same rule for two names that differ_in_case().
 std::string bank_names_problem(const std::string& one, const std::string& other);
 
 }  // namespace stereotlm::explore

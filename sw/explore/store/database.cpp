@@ -11,13 +11,14 @@
 namespace stereotlm::explore {
 namespace {
 
-// `error`: of the system, at an error of input or output or when a file cannot be opened.
+// The text for a result code of SQLite. `error`: the error number of the system, which counts if input or
+// output failed or a file could not be opened.
 std::string meaning_of(const std::string& path, int code, int error, const char* message) {
   const int kind = code & 0xFF;
   if (code == SQLITE_READONLY_ROLLBACK) {
     return fmt::format(
-        "{0}-journal is there, of a change that was not finished, and this command only reads: "
-        "`stereotlm merge {0} {0}` takes the change back",
+        "{0}-journal was left by an unfinished change, and this command only reads: "
+        "`stereotlm merge {0} {0}` rolls the change back",
         path);
   }
   const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
@@ -53,7 +54,8 @@ int flags_of(Database::Access access) {
   return 0;
 }
 
-// SQLite takes ":memory:" for no file, and "file:.." for a URI. It takes an absolute path for a file.
+// SQLite takes ":memory:" for a database in memory and "file:.." for a URI. It takes an absolute path for a
+// file.
 std::string absolute(const std::string& path) {
   const std::filesystem::path file(path);
   return file.is_absolute() ? path : (std::filesystem::current_path() / file).string();
@@ -63,8 +65,8 @@ std::string absolute(const std::string& path) {
 
 Database::Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout)
     : path_(path) {
-  // Of one thread each.
   const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
+  // One thread uses the connection, so that SQLite needs no mutex.
   const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) {
     const std::string text = fmt::format(
@@ -74,7 +76,7 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
   }
   sqlite3_extended_result_codes(handle_, 1);
   sqlite3_busy_timeout(handle_, static_cast<int>(busy_timeout.count()));
-  // A word in double quotes is a name or an error, never a text.
+  // A word in double quotes is a name or an error, never a string.
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
 }

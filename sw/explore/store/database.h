@@ -12,32 +12,33 @@ struct sqlite3_stmt;
 
 namespace stereotlm::explore {
 
-// What SQLite could not do: what() names the file and says why.
+// SQLite could not do something. what() names the file and the reason.
 class DatabaseError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// An open SQLite database. Its member functions, and those of its statements, throw DatabaseError. Not to be
+// An open SQLite database. The member functions of Database and Statement throw DatabaseError. Must not be
 // used across fork().
 class Database {
  public:
   enum class Access { kRead, kWrite, kCreate, kMemory };
 
-  // For how long it waits for a process that keeps the file locked.
+  // How long it waits for a process that has locked the file.
   static constexpr std::chrono::milliseconds kBusyTimeout = std::chrono::minutes(1);
 
-  // kMemory opens a new database in memory, for which `path` is the name in messages. Otherwise `path` is
-  // that of a file, also if it is ":memory:" or begins with "file:".
+  // With kMemory the database is a new one in memory, and `path` is its name in messages. Otherwise `path` is
+  // the path of a file, even if it is ":memory:" or begins with "file:".
   Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout = kBusyTimeout);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
   void execute(const std::string& sql);
-  // Opens another file as well, whose tables are then NAME.TABLE.
+  // Opens another file as well; the names of its tables are NAME.TABLE.
   void attach(const std::string& path, const std::string& name);
-  std::int64_t number(const std::string& sql);  // the first column of the first row; 0 if there is none
+  // The first column of the first row of a query; 0 if there is no row.
+  std::int64_t number(const std::string& sql);
   const std::string& path() const { return path_; }
   sqlite3* handle() const { return handle_; }
   [[noreturn]] void fail(int code) const;
@@ -47,7 +48,7 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
-// A prepared statement; its database outlives it.
+// A prepared statement. The database must outlive it.
 class Statement {
  public:
   Statement(const Database& database, const std::string& sql);
@@ -55,21 +56,22 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  // Parameters count from 1.
+  // Gives parameter number `place`, counted from 1, a value.
   void bind(int place, const std::string& text);
   void bind(int place, std::int64_t number);
   void bind(int place, const platform::BoardValue& value);
-  // Copies column `column` of the row that `from` stands at.
+  // Gives the parameter the value of a column of the current row of `from`.
   void bind_column(int place, const Statement& from, int column);
   void clear_bindings();
 
-  bool step();   // whether there is a row
-  void run();    // to its end, and back to its beginning
-  void reset();  // back to its beginning
+  bool step();   // goes to the next row; returns whether there is one
+  void run();    // goes through all rows, then resets
+  void reset();  // goes back to the position before the first row
 
   int columns() const;
   std::string name(int column) const;
-  std::string text(int column) const;  // of the row; empty for NULL
+  // Columns of the current row. NULL reads as "", 0 and false.
+  std::string text(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;
   bool is_true(int column) const;
@@ -80,7 +82,7 @@ class Statement {
   sqlite3_stmt* handle_ = nullptr;
 };
 
-// As an identifier of SQL.
+// The name as an identifier of SQL, in quotes.
 std::string quoted_name(const std::string& name);
 
 }  // namespace stereotlm::explore

@@ -12,15 +12,7 @@
 namespace stereotlm::explore {
 namespace {
 
-void check_version(Database& database, const std::string& version) {
-  Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
-  other.bind(1, version);
-  if (!other.step()) return;
-  throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
-                                  database.path(), other.text(0), version));
-}
-
-// SQLite does not wait when it is to change the kind of its journal.
+// SQLite does not wait for other writers before it changes the kind of its journal.
 void wait_for_writers(Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
 
 std::string journal_of(const Database& database) {
@@ -28,16 +20,7 @@ std::string journal_of(const Database& database) {
   return statement.step() ? statement.text(0) : "";
 }
 
-constexpr const char* kFind = "SELECT 1 FROM points WHERE hash = ?";
-
-bool finds(Statement& find, const std::string& hash) {
-  find.bind(1, hash);
-  const bool found = find.step();
-  find.reset();
-  return found;
-}
-
-// What a point has in further columns.
+// The values of a point in the columns behind kFirstColumns.
 std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
   std::vector<const platform::BoardValue*> values;
   for (const auto* part : {&point.keys, &point.figures}) {
@@ -53,17 +36,18 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
   create();
   check_version(database_, version);
   read_columns();
-  find_ = std::make_unique<Statement>(database_, kFind);
+  find_ = std::make_unique<Statement>(database_, kFindPoint);
   insert_blame_ = std::make_unique<Statement>(database_, insert_blame_sql());
 }
 
-// Once, by whoever comes first.
+// The first process to open the file creates the tables.
 void Store::create() {
   if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
-    // The journal gets whole pages, and each point changes some.
+    // Small pages: a point changes some pages, and the journal gets each of them as a whole.
     database_.execute("PRAGMA page_size = 1024");
     wait_for_writers(database_);
-    // Readers do not wait for the one who writes; nothing is lost when the process ends, however it does.
+    // With this journal readers do not wait for a writer, and nothing is lost when a process ends, whatever
+    // ends it.
     database_.execute("PRAGMA journal_mode = WAL");
     database_.execute("BEGIN IMMEDIATE");
     if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) create_tables(database_, {});
@@ -91,7 +75,7 @@ void Store::check_banks(const std::vector<std::string>& banks) const {
   }
 }
 
-bool Store::has(const std::string& hash) { return finds(*find_, hash); }
+bool Store::has(const std::string& hash) { return has_point(*find_, hash); }
 
 bool Store::add(const StoredPoint& point) {
   const std::vector<const platform::BoardValue*> values = further_values(point);
@@ -115,9 +99,9 @@ bool Store::add(const StoredPoint& point) {
     database_.execute("COMMIT");
     return is_new;
   } catch (const DatabaseError&) {
-    sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr,
-                 nullptr);  // SQLite may have done it already
-    insertions_.clear();    // the columns that it has added are gone
+    // Fails, without consequence, if SQLite has rolled the change back already.
+    sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+    insertions_.clear();  // the columns that they need may have been rolled back
     throw;
   }
 }
@@ -151,14 +135,5 @@ void Store::add_columns(const StoredPoint& point) {
     }
   }
 }
-
-FinishedStore::FinishedStore(const std::string& path, const std::string& version)
-    : database_(path, Database::Access::kRead) {
-  check_layout(database_);
-  check_version(database_, version);
-  find_.emplace(database_, kFind);
-}
-
-bool FinishedStore::has(const std::string& hash) { return finds(*find_, hash); }
 
 }  // namespace stereotlm::explore

@@ -12,6 +12,13 @@ constexpr int kLayout = 2;
 
 }  // namespace
 
+bool has_point(Statement& find, const std::string& hash) {
+  find.bind(1, hash);
+  const bool found = find.step();
+  find.reset();
+  return found;
+}
+
 void create_tables(Database& database, const std::vector<std::string>& further_columns) {
   std::string columns =
       "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
@@ -37,7 +44,14 @@ void check_layout(Database& database) {
   }
 }
 
-// The first column of what a query gives.
+void check_version(Database& database, const std::string& version) {
+  Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
+  other.bind(1, version);
+  if (!other.step()) return;
+  throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
+                                  database.path(), other.text(0), version));
+}
+
 std::vector<std::string> names_of(const Database& database, const std::string& sql) {
   std::vector<std::string> names;
   Statement statement(database, sql);

@@ -15,14 +15,14 @@
 namespace stereotlm::explore {
 namespace {
 
-// Far behind all that SQLite locks itself.
+// A place in the file far behind those that SQLite locks itself.
 constexpr off_t kPlace = off_t{1} << 61;
 constexpr std::chrono::milliseconds kBetweenTries{20};
 
 enum class Outcome { kLocked, kBusy, kReplaced, kFailed };
 
-// Whether the open file is the one that has that name.
-bool is_of(int file, const std::string& name) {
+// Whether the path leads to the open file.
+bool is_at(int file, const std::string& name) {
   struct stat opened = {};
   struct stat there = {};
   const bool is_there = fstat(file, &opened) == 0 && stat(name.c_str(), &there) == 0;
@@ -34,8 +34,8 @@ bool is_empty(int file) {
   return fstat(file, &opened) == 0 && opened.st_size == 0;
 }
 
-// Of an open file description: closing another descriptor of the file does not end it, as it would a lock of
-// the process.
+// Locks the open file description rather than the file for this process: that lock would end when any
+// descriptor of the file is closed.
 Outcome try_lock(int file, const std::string& store) {
   struct flock range = {};
   range.l_type = F_WRLCK;
@@ -45,7 +45,7 @@ Outcome try_lock(int file, const std::string& store) {
   if (fcntl(file, F_OFD_SETLK, &range) != 0) {
     return errno == EAGAIN || errno == EACCES ? Outcome::kBusy : Outcome::kFailed;
   }
-  return is_of(file, store) ? Outcome::kLocked : Outcome::kReplaced;
+  return is_at(file, store) ? Outcome::kLocked : Outcome::kReplaced;
 }
 
 }  // namespace
@@ -86,11 +86,11 @@ void StoreLock::open_store() {
 }
 
 void StoreLock::check() const {
-  if (!is_of(file_, path_)) throw StoreGone(store_);
+  if (!is_at(file_, path_)) throw StoreGone(store_);
 }
 
 StoreLock::~StoreLock() {
-  if (is_made_ && is_empty(file_) && is_of(file_, path_)) unlink(path_.c_str());
+  if (is_made_ && is_empty(file_) && is_at(file_, path_)) unlink(path_.c_str());
   close(file_);
 }
 

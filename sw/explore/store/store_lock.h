@@ -7,41 +7,42 @@
 
 namespace stereotlm::explore {
 
-// The path of the file that a store's path leads to through symbolic links. Throws DatabaseError.
+// The path of the file to which the path of a store leads through symbolic links. Throws DatabaseError.
 std::string behind_links(const std::string& store);
 
-// The file of a store was removed or replaced while it was in use: all points that were added to it are lost.
+// The file of a store was removed or replaced while it was in use. The points that were added to it are lost.
 class StoreGone : public DatabaseError {
  public:
   explicit StoreGone(const std::string& store)
-      : DatabaseError(store + ": has been removed or replaced meanwhile: what was done is gone with it") {}
+      : DatabaseError(store + ": was removed or replaced while in use: its points are lost") {}
 };
 
-// Keeps a store for one writer: the merge at the end of a sweep replaces the file, and points that another
-// process added meanwhile would be lost. The lock is of the system and ends with this object, or with this
-// process and those that it has forked since. Readers are not kept out.
+// Reserves a store for one writer. The merge at the end of a sweep replaces the file, so that points that
+// another process added during the sweep would be lost. The lock belongs to the system. It ends with this
+// object, or with this process and all processes that were forked while it was held. It does not stop
+// readers.
 class StoreLock {
  public:
-  // For how long it waits: processes of a sweep that was killed take a moment to end.
+  // How long the constructor waits: the processes of a sweep that was killed take a moment to end.
   static constexpr std::chrono::milliseconds kBusyTimeout{3000};
 
-  // The file is made, empty, if it is not there; it goes with the lock if nothing has come of it. Throws
-  // DatabaseError.
+  // Makes an empty file if there is none. Such a file is removed with the lock if it is still empty. Throws
+  // DatabaseError, also if another process holds the lock.
   explicit StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout = kBusyTimeout);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;
   StoreLock& operator=(const StoreLock&) = delete;
 
-  // Throws StoreGone unless the file that is locked still has its name.
+  // Throws StoreGone unless the path still leads to the locked file.
   void check() const;
 
  private:
   void open_store();
 
   std::string store_;
-  std::string path_;  // behind links
+  std::string path_;  // of the file behind all symbolic links
   int file_ = -1;
-  bool is_made_ = false;  // by this lock
+  bool is_made_ = false;  // this lock has made the file
 };
 
 }  // namespace stereotlm::explore

@@ -7,13 +7,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <deque>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "sw/explore/store/merge_stores.h"
@@ -25,10 +28,21 @@
 namespace stereotlm::explore {
 namespace {
 
-constexpr std::uint64_t kMostOfAnOrder = 16;  // points
-constexpr int kLookMs = 100;
+constexpr std::array<std::pair<const char*, std::uint64_t SweepCounts::*>, 7> kCounts = {{
+    {"total", &SweepCounts::total},
+    {"excluded", &SweepCounts::excluded},
+    {"known", &SweepCounts::known},
+    {"ok", &SweepCounts::ok},
+    {"impossible", &SweepCounts::impossible},
+    {"failed", &SweepCounts::failed},
+    {"given_up", &SweepCounts::given_up},
+}};
 
-// A worker that dies while it is written to is seen by what it does not say.
+constexpr std::uint64_t kMostOfAnOrder = 16;  // points
+constexpr int kPollMs = 100;                  // between two calls of keep_going
+
+// Ignores SIGPIPE while it exists. Writing to a worker that has died must not end this process; receive()
+// finds out that it has died.
 class IgnoredSigpipe {
  public:
   IgnoredSigpipe() : before_(signal(SIGPIPE, SIG_IGN)) {}
@@ -56,14 +70,14 @@ class Sweep {
     }
     workers_.resize(workers);
     const StoreLock lock(options_.store);
-    {  // What is wrong with the file is said once.
+    {  // One message for an unusable file, instead of one from each worker.
       const Store made(options_.store, options_.version, options_.busy_timeout);
     }
     try {
       run_points(lock, keep_going);
       merge_stores({options_.store}, options_.store);
     } catch (const std::exception&) {
-      lock.check();  // without the file everything fails: that is the reason to give
+      lock.check();  // if the file is gone, that is the reason for the error
       throw;
     }
     return counts_;
@@ -92,7 +106,7 @@ class Sweep {
     give_order(*workers_[place]);
   }
 
-  // The next points, if there are any: what a dead worker has left first.
+  // Hands out the next points, if there are any; those that a dead worker has left come first.
   void give_order(Worker& worker) {
     if (shared_.stop()) return;
     if (!left_.empty()) {
@@ -101,7 +115,7 @@ class Sweep {
       return;
     }
     const std::uint64_t rest = counts_.total - next_;
-    // Near the end in small pieces, so that all workers end at the same time.
+    // The pieces get smaller towards the end, so that all workers finish at about the same time.
     const std::uint64_t count =
         std::min(rest, std::clamp<std::uint64_t>(rest / (4 * workers_.size()), 1, kMostOfAnOrder));
     if (count == 0) return;
@@ -112,7 +126,7 @@ class Sweep {
   void wait() {
     std::vector<pollfd> watched;
     for (const auto& worker : workers_) watched.push_back({worker->descriptor(), POLLIN, 0});
-    const int ready = poll(watched.data(), watched.size(), kLookMs);
+    const int ready = poll(watched.data(), watched.size(), kPollMs);
     if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
     if (ready <= 0) return;
     for (std::size_t i = 0; i < watched.size(); ++i) {
@@ -142,7 +156,7 @@ class Sweep {
     start_worker(place);
   }
 
-  // A point whose worker could not say so itself.
+  // Stores a point whose worker has died as a point that has failed.
   void fail(std::uint64_t number, const std::string& reason) {
     Store store(options_.store, options_.version, options_.busy_timeout);
     count(store.add(failed_point(points_.point(number), reason)) ? PointEnd::kFailed : PointEnd::kKnown);
@@ -179,31 +193,54 @@ class Sweep {
   IgnoredSigpipe ignored_sigpipe_;
   process::SharedState shared_;
   SweepCounts counts_;
-  std::uint64_t next_ = 0;                        // of this shard's points, not handed out yet
-  std::deque<WorkOrder> left_;                    // of dead workers
-  std::map<std::uint64_t, int> deaths_;           // of workers, by the point
-  std::vector<std::unique_ptr<Worker>> workers_;  // end before what they share
+  std::uint64_t next_ = 0;                        // the first point of this shard that was not handed out
+  std::deque<WorkOrder> left_;                    // orders that dead workers have not finished
+  std::map<std::uint64_t, int> deaths_;           // [number of a point]: workers that died while they did it
+  std::vector<std::unique_ptr<Worker>> workers_;  // destroyed before shared_
 };
 
 }  // namespace
+
+void SweepCounts::add(const SweepCounts& other) {
+  for (const auto& [name, count] : kCounts) this->*count += other.*count;
+}
+
+std::string counts_text(const SweepCounts& counts) {
+  std::string text;
+  for (const auto& [name, count] : kCounts) text += fmt::format("{} {}\n", name, counts.*count);
+  return text;
+}
+
+SweepCounts read_counts(const std::string& text) {
+  SweepCounts counts;
+  std::istringstream stream(text);
+  std::string read;
+  for (std::uint64_t number = 0; stream >> read >> number;) {
+    for (const auto& [name, count] : kCounts) {
+      if (read == name) counts.*count = number;
+    }
+  }
+  return counts;
+}
 
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& keep_going) {
   return Sweep(points, evaluate, options).run(keep_going);
 }
 
-// Opens for a moment as many files as the last worker will have open. It inherits two ends of pipes for each
-// worker, and opens its stores with their journals and a pipe to the process that simulates.
+// Opens, for a moment, as many files as the last worker will have open. A worker inherits two ends of pipes
+// for each worker before it, and opens its stores with their journals and a pipe to the process that
+// simulates.
 std::uint64_t workers_with_files(std::uint64_t workers) {
-  constexpr std::uint64_t kOfAWorker = 16;
+  constexpr std::uint64_t kOwnFiles = 16;
   std::vector<int> files;
-  while (files.size() < 2 * workers + kOfAWorker) {
+  while (files.size() < 2 * workers + kOwnFiles) {
     const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (file < 0) break;
     files.push_back(file);
   }
   for (const int file : files) close(file);
-  return files.size() < kOfAWorker ? 0 : (files.size() - kOfAWorker) / 2;
+  return files.size() < kOwnFiles ? 0 : (files.size() - kOwnFiles) / 2;
 }
 
 }  // namespace stereotlm::explore

@@ -8,41 +8,62 @@
 #include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/database.h"
-#include "sw/explore/sweep/sweep_counts.h"
 
 namespace stereotlm::explore {
 
-// Thrown by Evaluate where nobody wants to know how a point ends any more. Nothing of it is kept.
+// Numbers of points: the progress of a sweep, or of one shard.
+struct SweepCounts {
+  std::uint64_t total = 0;     // before conditions
+  std::uint64_t excluded = 0;  // left out by conditions
+  std::uint64_t known = 0;     // not simulated: a store has the point, or an equal point came before
+  std::uint64_t ok = 0;
+  std::uint64_t impossible = 0;
+  std::uint64_t failed = 0;
+  std::uint64_t given_up = 0;  // nothing of them is stored
+
+  std::uint64_t done() const { return excluded + known + ok + impossible + failed + given_up; }
+  void add(const SweepCounts& other);
+};
+
+// One line for each number, such as "ok 12".
+std::string counts_text(const SweepCounts& counts);
+// Reads the lines of counts_text(). A number without a line is 0.
+SweepCounts read_counts(const std::string& text);
+
+// Evaluate throws it where the result of a point is no longer needed. The sweep stores nothing of the point.
 struct GivenUp {};
 
-// Simulates a point that has a board. Called in worker processes, which are forked from this one; what it
-// throws is the reason for which the point has failed. But std::system_error ends the sweep: it is the
-// machine that lacks something; and EndedBySignal and std::bad_alloc count as the end of the worker.
+// Simulates a point that has a board. It is called in worker processes, which are forked from this one. The
+// text of an exception that it throws is the reason for which the point has failed. But std::system_error
+// ends the sweep, because the machine lacks something, and EndedBySignal and std::bad_alloc count as the
+// death of the worker.
 using Evaluate = std::function<Figures(const Point& point)>;
 
 struct SweepOptions {
-  std::string store;        // file, continued if it is there
+  std::string store;        // path; an existing store is continued
   std::string version;      // of the program
-  std::string known;        // another store, which is only read: its points are not run either; empty: none
+  std::string known;        // path of a store, only read, whose points are not simulated; empty: none
   unsigned jobs = 1;        // worker processes
-  std::uint64_t shard = 0;  // does the points whose number modulo `shards` is this
+  std::uint64_t shard = 0;  // 0..shards-1: only the points whose number modulo `shards` is this
   std::uint64_t shards = 1;
-  std::chrono::milliseconds busy_timeout = Database::kBusyTimeout;  // with who keeps the store locked
+  std::chrono::milliseconds busy_timeout = Database::kBusyTimeout;  // wait for processes that lock the store
 };
 
-// All points that the stores do not have. `keep_going` is called several times a second with what is done of
-// this shard; once it returns false no further point is begun. At the end the store is put into its final
-// form, whose bytes depend on nothing but its points (merge_stores()). A point whose worker dies is begun
-// again, and is one that has failed when it has died kMostDeaths times, with a reason that says how to try
-// again. Throws DatabaseError, also if another sweep is at work on the store, and std::runtime_error; all
-// points that were finished are kept. Throws StoreGone (store_lock.h) once the file of the store has gone,
-// ConditionError (conditions.h) if a condition cannot be computed for a point. Throws also if the limit on
-// open files is too low for the workers, see workers_with_files().
+// A point whose worker has died so many times has failed.
 inline constexpr int kMostDeaths = 3;
+
+// Simulates all points that the stores do not have. `keep_going` is called several times a second with the
+// progress; after it has returned false no further point is begun. At the end merge_stores() gives the store
+// its final form, whose bytes depend on nothing but its points. A point whose worker dies is begun again; the
+// row of one that has failed with kMostDeaths deaths says how to try it again. All finished points stay in
+// the store, whatever is thrown: DatabaseError, also if another sweep uses the store; StoreGone
+// (store_lock.h) once the file of the store is gone; ConditionError (conditions.h) if a condition cannot be
+// computed for a point; std::runtime_error, also if the limit on open files is too low for the workers (see
+// workers_with_files()).
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& keep_going);
 
-// How many workers the limit on open files leaves room for; `workers` at most.
+// The number of workers that the limit on open files allows, at most `workers`.
 std::uint64_t workers_with_files(std::uint64_t workers);
 
 }  // namespace stereotlm::explore

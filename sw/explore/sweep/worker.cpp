@@ -14,12 +14,13 @@
 
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/figures.h"
-#include "sw/process/ended_by_signal.h"
+#include "sw/explore/store/store_reader.h"
 
 namespace stereotlm::explore {
 namespace {
 
-// What a worker tells: the end of a point, or of itself with a text.
+// The message of a worker: a point has ended, or the worker has ended, for the reason in the text that
+// follows.
 struct Report {
   enum class Kind : std::uint8_t { kPoint, kFailure, kConditionError };
 
@@ -34,8 +35,8 @@ void report_end(int to, Report::Kind kind, const std::string& text) {
   process::write_all(to, text.data(), text.size());
 }
 
-// A figure with the path of a key is another column: bridge.posted_words is what the bridge can hold, and
-// bridge.posted_words.counted what it has taken.
+// Renames a figure that has the path of a key, because each has a column: bridge.posted_words is the number
+// of words that the bridge can hold, and bridge.posted_words.counted the number that it has taken.
 void take_figures(Figures figures, StoredPoint& row) {
   for (platform::BoardValue& figure : figures.values) {
     const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
@@ -55,7 +56,7 @@ StoredPoint row_of(const Point& point) {
 
 constexpr int kOutOfMemory = 75;  // the exit status of a worker
 
-// The work itself, in the process of the worker.
+// Runs in the process of the worker: simulates and stores points.
 class PointRunner {
  public:
   PointRunner(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
@@ -108,10 +109,10 @@ class PointRunner {
   std::optional<FinishedStore> known_;
 };
 
-// Its exit status.
-int be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-              const process::SharedState& shared, int from, int to) {
-  // A terminal's Ctrl-C goes to all processes; the one that hands out the work decides what it means.
+// Runs in the process of the worker; returns its exit status.
+int run_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
+               const process::SharedState& shared, int from, int to) {
+  // Ctrl-C in a terminal goes to all processes; the process that hands out the work handles it.
   signal(SIGINT, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
   Report report;
@@ -128,7 +129,7 @@ int be_worker(const Points& points, const Evaluate& evaluate, const SweepOptions
   } catch (const process::EndedBySignal& error) {
     signal(error.signal(), SIG_DFL);
     raise(error.signal());
-    return 1;  // a signal that does not end it
+    return 1;  // the signal does not end a process by default
   } catch (const std::bad_alloc&) {
     return kOutOfMemory;
   } catch (const ConditionError& error) {
@@ -154,7 +155,7 @@ Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOption
     : process_([&] {
         orders_.close_write_end();
         reports_.close_read_end();
-        return be_worker(points, evaluate, options, shared, orders_.read_end(), reports_.write_end());
+        return run_worker(points, evaluate, options, shared, orders_.read_end(), reports_.write_end());
       }) {
   orders_.close_read_end();
   reports_.close_write_end();
@@ -162,7 +163,7 @@ Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOption
 
 void Worker::send(const WorkOrder& order) {
   order_ = order;
-  process::write_all(orders_.write_end(), &order, sizeof order);  // if it is dead, receive() says so
+  process::write_all(orders_.write_end(), &order, sizeof order);  // receive() finds out if the worker is dead
 }
 
 std::optional<PointEnd> Worker::receive() {

@@ -12,20 +12,21 @@
 
 namespace stereotlm::explore {
 
-// Points to do: number first, first + step, ..
+// Points to simulate: `count` numbers first, first + step, .. . count 0: none.
 struct WorkOrder {
   std::uint64_t first = 0;
   std::uint64_t step = 1;
   std::uint64_t count = 0;
 };
 
-// How a point has ended.
+// The way in which a point has ended.
 enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kGivenUp, kNotBegun };
 
-// The row of a point that has failed.
+// The row to store for a point that has failed.
 StoredPoint failed_point(const Point& point, const std::string& reason);
 
-// A process that does points one after another, and tells how each has ended. It ends with this process.
+// A process that simulates points one after another, stores them, and reports how each has ended. It ends
+// with this process.
 class Worker {
  public:
   // Forks. Throws std::system_error.
@@ -33,12 +34,13 @@ class Worker {
          const process::SharedState& shared);
 
   void send(const WorkOrder& order);
-  // That has not been told of yet; count 0: idle.
+  // The points that receive() has not returned yet; count 0: the worker is idle.
   const WorkOrder& order() const { return order_; }
 
-  int descriptor() const { return reports_.read_end(); }  // readable when there is something to receive()
-  // The end of the next point of its order. Nothing if the process has died. Throws std::runtime_error with
-  // what it could not go on for, ConditionError (conditions.h) if that was a condition.
+  int descriptor() const { return reports_.read_end(); }  // readable when receive() would not wait
+  // Waits for the end of the next point of its order. Returns nothing if the process has died. Throws
+  // std::runtime_error with the reason if the worker had to stop, ConditionError (conditions.h) if a
+  // condition was the reason.
   std::optional<PointEnd> receive();
   std::string death() const { return death_; }  // "ended with signal 9 (Killed)"
 

@@ -23,14 +23,9 @@ InputFile described(const fs::path& path, const std::string& content) {
 }
 
 void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
-  if (rig.width != board.image.width || rig.height != board.image.height) {
-    throw std::runtime_error(fmt::format("image size = {}x{}: must be that of the board's images, {}x{}",
-                                         rig.width, rig.height, board.image.width, board.image.height));
-  }
-  const platform::AllocationConfig& allocation = board.allocation;
-  if (allocation.left_lut && allocation.right_lut) return;
-  throw std::runtime_error(fmt::format("goes with a board that has both tables; allocation.{} = none",
-                                       allocation.left_lut ? "right_lut" : "left_lut"));
+  auto problem = platform::calibration_size_problem(board, rig.width, rig.height);
+  if (!problem) problem = platform::calibration_buffer_problem(board);
+  if (problem) throw std::runtime_error(*problem);
 }
 
 kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,

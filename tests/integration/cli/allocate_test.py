@@ -175,7 +175,7 @@ class Allocate(ProgramTest):
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=2))
         for line in (
             r" 1 +\d+ +\d+ +all lose pixels\n",
-            r"and needs 2 banks, the fewest of which an allocation counts\.",
+            r"and needs 2 banks, the fewest with an allocation that counts\.",
             r"\d+ of those simulated to the end lose pixels, and do not count\.",
             "The disparities of these 1 allocations are the same",
         ):

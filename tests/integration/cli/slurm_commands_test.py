@@ -22,7 +22,7 @@ echo "$job;cluster"
 SQUEUE = """#!/bin/sh
 [ ! -e "$FAKE/queue" ] || cat "$FAKE/queue"
 """
-JOBS_GO_ON = "the jobs go on, and the same command waits for them"
+JOBS_CONTINUE = "the jobs continue; run the same command to wait for them"
 LOST = "has been lost 3 times without a further point"
 
 
@@ -88,8 +88,8 @@ class Commands(SlurmCommands):
             self.refused_in_one_line(process, f"error: --launcher slurm: {name}: {needed}")
         self.write("squeue", SQUEUE)
         for name, script, problem in (
-            ("sbatch", "echo usage", "has not said the number of a job: usage"),
-            ("squeue", "echo JOBID PARTITION", "not what it was asked for: JOBID PARTITION"),
+            ("sbatch", "echo usage", "no job number in its output: usage"),
+            ("squeue", "echo JOBID PARTITION", "unexpected output: JOBID PARTITION"),
             ("squeue", "exit 3", "has ended with status 3"),
         ):
             self.write(name, f"#!/bin/sh\n{script}\n")
@@ -112,7 +112,7 @@ class Commands(SlurmCommands):
     def test_commands_that_keep_failing_end_the_waiting(self):
         fail = '[ ! -e "$FAKE/queue" ] || { echo "squeue: error: no answer" >&2; exit 1; }\n'
         self.write("squeue", SQUEUE + fail)
-        notes = self.failed(self.launch(END="RUNNING"), f"error: squeue: no answer; {JOBS_GO_ON}")
+        notes = self.failed(self.launch(END="RUNNING"), f"error: squeue: no answer; {JOBS_CONTINUE}")
         self.assertEqual(notes[2:], ["squeue: no answer: asking again"])
         self.assertTrue(self.shards.exists())
 
@@ -122,14 +122,14 @@ class Commands(SlurmCommands):
         for _ in range(2):
             self.assertIn("note: job ", process.stderr.readline())
         process.send_signal(signal.SIGINT)
-        self.ends(process, 1, errors=f"stereotlm: error: scancel: no answer; {JOBS_GO_ON}\n")
+        self.ends(process, 1, errors=f"stereotlm: error: scancel: no answer; {JOBS_CONTINUE}\n")
         self.assertTrue(self.shards.exists())
 
 
 class LostWork(SlurmCommands):
     def test_lost_shards_are_submitted_three_times(self):
         process = self.launch(TASK='echo no such thing >>"$FOLDER/shard_0.log"', END="OUT_OF_MEMORY")
-        kept = f"what is done is kept in {self.shards}: the same command goes on with it"
+        kept = f"finished points are kept in {self.shards}: run the same command to resume"
         log = f"its log {self.shards}/shard_0.log ends with: no such thing"
         notes = self.failed(process, f"error: shard 0 {LOST} (OUT_OF_MEMORY); {log}; {kept}")
         expected = []
@@ -168,7 +168,7 @@ class Folders(SlurmCommands):
         text = self.file("text.db", "x" * 5000)
         with self.unchanged(self.folder):
             for store, problem in (
-                (self.store, f"{self.shards}: is there, and not as a folder of shards"),
+                (self.store, f"{self.shards}: exists, and is not a folder of shards"),
                 (none, f"{none}.shards: cannot be made: No such file or directory"),
                 (loop, f"--out {loop}: cannot be opened: Too many levels of symbolic links"),
                 (text, f"--out {text}: not a database"),

@@ -199,7 +199,7 @@ class Interrupted(SlurmTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"20 points: [1-9]\d* ok, 0 impossible, 0 failed, \d+ not begun\n")
-        note = "note: interrupted: the same command goes on where this one has ended\n"
+        note = "note: interrupted: run the same command to resume\n"
         self.assertTrue(errors.endswith(note), errors)
         self.assertEqual(cluster.jobs(), [])
         self.assertFalse(self.shards.exists())

@@ -34,7 +34,7 @@ vary: {matcher.disparities: [10, 20]}
 """
 SLOW_POINTS = 2
 MERGING = r"\.merging-[0-9a-f]{16}"  # behind the name of the file that a merge writes
-KEPT = "; what is done is kept"
+KEPT = "; finished points are kept"
 AT_WORK = "another process is at work on it: wait for its end, or give another file"
 
 
@@ -85,7 +85,7 @@ class FullDisk(RobustnessTest):
             if process.returncode == 2:
                 full_at_begin += 1
             else:
-                self.fails(process, f"{KEPT}: the same command goes on with it")
+                self.fails(process, f"{KEPT}: run the same command to resume")
                 full_later += 1
             kept = self.points()
             said = self.finished(expected)
@@ -279,8 +279,8 @@ os._exit(0)
         subprocess.run([sys.executable, "-c", self.CHANGE, str(self.store)], check=True)
         self.assertTrue((self.disk / "points.db-journal").exists())
         store = self.store
-        reason = f"{store}-journal is there, of a change that was not finished, and this command only reads"
-        rule = f"{store}: {reason}: `stereotlm merge {store} {store}` takes the change back"
+        reason = f"{store}-journal was left by an unfinished change, and this command only reads"
+        rule = f"{store}: {reason}: `stereotlm merge {store} {store}` rolls the change back"
         more = self.folder / "more.db"
         self.refused_in_one_line(self.sweep("--known", self.store, store=more), f"--known {rule}")
         self.refused_in_one_line(run("merge", more, self.store), rule)

@@ -242,7 +242,7 @@ class Refusals(SweepTest):
     def test_a_condition_that_fails_at_one_point_is_to_be_corrected(self):
         condition = "iif(matcher.window = 5, json('{' || image.width), 1)"
         plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n")
-        problem = f"where = {condition}: malformed JSON; what is done is kept: correct the plan\n"
+        problem = f"where = {condition}: malformed JSON; finished points are kept: correct the plan\n"
         self.fails(self.sweep(plan=plan), f"stereotlm: error: {plan}:10:5: {problem}")
 
     def test_wrong_options_and_databases_are_refused(self):
@@ -288,7 +288,7 @@ class Refusals(SweepTest):
         (self.folder / "sub").mkdir()
         self.succeeds(self.sweep(store=self.folder / "known.db"))
         known, notes = self.folder / "known.db", self.file("notes", "ok 3\nand more\n")
-        other = "is there, and not as a file of --progress: "
+        other = "exists, and was not written by --progress: "
         with self.unchanged(self.folder):
             for path, rule in (
                 (self.store, "is the file of --out"),
@@ -323,7 +323,7 @@ class Meanwhile(SweepTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"1016 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
-        note = "interrupted: the same command goes on where this one has ended"
+        note = "interrupted: run the same command to resume"
         self.assertEqual(errors, f"stereotlm: note: {note}\n")
         self.succeeds(self.sweep(plan=self.many))
         whole = self.folder / "whole.db"
@@ -336,7 +336,7 @@ class Meanwhile(SweepTest):
             self.store.unlink()
             if another is not None:
                 self.store.write_text(another)
-            gone = f"{self.store}: has been removed or replaced meanwhile: what was done is gone with it"
+            gone = f"{self.store}: was removed or replaced while in use: its points are lost"
             self.ends(process, 1, errors=f"stereotlm: error: {gone}\n")
             for left in self.folder.glob("points.db*"):
                 left.unlink()
@@ -349,7 +349,7 @@ class Meanwhile(SweepTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (1, ""), errors)
         self.assertIn("points.db", errors)
-        self.assertNotIn("is kept", errors)
+        self.assertNotIn("kept", errors)
 
     def test_a_terminal_shows_its_progress(self):
         terminal = Terminal(["sweep", self.many, "--out", self.store])

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <vector>
 
 #include "models/fpga/core_control.h"
@@ -120,9 +122,6 @@ class ComputerTest : public testing::Test {
     }
   }
   double fps() const { return deliveries->steady_fps(); }
-  double core_fps() const {
-    return board.fpga.clock_mhz * 1e6 / static_cast<double>(computer->board.core.frame_cycles().front());
-  }
   double camera_fps() const { return board.cameras.frame_rate_hz; }
 
   test::MonitoringBinder binder;
@@ -139,43 +138,42 @@ constexpr double kWindow7 = 1.6116;  // core time of the paper's board in camera
 constexpr double kWindow5 = 1.1536;  // 5 x 5
 constexpr double kOnePercent = 0.01;
 
-TEST_F(ComputerTest, DeliversTheDisparitiesOfTheCapturedPictures) {
-  run(small_board(kWindow7), 12);
+struct BoardCase {
+  const char* name;
+  double camera_frames;
+  std::uint64_t frames;
+  void (*change)(BoardConfig&);
+};
+void PrintTo(const BoardCase& tested, std::ostream* out) { *out << tested.name; }
+
+class ComputerBoards : public ComputerTest, public testing::WithParamInterface<BoardCase> {};
+
+TEST_P(ComputerBoards, DeliverTheDisparitiesOfTheCapturedPictures) {
+  BoardConfig config = small_board(GetParam().camera_frames);
+  GetParam().change(config);
+  run(config, GetParam().frames);
   expect_results_of_the_captured_pictures();
   expect_all_words_accounted_for();
+  if (config.cameras.trigger == platform::CameraTrigger::kFreeRunning) return;
+  for (std::uint64_t frame = 0; frame < GetParam().frames; ++frame)
+    EXPECT_EQ(deliveries->camera_frames.at(frame), frame);
 }
 
-TEST_F(ComputerTest, DeliversThemThroughHostMemoryToo) {
-  BoardConfig config = small_board(kWindow7);
-  config.capture.destination = platform::CaptureDestination::kHostMemory;
-  run(config, 12);
-  expect_results_of_the_captured_pictures();
-  expect_all_words_accounted_for();
-}
-
-TEST_F(ComputerTest, DeliversThemFromCamerasOnDemand) {
-  BoardConfig config = small_board(kWindow7);
-  config.cameras.trigger = platform::CameraTrigger::kOnDemand;
-  run(config, 8);
-  EXPECT_EQ(deliveries->camera_frames, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5, 6, 7}));
-  expect_results_of_the_captured_pictures();
-}
-
-TEST_F(ComputerTest, DeliversThemWithoutTables) {
-  BoardConfig config = small_board(kWindow7);
-  config.allocation.left_lut.reset();
-  config.allocation.right_lut.reset();
-  run(config, 5);
-  expect_results_of_the_captured_pictures();
-}
-
-TEST_F(ComputerTest, DeliversThemWithAllBuffersInOneBank) {
-  BoardConfig config = small_board(0.2);
-  config.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
-  run(config, 5);
-  expect_results_of_the_captured_pictures();
-  expect_all_words_accounted_for();
-}
+INSTANTIATE_TEST_SUITE_P(
+    Boards, ComputerBoards,
+    testing::Values(
+        BoardCase{"Plain", kWindow7, 12, [](BoardConfig&) {}},
+        BoardCase{"CaptureToHostMemory", kWindow7, 12,
+                  [](BoardConfig& b) { b.capture.destination = platform::CaptureDestination::kHostMemory; }},
+        BoardCase{"CamerasOnDemand", kWindow7, 8,
+                  [](BoardConfig& b) { b.cameras.trigger = platform::CameraTrigger::kOnDemand; }},
+        BoardCase{"WithoutTables", kWindow7, 5,
+                  [](BoardConfig& b) { b.allocation.left_lut = b.allocation.right_lut = std::nullopt; }},
+        BoardCase{"AllBuffersInOneBank", 0.2, 5,
+                  [](BoardConfig& b) {
+                    b.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
+                  }}),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST_F(ComputerTest, BlamesTheHostForItsTrafficOnABankOfTheCore) {
   BoardConfig config = small_board(kWindow7);
@@ -194,7 +192,7 @@ TEST_F(ComputerTest, HasAFifthMasterOnTheBusOnlyWithALoad) {
   EXPECT_EQ(computer->pci_bus.stats().masters.size(), 4U);
 }
 
-TEST_F(ComputerTest, DeliversThemBesideAThirdPartyOnTheBus) {
+TEST_F(ComputerTest, DeliversTheDisparitiesBesideAThirdPartyOnTheBus) {
   BoardConfig config = small_board(kWindow7);
   config.pci.load = platform::PciLoadConfig{16, 10, 100, 1};
   run(config, 6);
@@ -213,7 +211,7 @@ TEST_F(ComputerTest, DeliversThemBesideAThirdPartyOnTheBus) {
   EXPECT_GE(stats.busy_clocks, clocks);
 }
 
-TEST_F(ComputerTest, DeliversThemBesideAHog) {
+TEST_F(ComputerTest, DeliversTheDisparitiesBesideALoadWithoutPauses) {
   BoardConfig config = small_board(kWindow7);
   config.pci.load = platform::PciLoadConfig{32, 0, 0, 0};
   run(config, 3);

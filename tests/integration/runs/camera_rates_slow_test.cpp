@@ -1,18 +1,16 @@
-// What cameras, buffers and core make of the frame rate together, with every result compared with the
-// arithmetic of the pictures that were captured.
+// The frame rate of cameras, buffers and core together. Every result is compared with the disparities of the
+// captured pictures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
 
-#include "models/kernels/stereo.h"
 #include "platform/config/board_yaml.h"
 #include "sw/runs/simulation/camera_simulation.h"
-#include "tests/support/noise_picture.h"
+#include "tests/support/noise_pairs.h"
 
 namespace stereotlm::simulation {
 namespace {
@@ -26,37 +24,19 @@ struct RateCase {
 void PrintTo(const RateCase& rate, std::ostream* out) { *out << rate.name; }
 std::string name_of(const testing::TestParamInfo<RateCase>& info) { return info.param.name; }
 
-// Pair k: noise, of which the left picture is shifted by 9 columns.
-class Noise : public host::FrameSource {
- public:
-  explicit Noise(const platform::BoardConfig& board) : board_(board) {}
-  const host::StereoPair& pair(std::uint64_t number) override {
-    const auto& [width, height] = board_.image;
-    pair_ = {test::noise_picture(width, height, number), test::noise_picture(width, height, number, 9)};
-    return pair_;
-  }
-
- private:
-  const platform::BoardConfig& board_;
-  host::StereoPair pair_;
-};
-
 class CameraRates : public testing::TestWithParam<RateCase> {};
 
 TEST_P(CameraRates, AreThoseOfTheSlowestPartOverSixtyFrames) {
   const platform::BoardConfig board = platform::load_board(GetParam().board, GetParam().sets);
   const platform::Tables tables = platform::identity_tables(board);
-  Noise pairs(board);
-  Noise same_pairs(board);  // to look at while a capture goes on
+  test::NoisePairs pairs(board.image.width, board.image.height, 9);
+  test::NoisePairs expected_pairs = pairs;  // can be read while a capture is under way
   Binder binder;
   runs::CameraSimulation simulation(board, tables, pairs, 61, binder);
-  const kernels::StereoConfig config{board.matcher.window, board.matcher.disparities, board.matcher.filter,
-                                     board.matcher.lr_tolerance};
   while (!simulation.finished()) {
     for (const runs::Result& result : simulation.advance()) {
-      const host::StereoPair& pair = same_pairs.pair(result.number);
-      EXPECT_EQ(result.disparity, kernels::disparity_image(pair.left, pair.right, nullptr, nullptr, config))
-          << result.number;
+      const host::StereoPair& pair = expected_pairs.pair(result.number);
+      EXPECT_EQ(result.disparity, test::disparity_of(pair, board)) << result.number;
     }
   }
   const platform::Statistics statistics = simulation.statistics();

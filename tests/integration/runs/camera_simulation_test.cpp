@@ -8,11 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "models/kernels/stereo.h"
 #include "platform/config/board_yaml.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
-#include "tests/support/noise_picture.h"
+#include "tests/support/noise_pairs.h"
 
 namespace stereotlm::simulation {
 namespace {
@@ -27,27 +26,6 @@ platform::BoardConfig small_board(std::vector<std::string> sets = {}) {
               {"image.width=64", "image.height=48", "matcher.disparities=16", "cameras.frame_rate_hz=1000"});
   sets.emplace_back("fpga.clock_mhz=14.5");
   return platform::load_board("fpl2003", sets);
-}
-
-// Pair k is noise of its own.
-class Noise : public host::FrameSource {
- public:
-  explicit Noise(int width = 64, int height = 48)
-      : pair_{kernels::GrayImage(width, height), kernels::GrayImage(width, height)} {}
-  const host::StereoPair& pair(std::uint64_t number) override {
-    if (number == failing_frame) throw std::runtime_error("the disk is gone");
-    pair_.left = test::noise_picture(pair_.left.width, pair_.left.height, number);
-    pair_.right = test::noise_picture(pair_.right.width, pair_.right.height, number, 5);
-    return pair_;
-  }
-  std::optional<std::uint64_t> failing_frame;
-  host::StereoPair pair_;
-};
-
-kernels::GrayImage disparity_of(const host::StereoPair& pair, const platform::BoardConfig& board) {
-  return kernels::disparity_image(
-      pair.left, pair.right, nullptr, nullptr,
-      {board.matcher.window, board.matcher.disparities, board.matcher.filter, board.matcher.lr_tolerance});
 }
 
 class CameraSimulationTest : public testing::Test {
@@ -76,7 +54,7 @@ class CameraSimulationTest : public testing::Test {
   test::MonitoringBinder binder;
   platform::BoardConfig board;
   platform::Tables tables;
-  Noise pairs;
+  test::NoisePairs pairs{64, 48};
   std::optional<runs::CameraSimulation> simulation;
 };
 
@@ -85,7 +63,8 @@ TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
   const std::vector<runs::Result> results = run();
   ASSERT_EQ(results.size(), 8U);
   for (std::size_t frame = 0; frame < results.size(); ++frame) {
-    EXPECT_EQ(results[frame].disparity, disparity_of(pairs.pair(results[frame].number), board)) << frame;
+    EXPECT_EQ(results[frame].disparity, test::disparity_of(pairs.pair(results[frame].number), board))
+        << frame;
     if (frame > 0) {
       EXPECT_GT(results[frame].number, results[frame - 1].number);
     }
@@ -131,7 +110,7 @@ TEST_F(CameraSimulationTest, HasNoSteadyRateOfOneFrame) {
   EXPECT_FALSE(statistics.frames_per_second.steady.has_value());
 }
 
-TEST_F(CameraSimulationTest, FinishesWhatTheCoreHasBegunToEndEarly) {
+TEST_F(CameraSimulationTest, FinishesTheFramesOfTheCoreToEndEarly) {
   build(100);
   while (simulation->frames_done() < 3) simulation->advance();
   const std::uint64_t done = simulation->frames_done();
@@ -146,7 +125,7 @@ TEST_F(CameraSimulationTest, FinishesWhatTheCoreHasBegunToEndEarly) {
   EXPECT_THAT(statistics.failed, IsEmpty());
 }
 
-TEST_F(CameraSimulationTest, HasNothingToFinishBeforeTheFirstCapture) {
+TEST_F(CameraSimulationTest, EndsAtOnceBeforeTheFirstCapture) {
   build(100);
   simulation->end_early();
   EXPECT_TRUE(simulation->finished());
@@ -156,20 +135,21 @@ TEST_F(CameraSimulationTest, HasNothingToFinishBeforeTheFirstCapture) {
 // Lines as fast as those of the paper's board, 640 pixels in 52.15 us, 24 of them. A third party keeps the
 // bus for 50 us from the first pixel of a line on: the FIFO of 140 words is full at pixel 560, 45.6 us after
 // the first.
-TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
+TEST_F(CameraSimulationTest, KeepsTheOldPixelsWhereTheFifoWasFull) {
   constexpr int kRow = 10;
   constexpr int kFirstDropped = 560;
   constexpr std::uint64_t kFrame = 4;
   const capture::CameraTiming timing({640, 24, 599.4, capture::CameraTrigger::kFreeRunning});
   const auto line_ps = static_cast<double>(timing.frame_ps(kFrame) + timing.row_ps(kRow));
   EXPECT_NEAR(static_cast<double>(timing.pixel_ps(kFirstDropped, 0)) / 1e6, 45.6, 0.05);
-  pairs = Noise(640, 24);
+  pairs = test::NoisePairs(640, 24);
   platform::BoardConfig config = platform::load_board(
       "fpl2003", {"image.height=24", "matcher.disparities=16", "cameras.frame_rate_hz=599.4"});
   config.pci.load = platform::PciLoadConfig{1, 1e6, line_ps / 1e6, 50};
   build(6, config);
   const std::vector<runs::Result> results = run();
-  std::vector<host::StereoPair> buffers(2, Noise(640, 24).pair_);
+  const kernels::GrayImage black(640, 24);
+  std::vector<host::StereoPair> buffers(2, {black, black});
   std::uint64_t hit = 0;
   for (std::size_t frame = 0; frame < results.size(); ++frame) {
     host::StereoPair captured = pairs.pair(results[frame].number);
@@ -183,7 +163,7 @@ TEST_F(CameraSimulationTest, ShowsThePixelsThatFoundTheFifoFull) {
       }
     }
     buffer = captured;
-    EXPECT_EQ(results[frame].disparity, disparity_of(captured, board)) << frame;
+    EXPECT_EQ(results[frame].disparity, test::disparity_of(captured, board)) << frame;
   }
   EXPECT_EQ(hit, 1U);
   const platform::Statistics statistics = simulation->statistics();
@@ -199,11 +179,11 @@ TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
   EXPECT_EQ(message_of_running(), "the disk is gone");
 }
 
-TEST_F(CameraSimulationTest, SaysWhoWaitsForWhatWhenNothingGoesOn) {
+TEST_F(CameraSimulationTest, ReportsWhoWaitsForWhatWhenNothingProceeds) {
   // A camera whose error is not thrown sends no lines: its capture never ends.
   sc_core::sc_report_handler::set_actions("/stereotlm/camera", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
   const test::ExpectedReport expected("/stereotlm/camera");
-  pairs.pair_.right = kernels::GrayImage(64, 44);
+  pairs.set_right_size(64, 44);
   build(100);
   EXPECT_THAT(
       message_of_running(),
@@ -212,11 +192,10 @@ TEST_F(CameraSimulationTest, SaysWhoWaitsForWhatWhenNothingGoesOn) {
                       "core runs no frame")));
 }
 
-TEST_F(CameraSimulationTest, CannotBeBuiltOfAWrongBoard) {
+TEST_F(CameraSimulationTest, RefusesABoardWithProblems) {
   platform::BoardConfig wrong = small_board();
-  tables = platform::identity_tables(wrong);
   wrong.matcher.window = 4;
-  EXPECT_THROW(runs::CameraSimulation(wrong, tables, pairs, 1, binder), std::invalid_argument);
+  EXPECT_THROW(build(1, wrong), std::invalid_argument);
 }
 
 }  // namespace

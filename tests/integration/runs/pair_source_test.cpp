@@ -37,14 +37,14 @@ class Levels : public PairSource {
 
 int level(PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
 
-TEST(PairSource, BeginsAgainBehindTheLastPair) {
+TEST(PairSource, RepeatsFromTheFirstPairAfterTheLast) {
   Levels pairs(7);
   for (std::uint64_t frame = 0; frame < 30; ++frame)
     EXPECT_EQ(level(pairs, frame), static_cast<int>(frame % 7));
   EXPECT_EQ(level(pairs, PairSource::kEndless), static_cast<int>(PairSource::kEndless % 7));
 }
 
-TEST(PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
+TEST(PairSource, LoadsAPairOnceWhileItIsHeld) {
   Levels few(4);
   for (std::uint64_t frame = 0; frame < 100; ++frame) few.pair(frame);
   EXPECT_THAT(few.loaded, ElementsAre(0, 1, 2, 3));
@@ -53,7 +53,7 @@ TEST(PairSource, LoadsAPairOnceAsLongAsItIsHeld) {
   EXPECT_THAT(many.loaded, ElementsAre(0, 1, 2, 3, 4, 0, 1, 2, 3, 4));
 }
 
-TEST(PairSource, HoldsWhatWasAskedForLast) {
+TEST(PairSource, HoldsThePairsThatWereRequestedLast) {
   Levels pairs(10);
   for (const std::uint64_t frame : {0U, 1U, 2U, 3U, 0U, 4U, 5U, 6U}) pairs.pair(frame);
   const host::StereoPair& kept = pairs.pair(0);
@@ -63,7 +63,7 @@ TEST(PairSource, HoldsWhatWasAskedForLast) {
   EXPECT_THAT(pairs.loaded, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(PairSource, NamesItsOptionInAnErrorAndCanGoOn) {
+TEST(PairSource, NamesItsOptionInAnErrorAndCanLoadAgain) {
   Levels pairs(10);
   pairs.pair(0);
   pairs.is_broken = true;
@@ -92,7 +92,7 @@ class OpenSourceTest : public ::testing::Test {
   RecordedOptions described_;
 };
 
-TEST_F(OpenSourceTest, OnePairNeedsItsFilesNoMore) {
+TEST_F(OpenSourceTest, OnePairIsReadOnce) {
   PictureSource options;
   options.pair = {picture("l.png", 1), picture("r.png", 2)};
   const OpenedSource source = opened(options);
@@ -104,7 +104,7 @@ TEST_F(OpenSourceTest, OnePairNeedsItsFilesNoMore) {
   }
 }
 
-TEST_F(OpenSourceTest, ASequenceFollowsItsNames) {
+TEST_F(OpenSourceTest, ASequenceFollowsItsNamesAndRefusesAPictureThatHasChanged) {
   for (const int number : {3, 0, 2, 1, 4, 5}) {
     picture("left_" + std::to_string(number) + ".png", number);
     picture("right_" + std::to_string(number) + ".png", 100 + number);
@@ -120,22 +120,13 @@ TEST_F(OpenSourceTest, ASequenceFollowsItsNames) {
     EXPECT_EQ(source.pairs->pair(frame).left.at(0, 0), number);
     EXPECT_EQ(source.pairs->pair(frame).right.at(0, 0), 100 + number);
   }
-}
-
-TEST_F(OpenSourceTest, ASequenceRefusesAPictureThatHasChanged) {
-  for (int number = 0; number < 6; ++number) {
-    picture("left_" + std::to_string(number) + ".png", number);
-    picture("right_" + std::to_string(number) + ".png", number);
-  }
-  PictureSource options;
-  options.sequence = folder_.path().string();
-  const OpenedSource source = opened(options);
+  const OpenedSource again = opened(options);
   const std::string changed = picture("right_1.png", 99);
-  EXPECT_NO_THROW(source.pairs->pair(0));
-  EXPECT_EQ(test::message_of([&] { source.pairs->pair(1); }),
+  EXPECT_NO_THROW(again.pairs->pair(0));
+  EXPECT_EQ(test::message_of([&] { again.pairs->pair(1); }),
             "--sequence '" + changed + "': changed: a picture must not change during a run");
   std::filesystem::remove(folder_.path() / "left_2.png");
-  EXPECT_THAT(test::message_of([&] { source.pairs->pair(2); }),
+  EXPECT_THAT(test::message_of([&] { again.pairs->pair(2); }),
               HasSubstr("left_2.png': cannot be read: No such"));
 }
 

@@ -6,24 +6,15 @@ namespace stereotlm::runs {
 namespace {
 
 TEST(ProgressText, CountsAFrameInProgressByItsCycles) {
-  const RunState state{4, 1, 2'000'000, 2'500'000, 1'000'000};
-  EXPECT_EQ(progress_text(state, 0.5),
+  EXPECT_EQ(progress_text({4, 1, 2'000'000, 2'500'000, 1'000'000}, 0.5),
             "1.25/4 frames   31.2 %   5.00 M cycles/s   2.50 frames/s   0:01 left");
-}
-
-TEST(ProgressText, TakesTheBoundForTheFirstFrame) {
-  const RunState state{2, 0, 0, 250'000, 1'000'000};
-  EXPECT_EQ(progress_text(state, 1), "0.25/2 frames   12.5 %   0.25 M cycles/s   0.25 frames/s   0:07 left");
-}
-
-TEST(ProgressText, NeverSaysThatALongFrameIsFinished) {
-  const RunState state{1, 0, 0, 3'000'000, 1'000'000};
-  EXPECT_EQ(progress_text(state, 1).substr(0, 22), "1.00/1 frames   99.9 %");
-}
-
-TEST(ProgressText, EndsAtTheLastFrame) {
-  const RunState state{2, 2, 2'000'000, 2'000'016, 1'000'000};
-  EXPECT_EQ(progress_text(state, 1), "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
+  // The first frame is expected to take the cycles of its bound.
+  EXPECT_EQ(progress_text({2, 0, 0, 250'000, 1'000'000}, 1),
+            "0.25/2 frames   12.5 %   0.25 M cycles/s   0.25 frames/s   0:07 left");
+  // A frame that takes longer is never shown as finished.
+  EXPECT_EQ(progress_text({1, 0, 0, 3'000'000, 1'000'000}, 1).substr(0, 22), "1.00/1 frames   99.9 %");
+  EXPECT_EQ(progress_text({2, 2, 2'000'000, 2'000'016, 1'000'000}, 1),
+            "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
 }
 
 TEST(VerificationText, CountsTheFramesCompared) {

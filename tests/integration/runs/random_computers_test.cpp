@@ -222,12 +222,12 @@ std::string problems_of(std::uint64_t seed, Fidelity fidelity) {
   const platform::BoardConfig board = test::board_config(computer);
   const platform::Tables tables = test::board_tables(computer.board);
   Pictures pictures(computer.board);
+  const test::PlainComputerInput& input = computer.input;
   const Outcome outcome =
-      simulate(board, tables, pictures, static_cast<std::uint64_t>(computer.frames), fidelity);
+      simulate(board, tables, pictures, static_cast<std::uint64_t>(input.frames), fidelity);
   std::string problems;
   for (const std::string& failed : outcome.statistics.failed) problems += failed + '\n';
   const bool with_pixels = fidelity != Fidelity::kTiming;
-  const test::PlainComputerInput input = test::plain_input(computer);
   problems += differences(figures_of(test::run_plain_computer(input), input, with_pixels),
                           figures_of(outcome, with_pixels));
   return problems.empty() ? problems : problems + platform::to_yaml(board);

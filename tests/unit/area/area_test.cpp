@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
-#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "tests/support/scratch_folder.h"
 #include "tests/unit/area/resources.h"
 
 namespace stereotlm::area {
@@ -13,8 +15,30 @@ namespace {
 
 using fpga::CoreConfig;
 using fpga::Fetch;
+using kernels::FilterKernel;
 
-// That of this name; a count of 0 if there is none.
+constexpr auto kWidth = &CoreConfig::width;
+constexpr auto kHeight = &CoreConfig::height;
+constexpr auto kWindow = &CoreConfig::window;
+constexpr auto kDisparities = &CoreConfig::disparities;
+constexpr auto kFilter = &CoreConfig::filter;
+constexpr auto kFetch = &CoreConfig::fetch;
+constexpr auto kTolerance = &CoreConfig::lr_tolerance;
+constexpr auto kLeftTable = &CoreConfig::left_table;
+constexpr auto kRightTable = &CoreConfig::right_table;
+constexpr auto kLaneSlots = &CoreConfig::lane_fifo_slots;
+constexpr auto kResultWords = &CoreConfig::result_fifo_words;
+
+// The paper's core with other values in the fields that are named.
+CoreConfig core() { return {}; }
+template <class Field, class Value, class... More>
+CoreConfig core(Field CoreConfig::*field, const Value& value, const More&... more) {
+  CoreConfig config = core(more...);
+  config.*field = value;
+  return config;
+}
+
+// The parts of this name; a count of 0 if there are none.
 Item item_of(const CoreConfig& config, const std::string& name) {
   for (const Item& item : items(config)) {
     if (item.name == name) return item;
@@ -24,25 +48,17 @@ Item item_of(const CoreConfig& config, const std::string& name) {
 
 Resources all_of(const CoreConfig& config, const std::string& name) { return item_of(config, name).all; }
 
-CoreConfig with_window(int window) {
-  CoreConfig config;
-  config.window = window;
-  return config;
+using Cores = std::vector<std::pair<CoreConfig, Resources>>;
+
+// What all parts of this name take in each of the cores.
+void expect_all(const std::string& name, const Cores& cores) {
+  for (std::size_t number = 0; number < cores.size(); ++number)
+    EXPECT_EQ(all_of(cores[number].first, name), cores[number].second) << name << " of core " << number;
 }
 
-CoreConfig with_disparities(int disparities) {
-  CoreConfig config;
-  config.disparities = disparities;
-  return config;
-}
+constexpr Resources block_rams(std::int64_t count) { return {0, 0, count, 0}; }
 
-CoreConfig with_line_buffer() {
-  CoreConfig config;
-  config.fetch = Fetch::kLineBuffer;
-  return config;
-}
-
-TEST(AreaItems, OfThePapersBoard) {
+TEST(AreaItems, ListThePartsOfThePapersBoard) {
   std::vector<std::pair<std::string, std::int64_t>> found;
   for (const Item& item : items(CoreConfig())) found.emplace_back(item.name, item.count);
   const std::vector<std::pair<std::string, std::int64_t>> expected = {
@@ -67,17 +83,10 @@ TEST(AreaItems, OfThePapersBoard) {
 }
 
 TEST(AreaItems, AreRefusedForACoreWithProblems) {
-  CoreConfig config;
-  config.window = 8;
-  try {
-    items(config);
-    FAIL() << "no exception";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "window = 8: must be 3..31, odd");
-  }
+  EXPECT_EQ(test::message_of([] { items(core(kWindow, 8)); }), "window = 8: must be 3..31, odd");
 }
 
-// The most that n pixel differences add up to, and n columns of them.
+// Bits of the sum of n pixel differences, and of n columns of them.
 struct SumBits {
   int window;
   int column;
@@ -89,58 +98,54 @@ constexpr SumBits kSumBits[] = {
 };
 
 TEST(ColumnModules, TakeAnAbsoluteDifferenceAndAnAccumulator) {
-  for (const SumBits& bits : kSumBits) {
-    EXPECT_EQ(all_of(with_window(bits.window), "column modules"),
-              80 * (Resources{17 + bits.column, bits.column}))
-        << bits.window;
-  }
+  for (const SumBits& bits : kSumBits)
+    expect_all("column modules",
+               {{core(kWindow, bits.window), 80 * (Resources{17 + bits.column, bits.column})}});
 }
 
-TEST(ColumnModules, OfALineBufferAddUpAWholeColumn) {
-  CoreConfig config = with_line_buffer();
-  config.window = 3;  // 1 + 2: adders of 9 and 10 bits
-  EXPECT_EQ(all_of(config, "column modules"), 80 * (Resources{3 * 17 + 9 + 10, 10}));
-  config.window = 7;  // 3 + 4: (1 + 2) + (2 + 2)
-  EXPECT_EQ(all_of(config, "column modules"), 80 * (Resources{7 * 17 + (9 + 10) + (9 + 9 + 10) + 11, 11}));
+TEST(ColumnModules, AddUpAWholeColumnBehindALineBuffer) {
+  // 3 = 1 + 2 differences in adders of 9 and 10 bits; 7 = (1 + 2) + (2 + 2).
+  expect_all("column modules",
+             {{core(kFetch, Fetch::kLineBuffer, kWindow, 3), 80 * Resources{3 * 17 + 9 + 10, 10}},
+              {core(kFetch, Fetch::kLineBuffer), 80 * Resources{7 * 17 + (9 + 10) + (9 + 9 + 10) + 11, 11}}});
 }
 
 TEST(WindowModules, TakeAShiftRegisterADifferenceAndAnAccumulator) {
   for (const SumBits& bits : kSumBits) {
     const int srls = bits.window <= 16 ? 1 : 2;
     const Resources one{srls * bits.column + (bits.column + 1) + bits.window_sum, bits.window_sum};
-    EXPECT_EQ(all_of(with_window(bits.window), "window modules"), 80 * one) << bits.window;
-    CoreConfig line_buffer = with_window(bits.window);
-    line_buffer.fetch = Fetch::kLineBuffer;
-    EXPECT_EQ(all_of(line_buffer, "window modules"), 80 * one) << bits.window;
+    expect_all("window modules", {{core(kWindow, bits.window), 80 * one},
+                                  {core(kWindow, bits.window, kFetch, Fetch::kLineBuffer), 80 * one}});
   }
 }
 
 TEST(RightPixelDelays, AreOneColumnEach) {
-  EXPECT_EQ(all_of(with_window(15), "right pixel delays"), (Resources{79 * 8}));
-  EXPECT_EQ(all_of(with_window(17), "right pixel delays"), (Resources{79 * 16}));
-  EXPECT_EQ(all_of(with_line_buffer(), "right pixel delays"), (Resources{0, 79 * 7 * 8}));
-  EXPECT_EQ(item_of(with_disparities(1), "right pixel delays").count, 0);
+  expect_all("right pixel delays", {{core(kWindow, 15), {79 * 8}},
+                                    {core(kWindow, 17), {79 * 16}},
+                                    {core(kFetch, Fetch::kLineBuffer), {0, 79 * 7 * 8}},
+                                    {core(kDisparities, 1), {}}});
 }
 
-TEST(Modules, AreAsManyAsDisparities) {
+TEST(ModuleArea, IsProportionalToTheDisparities) {
   for (const char* const name : {"column modules", "window modules", "candidate marks"}) {
-    const Resources one = all_of(with_disparities(1), name);
+    const Resources one = all_of(core(kDisparities, 1), name);
     for (const int disparities : {2, 80, 160, 254})
-      EXPECT_EQ(all_of(with_disparities(disparities), name), disparities * one) << name;
+      expect_all(name, {{core(kDisparities, disparities), disparities * one}});
   }
-  EXPECT_EQ(all_of(with_disparities(1), "candidate marks"), (Resources{0, 1}));
+  expect_all("candidate marks", {{core(kDisparities, 1), {0, 1}}});
 }
 
-// Windows of 7x7: sums of 14 bits. What every comparison takes: comparator, decision, selector.
+// Windows of 7x7 have sums of 14 bits. Each comparison takes a comparator, the decision and a selector.
 constexpr int kComparison = 15 + 1 + 14;
 
 TEST(SelectMinUnitA, IsAChainWhoseDisparitiesWiden) {
-  EXPECT_EQ(all_of(with_disparities(1), "select-min unit A"), (Resources{0, 15}));
-  EXPECT_EQ(all_of(with_disparities(2), "select-min unit A"), (Resources{kComparison + 1, 15 + 16}));
-  // Module 127 hands on 7 bits, module 128 one more.
+  expect_all("select-min unit A", {{core(kDisparities, 1), {0, 15}},
+                                   {core(kDisparities, 2), {kComparison + 1, 15 + 16}},
+                                   {core(kTolerance, std::nullopt), {}}});
+  // Module 127 passes on 7 bits, module 128 one bit more.
   const auto last_of = [](int disparities) {
-    const Resources chain = all_of(with_disparities(disparities), "select-min unit A");
-    const Resources before = all_of(with_disparities(disparities - 1), "select-min unit A");
+    const Resources chain = all_of(core(kDisparities, disparities), "select-min unit A");
+    const Resources before = all_of(core(kDisparities, disparities - 1), "select-min unit A");
     return Resources{chain.luts - before.luts, chain.flip_flops - before.flip_flops};
   };
   EXPECT_EQ(last_of(128), (Resources{kComparison + 7, 15 + 7}));
@@ -148,235 +153,170 @@ TEST(SelectMinUnitA, IsAChainWhoseDisparitiesWiden) {
 }
 
 TEST(SelectMinUnitB, IsATreeOfOneComparatorLessThanDisparities) {
-  EXPECT_EQ(item_of(with_disparities(1), "select-min unit B").count, 0);
-  EXPECT_EQ(all_of(with_disparities(2), "select-min unit B"), (Resources{kComparison, 16}));
-  // 4 comparisons of single disparities, 2 of pairs, 1 of fours.
-  EXPECT_EQ(all_of(with_disparities(8), "select-min unit B"),
-            (Resources{7 * kComparison + 2 * 1 + 1 * 2, 4 * 16 + 2 * 17 + 1 * 18}));
-  // 5: 2 pairs, one waits; 1 pair, one waits; 1 pair.
-  EXPECT_EQ(item_of(with_disparities(5), "select-min unit B").count, 4);
-  EXPECT_EQ(all_of(with_disparities(5), "select-min unit B"),
-            (Resources{4 * kComparison + 1 + 2, (2 * 16 + 15) + (17 + 16) + 18}));
+  // 8: 4 comparisons of single disparities, 2 of pairs, 1 of fours. 5: 2 pairs and one waits, 1 pair and one
+  // waits, 1 pair.
+  expect_all("select-min unit B",
+             {{core(kDisparities, 1), {}},
+              {core(kDisparities, 2), {kComparison, 16}},
+              {core(kDisparities, 8), {7 * kComparison + 2 * 1 + 1 * 2, 4 * 16 + 2 * 17 + 1 * 18}},
+              {core(kDisparities, 5), {4 * kComparison + 1 + 2, (2 * 16 + 15) + (17 + 16) + 18}}});
+  EXPECT_EQ(item_of(core(kDisparities, 5), "select-min unit B").count, 4);
 }
 
 TEST(LeftRightCheck, DelaysTheLeftBasedDisparities) {
-  // 17 disparities: 5 bits and a valid bit wait 16 columns; a difference of 5 bits, its tolerance, the
-  // decision.
+  // 17 disparities: 5 bits and a valid bit wait 16 columns; then a difference of 5 bits, the tolerance, the
+  // decision. The tolerance of 4 bits takes one LUT. Without a check only the delays remain.
   constexpr int kCheck = 1 + (6 + 5) + 2 + 1 + 8;
-  EXPECT_EQ(all_of(with_disparities(17), "left-right check"), (Resources{6 + kCheck, 0, 1, 0}));
-  EXPECT_EQ(all_of(with_disparities(18), "left-right check"), (Resources{2 * 6 + kCheck, 0, 1, 0}));
-  // 16 disparities: 4 bits, whose tolerance one LUT sees.
-  EXPECT_EQ(all_of(with_disparities(16), "left-right check"),
-            (Resources{5 + 1 + (5 + 4) + 1 + 1 + 8, 0, 1, 0}));
-}
-
-TEST(LeftRightCheck, CostsTheSameWithEveryTolerance) {
-  CoreConfig tolerant;
-  tolerant.lr_tolerance = 253;
-  EXPECT_EQ(all_of(tolerant, "left-right check"), all_of(CoreConfig(), "left-right check"));
-}
-
-TEST(LeftRightCheck, WithoutItThereIsNoUnitA) {
-  CoreConfig off;
-  off.lr_tolerance.reset();
-  EXPECT_EQ(item_of(off, "select-min unit A").count, 0);
-  EXPECT_EQ(all_of(off, "left-right check"), (Resources{5 * 8 + 1 + 8}));
+  expect_all("left-right check", {{core(kDisparities, 17), {6 + kCheck, 0, 1, 0}},
+                                  {core(kDisparities, 18), {2 * 6 + kCheck, 0, 1, 0}},
+                                  {core(kDisparities, 16), {5 + 1 + (5 + 4) + 1 + 1 + 8, 0, 1, 0}},
+                                  {core(kTolerance, 253), all_of(core(), "left-right check")},
+                                  {core(kTolerance, std::nullopt), {5 * 8 + 1 + 8}}});
 }
 
 TEST(LeftRightCheck, DelaysTheValidBitOfItsOwnPixel) {
-  // 3 columns of the window, 3 of the filter.
-  CoreConfig config;
-  const std::int64_t with_table = all_of(config, "left-right check").luts;
-  config.right_table = false;
-  EXPECT_EQ(all_of(config, "left-right check").luts, with_table);
-  config.left_table = false;
-  EXPECT_EQ(all_of(config, "left-right check").luts, with_table - 1);
-  CoreConfig far = with_window(27);  // 13 + 3
-  const std::int64_t sixteen = all_of(far, "left-right check").luts;
-  far.window = 29;  // 14 + 3
-  EXPECT_EQ(all_of(far, "left-right check").luts, sixteen + 1);
+  const auto luts = [](const CoreConfig& config) { return all_of(config, "left-right check").luts; };
+  EXPECT_EQ(luts(core(kRightTable, false)), luts(core()));
+  EXPECT_EQ(luts(core(kLeftTable, false)), luts(core()) - 1);
+  // Half a window and half the filter: 13 + 3 columns, then one more.
+  EXPECT_EQ(luts(core(kWindow, 29)), luts(core(kWindow, 27)) + 1);
 }
 
-TEST(Lanes, HaveQueuesOfTableEntriesAndOfPixels) {
-  CoreConfig config;
+TEST(LaneArea, HasQueuesOfTableEntriesAndOfPixels) {
   for (const auto& [slots, luts] : {std::pair{2, 1}, {16, 1}, {17, 2}, {64, 4}}) {
-    config.lane_fifo_slots = slots;
-    EXPECT_EQ(all_of(config, "table entry queues"), (Resources{2 * 23 * luts})) << slots;
-    EXPECT_EQ(all_of(config, "pixel queues"), (Resources{(9 + 8) * luts})) << slots;
+    expect_all("table entry queues", {{core(kLaneSlots, slots), {2 * 23 * luts}}});
+    expect_all("pixel queues", {{core(kLaneSlots, slots), {(9 + 8) * luts}}});
   }
-  config.lane_fifo_slots = 1;
-  EXPECT_EQ(all_of(config, "table entry queues"), (Resources{0, 2 * 23}));
-  EXPECT_EQ(all_of(config, "pixel queues"), (Resources{0, 9 + 8}));
+  expect_all("table entry queues", {{core(kLaneSlots, 1), {0, 2 * 23}}});
+  expect_all("pixel queues", {{core(kLaneSlots, 1), {0, 9 + 8}}});
 }
 
-TEST(Lanes, NeedTableEntriesOnlyForTables) {
-  CoreConfig config;
-  config.right_table = false;
-  EXPECT_EQ(item_of(config, "table entry queues").count, 1);
-  EXPECT_EQ(all_of(config, "pixel queues"), (Resources{9 + 8}));
-  config.left_table = false;
-  EXPECT_EQ(item_of(config, "table entry queues").count, 0);
-  EXPECT_EQ(item_of(config, "source addresses").count, 0);
-  EXPECT_EQ(all_of(config, "pixel queues"), (Resources{8 + 8}));
-  EXPECT_EQ(all_of(config, "byte selectors"), (Resources{2 * 16}));
+TEST(LaneArea, HasTableEntriesOnlyForTables) {
+  const CoreConfig one_table = core(kRightTable, false);
+  const CoreConfig no_table = core(kRightTable, false, kLeftTable, false);
+  expect_all("table entry queues", {{one_table, {23}}, {no_table, {}}});
+  expect_all("source addresses", {{one_table, {19, 0, 0, 1}}, {no_table, {}}});
+  expect_all("pixel queues", {{one_table, {9 + 8}}, {no_table, {8 + 8}}});
+  expect_all("byte selectors", {{no_table, {2 * 16}}});
 }
 
-TEST(Lanes, MultiplyRowsByAWidthThatIsNoPowerOfTwo) {
-  CoreConfig config;  // 640 x 480 - 1 in 19 bits
-  EXPECT_EQ(all_of(config, "source addresses"), (Resources{2 * 19, 0, 0, 2}));
-  config.height = 820;  // 524,800 pixels
-  EXPECT_EQ(all_of(config, "source addresses"), (Resources{2 * 20, 0, 0, 2}));
-  for (const int width : {4, 512, 2048}) {
-    config.width = width;
-    EXPECT_EQ(all_of(config, "source addresses"), (Resources{})) << width;
-  }
-  config.width = 516;
-  EXPECT_EQ(all_of(config, "source addresses").multipliers, 2);
+TEST(LaneArea, MultipliesRowsByAWidthThatIsNoPowerOfTwo) {
+  // 640 x 480 - 1 takes 19 bits, 640 x 820 - 1 takes 20.
+  expect_all("source addresses", {{core(), {2 * 19, 0, 0, 2}},
+                                  {core(kHeight, 820), {2 * 20, 0, 0, 2}},
+                                  {core(kWidth, 516), {2 * 18, 0, 0, 2}},
+                                  {core(kWidth, 4), {}},
+                                  {core(kWidth, 512), {}},
+                                  {core(kWidth, 2048), {}}});
 }
 
-TEST(Results, WaitForWholeWordsAndForTheirBank) {
-  CoreConfig config;
-  EXPECT_EQ(all_of(config, "result packer"), (Resources{0, 24}));
-  for (const auto& [words, luts] : {std::pair{2, 32}, {16, 32}, {17, 64}}) {
-    config.result_fifo_words = words;
-    EXPECT_EQ(all_of(config, "result queue"), (Resources{luts})) << words;
-  }
-  config.result_fifo_words = 1;
-  EXPECT_EQ(all_of(config, "result queue"), (Resources{0, 32}));
+TEST(ResultArea, HoldsAPartOfAWordAndAQueueOfWords) {
+  expect_all("result packer", {{core(), {0, 24}}});
+  expect_all("result queue", {{core(kResultWords, 1), {0, 32}},
+                              {core(kResultWords, 2), {32}},
+                              {core(kResultWords, 16), {32}},
+                              {core(kResultWords, 17), {64}}});
 }
 
-TEST(Filter, IsThereTwice) {
-  CoreConfig config;
-  EXPECT_EQ(all_of(config, "filters"), (Resources{2 * 259, 2 * 94, 0, 2 * 10}));
-  config.filter.reset();
+TEST(FilterArea, TakesOneFilterPerSide) {
+  expect_all("filters", {{core(), {2 * 259, 2 * 94, 0, 2 * 10}}});
   for (const char* const name : {"filters", "filter columns", "filter line memories"})
-    EXPECT_EQ(item_of(config, name).count, 0) << name;
+    EXPECT_EQ(item_of(core(kFilter, std::nullopt), name).count, 0) << name;
 }
 
-TEST(Filter, KeepsTheColumnsBeforeInBlockRamOrRegisters) {
+TEST(FilterArea, KeepsEarlierColumnsInBlockRamOrRegisters) {
   // 6 columns of 7 pixels: 48 bits in memories of 36.
-  EXPECT_EQ(all_of(CoreConfig(), "filter columns"), (Resources{0, 0, 2 * 2, 0}));
-  EXPECT_EQ(all_of(with_line_buffer(), "filter columns"), (Resources{0, 2 * 48}));
+  expect_all("filter columns",
+             {{core(), block_rams(2 * 2)}, {core(kFetch, Fetch::kLineBuffer), {0, 2 * 48}}});
 }
 
-TEST(Filter, HasLineMemoriesOfTheWidthOfTheImage) {
-  CoreConfig config;  // 94 bits
-  for (const auto& [width, block_rams] : {std::pair{512, 3}, {516, 6}, {1024, 6}, {1028, 11}, {2048, 11}}) {
-    config.width = width;
-    EXPECT_EQ(all_of(config, "filter line memories"), (Resources{0, 0, 2 * block_rams, 0})) << width;
-  }
+TEST(FilterArea, HasLineMemoriesOfTheWidthOfTheImage) {
+  // 94 bits.
+  for (const auto& [width, count] : {std::pair{512, 3}, {516, 6}, {1024, 6}, {1028, 11}, {2048, 11}})
+    expect_all("filter line memories", {{core(kWidth, width), block_rams(2 * count)}});
 }
 
-TEST(Filter, KeepsValidBitsOfRowsThatTheColumnNoLongerHas) {
-  CoreConfig config;
-  config.filter = kernels::FilterKernel{31, std::vector<int>(961, 0), 0};
-  config.filter->weights[0] = 1;
-  config.filter->weights[960] = -1;
-  config.width = 512;
-  // 30 sums of 8 bits, 240; with windows of 7 the middle of the left one is 12 rows above the newest 7.
-  EXPECT_EQ(all_of(config, "filter line memories"), (Resources{0, 0, 7 + 7, 0}));
-  config.filter->weights[960] = 0;
-  config.filter->weights[959] = -1;
-  EXPECT_EQ(all_of(config, "filter line memories"), (Resources{0, 0, 7 + 7, 0}));
-  config.filter->weights[959] = 0;
-  config.filter->weights[929] = -1;  // the last sum is one of both signs: 241 bits
-  EXPECT_EQ(all_of(config, "filter line memories"), (Resources{0, 0, 8 + 7, 0}));
-  config.left_table = false;
-  EXPECT_EQ(all_of(config, "filter line memories"), (Resources{0, 0, 7 + 7, 0}));
-  config.left_table = true;
-  config.window = 31;
-  EXPECT_EQ(all_of(config, "filter line memories"), (Resources{0, 0, 7 + 7, 0}));
+TEST(FilterArea, KeepsValidBitsOfRowsThatTheColumnNoLongerHas) {
+  // 30 sums of 8 bits are 240 bits. With windows of 7 the middle of the left window is 12 rows above the
+  // newest 7 rows. In the second kernel the last sum may have either sign: 241 bits.
+  FilterKernel kernel{31, std::vector<int>(961, 0), 0};
+  kernel.weights[0] = 1;
+  kernel.weights[960] = -1;
+  FilterKernel wider = kernel;
+  std::swap(wider.weights[960], wider.weights[929]);
+  expect_all("filter line memories",
+             {{core(kWidth, 512, kFilter, kernel), block_rams(7 + 7)},
+              {core(kWidth, 512, kFilter, wider), block_rams(8 + 7)},
+              {core(kWidth, 512, kFilter, wider, kLeftTable, false), block_rams(7 + 7)},
+              {core(kWidth, 512, kFilter, wider, kWindow, 31), block_rams(7 + 7)}});
 }
 
-TEST(RowBuffers, AreThereForTheLineBufferOnly) {
-  EXPECT_EQ(item_of(CoreConfig(), "row buffers").count, 0);
-  CoreConfig config = with_line_buffer();
-  config.filter.reset();
+TEST(RowBufferArea, BelongsToTheLineBufferOnly) {
+  EXPECT_EQ(item_of(core(), "row buffers").count, 0);
   // 6 rows of 8 bits: 48, and on the left 3 valid bits.
-  for (const auto& [width, block_rams] : {std::pair{512, 2}, {516, 3}, {1024, 3}, {1028, 6}}) {
-    config.width = width;
-    EXPECT_EQ(all_of(config, "row buffers"), (Resources{0, 0, 2 * block_rams, 0})) << width;
-  }
+  for (const auto& [width, count] : {std::pair{512, 2}, {516, 3}, {1024, 3}, {1028, 6}})
+    expect_all("row buffers", {{core(kFetch, Fetch::kLineBuffer, kFilter, std::nullopt, kWidth, width),
+                                block_rams(2 * count)}});
 }
 
-TEST(RowBuffers, HoldTheValidBitsOfTheLeftTable) {
-  CoreConfig config = with_line_buffer();
-  config.width = 2048;
-  config.window = 3;
-  config.filter.reset();
+TEST(RowBufferArea, HoldsTheValidBitsOfTheLeftTable) {
   // 2 rows of 8 bits and 1 valid bit: two memories of 9 bits. With the filter 4 valid bits.
-  EXPECT_EQ(all_of(config, "row buffers"), (Resources{0, 0, 2 + 2, 0}));
-  config.filter = kernels::log7();
-  EXPECT_EQ(all_of(config, "row buffers"), (Resources{0, 0, 3 + 2, 0}));
-  config.left_table = false;
-  EXPECT_EQ(all_of(config, "row buffers"), (Resources{0, 0, 2 + 2, 0}));
+  const CoreConfig filtered = core(kFetch, Fetch::kLineBuffer, kWidth, 2048, kWindow, 3);
+  CoreConfig plain = filtered;
+  plain.filter.reset();
+  CoreConfig without_table = filtered;
+  without_table.left_table = false;
+  expect_all("row buffers",
+             {{plain, block_rams(2 + 2)}, {filtered, block_rams(3 + 2)}, {without_table, block_rams(2 + 2)}});
 }
 
-// A core that is larger in one thing is smaller in none.
-void expect_growth(std::vector<CoreConfig> configs) {
+// A core that is larger in one dimension is smaller in no resource.
+void expect_growth(const std::vector<CoreConfig>& series) {
   Area before;
-  for (const CoreConfig& config : configs) {
+  for (const CoreConfig& config : series) {
     const Area area = total(items(config), kDevices[0]);
-    const std::string which = "window " + std::to_string(config.window) + ", disparities " +
-                              std::to_string(config.disparities) + ", width " + std::to_string(config.width);
+    const std::string which =
+        "window " + std::to_string(config.window) + ", disparities " + std::to_string(config.disparities);
     EXPECT_GE(area.slices, before.slices) << which;
     EXPECT_GE(area.luts, before.luts) << which;
     EXPECT_GE(area.flip_flops, before.flip_flops) << which;
     EXPECT_GE(area.block_rams, before.block_rams) << which;
     before = area;
   }
-  const Area least = total(items(configs.front()), kDevices[0]);
+  const Area least = total(items(series.front()), kDevices[0]);
   EXPECT_GT(before.slices + before.block_rams, least.slices + least.block_rams);
 }
 
-void expect_growth_in(const std::function<std::vector<CoreConfig>(const CoreConfig&)>& series) {
+// `enlarge` makes a core one step larger, and returns false at the end of the range.
+void expect_growth(CoreConfig first, const std::function<bool(CoreConfig&)>& enlarge) {
   for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
     for (const bool filter : {false, true}) {
-      CoreConfig config;
+      CoreConfig config = first;
       config.fetch = fetch;
       if (!filter) config.filter.reset();
-      expect_growth(series(config));
+      std::vector<CoreConfig> series;
+      do series.push_back(config);
+      while (enlarge(config));
+      expect_growth(series);
     }
   }
 }
 
-TEST(AreaItems, GrowWithTheDisparities) {
-  expect_growth_in([](CoreConfig config) {
-    std::vector<CoreConfig> series;
-    for (config.disparities = 1; config.disparities <= 254; ++config.disparities) series.push_back(config);
-    return series;
+TEST(AreaItems, GrowWithTheDisparitiesTheWindowAndTheQueues) {
+  expect_growth(core(kDisparities, 1), [](CoreConfig& config) { return ++config.disparities <= 254; });
+  expect_growth(core(kWindow, 3), [](CoreConfig& config) { return (config.window += 2) <= 31; });
+  expect_growth(core(kLaneSlots, 2, kResultWords, 2), [](CoreConfig& config) {
+    return ++config.lane_fifo_slots <= 64 && ++config.result_fifo_words;
   });
 }
 
-TEST(AreaItems, GrowWithTheWindow) {
-  expect_growth_in([](CoreConfig config) {
-    std::vector<CoreConfig> series;
-    for (config.window = 3; config.window <= 31; config.window += 2) series.push_back(config);
-    return series;
-  });
-}
-
-TEST(AreaItems, GrowWithTheQueues) {
-  expect_growth_in([](CoreConfig config) {
-    std::vector<CoreConfig> series;
-    for (int places = 2; places <= 64; ++places) {
-      config.lane_fifo_slots = places;
-      config.result_fifo_words = places;
-      series.push_back(config);
-    }
-    return series;
-  });
-}
-
-TEST(AreaItems, BlockRamsGrowWithTheWidth) {
+TEST(AreaItems, TakeMoreBlockRamForWiderImages) {
   for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
-    CoreConfig config;
-    config.fetch = fetch;
     std::int64_t before = 0;
-    for (config.width = 4; config.width <= 2048; config.width += 4) {
-      const std::int64_t block_rams = total(items(config), kDevices[0]).block_rams;
-      EXPECT_GE(block_rams, before) << config.width;
-      before = block_rams;
+    for (int width = 4; width <= 2048; width += 4) {
+      const std::int64_t found = total(items(core(kFetch, fetch, kWidth, width)), kDevices[0]).block_rams;
+      EXPECT_GE(found, before) << width;
+      before = found;
     }
   }
 }

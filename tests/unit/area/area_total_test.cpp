@@ -20,13 +20,12 @@ TEST(Device, IsFoundByItsName) {
 }
 
 TEST(AreaItem, SharesPlacesBetweenLutsAndTheirFlipFlops) {
-  EXPECT_EQ((Item{"parts", 1, {10, 7, 0, 0}}).lut_equivalents(), 10);
   EXPECT_EQ((Item{"parts", 1, {10, 10, 0, 0}}).lut_equivalents(), 10);
   EXPECT_EQ((Item{"parts", 1, {10, 11, 0, 0}}).lut_equivalents(), 11);
   EXPECT_EQ((Item{"parts", 1, {0, 0, 5, 6}}).lut_equivalents(), 0);
 }
 
-TEST(AreaTotal, DoesNotShareThemBetweenItems) {
+TEST(AreaTotal, SharesNoPlacesBetweenItems) {
   const Area area = total({{"one", 1, {10, 0, 1, 2}}, {"other", 3, {0, 20, 3, 4}}}, kXc2v6000);
   EXPECT_EQ(area.lut_equivalents, 30);
   EXPECT_EQ(area.luts, 10);
@@ -49,7 +48,7 @@ TEST(AreaTotal, IsAShareOfTheDevice) {
   EXPECT_DOUBLE_EQ(area.multipliers_percent, 50);
 }
 
-TEST(AreaTotal, FitsUpToTheLastOfEachKind) {
+TEST(AreaTotal, FitsUpToTheLastOfEachResource) {
   const Area full = total_of({54'345, 0, 144, 144});
   EXPECT_EQ(full.slices, 33'792);
   EXPECT_TRUE(full.fits());

@@ -11,16 +11,16 @@ using kernels::FilterKernel;
 
 FilterKernel laplacian(int shift) { return {3, {0, -1, 0, -1, 4, -1, 0, -1, 0}, shift}; }
 
-TEST(FilterArithmetic, OfASmallKernelIsWhatItsAddersAre) {
-  // One pair of 9 bits. Rows: -c needs nothing; 4c - pair is -510..1020, 11 bits, of which 4c leaves two
-  // alone. Chain: 8 bits of -255..0, then two adders of 11 bits. Sums of -1020..1020 are clamped from 11 bits
-  // to 8.
+TEST(FilterArithmetic, IsTheSumOfItsAdders) {
+  // One pair of 9 bits. Row -c needs no adder. Row 4c - pair is -510..1020, 11 bits, of which 4c leaves two
+  // unchanged. Chain: 8 bits of -255..0, then two adders of 11 bits. Sums of -1020..1020 are clamped from 11
+  // bits to 8.
   const FilterArithmetic filter = filter_arithmetic(laplacian(0));
   EXPECT_EQ(filter.resources, (Resources{9 + (11 - 2) + 2 * 11 + 8 + 1, 8 + 11}));
   EXPECT_EQ(filter.chain_bits, 8 + 11);
 }
 
-TEST(FilterArithmetic, ClampsWhatLeavesEightBits) {
+TEST(FilterArithmetic, ClampsResultsOfMoreThanEightBits) {
   const std::int64_t without = filter_arithmetic(laplacian(3)).resources.luts;  // -128..127
   EXPECT_EQ(without, 9 + 9 + 2 * 11);
   EXPECT_EQ(filter_arithmetic(laplacian(2)).resources.luts, without + 8 + 1);  // 9 bits
@@ -36,16 +36,17 @@ TEST(FilterArithmetic, ClampsWhatLeavesEightBits) {
   EXPECT_EQ(clamp_of(wider), 8 + 3);         // 14 bits
 }
 
-TEST(FilterArithmetic, MakesEqualRowsOnceAndPairsOnlyInSymmetricOnes) {
-  // Sobel. Two differences of 9 bits, of the one of 2a - 2b a bit is left alone; chain of 9, 11 and 11 bits.
+TEST(FilterArithmetic, SharesEqualRowsAndAddsPairsInSymmetricRowsOnly) {
+  // Sobel: two differences of 9 bits, of which 2a - 2b leaves one bit unchanged; a chain of 9, 11 and 11
+  // bits.
   const FilterArithmetic filter = filter_arithmetic({3, {-1, 0, 1, -2, 0, 2, -1, 0, 1}, 3});
   EXPECT_EQ(filter.resources, (Resources{9 + (10 - 1) + 2 * 11, 9 + 11}));
-  // One row that differs: no more can be shared.
+  // With one row that differs, that row is not shared.
   const FilterArithmetic other = filter_arithmetic({3, {-1, 0, 1, -2, 0, 2, -1, 1, 0}, 3});
   EXPECT_EQ(other.resources, (Resources{9 + (10 - 1) + 9 + 2 * 11, 9 + 11}));
 }
 
-TEST(FilterArithmetic, MultipliesByWhatIsNoPowerOfTwo) {
+TEST(FilterArithmetic, MultipliesByWeightsThatAreNoPowerOfTwo) {
   const auto multipliers = [](int weight) {
     return filter_arithmetic({3, {0, 0, 0, weight, -2 * weight, weight, 0, 0, 0}, 0}).resources.multipliers;
   };
@@ -53,20 +54,21 @@ TEST(FilterArithmetic, MultipliesByWhatIsNoPowerOfTwo) {
   for (const int weight : {3, -3, 5, 6, 7, 16383, -16383}) EXPECT_EQ(multipliers(weight), 2) << weight;
 }
 
-TEST(FilterArithmetic, OfLog7) {
-  // Pairs 3 x 9. Rows, outermost term first, behind the minus the bits that stay:
+TEST(FilterArithmetic, CountsThePartsOfLog7) {
+  // Three pairs of 9 bits. Adders of the rows, outermost term first; bits behind a minus stay unchanged:
   //   1 3 5        11, 12
   //   1 6 14 16    12-1, 14-1, 14-4
   //   3 14 -35     14-1, 15
   //   5 16 -35 -112    14-4, 16, 17-4
-  // Chain: 12 bits of row 0 alone, adders of 15, 16, 17, 17, 17 and 17 bits. Clamped from 11 bits.
+  // Chain: 12 bits of row 0, then adders of 15, 16, 17, 17, 17 and 17 bits. The result is clamped from 11
+  // bits.
   const FilterArithmetic filter = filter_arithmetic(kernels::log7());
   constexpr int kRows = (11 + 12) + (11 + 13 + 10) + (13 + 15) + (10 + 16 + 13);
   EXPECT_EQ(filter.resources, (Resources{27 + kRows + (15 + 16 + 4 * 17) + 9, 12 + 15 + 16 + 3 * 17, 0, 10}));
   EXPECT_EQ(filter.chain_bits, 94);
 }
 
-TEST(FilterArithmetic, OfAKernelOfZerosIsNothing) {
+TEST(FilterArithmetic, IsEmptyForAKernelOfZeros) {
   const FilterArithmetic filter = filter_arithmetic({3, std::vector<int>(9, 0), 0});
   EXPECT_EQ(filter.resources, (Resources{}));
   EXPECT_EQ(filter.chain_bits, 0);

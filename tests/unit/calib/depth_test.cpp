@@ -19,7 +19,7 @@ DepthGeometry geometry(int disparity_offset) {
   return {q, disparity_offset};
 }
 
-TEST(DepthGeometry, PutsBothOffsetsBackBeforeQ) {
+TEST(DepthGeometry, AddsTheOffsetToColumnAndDisparityBeforeQ) {
   const auto point = geometry(10).point(44, 53, 30);  // column 54, true disparity 40: 1 m away
   ASSERT_TRUE(point);
   EXPECT_DOUBLE_EQ(point->z(), 1000);
@@ -34,7 +34,7 @@ TEST(DepthGeometry, HasNoPointAtInfinityOrBehindTheCamera) {
   EXPECT_TRUE(geometry(-5).point(4, 3, 6));
 }
 
-TEST(DepthMillimetres, IsTheNearestAndZeroWhereThereIsNone) {
+TEST(DepthMillimetres, IsRoundedAndZeroWithoutDepth) {
   kernels::GrayImage disparity(4, 2, 255);
   disparity.at(0, 0) = 40;
   disparity.at(1, 0) = 3;    // 13333.33
@@ -60,7 +60,7 @@ float float_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-TEST(PointCloudPly, HoldsThePointsWithAnswersAndTheirGreys) {
+TEST(PointCloudPly, HoldsPointsWithADisparityAndTheirGreys) {
   kernels::GrayImage disparity(3, 2, 255);
   kernels::GrayImage grey(3, 2, 7);
   disparity.at(2, 0) = 40;

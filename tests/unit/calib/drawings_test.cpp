@@ -26,7 +26,7 @@ const cv::Vec3b kRed(0, 0, 255);
 
 cv::Mat3b decoded(const std::vector<std::uint8_t>& png) { return cv::imdecode(png, cv::IMREAD_UNCHANGED); }
 
-// Pixels of a colour, give or take what is lost at smooth edges.
+// Counts the pixels of a colour. Smooth edges change it a little.
 int count(const cv::Mat& picture, const cv::Vec3b& color) {
   const cv::Scalar tolerance = cv::Scalar::all(32);
   cv::Mat close;
@@ -47,13 +47,13 @@ MarkedCorners marked_corners() {
   return marked;
 }
 
-// Of two empty pictures of 200 x 160 in grey 90.
+// Draws on two empty pictures of 200 x 160 in grey 90.
 cv::Mat3b drawn_corners(const MarkedCorners& left, const MarkedCorners& right) {
   const GrayImage image(200, 160, 90);
   return decoded(encode_corners_png(kShape, {"left", image}, left, {"right", image}, right));
 }
 
-// Every source `distance` columns to the right.
+// A table whose sources lie `distance` columns to the right.
 RectificationTable shifted(int width, int height, int distance) {
   RectificationTable table{width, height, {}};
   for (int row = 0; row < height; ++row) {
@@ -88,8 +88,8 @@ TEST(CornersDrawing, JoinsTheCornersOfARowInItsColor) {
   const cv::Mat3b drawing = drawn_corners(marked_corners(), {});
   EXPECT_TRUE(is(drawing, {kMargin + 40 + 15, kTop + 50}, kOrange));
   EXPECT_TRUE(is(drawing, {kMargin + 40 + 15, kTop + 50 + 30}, kYellow));
-  EXPECT_GT(count(drawing({kMargin + 95, kTop + 45, 11, 11}), kOrange),
-            11 + 4);  // a circle as well as the line
+  // More than the line: a circle too.
+  EXPECT_GT(count(drawing({kMargin + 95, kTop + 45, 11, 11}), kOrange), 11 + 4);
   const cv::Rect right(kMargin + 200 + kMargin, kTop, 200, 160);
   EXPECT_EQ(count(drawing(right), {90, 90, 90}), 200 * 160);
 }
@@ -102,7 +102,7 @@ TEST(CornersDrawing, MarksTheFirstCornerWithASquare) {
   EXPECT_TRUE(is(drawing, {left + 70, kTop + 50 - 8}, cv::Vec3b(90, 90, 90)));
 }
 
-TEST(CornersDrawing, CrossesOutWhatIsLeftOut) {
+TEST(CornersDrawing, CrossesOutCornersThatAreLeftOut) {
   MarkedCorners left = marked_corners();
   left.left_out.assign(left.corners.size(), false);
   EXPECT_EQ(count(drawn_corners(left, left), kRed), 0);
@@ -125,21 +125,19 @@ TEST(CornersDrawing, EnlargesSmallPicturesWithTheirCorners) {
   EXPECT_EQ(count(drawing({kMargin + 320, 0, kMargin, kTop}), kWhite), kMargin * kTop);
 }
 
-TEST(CornersDrawing, RefusesWhatDoesNotBelongTogether) {
+TEST(CornersDrawing, RefusesPicturesAndCornersThatDoNotFit) {
   const CaptionedImage image{"", GrayImage(200, 160)};
   const auto draw = [&image](const CaptionedImage& right, const MarkedCorners& marked) {
     encode_corners_png(kShape, image, {}, right, marked);
   };
-  EXPECT_NO_THROW(draw(image, marked_corners()));
-  MarkedCorners too_few = marked_corners();
+  MarkedCorners too_few, too_few_marks, outside;
+  too_few = too_few_marks = outside = marked_corners();
+  EXPECT_NO_THROW(draw(image, outside));
   too_few.corners.pop_back();
-  EXPECT_THROW(draw(image, too_few), std::invalid_argument);
-  MarkedCorners other_marks = marked_corners();
-  other_marks.left_out = {true};
-  EXPECT_THROW(draw(image, other_marks), std::invalid_argument);
-  MarkedCorners outside = marked_corners();
+  too_few_marks.left_out = {true};
   outside.corners[3].x() = 199.6;
-  EXPECT_THROW(draw(image, outside), std::invalid_argument);
+  for (const MarkedCorners& marked : {too_few, too_few_marks, outside})
+    EXPECT_THROW(draw(image, marked), std::invalid_argument);
   EXPECT_THROW(draw({"", GrayImage(200, 156)}, {}), std::invalid_argument);
   EXPECT_THROW(encode_corners_png(kShape, {}, {}, {}, {}), std::invalid_argument);
 }
@@ -171,26 +169,17 @@ TEST(RectifiedPairDrawing, RefusesPicturesOfDifferentSizesOrNone) {
   EXPECT_THROW(encode_rectified_pair_png({"", torn}, {"", torn}), std::invalid_argument);
 }
 
-TEST(DisplacementDrawing, ColorsTheDistanceOnOneScale) {
+TEST(DisplacementDrawing, ColorsTheDistanceOnOneScaleAndIsGreyWithoutSource) {
   const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
   EXPECT_EQ(drawing.cols, 3 * kMargin + 2 * 200);
   const int right = kMargin + 200 + kMargin;
-  EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(128)));  // half of the largest
-  EXPECT_TRUE(is(drawing, {right, kTop}, turbo(255)));
-}
-
-TEST(DisplacementDrawing, IsGreyWhereNoEntryIsValid) {
-  const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
-  const int right = kMargin + 200 + kMargin;
+  EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(128)));  // half of the largest distance
   EXPECT_TRUE(is(drawing, {kMargin + 189, kTop}, turbo(128)));
   EXPECT_TRUE(is(drawing, {kMargin + 190, kTop}, kGray));
+  EXPECT_TRUE(is(drawing, {right, kTop}, turbo(255)));
   EXPECT_TRUE(is(drawing, {right + 179, kTop + 79}, turbo(255)));
   EXPECT_TRUE(is(drawing, {right + 180, kTop + 79}, kGray));
-}
-
-TEST(DisplacementDrawing, HasArrowsToTheSource) {
-  const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
-  for (const int y : {20, 60}) {
+  for (const int y : {20, 60}) {  // the first two arrows
     EXPECT_EQ(count(drawing({kMargin + 21, kTop + y, 9, 1}), kWhite), 9);
     EXPECT_FALSE(is(drawing, {kMargin + 33, kTop + y}, kWhite));
     EXPECT_FALSE(is(drawing, {kMargin + 22, kTop + y - 2}, kWhite));
@@ -198,24 +187,14 @@ TEST(DisplacementDrawing, HasArrowsToTheSource) {
   }
 }
 
-TEST(DisplacementDrawing, ShowsTablesThatMoveNothing) {
+TEST(DisplacementDrawing, ShowsTablesThatMoveNothingOrHaveNoValidEntry) {
   const RectificationTable identity = kernels::identity_table(200, 80);
   const cv::Mat3b drawing = decoded(encode_displacement_png(identity, identity));
   EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(0)));
   EXPECT_TRUE(is(drawing, {kMargin + 20, kTop + 20}, kWhite));
-}
-
-TEST(DisplacementDrawing, ShowsTablesOfAnySizeAndWithoutValidEntries) {
-  const RectificationTable narrow = kernels::identity_table(4, 600);
-  EXPECT_EQ(decoded(encode_displacement_png(narrow, narrow)).cols, 3 * kMargin + 2 * 4);
   const RectificationTable empty{4, 1, std::vector<std::uint32_t>(4)};
-  const cv::Mat3b drawing = decoded(encode_displacement_png(empty, empty));
-  EXPECT_EQ(count(drawing({kMargin, kTop, 320, 80}), kGray), 320 * 80);
-}
-
-TEST(DisplacementDrawing, RefusesTablesOfDifferentSizesOrWithProblems) {
-  EXPECT_THROW(encode_displacement_png(shifted(8, 8, 0), shifted(8, 4, 0)), std::invalid_argument);
-  EXPECT_THROW(encode_displacement_png({}, {}), std::invalid_argument);
+  const cv::Mat3b of_empty = decoded(encode_displacement_png(empty, empty));
+  EXPECT_EQ(count(of_empty({kMargin, kTop, 320, 80}), kGray), 320 * 80);
 }
 
 TEST(SourceLinesDrawing, HasACurveForEachTable) {
@@ -226,7 +205,7 @@ TEST(SourceLinesDrawing, HasACurveForEachTable) {
   const RectificationTable straight = kernels::identity_table(8, 64);
   const cv::Mat3b drawing = decoded(encode_source_lines_png(straight, bent));
   EXPECT_EQ(drawing.size(), cv::Size(800, 500));
-  // The axis goes to 45: 31 lines touch 43. Of 32 steps of the other axis n is at step n.
+  // The vertical axis ends at 45, because 31 lines touch 43. The horizontal axis has 32 steps.
   const auto place = [](double lines, double y) {
     return cv::Point(cvRound(52 + lines / 32 * 724), cvRound(68 + 372 * (1 - y / 45)));
   };
@@ -238,22 +217,25 @@ TEST(SourceLinesDrawing, HasACurveForEachTable) {
   }
 }
 
-TEST(SourceLinesDrawing, ShowsTablesOfAnyHeight) {
-  const RectificationTable low = kernels::identity_table(4, 1);
-  EXPECT_NO_THROW(encode_source_lines_png(low, low));
-  const RectificationTable empty{4, 40, std::vector<std::uint32_t>(160)};
-  EXPECT_NO_THROW(encode_source_lines_png(empty, empty));
+TEST(TableDrawings, ShowTablesOfAnySizeAndWithoutValidEntries) {
+  for (const auto& encode : {encode_displacement_png, encode_source_lines_png}) {
+    for (const auto& table : {kernels::identity_table(4, 600), kernels::identity_table(4, 1),
+                              RectificationTable{4, 40, std::vector<std::uint32_t>(160)}})
+      EXPECT_NO_THROW(encode(table, table));
+  }
 }
 
-TEST(SourceLinesDrawing, RefusesTablesOfDifferentSizesOrWithProblems) {
-  EXPECT_THROW(encode_source_lines_png(shifted(8, 8, 0), shifted(8, 4, 0)), std::invalid_argument);
-  EXPECT_THROW(encode_source_lines_png({}, {}), std::invalid_argument);
+TEST(TableDrawings, RefuseTablesOfDifferentSizesOrWithProblems) {
+  for (const auto& encode : {encode_displacement_png, encode_source_lines_png}) {
+    EXPECT_THROW(encode(shifted(8, 8, 0), shifted(8, 4, 0)), std::invalid_argument);
+    EXPECT_THROW(encode({}, {}), std::invalid_argument);
+  }
 }
 
-TEST(Drawings, AreTheSameBytesEachTime) {
+TEST(TableDrawings, HaveTheSameBytesEachTime) {
   const RectificationTable table = shifted(64, 48, 3);
-  EXPECT_EQ(encode_displacement_png(table, table), encode_displacement_png(table, table));
-  EXPECT_EQ(encode_source_lines_png(table, table), encode_source_lines_png(table, table));
+  for (const auto& encode : {encode_displacement_png, encode_source_lines_png})
+    EXPECT_EQ(encode(table, table), encode(table, table));
 }
 
 }  // namespace

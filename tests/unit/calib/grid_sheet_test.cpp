@@ -10,12 +10,12 @@
 #include <opencv2/imgproc.hpp>
 #include <regex>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/opencv_types.h"
+#include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -29,28 +29,11 @@ using testing::StartsWith;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What `call` throws.
-template <typename Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string refusal(const GridShape& shape) {
-  return refusal([&shape] { grid_sheet(shape); });
+  return test::message_of([&shape] { grid_sheet(shape); });
 }
 
-void expect_page(const GridShape& shape, double width_mm, double height_mm) {
-  const GridSheet sheet = grid_sheet(shape);
-  EXPECT_DOUBLE_EQ(sheet.width_mm, width_mm);
-  EXPECT_DOUBLE_EQ(sheet.height_mm, height_mm);
-}
-
-// Of every element of the SVG with just these attributes in front, their numbers.
+// The numbers in the attributes of every element that begins with these attributes.
 std::vector<std::vector<double>> elements_of(const std::string& svg, const std::string& name,
                                              const std::vector<std::string>& attributes) {
   std::string pattern = "<" + name;
@@ -88,39 +71,46 @@ TEST(GridShape, NamesEveryFieldOutsideItsRange) {
   EXPECT_THAT(problems(GridShape{9, 6, kInfinity}), ElementsAre("square_mm = inf: must be 1..1000"));
 }
 
-TEST(GridSheet, IsTheFirstPageThatLeavesHalfASquareWhite) {
-  expect_page({9, 6, 25}, 297, 210);     // 7 + 1 squares and 10 mm of small print: 210 mm
-  expect_page({9, 6, 25.01}, 420, 297);  // 210.08 mm
-  expect_page({6, 9, 25}, 210, 297);
-  expect_page({6, 9, 26.09}, 210, 297);  // 10 + 1 squares and 10 mm: 296.99 mm
-  expect_page({6, 9, 26.1}, 297, 420);
-  expect_page({9, 6, 35.875}, 420, 297);
+// A page leaves 10 mm for the small print.
+TEST(GridSheet, IsTheFirstPageWithAWhiteMarginOrMadeToMeasure) {
+  struct Page {
+    GridShape shape;
+    double width_mm, height_mm;
+  };
+  const Page pages[] = {
+      // Half a square white: 7 + 1 squares, then 10 + 1 squares on a page that stands upright.
+      {{9, 6, 25}, 297, 210},
+      {{9, 6, 25.01}, 420, 297},
+      {{6, 9, 25}, 210, 297},
+      {{6, 9, 26.09}, 210, 297},
+      {{6, 9, 26.1}, 297, 420},
+      {{9, 6, 35.875}, 420, 297},
+      // At least 10 mm white: 18 squares and 20 mm.
+      {{21, 17, 10}, 297, 210},
+      {{21, 17, 10.01}, 420, 297},
+      // Less than half a square white if no page has more: 7 squares and 20 mm.
+      {{9, 6, 35.9}, 420, 297},
+      {{9, 6, 38.14}, 420, 297},
+      // Beyond A3 made to measure.
+      {{9, 6, 38.15}, 11 * 38.15, 8 * 38.15 + 10},
+      {{9, 6, 50}, 550, 410},
+      {{3, 100, 5}, 210, 101 * 5 + 30},
+  };
+  for (const Page& page : pages) {
+    const GridSheet sheet = grid_sheet(page.shape);
+    EXPECT_DOUBLE_EQ(sheet.width_mm, page.width_mm) << page.shape.square_mm;
+    EXPECT_DOUBLE_EQ(sheet.height_mm, page.height_mm) << page.shape.square_mm;
+  }
 }
 
-TEST(GridSheet, LeavesTenMillimetresWhiteAtLeast) {
-  expect_page({21, 17, 10}, 297, 210);  // 18 squares, 20 mm and 10 mm: 210 mm
-  expect_page({21, 17, 10.01}, 420, 297);
-}
-
-TEST(GridSheet, LeavesLessThanHalfASquareIfNoPageHasMore) {
-  expect_page({9, 6, 35.9}, 420, 297);
-  expect_page({9, 6, 38.14}, 420, 297);  // 266.98 mm, 20 mm and 10 mm
-  expect_page({9, 6, 38.15}, 11 * 38.15, 8 * 38.15 + 10);
-}
-
-TEST(GridSheet, IsMadeToMeasureBeyondA3) {
-  expect_page({9, 6, 50}, 550, 410);
-  expect_page({3, 100, 5}, 210, 101 * 5 + 30);
-}
-
-TEST(GridSheet, HasTheBoardInTheMiddleOfWhatTheSmallPrintLeaves) {
+TEST(GridSheet, HasTheBoardInTheMiddleAboveTheSmallPrint) {
   const GridSheet sheet = grid_sheet({9, 6, 20});
   EXPECT_DOUBLE_EQ(sheet.board_left_mm, (297 - 200) / 2.0);
   EXPECT_DOUBLE_EQ(sheet.board_top_mm, (210 - 10 - 140) / 2.0);
 }
 
 TEST(GridSheet, IsNoLargerThanAPdfCanBe) {
-  EXPECT_EQ(refusal({9, 6, 461.8}), "");  // 11 squares: 5079.8 mm
+  EXPECT_NO_THROW(grid_sheet({9, 6, 461.8}));  // 11 squares: 5079.8 mm
   EXPECT_EQ(refusal({9, 6, 462}),
             "square_mm = 462: the page must be at most 5080 mm wide and high, not 5082 x 3706");
   EXPECT_THAT(refusal({6, 9, 462}), HasSubstr("not 3696 x 5092"));
@@ -132,14 +122,16 @@ TEST(GridSheet, IsRefusedWithAllProblemsOfItsShape) {
       "columns = 2: must be 3..100 inner corners\nrows = 101: must be 3..100 inner corners\n"
       "square_mm = nan: must be 1..1000";
   EXPECT_EQ(refusal(wrong), all);
-  EXPECT_EQ(refusal([&wrong] { grid_sheet_pdf(wrong); }), all);
-  EXPECT_EQ(refusal([&wrong] { grid_sheet_svg(wrong); }), all);
-  EXPECT_EQ(refusal([&wrong] { grid_sheet_image(wrong, 1); }), all);
+  EXPECT_EQ(test::message_of([&wrong] { grid_sheet_pdf(wrong); }), all);
+  EXPECT_EQ(test::message_of([&wrong] { grid_sheet_svg(wrong); }), all);
+  EXPECT_EQ(test::message_of([&wrong] { grid_sheet_image(wrong, 1); }), all);
 }
 
-TEST(GridSheetSvg, HasTheSizeOfThePage) {
-  EXPECT_THAT(grid_sheet_svg({9, 6, 25}),
-              HasSubstr("width=\"297mm\" height=\"210mm\" viewBox=\"0 0 297 210\""));
+TEST(GridSheetSvg, HasTheSizeOfThePageAndTheSmallPrint) {
+  const std::string svg = grid_sheet_svg({9, 6, 25});
+  EXPECT_THAT(svg, HasSubstr("width=\"297mm\" height=\"210mm\" viewBox=\"0 0 297 210\""));
+  EXPECT_THAT(svg, HasSubstr(">100 mm</text>"));
+  EXPECT_THAT(svg, HasSubstr(">9x6 inner corners, squares of 25 mm: print at 100 %</text>"));
   EXPECT_THAT(grid_sheet_svg({9, 6, 50.5}), HasSubstr("width=\"555.5mm\" height=\"414mm\""));
 }
 
@@ -179,15 +171,11 @@ TEST(GridSheetSvg, HasARulerOf100MmBetweenTheBoardAndTheEdge) {
   }
 }
 
-TEST(GridSheetSvg, SaysWhatItShows) {
-  const std::string svg = grid_sheet_svg({9, 6, 25});
-  EXPECT_THAT(svg, HasSubstr(">100 mm</text>"));
-  EXPECT_THAT(svg, HasSubstr(">9x6 inner corners, squares of 25 mm: print at 100 %</text>"));
-}
-
-TEST(GridSheetPdf, HasTheSizeOfThePage) {
+TEST(GridSheetPdf, HasTheSizeOfThePageAndATitleButNoDate) {
   const std::string pdf = grid_sheet_pdf({9, 6, 50});
   EXPECT_THAT(pdf, StartsWith("%PDF-"));
+  EXPECT_THAT(pdf, HasSubstr("9x6 inner corners, squares of 50 mm"));
+  EXPECT_THAT(pdf, Not(HasSubstr("Date")));
   const std::array<double, 4> box = media_box(pdf);
   EXPECT_EQ(box[0], 0);
   EXPECT_EQ(box[1], 0);
@@ -195,13 +183,7 @@ TEST(GridSheetPdf, HasTheSizeOfThePage) {
   EXPECT_NEAR(box[3], 410 / 25.4 * 72, 0.01);
 }
 
-TEST(GridSheetPdf, SaysWhatItShows) {
-  EXPECT_THAT(grid_sheet_pdf({9, 6, 25}), HasSubstr("9x6 inner corners, squares of 25 mm"));
-}
-
-TEST(GridSheetPdf, HasNoDate) { EXPECT_THAT(grid_sheet_pdf({9, 6, 25}), Not(HasSubstr("Date"))); }
-
-TEST(GridSheet, IsTheSameBytesEachTime) {
+TEST(GridSheet, HasTheSameBytesEachTime) {
   const GridShape shape{9, 6, 24.7};
   EXPECT_EQ(grid_sheet_pdf(shape), grid_sheet_pdf(shape));
   EXPECT_EQ(grid_sheet_svg(shape), grid_sheet_svg(shape));
@@ -250,7 +232,7 @@ TEST(GridSheetImage, IsBlackAtTheTopLeftAndWhiteAroundTheBoard) {
 TEST(GridSheetImage, IsRefusedWithoutPixelsOrWithTooMany) {
   for (const double pixels_per_mm : {0.0, -1.0, kNan, kInfinity, 110.4}) {
     const auto call = [pixels_per_mm] { grid_sheet_image({9, 6, 25}, pixels_per_mm); };
-    EXPECT_THAT(refusal(call), StartsWith("pixels_per_mm = ")) << pixels_per_mm;
+    EXPECT_THAT(test::message_of(call), StartsWith("pixels_per_mm = ")) << pixels_per_mm;
   }
 }
 

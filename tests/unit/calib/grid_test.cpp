@@ -54,7 +54,7 @@ Corners part_of(const GridShape& shape, const Corners& corners, const std::vecto
   return part;
 }
 
-TEST(Grid, OfWhichAPartWasFoundIsRefused) {
+TEST(Grid, IsRefusedIfOnlyAPartWasFound) {
   const SyntheticRig rig(1, 320, 240);
   const GridShape shape = {9, 6, 25};
   const std::vector<int> all_columns = {0, 1, 2, 3, 4, 5, 6, 7, 8};
@@ -76,29 +76,24 @@ TEST(Grid, OfWhichAPartWasFoundIsRefused) {
   }
 }
 
-TEST(OrderedLike, TurnsCornersByHalf) {
-  const GridShape shape = {3, 4, 1};
-  Corners corners;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 3; ++column) corners.emplace_back(10 * column + row, 10 * row - column);
+TEST(OrderedLike, TurnsCornersByHalfAndThoseOfASquareBoardByQuarters) {
+  for (const int rows : {3, 4}) {
+    const GridShape shape = {3, rows, 1};
+    Corners corners;
+    Corners quarter_turned;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        corners.emplace_back(10 * column, 10 * row);
+        quarter_turned.emplace_back(20 - 10 * row, 10 * column);
+      }
+    }
+    const auto half_turned = [](const Corners& some) { return Corners(some.rbegin(), some.rend()); };
+    EXPECT_EQ(ordered_like(corners, shape, corners), corners);
+    EXPECT_EQ(ordered_like(corners, shape, half_turned(corners)), corners);
+    if (rows != 3) continue;
+    EXPECT_EQ(ordered_like(corners, shape, quarter_turned), corners);
+    EXPECT_EQ(ordered_like(corners, shape, half_turned(quarter_turned)), corners);
   }
-  const Corners turned(corners.rbegin(), corners.rend());
-  EXPECT_EQ(ordered_like(corners, shape, turned), corners);
-  EXPECT_EQ(ordered_like(corners, shape, corners), corners);
-}
-
-TEST(OrderedLike, TurnsCornersOfASquareBoardByQuarters) {
-  const GridShape shape = {3, 3, 1};
-  Corners corners;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) corners.emplace_back(10 * column, 10 * row);
-  }
-  Corners turned;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) turned.emplace_back(20 - 10 * row, 10 * column);
-  }
-  EXPECT_EQ(ordered_like(corners, shape, turned), corners);
-  EXPECT_EQ(ordered_like(corners, shape, Corners(turned.rbegin(), turned.rend())), corners);
 }
 
 }  // namespace

@@ -19,12 +19,9 @@ TEST(LutFile, IsLittleEndianRowByRow) {
   EXPECT_EQ(again.height, 3);
 }
 
-TEST(LutFile, OfAnotherSizeIsRefused) {
+TEST(LutFile, IsRefusedWithAnotherSizeOrABrokenEntry) {
   EXPECT_THROW(parse_lut(std::string(23, '\0'), 2, 3), std::runtime_error);
   EXPECT_THROW(parse_lut(std::string(28, '\0'), 2, 3), std::runtime_error);
-}
-
-TEST(LutFile, WithAnEntryThatIsNoneIsRefused) {
   std::string bytes(24, '\0');
   bytes[3] = '\x40';  // a bit that is not used
   EXPECT_THROW(parse_lut(bytes, 2, 3), std::runtime_error);

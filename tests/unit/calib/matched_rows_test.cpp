@@ -25,13 +25,13 @@ class MatchedRowsTest : public testing::Test {
   SyntheticRig::Pair scene_ = rig_.scene();
 };
 
-TEST_F(MatchedRowsTest, AgreeToAFractionOfAPixelOnTheRigItself) {
+TEST_F(MatchedRowsTest, AgreeToAFractionOfAPixelWithTheRigItself) {
   const RowError found = matched(rig_.rig());
   EXPECT_GT(found.corners, 20U);
-  EXPECT_LT(found.mean_px, 0.4);  // a nearest pixel is up to half a pixel off on either side
+  EXPECT_LT(found.mean_px, 0.4);  // the tables round by up to half a pixel on either side
 }
 
-TEST_F(MatchedRowsTest, DifferWhereTheTablesAreOfAnotherRig) {
+TEST_F(MatchedRowsTest, DifferWithTheTablesOfAnotherRig) {
   Rig other = rig_.rig();
   other.right.matrix(1, 2) += 4;  // looks 4 pixels lower
   const RowError found = matched(other);
@@ -39,7 +39,7 @@ TEST_F(MatchedRowsTest, DifferWhereTheTablesAreOfAnotherRig) {
   EXPECT_GT(found.mean_px, 3);
 }
 
-TEST_F(MatchedRowsTest, AreNoneInPicturesWithoutTexture) {
+TEST_F(MatchedRowsTest, AreAbsentInPicturesWithoutTexture) {
   const kernels::GrayImage flat(320, 240, 90);
   const MatchedRows found = matched_rows(flat, flat, kDisparities);
   EXPECT_EQ(found.points, 0U);

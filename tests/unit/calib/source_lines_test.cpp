@@ -12,14 +12,14 @@ namespace {
 using kernels::make_entry;
 using kernels::RectificationTable;
 
-// One column of a picture of four: one entry a row, the others not valid.
+// A table of four columns with one valid entry in each row.
 RectificationTable table_of_rows(const std::vector<std::uint32_t>& entries) {
   RectificationTable table{4, static_cast<int>(entries.size()), {}};
   for (const std::uint32_t entry : entries) table.entries.insert(table.entries.end(), {0, 0, entry, 0});
   return table;
 }
 
-// As the header says it, entry by entry.
+// The definition of the header, entry by entry.
 std::vector<int> expected_lines(const RectificationTable& table, int lines) {
   std::vector<int> expected;
   for (int top = 0; top + lines <= table.height; ++top) {
@@ -34,14 +34,7 @@ std::vector<int> expected_lines(const RectificationTable& table, int lines) {
   return expected;
 }
 
-TEST(SourceLines, OfTheIdentityAreThoseOfTheWindow) {
-  const RectificationTable table = kernels::identity_table(8, 6);
-  EXPECT_EQ(source_lines(table, 1), std::vector<int>(6, 1));
-  EXPECT_EQ(source_lines(table, 4), std::vector<int>(3, 4));
-  EXPECT_EQ(source_lines(table, 6), std::vector<int>(1, 6));
-}
-
-TEST(SourceLines, CountTheLinesBetweenThatNoEntryNames) {
+TEST(SourceLines, CountLinesBetweenThoseThatEntriesName) {
   const RectificationTable table = table_of_rows(
       {make_entry(3, 4), make_entry(0, 1), make_entry(1, 1), make_entry(0, 0), make_entry(0, 3)});
   EXPECT_EQ(source_lines(table, 1), (std::vector<int>{1, 1, 1, 1, 1}));
@@ -49,14 +42,7 @@ TEST(SourceLines, CountTheLinesBetweenThatNoEntryNames) {
   EXPECT_EQ(source_lines(table, 3), (std::vector<int>{4, 2, 4}));
 }
 
-TEST(SourceLines, LeaveOutEntriesThatAreNotValid) {
-  const std::uint32_t invalid = make_entry(0, 3) & ~kernels::kEntryValid;
-  const RectificationTable table = table_of_rows({invalid, invalid, make_entry(0, 2), invalid});
-  EXPECT_EQ(source_lines(table, 1), (std::vector<int>{0, 0, 1, 0}));
-  EXPECT_EQ(source_lines(table, 2), (std::vector<int>{0, 1, 1}));
-}
-
-TEST(SourceLines, AreThoseOfTheDefinitionForAnyTable) {
+TEST(SourceLines, FollowTheirDefinitionForAnyTable) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> place(0, 11);
   RectificationTable table{12, 12, {}};
@@ -67,14 +53,11 @@ TEST(SourceLines, AreThoseOfTheDefinitionForAnyTable) {
     EXPECT_EQ(source_lines(table, lines), expected_lines(table, lines));
 }
 
-TEST(SourceLines, RefuseAWindowThatIsNotInThePicture) {
-  const RectificationTable table = kernels::identity_table(8, 6);
-  EXPECT_THROW(source_lines(table, 0), std::invalid_argument);
-  EXPECT_THROW(source_lines(table, 7), std::invalid_argument);
-}
-
-TEST(SourceLines, RefuseATableWithProblems) {
+TEST(SourceLines, RefuseAWindowOutsideThePictureOrABrokenTable) {
   RectificationTable table = kernels::identity_table(8, 6);
+  EXPECT_THROW(source_lines(table, 0), std::invalid_argument);
+  EXPECT_EQ(source_lines(table, 6), std::vector<int>(1, 6));
+  EXPECT_THROW(source_lines(table, 7), std::invalid_argument);
   table.entries.pop_back();
   EXPECT_THROW(source_lines(table, 1), std::invalid_argument);
 }

@@ -27,7 +27,7 @@ Map map_of(const Rig& rig, const CameraModel& camera, const Eigen::Matrix3d& rot
   return map;
 }
 
-// Whole positions may differ where the source is half way between two pixels, to single precision.
+// Whole positions may differ where the source lies half way between two pixels in single precision.
 void expect_like(const kernels::RectificationTable& table, const Map& map) {
   constexpr double kSingle = 1e-4;
   std::size_t invalid = 0;
@@ -52,30 +52,30 @@ void expect_like(const kernels::RectificationTable& table, const Map& map) {
   EXPECT_LT(invalid, table.entries.size());
 }
 
-TEST(Tables, HoldThePixelNearestToOpenCVsMaps) {
-  const Rig rig = SyntheticRig(3, 320, 240).rig();
-  const Rectification rectification = rectify(rig);
-  const TablePair found = tables(rig, rectification, 0);
-  expect_like(found.left, map_of(rig, rig.left, rectification.r1, rectification.p1));
-  expect_like(found.right, map_of(rig, rig.right, rectification.r2, rectification.p2));
+class TablesTest : public testing::Test {
+ protected:
+  Rig rig_ = SyntheticRig(3, 320, 240).rig();
+  Rectification rectification_ = rectify(rig_);
+};
+
+TEST_F(TablesTest, HoldThePixelNearestToOpenCVsMaps) {
+  const TablePair found = tables(rig_, rectification_, 0);
+  expect_like(found.left, map_of(rig_, rig_.left, rectification_.r1, rectification_.p1));
+  expect_like(found.right, map_of(rig_, rig_.right, rectification_.r2, rectification_.p2));
 }
 
-TEST(Tables, HaveNoEntryOutsideThePicture) {
-  const Rig rig = SyntheticRig(3, 320, 240).rig();
-  Rectification rectification = rectify(rig);
-  rectification.p1(0, 2) += 150;  // looks far to the side
-  const TablePair found = tables(rig, rectification, 0);
+TEST_F(TablesTest, HaveNoEntryOutsideThePicture) {
+  rectification_.p1(0, 2) += 150;  // looks far to the side
+  const TablePair found = tables(rig_, rectification_, 0);
   EXPECT_TRUE(kernels::problems(found.left).empty());
-  expect_like(found.left, map_of(rig, rig.left, rectification.r1, rectification.p1));
+  expect_like(found.left, map_of(rig_, rig_.left, rectification_.r1, rectification_.p1));
   EXPECT_FALSE(kernels::entry_is_valid(found.left.entries.front()));
 }
 
-TEST(Tables, LeaveTheOffsetOutOfColumnsOfTheLeftPicture) {
-  const Rig rig = SyntheticRig(3, 320, 240).rig();
-  const Rectification rectification = rectify(rig);
-  const TablePair plain = tables(rig, rectification, 0);
+TEST_F(TablesTest, ShiftTheLeftColumnsByTheOffset) {
+  const TablePair plain = tables(rig_, rectification_, 0);
   for (const int offset : {23, -23}) {
-    const TablePair shifted = tables(rig, rectification, offset);
+    const TablePair shifted = tables(rig_, rectification_, offset);
     EXPECT_EQ(shifted.right.entries, plain.right.entries);
     for (int row = 0; row < 240; ++row) {
       for (int column = 23; column < 320 - 23; ++column) {
@@ -87,19 +87,18 @@ TEST(Tables, LeaveTheOffsetOutOfColumnsOfTheLeftPicture) {
   }
 }
 
-// Far to the side, the polynomial of the lens leads back into the picture.
-TEST(Tables, HaveNoEntryBeyondTheLens) {
-  Rig rig = SyntheticRig(3, 320, 240).rig();
-  rig.left.distortion = {-0.29, 0.14, 0, 0, -0.05};
-  const Rectification rectification = rectify(rig);
+// Far to the side the polynomial of the lens bends directions back into the picture.
+TEST_F(TablesTest, HaveNoEntryBeyondTheLens) {
+  rig_.left.distortion = {-0.29, 0.14, 0, 0, -0.05};
+  rectification_ = rectify(rig_);
   for (const int offset : {-600, -300, 300, 600, 1000}) {
-    const TablePair found = tables(rig, rectification, offset);
+    const TablePair found = tables(rig_, rectification_, offset);
     std::size_t valid = 0;
     for (int i = 0; i < 320 * 240; ++i) {
       const std::uint32_t entry = found.left.entries[static_cast<std::size_t>(i)];
       if (!kernels::entry_is_valid(entry)) continue;
       ++valid;
-      const Eigen::Vector2d back = rectified_pixel(rig.left, rectification.r1, rectification.p1,
+      const Eigen::Vector2d back = rectified_pixel(rig_.left, rectification_.r1, rectification_.p1,
                                                    {kernels::entry_column(entry), kernels::entry_row(entry)});
       ASSERT_LT((back - Eigen::Vector2d(i % 320 + offset, i / 320)).norm(), 3) << offset << ' ' << i;
     }
@@ -107,22 +106,18 @@ TEST(Tables, HaveNoEntryBeyondTheLens) {
   }
 }
 
-TEST(Tables, AreKnownToFollowFromTheirRig) {
-  const Rig rig = SyntheticRig(3, 320, 240).rig();
-  const Rectification rectification = rectify(rig);
-  const TablePair both = tables(rig, rectification, 12);
-  EXPECT_TRUE(are_tables_of(both, rig, rectification, 12));
-  EXPECT_FALSE(are_tables_of(both, rig, rectification, 11));
-  Rig other = rig;
+TEST_F(TablesTest, AreRecognisedByTheirRig) {
+  const TablePair both = tables(rig_, rectification_, 12);
+  EXPECT_TRUE(are_tables_of(both, rig_, rectification_, 12));
+  EXPECT_FALSE(are_tables_of(both, rig_, rectification_, 11));
+  Rig other = rig_;
   other.right.distortion[0] += 0.01;
-  EXPECT_FALSE(are_tables_of(both, other, rectification, 12));
+  EXPECT_FALSE(are_tables_of(both, other, rectification_, 12));
 }
 
-TEST(Tables, RefusePicturesThatPositionsCannotName) {
-  Rig rig = SyntheticRig(3, 320, 240).rig();
-  const Rectification rectification = rectify(rig);
-  rig.height = 2049;
-  EXPECT_THROW(tables(rig, rectification, 0), std::invalid_argument);
+TEST_F(TablesTest, RefusePicturesOfMoreThan2048Rows) {
+  rig_.height = 2049;
+  EXPECT_THROW(tables(rig_, rectification_, 0), std::invalid_argument);
 }
 
 }  // namespace

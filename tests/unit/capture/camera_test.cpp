@@ -8,7 +8,7 @@
 namespace stereotlm::capture {
 namespace {
 
-// Takes the frames that a test names, at once or later.
+// Takes the frame that the test names, at once or when take() is called.
 class Receiver : public StreamIf<VideoFrame>, public StreamIf<VideoLine> {
  public:
   explicit Receiver(Camera& camera) : camera_(camera) {
@@ -16,14 +16,14 @@ class Receiver : public StreamIf<VideoFrame>, public StreamIf<VideoLine> {
     camera.lines_out.bind(*this);
   }
   void push(const VideoFrame& frame) override {
-    EXPECT_EQ(frame.begin_ps, now_ps());
+    EXPECT_EQ(frame.begin_ps, Clock::now_ps());
     EXPECT_EQ(frame.timing, &camera_.timing());
     frames.push_back(frame);
     if (frame.number == takes) take(frame.number);
   }
   void push(const VideoLine& line) override {
     lines.push_back(line);
-    lines_ps.push_back(now_ps());
+    lines_ps.push_back(Clock::now_ps());
   }
   void take(std::uint64_t number) { camera_.takes_in->push({number}); }
 
@@ -38,36 +38,32 @@ class Receiver : public StreamIf<VideoFrame>, public StreamIf<VideoLine> {
 
 class CameraTest : public testing::Test {
  protected:
-  void build(CameraTrigger trigger, const CameraConfig& base = {8, 5, 29.97, CameraTrigger::kFreeRunning}) {
-    CameraConfig config = base;
-    config.trigger = trigger;
-    camera.emplace("camera", config, source);
+  void build(CameraTrigger trigger, int height = 5) {
+    camera.emplace("camera", CameraConfig{8, height, 29.97, trigger}, source);
     receiver.emplace(*camera);
   }
   void trigger(std::uint64_t delay_ps = 0) { camera->triggers_in->push({Clock::to_time(delay_ps)}); }
   std::uint64_t frame_ps(std::uint64_t number) const { return camera->timing().frame_ps(number); }
+  std::size_t frames_by(std::uint64_t time_ps) const {
+    run_to(time_ps);
+    return receiver->frames.size();
+  }
+  std::uint64_t ignored() const { return camera->stats().ignored_triggers; }
 
   NoiseSource source{8, 5};
   std::optional<Camera> camera;
   std::optional<Receiver> receiver;
 };
 
-TEST_F(CameraTest, BeginsItsFramesWithTheFrameClock) {
+TEST_F(CameraTest, BeginsItsFramesWithTheFrameClockAndSendsNothingOfAFrameThatIsNotTaken) {
   build(CameraTrigger::kFreeRunning);
-  run_to(frame_ps(3) - 1);
-  EXPECT_EQ(receiver->frames.size(), 3U);
-  run_to(frame_ps(3));
-  ASSERT_EQ(receiver->frames.size(), 4U);
+  EXPECT_EQ(frames_by(frame_ps(3) - 1), 3U);
+  ASSERT_EQ(frames_by(frame_ps(3)), 4U);
   for (std::uint64_t i = 0; i < 4; ++i) {
     EXPECT_EQ(receiver->frames[i].number, i);
     EXPECT_EQ(receiver->frames[i].begin_ps, frame_ps(i));
   }
   EXPECT_EQ(camera->stats().frames, 4U);
-}
-
-TEST_F(CameraTest, SendsNothingOfAFrameThatNobodyTakes) {
-  build(CameraTrigger::kFreeRunning);
-  run_to(frame_ps(3));
   EXPECT_TRUE(receiver->lines.empty());
   EXPECT_TRUE(source.asked.empty());
 }
@@ -77,6 +73,7 @@ TEST_F(CameraTest, SendsEachLineOfATakenFrameAtItsBeginning) {
   receiver->takes = 1;
   run_to(frame_ps(3));
   EXPECT_EQ(source.asked, std::vector<std::uint64_t>{1});
+  EXPECT_EQ(source.begins_ps, std::vector<std::uint64_t>{frame_ps(1)});
   ASSERT_EQ(receiver->lines.size(), 5U);
   const kernels::GrayImage picture = source.picture(1);
   for (int row = 0; row < 5; ++row) {
@@ -98,63 +95,40 @@ TEST_F(CameraTest, SendsTheFirstLineWhenTheFrameIsTakenAndTheNextInTime) {
   EXPECT_EQ(receiver->lines_ps[1], camera->timing().row_ps(1));
 }
 
-TEST_F(CameraTest, WaitsForItsTriggerOnDemand) {
+TEST_F(CameraTest, BeginsAFrameAtTheTimeOfItsTriggerOnDemand) {
   build(CameraTrigger::kOnDemand);
-  run_to(1'000);
-  EXPECT_TRUE(receiver->frames.empty());
+  EXPECT_EQ(frames_by(1'000), 0U);
   trigger();
-  run_to(1'000);
-  ASSERT_EQ(receiver->frames.size(), 1U);
+  ASSERT_EQ(frames_by(1'000), 1U);
   EXPECT_EQ(receiver->frames[0].number, 0U);
   EXPECT_EQ(receiver->frames[0].begin_ps, 1'000U);
-  run_to(3 * frame_ps(1));
-  EXPECT_EQ(receiver->frames.size(), 1U);
+  EXPECT_EQ(frames_by(3 * frame_ps(1)), 1U);
   trigger(500);
-  run_to(3 * frame_ps(1) + 499);
-  EXPECT_EQ(receiver->frames.size(), 1U);
-  run_to(3 * frame_ps(1) + 500);
-  ASSERT_EQ(receiver->frames.size(), 2U);
+  EXPECT_EQ(frames_by(3 * frame_ps(1) + 499), 1U);
+  ASSERT_EQ(frames_by(3 * frame_ps(1) + 500), 2U);
   EXPECT_EQ(receiver->frames[1].number, 1U);
   EXPECT_EQ(camera->stats().frames, 2U);
-  EXPECT_EQ(camera->stats().ignored_triggers, 0U);
+  EXPECT_EQ(ignored(), 0U);
 }
 
-TEST_F(CameraTest, IgnoresATriggerBeforeTheLastPixelOfTheFrame) {
-  build(CameraTrigger::kOnDemand);
-  const std::uint64_t last_pixel_ps = camera->timing().pixel_ps(7, 4);
-  trigger();
-  run_to(last_pixel_ps - 1);
-  ASSERT_EQ(receiver->frames.size(), 1U);
-  trigger();
-  run_to(last_pixel_ps);
-  EXPECT_EQ(receiver->frames.size(), 1U);
-  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-  trigger();
-  run_to(last_pixel_ps);
-  ASSERT_EQ(receiver->frames.size(), 2U);
-  EXPECT_EQ(receiver->frames[1].begin_ps, last_pixel_ps);
-  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-}
-
-TEST_F(CameraTest, TakesATriggerWhoseDelayEndsWithTheLastPixel) {
+TEST_F(CameraTest, IgnoresATriggerForATimeBeforeTheLastPixelOfTheFrame) {
   build(CameraTrigger::kOnDemand);
   const std::uint64_t last_pixel_ps = camera->timing().pixel_ps(7, 4);
   trigger();
   run_to(1'000);
   trigger(last_pixel_ps - 1'001);
-  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-  trigger(last_pixel_ps - 1'000);
-  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-  run_to(last_pixel_ps);
-  EXPECT_EQ(receiver->frames.size(), 2U);
-}
-
-TEST_F(CameraTest, TellsItsSourceWhenATakenFrameBegan) {
-  build(CameraTrigger::kFreeRunning);
-  run_to(frame_ps(2));
-  receiver->takes = 3;
-  run_to(frame_ps(3));
-  EXPECT_EQ(source.begins_ps, std::vector<std::uint64_t>{frame_ps(3)});
+  EXPECT_EQ(ignored(), 1U);
+  run_to(last_pixel_ps - 1);
+  trigger();
+  EXPECT_EQ(ignored(), 2U);
+  EXPECT_EQ(frames_by(last_pixel_ps), 1U);
+  trigger();
+  EXPECT_EQ(ignored(), 2U);
+  ASSERT_EQ(frames_by(last_pixel_ps), 2U);
+  EXPECT_EQ(receiver->frames[1].begin_ps, last_pixel_ps);
+  trigger(last_pixel_ps);
+  EXPECT_EQ(ignored(), 2U);
+  EXPECT_EQ(frames_by(2 * last_pixel_ps), 3U);
 }
 
 TEST_F(CameraTest, IgnoresASecondTriggerBeforeTheFrameBegins) {
@@ -162,45 +136,36 @@ TEST_F(CameraTest, IgnoresASecondTriggerBeforeTheFrameBegins) {
   run_to(1'000);
   trigger(700);
   trigger(300);
-  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
-  run_to(1'699);
-  EXPECT_TRUE(receiver->frames.empty());
-  run_to(1'700);
-  EXPECT_EQ(receiver->frames.size(), 1U);
+  EXPECT_EQ(ignored(), 1U);
+  EXPECT_EQ(frames_by(1'699), 0U);
+  EXPECT_EQ(frames_by(1'700), 1U);
 }
 
 TEST_F(CameraTest, IgnoresATriggerWhenItRunsFreely) {
   build(CameraTrigger::kFreeRunning);
   run_to(1'000);
   trigger();
-  run_to(frame_ps(2));
-  EXPECT_EQ(receiver->frames.size(), 3U);
-  EXPECT_EQ(camera->stats().ignored_triggers, 1U);
+  EXPECT_EQ(frames_by(frame_ps(2)), 3U);
+  EXPECT_EQ(ignored(), 1U);
 }
 
 TEST_F(CameraTest, ReportsAPictureOfAnotherSize) {
-  build(CameraTrigger::kFreeRunning, {8, 6, 29.97, CameraTrigger::kFreeRunning});
+  build(CameraTrigger::kFreeRunning, 6);
   run_to(1);
   test::ExpectedReport expected("/stereotlm/camera");
   EXPECT_THROW(receiver->take(0), sc_core::sc_report);
   EXPECT_EQ(expected.text(), "camera: picture of frame 0 = 8 x 5: must be 8 x 6");
 }
 
-TEST_F(CameraTest, ReportsAFrameTakenTwice) {
-  build(CameraTrigger::kFreeRunning);
-  run_to(1);
-  receiver->take(0);
-  test::ExpectedReport expected("/stereotlm/camera");
-  EXPECT_THROW(receiver->take(0), sc_core::sc_report);
-  EXPECT_EQ(expected.text(), "camera: frame 0 taken: must be the running one, once; 1 have begun");
-}
-
-TEST_F(CameraTest, ReportsATakenFrameThatIsNotRunning) {
+TEST_F(CameraTest, ReportsAFrameThatIsNotRunningOrTakenTwice) {
   build(CameraTrigger::kFreeRunning);
   run_to(frame_ps(1));
-  test::ExpectedReport expected("/stereotlm/camera", 2);
+  test::ExpectedReport expected("/stereotlm/camera", 3);
   EXPECT_THROW(receiver->take(0), sc_core::sc_report);
   EXPECT_THROW(receiver->take(2), sc_core::sc_report);
+  receiver->take(1);
+  EXPECT_THROW(receiver->take(1), sc_core::sc_report);
+  EXPECT_EQ(expected.text(), "camera: frame 1 taken: must be the running one, once; 2 have begun");
 }
 
 TEST_F(CameraTest, RefusesAConfigurationWithProblems) {

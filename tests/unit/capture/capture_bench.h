@@ -17,7 +17,7 @@
 
 namespace stereotlm::capture {
 
-// Pictures of noise, another one for each frame.
+// A picture of noise for each frame.
 class NoiseSource : public CameraSource {
  public:
   NoiseSource(int width, int height) : image_(width, height) {}
@@ -43,7 +43,7 @@ class NoiseSource : public CameraSource {
   kernels::GrayImage image_;
 };
 
-// Camera, board and bus of one side, and a host at its registers.
+// Camera, board and bus of one side, and a host that accesses the registers.
 struct CaptureSide {
   CaptureSide(const std::string& prefix, const CameraConfig& camera_config,
               const CaptureBoardConfig& board_config, double clock_mhz)
@@ -68,7 +68,7 @@ struct CaptureSide {
     write(registers::kControl, registers::kControlArm, delay);
   }
 
-  // The pixels that the bus has written from `address` on; `fill` where it has written none.
+  // The picture that the bus has written at `address`; `fill` where it has written nothing.
   std::vector<std::uint8_t> buffer(std::uint64_t address, std::uint8_t fill) const {
     std::vector<std::uint8_t> pixels(source.picture(0).pixels.size(), fill);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -86,16 +86,14 @@ struct CaptureSide {
   test::TestBus bus;
 };
 
-inline std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-// Runs to a time, and through everything that happens at it.
+// Runs up to a time, including everything that happens at that time.
 inline void run_to(std::uint64_t time_ps) {
   if (!sc_core::sc_start_of_simulation_invoked()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
-  if (time_ps > now_ps()) sc_core::sc_start(Clock::to_time(time_ps - now_ps()));
+  if (time_ps > Clock::now_ps()) sc_core::sc_start(Clock::to_time(time_ps - Clock::now_ps()));
   while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
 }
 
-// One side on its own. Small pictures, so that every time can be looked at: 16 x 3 pixels, a FIFO of 4 words
-// that asks with 2.
+// One side on its own. The pictures are small: 16 x 3 pixels. The FIFO has 4 words and requests the bus with 2.
 class CaptureBench : public testing::Test {
  protected:
   static constexpr std::uint32_t kAddress = 0x1000;
@@ -109,9 +107,9 @@ class CaptureBench : public testing::Test {
   std::uint64_t pixel_ps(int column, int row) const { return side->camera.timing().pixel_ps(column, row); }
   // The arrival of the last pixel of a word.
   std::uint64_t word_ps(int word, int row) const { return pixel_ps(4 * word + 3, row); }
-  // Runs until a capture that began in frame 0 is over.
+  // Runs to the end of frame 0.
   void run_frame() { run_to(side->camera.timing().frame_ps(1) - 1); }
-  // Deals with one request so, with the others at once.
+  // One request of the bus gets this turn, the others are granted at once.
   void plan(std::size_t request, const test::BusTurn& turn) {
     side->bus.plan = [=](std::size_t number) { return number == request ? turn : test::BusTurn{}; };
   }
@@ -119,7 +117,7 @@ class CaptureBench : public testing::Test {
   void grant_in(std::size_t request, std::uint64_t clock) {
     side->bus.plan = [=](std::size_t number) {
       test::BusTurn turn;
-      if (number == request) turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(now_ps());
+      if (number == request) turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(Clock::now_ps());
       return turn;
     };
   }

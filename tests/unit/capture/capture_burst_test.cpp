@@ -1,4 +1,6 @@
-// How a capture board writes on the PCI bus.
+// The bursts of a capture board on the PCI bus.
+#include <ostream>
+
 #include "tests/support/expected_report.h"
 #include "tests/unit/capture/capture_bench.h"
 
@@ -21,10 +23,12 @@ class CaptureBurst : public CaptureBench {
   }
 };
 
-TEST_F(CaptureBurst, WritesTheFrameRowByRow) {
+TEST_F(CaptureBurst, WritesTheFrameRowByRowWithTheLowestColumnInTheLowestByte) {
   build_and_arm();
   run_frame();
   EXPECT_EQ(captured(), sent());
+  EXPECT_EQ(burst(0).words.at(0),
+            sent()[0] | unsigned{sent()[1]} << 8U | unsigned{sent()[2]} << 16U | unsigned{sent()[3]} << 24U);
   EXPECT_EQ(side->bus.memory.size(), 12U);
   EXPECT_EQ(stats().words, 12U);
   EXPECT_EQ(stats().bursts, side->bus.bursts.size());
@@ -32,16 +36,7 @@ TEST_F(CaptureBurst, WritesTheFrameRowByRow) {
   EXPECT_EQ(stats().captured_frames, 1U);
 }
 
-TEST_F(CaptureBurst, PutsTheLowestColumnIntoTheLowestByte) {
-  build_and_arm();
-  run_frame();
-  const auto pixels = sent();
-  std::uint32_t word = 0;
-  for (std::size_t i = 4; i-- > 0;) word = word << 8U | pixels[i];
-  EXPECT_EQ(burst(0).words.at(0), word);
-}
-
-TEST_F(CaptureBurst, AsksWhenTheTriggerIsReachedAndAtTheEndOfALine) {
+TEST_F(CaptureBurst, RequestsTheBusAtItsTriggerAndAtTheEndOfALine) {
   board = {4, 3};
   build_and_arm();
   run_frame();
@@ -57,113 +52,98 @@ TEST_F(CaptureBurst, AsksWhenTheTriggerIsReachedAndAtTheEndOfALine) {
   }
 }
 
-TEST_F(CaptureBurst, WritesTheWordsThatAreCompleteAtTheGrant) {
-  // The first edge at or after the third word.
-  board = {4, 1};
+// The first burst is granted the first clock that begins at or after a word is complete, or one before.
+struct Grant {
+  int fifo_words;
+  int word;
+  int row;
+  std::uint64_t clocks_before;
+  std::size_t words;  // expected length of the burst
+};
+
+class CaptureGrant : public CaptureBurst, public testing::WithParamInterface<Grant> {};
+
+TEST_P(CaptureGrant, TakesTheWordsThatAreCompleteAsItsClockBegins) {
+  const Grant& grant = GetParam();
+  board = {grant.fifo_words, 1};
   build_and_arm();
-  grant_in(0, edge_at_or_after(word_ps(2, 0)));
+  grant_in(0, edge_at_or_after(word_ps(grant.word, grant.row)) - grant.clocks_before);
   run_frame();
-  EXPECT_EQ(burst(0).words.size(), 3U);
+  EXPECT_EQ(burst(0).words.size(), grant.words);
+  EXPECT_EQ(burst(1).address, kAddress + 4 * grant.words);
+  if (grant.clocks_before == 1) {
+    EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);  // the word has come meanwhile
+  }
   EXPECT_EQ(captured(), sent());
 }
 
-TEST_F(CaptureBurst, LeavesAWordThatIsCompletedAfterTheGrant) {
-  // The last edge before the third word.
-  board = {4, 1};
-  build_and_arm();
-  grant_in(0, edge_at_or_after(word_ps(2, 0)) - 1);
-  run_frame();
-  EXPECT_EQ(burst(0).words.size(), 2U);
-  EXPECT_EQ(burst(1).address, kAddress + 8);
-  EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);  // it came meanwhile
-  EXPECT_EQ(captured(), sent());
-}
+INSTANTIATE_TEST_SUITE_P(Words, CaptureGrant,
+                         testing::Values(Grant{4, 2, 0, 0, 3}, Grant{4, 2, 0, 1, 2}, Grant{12, 1, 2, 0, 10}),
+                         [](const auto& tested) { return std::to_string(tested.param.words); });
 
-TEST_F(CaptureBurst, LeavesOutAWordThatIsCompleteAPicosecondAfterTheAddressClockBegins) {
-  // Edges at whole ns. A frame rate at which word 1 is complete 1 ps after an edge is searched for.
+// Edges are at whole ns. The frame rate is one at which word 1 is complete some ps after an edge.
+class CaptureGrantEdge : public CaptureBurst, public testing::WithParamInterface<std::uint64_t> {};
+
+TEST_P(CaptureGrantEdge, TakesAWordThatIsCompleteAtTheEdgeButNotAPsLater) {
+  const std::uint64_t late_ps = GetParam();
   board = {4, 1};
   clock_mhz = 1000;
-  for (int i = 0; i < 100'000 && CameraTiming(camera).pixel_ps(7, 0) % 1000 != 1; ++i)
+  for (int i = 0; i < 100'000 && CameraTiming(camera).pixel_ps(7, 0) % 1000 != late_ps; ++i)
     camera.frame_rate_hz = (10'000 + i) / 100.0;
   build_and_arm();
-  ASSERT_EQ(word_ps(1, 0) % 1000, 1U);
-  BusTurn turn;
-  turn.busy_clocks = word_ps(1, 0) / 1000 - edge_at_or_after(word_ps(0, 0));
-  plan(0, turn);
+  grant_in(0, word_ps(1, 0) / 1000);
   run_frame();
-  EXPECT_EQ(burst(0).address_clock_ps, word_ps(1, 0) - 1);
-  EXPECT_EQ(burst(0).words.size(), 1U);
+  EXPECT_EQ(burst(0).address_clock_ps, word_ps(1, 0) - late_ps);
+  EXPECT_EQ(burst(0).words.size(), 2 - late_ps);
   EXPECT_EQ(captured(), sent());
 }
 
-TEST_F(CaptureBurst, WritesSeveralLinesInOneBurst) {
-  board = {12, 1};
-  build_and_arm();
-  grant_in(0, edge_at_or_after(word_ps(1, 2)));
-  run_frame();
-  EXPECT_EQ(burst(0).words.size(), 10U);
-  EXPECT_EQ(captured(), sent());
-}
+INSTANTIATE_TEST_SUITE_P(LatePs, CaptureGrantEdge, testing::Values(0U, 1U));
 
-TEST_F(CaptureBurst, AsksAgainAtOnceForWhatALatencyTimerLeft) {
+// The first `bursts` bursts transfer `words` words each.
+struct Cuts {
+  const char* name;
+  std::size_t bursts;
+  std::size_t words;
+  BurstEnd end;
+};
+void PrintTo(const Cuts& cuts, std::ostream* out) { *out << cuts.name; }
+
+class CaptureCut : public CaptureBurst, public testing::WithParamInterface<Cuts> {};
+
+TEST_P(CaptureCut, IsFollowedAtOnceByARequestForTheRest) {
+  const Cuts& cuts = GetParam();
   board = {4, 3};
   build_and_arm();
-  plan(0, cut(2, BurstEnd::kLatencyTimer));
+  side->bus.plan = [&](std::size_t request) {
+    return request < cuts.bursts ? cut(cuts.words, cuts.end) : BusTurn{};
+  };
   run_frame();
-  EXPECT_EQ(burst(0).result.words, 2U);
-  EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);
-  EXPECT_EQ(burst(1).address, kAddress + 8);
-  EXPECT_EQ(burst(1).words.size(), 1U);
+  for (std::size_t i = 0; i < cuts.bursts; ++i) {
+    EXPECT_EQ(burst(i).result.words, cuts.words);
+    EXPECT_EQ(side->bus.requests_ps[i + 1], burst(i).end_ps);
+  }
+  EXPECT_EQ(burst(cuts.bursts).address, kAddress + 4 * cuts.bursts * cuts.words);
+  EXPECT_EQ(burst(cuts.bursts).words.size(), 3 - cuts.bursts * cuts.words);
   EXPECT_EQ(captured(), sent());
   EXPECT_EQ(stats().words, 12U);
-}
-
-TEST_F(CaptureBurst, AsksAgainAtOnceAfterARetry) {
-  board = {4, 3};
-  build_and_arm();
-  side->bus.plan = [](std::size_t request) {
-    return request < 2 ? cut(0, BurstEnd::kDisconnect) : BusTurn{};
-  };
-  run_frame();
-  EXPECT_EQ(side->bus.requests_ps[1], burst(0).end_ps);
-  EXPECT_EQ(side->bus.requests_ps[2], burst(1).end_ps);
-  EXPECT_EQ(burst(2).address, kAddress);
-  EXPECT_EQ(burst(2).words.size(), 3U);
-  EXPECT_EQ(captured(), sent());
-  EXPECT_EQ(stats().words, 12U);
-}
-
-TEST_F(CaptureBurst, AsksAgainAtOnceAfterADisconnectWithAWord) {
-  board = {4, 3};
-  build_and_arm();
-  side->bus.plan = [](std::size_t request) {
-    return request < 2 ? cut(1, BurstEnd::kDisconnect) : BusTurn{};
-  };
-  run_frame();
-  EXPECT_EQ(side->bus.requests_ps[2], burst(1).end_ps);
-  EXPECT_EQ(burst(2).address, kAddress + 8);
-  EXPECT_EQ(burst(2).words.size(), 1U);
-  EXPECT_EQ(captured(), sent());
-}
-
-TEST_F(CaptureBurst, OutlivesAnyNumberOfRetries) {
-  build_and_arm();
-  side->bus.plan = [](std::size_t request) {
-    return request < 1000 ? cut(0, BurstEnd::kDisconnect) : BusTurn{};
-  };
-  run_frame();
   EXPECT_EQ(stats().captured_frames, 1U);
-  EXPECT_EQ(stats().words, 12U);
-  EXPECT_GT(stats().bursts, 1000U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Ends, CaptureCut,
+                         testing::Values(Cuts{"by_the_latency_timer", 1, 2, BurstEnd::kLatencyTimer},
+                                         Cuts{"by_disconnects", 2, 1, BurstEnd::kDisconnect},
+                                         Cuts{"by_retries", 2, 0, BurstEnd::kDisconnect},
+                                         Cuts{"by_many_retries", 1000, 0, BurstEnd::kDisconnect}),
+                         [](const auto& tested) { return tested.param.name; });
 
 class CaptureBusError : public CaptureBurst, public testing::WithParamInterface<BurstEnd> {};
 
-TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndGoesOn) {
+TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndContinuesTheCapture) {
   build_and_arm();
   plan(1, cut(0, GetParam()));
   run_to(word_ps(3, 0));
-  run_to(now_ps() + 60'000);  // in the burst
+  run_to(Clock::now_ps() + 60'000);  // in the burst
   ASSERT_EQ(side->bus.bursts.size(), 2U);
   run_to(burst(1).end_ps - 1);
   EXPECT_FALSE(side->board.interrupt->is_asserted());
@@ -171,7 +151,7 @@ TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndGoesOn) {
   EXPECT_TRUE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->status(), registers::kStatusCapturing | registers::kStatusWordsLost);
   side->write(registers::kStatus, registers::kStatusWordsLost);
-  run_to(now_ps());
+  run_to(Clock::now_ps());
   EXPECT_FALSE(side->board.interrupt->is_asserted());
   run_frame();
   EXPECT_EQ(side->status(), registers::kStatusDone);
@@ -205,47 +185,34 @@ INSTANTIATE_TEST_SUITE_P(Ends, CaptureBusError,
                            return end.param == BurstEnd::kMasterAbort ? "MasterAbort" : "TargetError";
                          });
 
-TEST_F(CaptureBurst, ReportsAGrantThatItHasNotAskedFor) {
-  build_and_arm();
-  run_to(word_ps(3, 0));
-  run_to(burst(0).end_ps);
-  test::ExpectedReport expected("/stereotlm/capture_board");
-  run_to(word_ps(3, 0) + 1'000'000);
-  EXPECT_THROW(side->bus.master().begin_burst(now_ps()), sc_core::sc_report);
-}
-
-TEST_F(CaptureBurst, ReportsAGrantFromBeforeItsRequest) {
+TEST_F(CaptureBurst, ReportsAGrantBeforeItsRequestOrWithoutOne) {
   build_and_arm();
   side->bus.turn.busy_clocks = 10;
   run_to(word_ps(1, 0));
   ASSERT_EQ(side->bus.requests_ps.size(), 1U);
-  test::ExpectedReport expected("/stereotlm/capture_board");
+  test::ExpectedReport expected("/stereotlm/capture_board", 2);
   EXPECT_THROW(side->bus.master().begin_burst(word_ps(1, 0) - 1), sc_core::sc_report);
-  EXPECT_EQ(expected.text(), "board: bus granted from " + std::to_string(word_ps(1, 0) - 1) +
-                                 " ps on: must have been asked for by then");
+  EXPECT_EQ(expected.text(), "board: bus granted at " + std::to_string(word_ps(1, 0) - 1) +
+                                 " ps: must have been requested by then");
+  run_to(word_ps(3, 0) + 1'000'000);
+  EXPECT_THROW(side->bus.master().begin_burst(Clock::now_ps()), sc_core::sc_report);
 }
 
-TEST_F(CaptureBurst, ReportsTheEndOfABurstThatDoesNotFitIt) {
+TEST_F(CaptureBurst, ReportsTheEndOfABurstThatDoesNotRunOrCannotEndSo) {
   build_and_arm();
   side->bus.turn.wait_clocks = 1'000;
-  run_to(word_ps(1, 0) + 100'000);
-  ASSERT_EQ(burst(0).words.size(), 2U);
-  pci::PciMasterIf& master = side->bus.master();
   const pci::BurstResult wrong[] = {
       {BurstEnd::kComplete, 1, 0},     {BurstEnd::kComplete, 3, 0},   {BurstEnd::kLatencyTimer, 2, 0},
       {BurstEnd::kLatencyTimer, 0, 0}, {BurstEnd::kDisconnect, 2, 0}, {BurstEnd::kMasterAbort, 1, 0},
       {BurstEnd::kTargetError, 2, 0},
   };
-  test::ExpectedReport expected("/stereotlm/capture_board", static_cast<int>(std::size(wrong)));
+  test::ExpectedReport expected("/stereotlm/capture_board", 1 + static_cast<int>(std::size(wrong)));
+  run_to(word_ps(1, 0));  // the bus is requested and not yet granted
+  pci::PciMasterIf& master = side->bus.master();
+  EXPECT_THROW(master.end_burst({BurstEnd::kDisconnect, 0, 0}), sc_core::sc_report);
+  run_to(word_ps(1, 0) + 100'000);
+  ASSERT_EQ(burst(0).words.size(), 2U);
   for (const pci::BurstResult& result : wrong) EXPECT_THROW(master.end_burst(result), sc_core::sc_report);
-}
-
-TEST_F(CaptureBurst, ReportsTheEndOfABurstThatThereIsNot) {
-  build_and_arm();
-  side->bus.turn.busy_clocks = 1'000;
-  run_to(word_ps(1, 0));
-  test::ExpectedReport expected("/stereotlm/capture_board");
-  EXPECT_THROW(side->bus.master().end_burst({BurstEnd::kDisconnect, 0, 0}), sc_core::sc_report);
 }
 
 }  // namespace

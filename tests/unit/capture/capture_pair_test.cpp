@@ -1,4 +1,4 @@
-// Two boards of a pair: both take a frame, or neither.
+// The two boards of a pair: both take a frame, or neither does.
 #include <memory>
 
 #include "tests/unit/capture/capture_bench.h"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kAddress = 0x1000;
 
-// Which side is built, and so called, first.
+// The parameter says whether the left side is built, and so called, before the right side.
 class CapturePair : public testing::TestWithParam<bool> {
  protected:
   void build(CameraTrigger trigger = CameraTrigger::kFreeRunning, double right_rate_hz = 29.97) {
@@ -35,8 +35,9 @@ class CapturePair : public testing::TestWithParam<bool> {
   std::unique_ptr<CaptureSide> right;
 };
 
-TEST_P(CapturePair, StartsWhenBothAreArmed) {
+TEST_P(CapturePair, StartsAFrameThatFindsBothSidesArmed) {
   build();
+  run_to(0);  // both cameras have begun frame 0, and nothing else happens at this time
   left->arm(kAddress);
   right->arm(kAddress);
   run_to(frame_ps(1) - 1);
@@ -45,54 +46,28 @@ TEST_P(CapturePair, StartsWhenBothAreArmed) {
   EXPECT_EQ(right->buffer(kAddress, 0), right->source.picture(0).pixels);
 }
 
-TEST_P(CapturePair, DropsAFrameOfWhichOneSideIsNotArmed) {
+TEST_P(CapturePair, DropsAFrameThatFindsASideNotArmed) {
   build();
+  run_to(1);  // frame 0 finds neither armed
   left->arm(kAddress);
-  run_to(frame_ps(1) - 1);
+  run_to(frame_ps(1) + 1);
+  right->arm(kAddress);  // a ps too late for frame 1
+  run_to(frame_ps(2) - 1);
   expect_started(0);
+  EXPECT_EQ(left->board.stats().dropped_not_armed, 1U);
   EXPECT_EQ(left->board.stats().dropped_by_partner, 1U);
-  EXPECT_EQ(left->board.stats().dropped_not_armed, 0U);
-  EXPECT_EQ(right->board.stats().dropped_not_armed, 1U);
-  EXPECT_EQ(right->board.stats().dropped_by_partner, 0U);
+  EXPECT_EQ(left->board.stats().dropped_frames(), 2U);
+  EXPECT_EQ(right->board.stats().dropped_not_armed, 2U);
+  EXPECT_EQ(right->board.stats().dropped_frames(), 2U);
   EXPECT_TRUE(left->source.asked.empty());
   EXPECT_EQ(left->status(), registers::kStatusArmed);
-  right->arm(kAddress);
-  run_to(frame_ps(2) - 1);
+  run_to(frame_ps(3) - 1);
   expect_started(1);
-  EXPECT_EQ(left->board.last_capture()->frame, 1U);
-  EXPECT_EQ(right->board.last_capture()->frame, 1U);
+  EXPECT_EQ(left->board.last_capture()->frame, 2U);
+  EXPECT_EQ(right->board.last_capture()->frame, 2U);
 }
 
-TEST_P(CapturePair, CountsASideOnItsOwnWhenNeitherIsArmed) {
-  build();
-  run_to(frame_ps(1) - 1);
-  for (const auto* side : {left.get(), right.get()}) {
-    EXPECT_EQ(side->board.stats().dropped_not_armed, 1U);
-    EXPECT_EQ(side->board.stats().dropped_frames(), 1U);
-  }
-}
-
-TEST_P(CapturePair, TakesASideThatIsArmedAtTheVeryBeginning) {
-  build();
-  left->arm(kAddress);
-  run_to(frame_ps(1));  // both cameras have begun frame 1, and nothing else happens at this time
-  right->arm(kAddress);
-  run_to(frame_ps(1) + 1);
-  expect_started(1);
-}
-
-TEST_P(CapturePair, DropsAPairOfWhichOneSideIsArmedAPicosecondLate) {
-  build();
-  left->arm(kAddress);
-  run_to(frame_ps(1) + 1);
-  right->arm(kAddress);
-  run_to(frame_ps(2) - 1);
-  expect_started(0);
-  EXPECT_EQ(left->board.stats().dropped_by_partner, 2U);
-  EXPECT_EQ(right->board.stats().dropped_not_armed, 2U);
-}
-
-TEST_P(CapturePair, DropsAPairOfWhichOneSideIsBusy) {
+TEST_P(CapturePair, DropsAFrameThatFindsOneSideBusy) {
   build();
   left->bus.plan = [this](std::size_t request) {
     test::BusTurn turn;
@@ -141,13 +116,7 @@ TEST_P(CapturePair, DropsFramesThatDoNotBeginTogether) {
   EXPECT_EQ(left->board.stats().dropped_by_partner, 3U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Order, CapturePair, testing::Bool(),
-                         [](const auto& order) { return order.param ? "LeftFirst" : "RightFirst"; });
-
-// The partner calls themselves, in either order.
-class Decision : public CapturePair {};
-
-TEST_P(Decision, IsTheSameWhoeverAsksFirst) {
+TEST_P(CapturePair, DecidesTheSameWhicheverSideAsksFirst) {
   build();
   left->arm(kAddress);
   right->arm(kAddress);
@@ -159,11 +128,11 @@ TEST_P(Decision, IsTheSameWhoeverAsksFirst) {
   EXPECT_FALSE(first.can_start(0, 1));
   run_to(1);
   expect_started(1);
-  EXPECT_TRUE(left->board.as_partner->can_start(0, 0));  // as it was
+  EXPECT_TRUE(left->board.as_partner->can_start(0, 0));  // the answer stays the same
   EXPECT_TRUE(right->board.as_partner->can_start(0, 0));
 }
 
-INSTANTIATE_TEST_SUITE_P(Order, Decision, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Order, CapturePair, testing::Bool(),
                          [](const auto& order) { return order.param ? "LeftFirst" : "RightFirst"; });
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Random frames on a random bus against the literal board of plain_capture_board.h. A case is a process; a process
-// has many boards, because each one is built before the simulation starts.
+// Random frames on a random bus, against the literal board of plain_capture_board.h. Each case is a process that
+// simulates many boards at once.
 #include <random>
 #include <string>
 
@@ -22,7 +22,7 @@ class Dice {
   std::mt19937 engine_;
 };
 
-// Deals with a master as a test bus has dealt with another one.
+// Repeats the grants, words and ends of bursts of a test bus.
 class BusAsBefore : public test::PlainBus {
  public:
   BusAsBefore(test::PlainEvents& events, const test::TestBus& before) : events_(events), before_(before) {}
@@ -74,7 +74,7 @@ struct RandomCapture {
     side = std::make_unique<CaptureSide>("side" + std::to_string(seed) + "_", camera,
                                          CaptureBoardConfig{plain.fifo_words, plain.fifo_trigger_words},
                                          clock_mhz);
-    const int mood = dice.upto(3);  // how often others have the bus
+    const int mood = dice.upto(3);  // how often other masters have the bus
     side->bus.plan = [this, mood](std::size_t) {
       test::BusTurn turn;
       if (dice.one_in(1 + mood)) turn.busy_clocks = static_cast<std::uint64_t>(dice.upto(mood * 20));
@@ -95,7 +95,7 @@ struct RandomCapture {
     };
   }
 
-  // The same frame by the literal board, on a bus that deals with it in the same way.
+  // The literal board captures the same frame on the same bus.
   void expect_as_literal_board() const {
     test::PlainEvents events;
     BusAsBefore bus(events, side->bus);
@@ -127,7 +127,7 @@ struct RandomCapture {
 
 class CaptureRandom : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(CaptureRandom, IsTheLiteralBoard) {
+TEST_P(CaptureRandom, CapturesLikeTheLiteralBoard) {
   std::vector<std::unique_ptr<RandomCapture>> captures;
   for (std::uint32_t i = 0; i < 100; ++i) {
     captures.push_back(std::make_unique<RandomCapture>(GetParam() * 100 + i));

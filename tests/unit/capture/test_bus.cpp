@@ -5,11 +5,6 @@
 #include <algorithm>
 
 namespace stereotlm::test {
-namespace {
-
-std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-
-}  // namespace
 
 TestBus::TestBus(const sc_core::sc_module_name& name, double clock_mhz) : sc_module(name), clock_(clock_mhz) {
   SC_HAS_PROCESS(TestBus);
@@ -26,22 +21,22 @@ TestBus::TestBus(const sc_core::sc_module_name& name, double clock_mhz) : sc_mod
 }
 
 void TestBus::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
-  EXPECT_EQ(requests_ps.size(), bursts.size()) << "asks again at " << sc_core::sc_time_stamp();
-  EXPECT_GE(from_ps, now_ps());
+  EXPECT_EQ(requests_ps.size(), bursts.size()) << "second request at " << sc_core::sc_time_stamp();
+  EXPECT_GE(from_ps, Clock::now_ps());
   master_ = &master;
-  if (from_ps > now_ps()) {
-    ask_.notify(Clock::to_time(from_ps - now_ps()));
+  if (from_ps > Clock::now_ps()) {
+    ask_.notify(Clock::to_time(from_ps - Clock::now_ps()));
   } else {
     ask();
   }
 }
 
-// At the time of the request.
+// Called at the time of the request.
 void TestBus::ask() {
   turn_ = plan ? plan(requests_ps.size()) : turn;
-  requests_ps.push_back(now_ps());
-  address_clock_ = std::max(clock_.edge_at_or_after(now_ps()) + turn_.busy_clocks, free_clock_);
-  begin_.notify(Clock::to_time(clock_.edge_ps(address_clock_) - now_ps()));
+  requests_ps.push_back(Clock::now_ps());
+  address_clock_ = std::max(clock_.edge_at_or_after(Clock::now_ps()) + turn_.busy_clocks, free_clock_);
+  begin_.notify(Clock::to_time(clock_.edge_ps(address_clock_) - Clock::now_ps()));
 }
 
 void TestBus::begin() {
@@ -62,13 +57,12 @@ void TestBus::begin() {
   burst.end_ps = clock_.edge_ps(end_clock);
   free_clock_ = end_clock + 1;
   bursts.push_back(burst);
-  end_.notify(Clock::to_time(burst.end_ps - now_ps()));
-  if (burst_begins) burst_begins(burst);
+  end_.notify(Clock::to_time(burst.end_ps - Clock::now_ps()));
 }
 
 pci::BurstResult TestBus::transferred() const {
   pci::BurstResult so_far = bursts.back().result;
-  const auto has_left = [this](std::size_t word) { return left_ps(bursts.back(), word) <= now_ps(); };
+  const auto has_left = [this](std::size_t word) { return left_ps(bursts.back(), word) <= Clock::now_ps(); };
   while (so_far.words > 0 && !has_left(so_far.words - 1)) --so_far.words;
   return so_far;
 }

@@ -14,13 +14,13 @@ namespace stereotlm::test {
 
 // How the test bus treats a request.
 struct BusTurn {
-  std::uint64_t busy_clocks = 0;  // of others, from the first clock at or after the request
+  std::uint64_t busy_clocks = 0;  // clocks of other masters, from the first clock at or after the request
   std::uint64_t wait_clocks = 0;  // between the address clock and the first data clock
-  std::size_t limit = std::numeric_limits<std::size_t>::max();  // words, after which `cut` ends the burst
+  std::size_t limit = std::numeric_limits<std::size_t>::max();  // after so many words `cut` ends the burst
   pci::BurstEnd cut = pci::BurstEnd::kLatencyTimer;
 };
 
-// A PCI bus with one place, which does what the test plans and records it.
+// A PCI bus with one slot, which follows the test's plan and records each burst.
 class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
  public:
   struct Burst {
@@ -33,9 +33,8 @@ class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
   };
 
   pci::PciSlotExport slot{"slot"};
-  BusTurn turn;                                      // of every request,
-  std::function<BusTurn(std::size_t request)> plan;  // unless there is a plan
-  std::function<void(const Burst&)> burst_begins;    // told of each, if set
+  std::function<BusTurn(std::size_t request)> plan;  // turn of each request
+  BusTurn turn;                                      // turn of every request, if there is no plan
   std::vector<Burst> bursts;                         // the last one may be running
   std::vector<std::uint64_t> requests_ps;            // the last one may wait
   std::map<std::uint64_t, std::uint32_t> memory;     // written words by address
@@ -44,11 +43,11 @@ class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
 
   const Clock& clock() const override { return clock_; }
   pci::BurstResult transferred() const override;
-  // When a word of a burst has left its master.
+  // The time at which a word of a burst has left its master.
   std::uint64_t left_ps(const Burst& burst, std::size_t word) const {
     return clock_.edge_ps(burst.result.first_data_clock + word + 1);
   }
-  // What a test calls to break the rules.
+  // For calls that break the rules.
   pci::PciMasterIf& master() { return *master_; }
 
  private:

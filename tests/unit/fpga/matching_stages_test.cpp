@@ -9,7 +9,7 @@
 #include "models/fpga/sad_array.h"
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
-#include "models/kernels/vector_loops.h"
+#include "models/kernels/lane_array.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {

@@ -43,8 +43,8 @@ class LambdaProgram : public Program {
   void run(HostBus& bus) override { body(bus); }
 };
 
-// A processor with registers behind a monitor, which wait for half of kAccessTime and annotate the other
-// half, host memory, and two interrupt lines.
+// A processor with host memory, two interrupt lines, and registers behind a monitor. A register access waits for
+// half of kAccessTime and annotates the other half.
 class CpuTest : public testing::Test {
  protected:
   CpuTest() {
@@ -93,37 +93,26 @@ class CpuTest : public testing::Test {
   std::vector<std::uint32_t> written;
 };
 
-TEST_F(CpuTest, RunsItsProgramOnceFromTimeZeroOn) {
-  int runs = 0;
-  simulate([&](HostBus&) {
-    ++runs;
-    EXPECT_FALSE(cpu.finished());
-  });
-  EXPECT_EQ(runs, 1);
-  EXPECT_TRUE(cpu.finished());
-  EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
-}
-
-TEST_F(CpuTest, MakesEachAccessATransactionThatTakesItsTime) {
-  simulate([](HostBus& bus) {
-    bus.write(0x10, 7);
-    EXPECT_EQ(sc_core::sc_time_stamp(), kAccessTime);
-    EXPECT_EQ(bus.read(0x20), 0x21U);
-    EXPECT_EQ(sc_core::sc_time_stamp(), 2 * kAccessTime);
-  });
-  EXPECT_EQ(accesses, (std::vector<std::pair<bool, std::uint64_t>>{{true, 0x10}, {false, 0x20}}));
-  EXPECT_EQ(written, std::vector<std::uint32_t>{7});
-}
-
-TEST_F(CpuTest, TellsWhenItHasFinished) {
+TEST_F(CpuTest, RunsItsProgramOnceFromTimeZeroWithATransactionForEachAccess) {
   sc_time finished;
   sc_core::sc_spawn([&] {
     sc_core::wait(cpu.finished_event());
     finished = sc_core::sc_time_stamp();
     EXPECT_TRUE(cpu.finished());
   });
-  simulate([](HostBus& bus) { bus.write(0, 0); });
-  EXPECT_EQ(finished, kAccessTime);
+  int runs = 0;
+  simulate([&](HostBus& bus) {
+    ++runs;
+    EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
+    EXPECT_FALSE(cpu.finished());
+    bus.write(0x10, 7);
+    EXPECT_EQ(sc_core::sc_time_stamp(), kAccessTime);
+    EXPECT_EQ(bus.read(0x20), 0x21U);
+  });
+  EXPECT_EQ(runs, 1);
+  EXPECT_EQ(finished, 2 * kAccessTime);
+  EXPECT_EQ(accesses, (std::vector<std::pair<bool, std::uint64_t>>{{true, 0x10}, {false, 0x20}}));
+  EXPECT_EQ(written, std::vector<std::uint32_t>{7});
 }
 
 TEST_F(CpuTest, WaitsForAnyOfItsInterrupts) {
@@ -152,7 +141,7 @@ TEST_F(CpuTest, ReturnsAtOnceWhileAnInterruptIsAsserted) {
   EXPECT_TRUE(cpu.finished());
 }
 
-TEST_F(CpuTest, WaitsWithoutAccessForALineThatWasReleased) {
+TEST_F(CpuTest, WaitsAgainWithoutAccessIfTheLineWasReleased) {
   drive(line_0, true, sc_time(1, sc_core::SC_US));
   drive(line_0, false, sc_time(2, sc_core::SC_US));
   drive(line_0, true, sc_time(5, sc_core::SC_US));
@@ -165,12 +154,12 @@ TEST_F(CpuTest, WaitsWithoutAccessForALineThatWasReleased) {
   EXPECT_TRUE(cpu.finished());
 }
 
-TEST_F(CpuTest, NeverEndsAWaitWithoutInterrupt) {
+TEST_F(CpuTest, WaitsForEverWithoutInterrupt) {
   simulate([](HostBus& bus) { bus.wait_for_interrupt(); });
   EXPECT_FALSE(cpu.finished());
 }
 
-TEST_F(CpuTest, ReportsAProgramThatWaitsForAnInterruptThatItDoesNotServe) {
+TEST_F(CpuTest, ReportsAProgramThatWaitsAgainWithoutServingTheInterrupt) {
   drive(line_0, true, sc_time(1, sc_core::SC_US));
   expect_report(
       [](HostBus& bus) {
@@ -181,22 +170,19 @@ TEST_F(CpuTest, ReportsAProgramThatWaitsForAnInterruptThatItDoesNotServe) {
 
 TEST_F(CpuTest, ThrowsABusErrorIntoTheProgram) {
   response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  std::vector<std::string> errors;
+  const auto error_of = [](const std::function<void()>& access) -> std::string {
+    try {
+      access();
+    } catch (const BusError& error) {
+      return error.what();
+    }
+    return "";
+  };
   simulate([&](HostBus& bus) {
-    try {
-      bus.read(0x1234);
-    } catch (const BusError& error) {
-      errors.emplace_back(error.what());
-    }
-    try {
-      bus.write(0x20, 1);
-    } catch (const BusError& error) {
-      errors.emplace_back(error.what());
-    }
+    EXPECT_EQ(error_of([&] { bus.read(0x1234); }), "read of 0x1234: TLM_ADDRESS_ERROR_RESPONSE");
+    EXPECT_EQ(error_of([&] { bus.write(0x20, 1); }), "write of 0x20: TLM_ADDRESS_ERROR_RESPONSE");
     EXPECT_EQ(sc_core::sc_time_stamp(), 2 * kAccessTime);
   });
-  EXPECT_EQ(errors, (std::vector<std::string>{"read of 0x1234: TLM_ADDRESS_ERROR_RESPONSE",
-                                              "write of 0x20: TLM_ADDRESS_ERROR_RESPONSE"}));
   EXPECT_TRUE(cpu.finished());
 }
 
@@ -213,7 +199,7 @@ TEST_F(CpuTest, ReportsAnExceptionOfAnUnknownType) {
   expect_report([](HostBus&) { throw 7; }, "exception of an unknown type");
 }
 
-TEST_F(CpuTest, LetsTheReportOfAModelPass) {
+TEST_F(CpuTest, PassesOnTheReportOfAModel) {
   registers.on_blocking = [](auto&, auto&) { SC_REPORT_ERROR("/stereotlm/other", "impossible"); };
   ExpectedReport report("/stereotlm/other");
   program.body = [](HostBus& bus) { bus.read(0); };
@@ -232,24 +218,22 @@ TEST_F(CpuTest, GivesTheProgramHostMemoryInNoTime) {
   EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
 }
 
-TEST_F(CpuTest, RefusesWhatIsNotHostMemory) {
-  simulate([](HostBus& bus) {
-    EXPECT_THROW(bus.memory(kMemoryBase - 1, 1), std::out_of_range);
-    EXPECT_THROW(bus.memory(0, 1), std::out_of_range);
-    EXPECT_THROW(bus.memory(kMemoryBase + kMemoryBytes, 1), std::out_of_range);
-    EXPECT_THROW(bus.memory(kMemoryBase, kMemoryBytes + 1), std::out_of_range);
-    EXPECT_THROW(bus.memory(kMemoryBase + 1, kMemoryBytes), std::out_of_range);
-    EXPECT_THROW(bus.memory(kMemoryBase + 4, UINT64_MAX), std::out_of_range);
-  });
-  EXPECT_TRUE(cpu.finished());
+TEST_F(CpuTest, RefusesBytesThatAreNotHostMemory) {
+  expect_report(
+      [](HostBus& bus) {
+        EXPECT_THROW(bus.memory(kMemoryBase - 1, 1), std::out_of_range);
+        EXPECT_THROW(bus.memory(0, 1), std::out_of_range);
+        EXPECT_THROW(bus.memory(kMemoryBase + kMemoryBytes, 1), std::out_of_range);
+        EXPECT_THROW(bus.memory(kMemoryBase, kMemoryBytes + 1), std::out_of_range);
+        EXPECT_THROW(bus.memory(kMemoryBase + 1, kMemoryBytes), std::out_of_range);
+        EXPECT_THROW(bus.memory(kMemoryBase + 4, UINT64_MAX), std::out_of_range);
+        bus.memory(0x1000, 16);
+      },
+      "16 bytes at 0x1000: must be host memory");
 }
 
-TEST_F(CpuTest, ReportsMemoryThatIsNoneWithItsAddress) {
-  expect_report([](HostBus& bus) { bus.memory(0x1000, 16); }, "16 bytes at 0x1000: must be host memory");
-}
-
-// 800 KiB of locals in a program that knows nothing of the size of a simulated process.
-TEST_F(CpuTest, GivesTheProgramARoomyStack) {
+// A program with 800 KiB of locals, as on a real machine.
+TEST_F(CpuTest, GivesTheProgramALargeStack) {
   unsigned sum = 0;
   simulate([&sum](HostBus&) {
     volatile unsigned char bytes[800 * 1024];

@@ -2,173 +2,133 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
 
+#include "tests/support/refused_access.h"
 #include "tests/support/test_host.h"
 #include "tests/unit/pci/pci_bus_bench.h"
 
 namespace stereotlm::host {
 namespace {
 
-using pci::TestMaster;
-using pci::TestTarget;
+using pci::PciBusBench;
 using pci::word_at;
+using Words = std::vector<std::uint32_t>;
 
-constexpr std::uint32_t kBase = 0x1'0000;
+constexpr std::uint32_t kBase = PciBusBench::kBase;
 constexpr int kWait = 4;
 
 // A processor, the bridge, a bus with a second master, and a target.
 class HostBridgeTest : public testing::Test {
  protected:
   void build(const test::ProtocolOptions& options = {}, int latency_timer_clocks = 64) {
-    pci::PciBusConfig config;
-    config.latency_timer_clocks = latency_timer_clocks;
-    config.masters = {"host", "other"};
-    config.windows = {{kBase, 0x1000, kWait}};
-    bus = std::make_unique<pci::PciBus>("bus", config);
-    bridge.pci.bind(bus->slots[0]);
-    other.pci.bind(bus->slots[1]);
-    bus->stops[0].bind(target);
+    pci::PciBusConfig config = PciBusBench::with_window(kWait, latency_timer_clocks);
+    config.masters = {"host"};
+    bench = std::make_unique<PciBusBench>(config);
+    bench->bind_stop();
+    bridge.pci.bind(bench->bus->slots[0]);
     binder = std::make_unique<test::MonitoringBinder>(options);
     binder->bind(cpu.socket, bridge.cpu, "cpu_to_bridge");
-    binder->bind(bus->targets[0], target.socket, "bus_to_target");
-    prepare(payload, words);
-  }
-  static void prepare(tlm::tlm_generic_payload& access, std::vector<std::uint32_t>& data) {
-    access.set_command(tlm::TLM_WRITE_COMMAND);
-    access.set_address(kBase + 0x20);
-    access.set_data_ptr(reinterpret_cast<unsigned char*>(data.data()));
-    access.set_data_length(static_cast<unsigned>(4 * data.size()));
-    access.set_streaming_width(static_cast<unsigned>(4 * data.size()));
   }
   void simulate(std::function<void()> body) {
     sc_core::sc_spawn(std::move(body));
     sc_core::sc_start();
   }
-  tlm::tlm_response_status send() {
-    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-    cpu.socket->b_transport(payload, delay);
-    return payload.get_response_status();
+  void write_words() { EXPECT_EQ(cpu.write_words(kBase + 0x20, {5, 6, 7}).status, tlm::TLM_OK_RESPONSE); }
+  void read_words(std::size_t count) {
+    const auto answer = cpu.read_words(kBase + 0x20, count);
+    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(answer.words, pci::words_from(0x20, count));
   }
-  std::uint64_t edge(std::uint64_t clock) const { return bus->clock().edge_ps(clock); }
-  static std::uint64_t now_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
+  std::uint64_t edge(std::uint64_t clock) const { return bench->edge(clock); }
+  pci::TestTarget& target() { return *bench->targets[0]; }
+  pci::PciBus::MasterStats stats() const { return bench->bus->stats().masters[0]; }
 
   std::unique_ptr<test::MonitoringBinder> binder;
-  std::unique_ptr<pci::PciBus> bus;
+  std::unique_ptr<PciBusBench> bench;
   test::TestHost cpu{"cpu"};
   HostBridge bridge{"bridge"};
-  TestMaster other{"other"};
-  TestTarget target{"target"};
-  tlm::tlm_generic_payload payload;
-  std::vector<std::uint32_t> words{5, 6, 7};
-  sc_core::sc_time delay;
 };
 
-TEST_F(HostBridgeTest, WritesAWordInOneBurst) {
+TEST_F(HostBridgeTest, AccessesAWordInOneBurstAtTheTimeOfTheAccess) {
   build();
   simulate([this] {
     EXPECT_EQ(cpu.write(kBase + 8, 77).status, tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(now_ps(), edge(1 + kWait + 1));
-  });
-  ASSERT_EQ(target.accesses.size(), 1U);
-  EXPECT_TRUE(target.accesses[0].write);
-  EXPECT_EQ(target.accesses[0].address, 8U);
-  EXPECT_EQ(target.accesses[0].words, std::vector<std::uint32_t>{77});
-  EXPECT_EQ(bus->stats().masters[0].transactions, 1U);
-}
-
-TEST_F(HostBridgeTest, ReadsAWordInOneBurst) {
-  build();
-  simulate([this] {
-    const auto answer = cpu.read(kBase + 8);
+    EXPECT_EQ(Clock::now_ps(), edge(1 + kWait + 1));
+    const auto answer = cpu.read(kBase + 8, Clock::to_time(edge(20) - Clock::now_ps()));
     EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
     EXPECT_EQ(answer.word, word_at(8));
-    EXPECT_EQ(now_ps(), edge(1 + kWait + 1));
-  });
-}
-
-TEST_F(HostBridgeTest, BeginsAtTheTimeOfTheAccess) {
-  build();
-  simulate([this] {
-    const auto answer = cpu.read(kBase + 8, Clock::to_time(edge(10)));
-    EXPECT_EQ(answer.at, Clock::to_time(edge(10 + 1 + kWait + 1)));
+    EXPECT_EQ(answer.at, Clock::to_time(edge(20 + 1 + kWait + 1)));
     EXPECT_EQ(answer.at, sc_core::sc_time_stamp());
   });
+  ASSERT_EQ(target().accesses.size(), 2U);
+  EXPECT_TRUE(target().accesses[0].write);
+  EXPECT_EQ(target().accesses[0].address, 8U);
+  EXPECT_EQ(target().accesses[0].words, Words{77});
+  EXPECT_EQ(stats().transactions, 2U);
 }
 
 TEST_F(HostBridgeTest, TransfersSeveralWordsInOneBurst) {
   build();
   simulate([this] {
-    EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
+    write_words();
+    read_words(3);
   });
-  ASSERT_EQ(target.accesses.size(), 2U);
-  EXPECT_EQ(target.accesses[0].words, (std::vector<std::uint32_t>{5, 6, 7}));
-  EXPECT_EQ(words, pci::words_from(0x20, 3));
+  ASSERT_EQ(target().accesses.size(), 2U);
+  EXPECT_EQ(target().accesses[0].words, (Words{5, 6, 7}));
 }
 
-TEST_F(HostBridgeTest, RepeatsARetry) {
+TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
   build();
   int refusals = 3;
-  target.writable = [&refusals](auto, auto count) { return refusals-- > 0 ? 0U : count; };
+  target().writable = [&refusals](auto, auto count) { return refusals-- > 0 ? 0U : count; };
   simulate([this] {
-    EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(now_ps(), edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
+    write_words();
+    EXPECT_EQ(Clock::now_ps(), edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
   });
-  EXPECT_EQ(bus->stats().masters[0].retries, 3U);
-  EXPECT_EQ(bus->stats().masters[0].words, 3U);
+  EXPECT_EQ(stats().retries, 3U);
+  EXPECT_EQ(stats().words, 3U);
 }
 
-TEST_F(HostBridgeTest, GoesOnBehindADisconnect) {
+TEST_F(HostBridgeTest, ContinuesADisconnectedBurst) {
   build();
-  target.writable = [](auto, auto count) { return std::min<std::size_t>(count, 2); };
-  simulate([this] { EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE); });
-  ASSERT_EQ(target.accesses.size(), 2U);
-  EXPECT_EQ(target.accesses[0].words, (std::vector<std::uint32_t>{5, 6}));
-  EXPECT_EQ(target.accesses[1].address, 0x28U);
-  EXPECT_EQ(target.accesses[1].words, std::vector<std::uint32_t>{7});
+  target().writable = [](auto, auto count) { return std::min<std::size_t>(count, 2); };
+  simulate([this] { write_words(); });
+  ASSERT_EQ(target().accesses.size(), 2U);
+  EXPECT_EQ(target().accesses[0].words, (Words{5, 6}));
+  EXPECT_EQ(target().accesses[1].address, 0x28U);
+  EXPECT_EQ(target().accesses[1].words, Words{7});
 }
 
-TEST_F(HostBridgeTest, GoesOnWithAReadThatTheLatencyTimerCut) {
-  words.assign(40, 0);
+TEST_F(HostBridgeTest, ContinuesAReadThatTheLatencyTimerCut) {
   build({}, 10);
-  other.bursts = {{false, kBase, 1}};
+  bench->masters[0]->bursts = {pci::read_of(1)};
   simulate([this] {
-    other.request();
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
+    bench->masters[0]->request();
+    read_words(40);
   });
-  EXPECT_EQ(words, pci::words_from(0x20, 40));
-  EXPECT_EQ(bus->stats().masters[0].transactions, 2U);
-  EXPECT_EQ(bus->stats().masters[0].words, 40U);
+  EXPECT_EQ(stats().transactions, 2U);
+  EXPECT_EQ(stats().words, 40U);
 }
 
-TEST_F(HostBridgeTest, AnswersAMasterAbortAsAnAddressError) {
+TEST_F(HostBridgeTest, AnswersAMasterAbortAsAnAddressErrorAndATargetErrorAsAGenericError) {
   build();
   simulate([this] {
-    EXPECT_EQ(cpu.read(kBase + 0x1000).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    EXPECT_EQ(now_ps(), edge(5));
+    EXPECT_EQ(cpu.read(kBase + PciBusBench::kBytes).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    EXPECT_EQ(Clock::now_ps(), edge(5));
     EXPECT_EQ(cpu.write(0, 1).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     EXPECT_EQ(cpu.write(kBase, 1).status, tlm::TLM_OK_RESPONSE);
-  });
-  EXPECT_EQ(bus->stats().masters[0].aborts, 2U);
-}
-
-TEST_F(HostBridgeTest, AnswersAnErrorOfTheTargetAsAGenericError) {
-  build();
-  target.response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  simulate([this] {
+    target().response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
     EXPECT_EQ(cpu.read(kBase).status, tlm::TLM_GENERIC_ERROR_RESPONSE);
     EXPECT_EQ(cpu.write(kBase, 1).status, tlm::TLM_GENERIC_ERROR_RESPONSE);
   });
+  EXPECT_EQ(stats().aborts, 4U);
 }
 
-TEST_F(HostBridgeTest, TakesTurnsBetweenProcesses) {
-  build({});
+TEST_F(HostBridgeTest, ServesProcessesInTheOrderOfTheirAccesses) {
+  build();
   std::vector<int> order;
   for (const int process : {0, 1, 2}) {
     sc_core::sc_spawn([this, &order, process] {
@@ -180,7 +140,7 @@ TEST_F(HostBridgeTest, TakesTurnsBetweenProcesses) {
   }
   sc_core::sc_start();
   EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 0, 1, 2, 0, 1, 2}));
-  EXPECT_EQ(bus->stats().masters[0].words, 9U);
+  EXPECT_EQ(stats().words, 9U);
 }
 
 TEST_F(HostBridgeTest, ServesANonBlockingProcessor) {
@@ -189,37 +149,27 @@ TEST_F(HostBridgeTest, ServesANonBlockingProcessor) {
     EXPECT_EQ(cpu.access(tlm::TLM_WRITE_COMMAND, kBase, 9).status, tlm::TLM_OK_RESPONSE);
     EXPECT_EQ(cpu.access(tlm::TLM_READ_COMMAND, kBase + 4).word, word_at(4));
   });
-  EXPECT_EQ(target.accesses.size(), 2U);
+  EXPECT_EQ(target().accesses.size(), 2U);
 }
 
-TEST_F(HostBridgeTest, RefusesWhatABurstCannotSay) {
+TEST_F(HostBridgeTest, RefusesAccessesThatABurstCannotCarry) {
   test::ProtocolOptions options;
   options.whole_words = false;
   options.streaming_bursts = true;
   build(options);
-  std::array<unsigned char, 4> enables{};
-  simulate([this, &enables] {
-    payload.set_command(tlm::TLM_IGNORE_COMMAND);
-    EXPECT_EQ(send(), tlm::TLM_COMMAND_ERROR_RESPONSE);
-    payload.set_command(tlm::TLM_WRITE_COMMAND);
-    payload.set_data_length(6);
-    EXPECT_EQ(send(), tlm::TLM_BURST_ERROR_RESPONSE);
-    payload.set_data_length(0);
-    EXPECT_EQ(send(), tlm::TLM_BURST_ERROR_RESPONSE);
-    payload.set_data_length(12);
-    payload.set_streaming_width(8);
-    EXPECT_EQ(send(), tlm::TLM_BURST_ERROR_RESPONSE);
-    payload.set_streaming_width(12);
-    payload.set_address(kBase + 2);
-    EXPECT_EQ(send(), tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    payload.set_address(kBase);
-    payload.set_byte_enable_ptr(enables.data());
-    payload.set_byte_enable_length(4);
-    EXPECT_EQ(send(), tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-    EXPECT_EQ(now_ps(), 0U);
+  const test::RefusedAccess refused[] = {
+      {tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_IGNORE_COMMAND, kBase},
+      {tlm::TLM_BURST_ERROR_RESPONSE, tlm::TLM_WRITE_COMMAND, kBase, 6, 12},
+      {tlm::TLM_BURST_ERROR_RESPONSE, tlm::TLM_WRITE_COMMAND, kBase, 0, 12},
+      {tlm::TLM_BURST_ERROR_RESPONSE, tlm::TLM_WRITE_COMMAND, kBase, 12, 8},
+      {tlm::TLM_ADDRESS_ERROR_RESPONSE, tlm::TLM_WRITE_COMMAND, kBase + 2},
+      {tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, tlm::TLM_WRITE_COMMAND, kBase, 4, 4, 4},
+  };
+  simulate([this, &refused] {
+    for (const test::RefusedAccess& access : refused) test::expect_refused(cpu.socket, access);
   });
   EXPECT_EQ(binder->take_violations().size(), 1U);  // the length of 0
-  EXPECT_EQ(bus->stats().masters[0].transactions, 0U);
+  EXPECT_EQ(stats().transactions, 0U);
 }
 
 TEST_F(HostBridgeTest, GrantsNoDirectAccess) {

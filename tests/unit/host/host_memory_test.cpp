@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/monitoring_binder.h"
+#include "tests/support/refused_access.h"
 #include "tests/support/test_host.h"
 
 namespace stereotlm::host {
@@ -16,10 +17,11 @@ namespace {
 
 using sc_core::sc_time;
 using test::TestHost;
+using Words = std::vector<std::uint32_t>;
 
 constexpr std::uint64_t kBytes = 64;
 
-// Memory under a monitor, and a payload for a correct read of words 2 and 3 to start from.
+// Memory with two initiators, each behind a monitor.
 class HostMemoryTest : public testing::Test {
  protected:
   void build(const test::ProtocolOptions& options = {}) {
@@ -27,44 +29,11 @@ class HostMemoryTest : public testing::Test {
     binder->bind(host.socket, memory.port, "host_to_memory");
     binder->bind(other.socket, memory.port, "other_to_memory");
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    payload.set_address(8);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
-    payload.set_data_length(8);
-    payload.set_streaming_width(8);
   }
-  static test::ProtocolOptions anything() {
-    test::ProtocolOptions options;
-    options.whole_words = false;
-    options.streaming_bursts = true;
-    return options;
-  }
-  tlm::tlm_response_status send() {
-    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-    payload.set_dmi_allowed(false);
-    host.socket->b_transport(payload, delay);
-    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
-    return payload.get_response_status();
-  }
-  void expect_refused(tlm::tlm_response_status status) {
-    const auto errors = memory.stats().errors;
-    payload.set_command(tlm::TLM_WRITE_COMMAND);
-    EXPECT_EQ(send(), status);
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    EXPECT_EQ(send(), status);
-    EXPECT_EQ(memory.stats().errors, errors + 2);
-    EXPECT_EQ(memory.stats().writes, 0U);
-    EXPECT_EQ(host.debug_read(0, kBytes / 4), std::vector<std::uint32_t>(kBytes / 4));
-  }
-
   std::unique_ptr<test::MonitoringBinder> binder;
   TestHost host{"test_host"};
   TestHost other{"other_host"};
   HostMemory memory{"memory", kBytes};
-  tlm::tlm_generic_payload payload;
-  std::vector<std::uint32_t> words = std::vector<std::uint32_t>(kBytes / 4 + 1, 0xFFFF'FFFF);
-  std::array<unsigned char, 4> enables{};
-  sc_time delay;
 };
 
 TEST_F(HostMemoryTest, KeepsWordsOfAnyNumberOfInitiatorsInNoTime) {
@@ -81,96 +50,68 @@ TEST_F(HostMemoryTest, KeepsWordsOfAnyNumberOfInitiatorsInNoTime) {
 
 TEST_F(HostMemoryTest, TakesAnyNumberOfWordsAtOnce) {
   build();
-  for (std::uint32_t i = 0; i < words.size(); ++i) words[i] = 100 + i;
-  for (const unsigned count : {1U, 2U, 5U, 14U}) {
-    payload.set_command(tlm::TLM_WRITE_COMMAND);
-    payload.set_data_length(4 * count);
-    payload.set_streaming_width(4 * count);
-    EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-    const std::vector<std::uint32_t> expected(words.begin(), words.begin() + count);
-    EXPECT_EQ(host.debug_read(8, count), expected);
-    std::vector<std::uint32_t> read(count);
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(read.data()));
-    EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(read, expected);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+  for (const std::uint32_t count : {1U, 2U, 5U, 14U}) {  // 14: up to the last word
+    Words words(count);
+    for (std::uint32_t i = 0; i < count; ++i) words[i] = 100 * count + i;
+    EXPECT_EQ(host.write_words(8, words).status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(host.debug_read(8, count), words);
+    const auto answer = host.read_words(8, count);
+    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(answer.words, words);
+    EXPECT_EQ(answer.at, sc_core::SC_ZERO_TIME);
   }
 }
 
 TEST_F(HostMemoryTest, MovesTheEnabledBytesOnly) {
   build();
   host.debug_write(8, {0x1111'1111, 0x2222'2222});
-  enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED, TLM_BYTE_ENABLED, TLM_BYTE_ENABLED};
-  payload.set_byte_enable_ptr(enables.data());
-  payload.set_byte_enable_length(3);  // a pattern that is not the word's: bytes 0, 3 and 6 are disabled
-  words = {0xAAAA'AAAA, 0xBBBB'BBBB};
+  // A pattern that is not as long as a word: bytes 0, 3 and 6 are disabled.
+  std::array<unsigned char, 3> enables = {TLM_BYTE_DISABLED, TLM_BYTE_ENABLED, TLM_BYTE_ENABLED};
+  Words words = {0xAAAA'AAAA, 0xBBBB'BBBB};
+  tlm::tlm_generic_payload payload;
+  payload.set_address(8);
   payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+  payload.set_data_length(8);
+  payload.set_streaming_width(8);
+  payload.set_byte_enable_ptr(enables.data());
+  payload.set_byte_enable_length(3);
+  sc_time delay;
   payload.set_command(tlm::TLM_WRITE_COMMAND);
-  EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-  EXPECT_EQ(host.debug_read(8, 2), (std::vector<std::uint32_t>{0x11AA'AA11, 0xBB22'BBBB}));
+  host.socket->b_transport(payload, delay);
+  EXPECT_EQ(host.debug_read(8, 2), (Words{0x11AA'AA11, 0xBB22'BBBB}));
   words = {0, 0};
   payload.set_command(tlm::TLM_READ_COMMAND);
-  EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-  EXPECT_EQ(words, (std::vector<std::uint32_t>{0x00AA'AA00, 0xBB00'BBBB}));
+  payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  payload.set_dmi_allowed(false);
+  host.socket->b_transport(payload, delay);
+  EXPECT_EQ(words, (Words{0x00AA'AA00, 0xBB00'BBBB}));
 }
 
-TEST_F(HostMemoryTest, AnswersUpToItsLastWordAndRefusesWhatLiesBehind) {
-  build();
-  payload.set_address(kBytes - 8);
-  EXPECT_EQ(send(), tlm::TLM_OK_RESPONSE);
-  for (const std::uint64_t address : {kBytes - 4, kBytes, std::uint64_t{1} << 40U, UINT64_MAX - 7}) {
-    payload.set_address(address);
-    expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+TEST_F(HostMemoryTest, RefusesIncorrectAccesses) {
+  test::ProtocolOptions options;
+  options.whole_words = false;
+  options.streaming_bursts = true;
+  build(options);
+  using Refused = test::RefusedAccess;
+  std::vector<Refused> refused;
+  for (const auto command : {tlm::TLM_READ_COMMAND, tlm::TLM_WRITE_COMMAND}) {
+    for (const std::uint64_t address : {kBytes - 4, kBytes, std::uint64_t{1} << 40U, UINT64_MAX - 7})
+      refused.push_back({tlm::TLM_ADDRESS_ERROR_RESPONSE, command, address, 8, 8});
+    refused.push_back({tlm::TLM_ADDRESS_ERROR_RESPONSE, command, 0, kBytes + 4, kBytes + 4});
+    for (const std::uint64_t address : {1U, 2U, 3U})
+      refused.push_back({tlm::TLM_ADDRESS_ERROR_RESPONSE, command, address});
+    for (const unsigned length : {0U, 1U, 5U, 6U, 7U})
+      refused.push_back({tlm::TLM_BURST_ERROR_RESPONSE, command, 8, length, 8});
+    refused.push_back({tlm::TLM_BURST_ERROR_RESPONSE, command, 8, 8, 4});
+    refused.push_back({tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, command, 8, 4, 4, 0});
   }
-}
-
-TEST_F(HostMemoryTest, RefusesAnAccessLargerThanItself) {
-  build();
-  payload.set_address(0);
-  payload.set_data_length(kBytes + 4);
-  payload.set_streaming_width(kBytes + 4);
-  expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-}
-
-TEST_F(HostMemoryTest, RefusesAnAddressBetweenWords) {
-  build(anything());
-  for (const unsigned address : {1U, 2U, 3U}) {
-    payload.set_address(address);
-    expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  }
-}
-
-TEST_F(HostMemoryTest, RefusesALengthThatIsNotAWholeNumberOfWords) {
-  build(anything());
-  for (const unsigned length : {1U, 5U, 6U, 7U}) {
-    payload.set_data_length(length);
-    expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
-  }
-  payload.set_data_length(0);
-  expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
-  EXPECT_EQ(binder->take_violations().size(), 2U);
-}
-
-TEST_F(HostMemoryTest, RefusesAStreamingWidthBelowTheLength) {
-  build(anything());
-  payload.set_streaming_width(4);
-  expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
-}
-
-TEST_F(HostMemoryTest, RefusesByteEnablesOfLengthZero) {
-  build();
-  payload.set_byte_enable_ptr(enables.data());
-  payload.set_byte_enable_length(0);
-  expect_refused(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-  EXPECT_EQ(binder->take_violations().size(), 2U);
-}
-
-TEST_F(HostMemoryTest, RefusesACommandThatDoesNothing) {
-  build();
-  payload.set_command(tlm::TLM_IGNORE_COMMAND);
-  EXPECT_EQ(send(), tlm::TLM_COMMAND_ERROR_RESPONSE);
-  EXPECT_EQ(memory.stats().errors, 1U);
+  refused.push_back({tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_IGNORE_COMMAND});
+  for (const Refused& access : refused) test::expect_refused(host.socket, access);
+  EXPECT_EQ(memory.stats().errors, refused.size());
+  EXPECT_EQ(memory.stats().reads, 0U);
+  EXPECT_EQ(memory.stats().writes, 0U);
+  EXPECT_EQ(host.debug_read(0, kBytes / 4), Words(kBytes / 4));
+  EXPECT_EQ(binder->take_violations().size(), 4U);  // lengths of 0, of data and of byte enables
 }
 
 TEST_F(HostMemoryTest, CompletesANonBlockingAccessAtOnce) {
@@ -185,8 +126,8 @@ TEST_F(HostMemoryTest, CompletesANonBlockingAccessAtOnce) {
 TEST_F(HostMemoryTest, GivesDebugTransportAsMuchAsItHas) {
   build();
   EXPECT_EQ(host.debug_write(kBytes - 8, {1, 2, 3}), 8U);
-  EXPECT_EQ(host.debug_read(kBytes - 8, 3), (std::vector<std::uint32_t>{1, 2}));
-  EXPECT_EQ(host.debug_read(kBytes, 1), std::vector<std::uint32_t>{});
+  EXPECT_EQ(host.debug_read(kBytes - 8, 3), (Words{1, 2}));
+  EXPECT_EQ(host.debug_read(kBytes, 1), Words{});
 }
 
 TEST_F(HostMemoryTest, GrantsItselfForDirectAccess) {
@@ -202,8 +143,8 @@ TEST_F(HostMemoryTest, GrantsItselfForDirectAccess) {
   EXPECT_FALSE(host.dmi(kBytes, dmi));
 }
 
-// Half a gigabyte, of which three words are touched; an address sanitizer adds an eighth.
-TEST(HostMemory, CostsNothingForPagesThatAreNotTouched) {
+// Half a gigabyte, of which three words are touched. An address sanitizer adds an eighth.
+TEST(HostMemory, OccupiesNoMemoryForPagesThatAreNotTouched) {
   test::MonitoringBinder binder;
   TestHost host("test_host");
   rusage before{};

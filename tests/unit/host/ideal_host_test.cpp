@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
+#include <ostream>
 #include <stdexcept>
 #include <vector>
 
@@ -38,8 +40,8 @@ class Source : public FrameSource {
     pair_.right = GrayImage(kWidth, height, static_cast<std::uint8_t>(base + 2));
     return pair_;
   }
-  int width = kWidth;    // of left pictures
-  int height = kHeight;  // of right pictures
+  int width = kWidth;    // width of left pictures
+  int height = kHeight;  // height of right pictures
   std::vector<std::uint64_t> asked;
 
  private:
@@ -58,10 +60,10 @@ class Sink : public FrameSink {
   std::vector<sc_time> times;
 };
 
-// Registers and memory of a core that is busy for kFrameTime with a frame and then fills the disparity buffer
-// with the sum of a left and a right pixel.
+// Registers and memory of a core. A frame takes it kFrameTime; then the disparity buffer is filled with the sum
+// of a left and a right pixel.
 class IdealHostTest : public testing::Test {
- protected:
+ public:
   void build(const IdealHostConfig& host_config, const kernels::RectificationTable* left_table = nullptr,
              const kernels::RectificationTable* right_table = nullptr) {
     host = std::make_unique<IdealHost>("host", host_config, left_table, right_table, source, sink);
@@ -127,6 +129,16 @@ class IdealHostTest : public testing::Test {
   std::uint8_t* at(std::uint64_t address) {
     return banks.at(address >> 28U).data() + (address & 0x0FFF'FFFFU);
   }
+  // The error leaves the host's process and ends the simulation after `frames` results.
+  void expect_report(const std::string& text, std::size_t frames = 0) {
+    ExpectedReport report("/stereotlm/ideal_host");
+    EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
+    EXPECT_EQ(report.text(), text);
+    EXPECT_EQ(sink.frames.size(), frames);
+    EXPECT_EQ(host->frames_done(), frames);
+    EXPECT_FALSE(host->finished());
+  }
+
   // The buffer that a base register names now.
   std::uint8_t* buffer(std::uint64_t base_register) {
     return at(registers_of::base_address(written[base_register].back()));
@@ -143,21 +155,21 @@ class IdealHostTest : public testing::Test {
   sc_core::sc_signal<bool> done{"done"};
   sc_core::sc_event strobe{"strobe"};
   std::array<std::array<std::uint8_t, 256>, 6> banks{};
-  std::size_t most_bytes = 256;  // that the memory takes at once
+  std::size_t most_bytes = 256;  // longest access that the memory takes whole
   bool refuse_registers = false;
-  int refuse_reads_from = 1000;  // the number of the first read of a register that is refused
+  int refuse_reads_from = 1000;  // number of the first register read that is refused
   bool starts = true;            // false: the core ignores the strobe
   std::uint32_t status = 0;
   std::uint32_t status_of_done = registers_of::kStatusDone;
   std::map<std::uint64_t, std::vector<std::uint32_t>> written;
   std::vector<std::uint32_t> controls;
-  std::vector<std::array<std::uint8_t, 2>> pictures;  // the last pixels of each frame's pair
+  std::vector<std::array<std::uint8_t, 2>> pictures;  // last pixels of each frame's pair
   Source source;
   Sink sink;
   std::unique_ptr<IdealHost> host;
 };
 
-TEST_F(IdealHostTest, ShowsEachFrameItsOwnPairAndHandsOnItsResult) {
+TEST_F(IdealHostTest, RunsEachFrameWithItsOwnPairInNoTimeOfItsOwn) {
   build(config(3));
   sc_core::sc_start();
   EXPECT_EQ(source.asked, (std::vector<std::uint64_t>{0, 1, 2}));
@@ -167,28 +179,16 @@ TEST_F(IdealHostTest, ShowsEachFrameItsOwnPairAndHandsOnItsResult) {
     EXPECT_EQ(sink.images[static_cast<std::size_t>(frame)],
               GrayImage(kWidth, kHeight, static_cast<std::uint8_t>(20 * frame + 3)));
   }
+  EXPECT_EQ(sink.times, (std::vector<sc_time>{kFrameTime, 2 * kFrameTime, 3 * kFrameTime}));
+  EXPECT_EQ(sc_core::sc_time_stamp(), 3 * kFrameTime);
   EXPECT_TRUE(host->finished());
   EXPECT_EQ(host->frames_done(), 3U);
-}
-
-TEST_F(IdealHostTest, TakesNoTimeOfItsOwn) {
-  build(config(3));
-  sc_core::sc_start();
-  EXPECT_EQ(sink.times, (std::vector<sc_time>{kFrameTime, 2 * kFrameTime, 3 * kFrameTime}));
-}
-
-TEST_F(IdealHostTest, StopsAfterItsLastFrame) {
-  build(config(1));
-  sc_core::sc_start();
-  EXPECT_EQ(controls.size(), 1U);
-  EXPECT_EQ(sc_core::sc_time_stamp(), kFrameTime);
-}
-
-TEST_F(IdealHostTest, AcknowledgesTheLastFrameWithTheNextStrobe) {
-  build(config(2));
-  sc_core::sc_start();
+  // Each strobe acknowledges the frame before.
   const std::uint32_t both = registers_of::kControlAcknowledge | registers_of::kControlStart;
-  EXPECT_EQ(controls, (std::vector<std::uint32_t>{both, both}));
+  EXPECT_EQ(controls, (std::vector<std::uint32_t>{both, both, both}));
+  // Sides without tables.
+  EXPECT_EQ(written.count(registers_of::kLeftLutBase), 0U);
+  EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
 }
 
 TEST_F(IdealHostTest, UsesEachListInTurn) {
@@ -225,13 +225,6 @@ TEST_F(IdealHostTest, LoadsEachTableBeforeTheFirstFrame) {
   EXPECT_EQ(written[registers_of::kRightLutBase], std::vector<std::uint32_t>{*tables.buffers.right_lut});
 }
 
-TEST_F(IdealHostTest, LeavesTheBaseOfATableAloneThatDoesNotExist) {
-  build(config(1));
-  sc_core::sc_start();
-  EXPECT_EQ(written.count(registers_of::kLeftLutBase), 0U);
-  EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
-}
-
 TEST_F(IdealHostTest, DoesNothingForNoFrames) {
   build(config(0));
   sc_core::sc_start();
@@ -240,44 +233,47 @@ TEST_F(IdealHostTest, DoesNothingForNoFrames) {
   EXPECT_TRUE(source.asked.empty());
 }
 
-// The error leaves the host's process and ends the simulation.
-TEST_F(IdealHostTest, ReportsALeftPictureOfAnotherSize) {
+struct Fault {
+  const char* name;
+  std::function<void(IdealHostTest&)> set;
+  const char* text;
+  bool at_start = true;  // true: at the start of the first frame; false: at its end
+};
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class IdealHostFault : public IdealHostTest, public testing::WithParamInterface<Fault> {};
+
+TEST_P(IdealHostFault, IsReportedAndEndsTheRun) {
   build(config(2));
-  source.width = kWidth + 4;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "frame 0: picture of 8 x 2 for images of 4 x 2");
-  EXPECT_TRUE(controls.empty());
+  GetParam().set(*this);
+  expect_report(GetParam().text);
+  EXPECT_EQ(sc_core::sc_time_stamp(), GetParam().at_start ? sc_core::SC_ZERO_TIME : kFrameTime);
 }
 
-TEST_F(IdealHostTest, ReportsARightPictureOfAnotherSize) {
-  build(config(2));
-  source.height = 1;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "frame 0: picture of 4 x 1 for images of 4 x 2");
-}
-
-TEST_F(IdealHostTest, ReportsAnErrorOfTheCore) {
-  build(config(2));
-  status_of_done = registers_of::kStatusDone | registers_of::kStatusError;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "frame 0: the core reports an error");
-  EXPECT_TRUE(sink.frames.empty());
-}
-
-TEST_F(IdealHostTest, ReportsACoreThatDoesNotStart) {
-  build(config(2));
-  starts = false;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(),
-            "frame 0: the core refuses to start with the bases left_image 0x00000000, "
-            "right_image 0x04000000, disparity 0x08000000");
-  EXPECT_TRUE(sink.frames.empty());
-  EXPECT_FALSE(host->finished());
-}
+// The host reads the status once to start a frame and once at its end.
+INSTANTIATE_TEST_SUITE_P(
+    IdealHost, IdealHostFault,
+    testing::Values(
+        Fault{"left_picture_of_another_size", [](auto& test) { test.source.width = kWidth + 4; },
+              "frame 0: picture of 8 x 2 for images of 4 x 2"},
+        Fault{"right_picture_of_another_size", [](auto& test) { test.source.height = 1; },
+              "frame 0: picture of 4 x 1 for images of 4 x 2"},
+        Fault{"memory_takes_a_part_of_a_buffer", [](auto& test) { test.most_bytes = kPixels - 1; },
+              "the buffer at base 0 takes 7 of 8 bytes"},
+        Fault{"register_refuses_a_write", [](auto& test) { test.refuse_registers = true; },
+              "register 16 refuses a write"},
+        Fault{"status_refuses_the_first_read", [](auto& test) { test.refuse_reads_from = 0; },
+              "register 4 refuses a read"},
+        Fault{"status_refuses_the_second_read", [](auto& test) { test.refuse_reads_from = 1; },
+              "register 4 refuses a read", false},
+        Fault{"core_does_not_start", [](auto& test) { test.starts = false; },
+              "frame 0: the core refuses to start with the bases left_image 0x00000000, right_image "
+              "0x04000000, disparity 0x08000000"},
+        Fault{
+            "core_reports_an_error",
+            [](auto& test) { test.status_of_done = registers_of::kStatusDone | registers_of::kStatusError; },
+            "frame 0: the core reports an error", false}),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST_F(IdealHostTest, ReportsACoreThatDoesNotStartASecondTime) {
   IdealHostConfig lists = config(2);
@@ -286,19 +282,16 @@ TEST_F(IdealHostTest, ReportsACoreThatDoesNotStartASecondTime) {
   lists.buffers.right_lut = registers_of::base(4, 0);
   const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
   build(lists, &table, &table);
-  ExpectedReport report("/stereotlm/ideal_host");
   sc_core::sc_start(kFrameTime / 2);
   starts = false;
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(
-      report.text(),
+  expect_report(
       "frame 1: the core refuses to start with the bases left_image 0x00000000, right_image 0x04000000, "
-      "disparity 0x08000008, left_lut 0x0c000000, right_lut 0x10000000");
-  EXPECT_EQ(host->frames_done(), 1U);
+      "disparity 0x08000008, left_lut 0x0c000000, right_lut 0x10000000",
+      1);
 }
 
-// With an error that does not end the simulation, there is nothing left that could.
-TEST_F(IdealHostTest, DoesNoMoreAfterAnErrorThatIsNotThrown) {
+// The report has no effect here, so that only the host itself can stop the run.
+TEST_F(IdealHostTest, StopsAtAnErrorThatDoesNotEndTheSimulation) {
   build(config(2));
   starts = false;
   sc_core::sc_report_handler::set_actions("/stereotlm/ideal_host", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
@@ -309,53 +302,15 @@ TEST_F(IdealHostTest, DoesNoMoreAfterAnErrorThatIsNotThrown) {
   EXPECT_EQ(controls.size(), 1U);
 }
 
-TEST_F(IdealHostTest, ReportsMemoryThatDoesNotTakeAWholeBuffer) {
-  build(config(1));
-  most_bytes = kPixels - 1;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "the buffer at base 0 takes 7 of 8 bytes");
-}
-
-TEST_F(IdealHostTest, ReportsARegisterThatRefusesAWrite) {
-  build(config(1));
-  refuse_registers = true;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "register 16 refuses a write");
-}
-
-TEST_F(IdealHostTest, ReportsAStatusRegisterThatRefusesARead) {
-  build(config(1));
-  refuse_reads_from = 0;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "register 4 refuses a read");
-  EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
-}
-
-TEST_F(IdealHostTest, ReportsAStatusRegisterThatRefusesAReadAtTheEndOfAFrame) {
-  build(config(1));
-  refuse_reads_from = 1;
-  ExpectedReport report("/stereotlm/ideal_host");
-  EXPECT_THROW(sc_core::sc_start(), sc_core::sc_report);
-  EXPECT_EQ(report.text(), "register 4 refuses a read");
-  EXPECT_EQ(sc_core::sc_time_stamp(), kFrameTime);
-  EXPECT_TRUE(sink.frames.empty());
-}
-
-TEST_F(IdealHostTest, RefusesATableWithoutBufferAndABufferWithoutTable) {
+TEST_F(IdealHostTest, RefusesAnEmptyListATableWithoutBufferAndABufferWithoutTable) {
   const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
   EXPECT_THROW(IdealHost("a", config(1), &table, nullptr, source, sink), std::invalid_argument);
   IdealHostConfig with_buffer = config(1);
   with_buffer.buffers.right_lut = registers_of::base(3, 0);
   EXPECT_THROW(IdealHost("b", with_buffer, nullptr, nullptr, source, sink), std::invalid_argument);
-}
-
-TEST_F(IdealHostTest, RefusesAnEmptyList) {
   IdealHostConfig empty = config(1);
   empty.buffers.disparities.clear();
-  EXPECT_THROW(IdealHost("a", empty, nullptr, nullptr, source, sink), std::invalid_argument);
+  EXPECT_THROW(IdealHost("c", empty, nullptr, nullptr, source, sink), std::invalid_argument);
 }
 
 }  // namespace

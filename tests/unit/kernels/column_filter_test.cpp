@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/support/random_board.h"
@@ -17,8 +19,8 @@ namespace {
 using test::RandomBoard;
 using test::SplitMix64;
 
-// One frame: what leaves `half` columns after (u, v) entered and as many rows further up, is its filtered
-// value and its own valid bit. Rows outside the image hold anything.
+// Sends one frame through the filter. Pixel (u, v) must leave filtered, with its own valid bit, `half`
+// columns after it entered and `half` rows further up. Rows outside the image hold random pixels.
 void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_per_column, int first_row,
                      int strips, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
@@ -52,21 +54,30 @@ void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_pe
   }
 }
 
-void expect_filtered_by_columns(const RandomBoard& board, SplitMix64& random) {
-  const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
-  const int lead = std::max(0, half - (board.window - 1) / 2);
-  ColumnFilter filter(board.width, board.height, board.window, test::filter_kernel(board.filter));
-  for (int frame = 0; frame < 2; ++frame) {
-    expect_filtered(filter, board, board.window, half - (board.window - 1) / 2 - lead, lead + board.height,
-                    random);
+// Two frames through one filter, with each instruction set.
+void expect_two_frames(const RandomBoard& board, int rows_per_column, int first_row, int strips,
+                       SplitMix64& random) {
+  for (const Simd* simd : simd_sets()) {
+    SCOPED_TRACE(simd->name);
+    ColumnFilter filter(board.width, board.height, rows_per_column, test::filter_kernel(board.filter), *simd);
+    for (int frame = 0; frame < 2; ++frame) {
+      ASSERT_NO_FATAL_FAILURE(expect_filtered(filter, board, rows_per_column, first_row, strips, random));
+    }
   }
 }
 
+// Column fetch: the n rows of a window at once, from the first strip that the matcher needs.
+void expect_filtered_by_columns(const RandomBoard& board, SplitMix64& random) {
+  const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
+  const int radius = (board.window - 1) / 2;
+  const int lead = std::max(0, half - radius);
+  expect_two_frames(board, board.window, half - radius - lead, lead + board.height, random);
+}
+
+// Line buffers: one row at a time, from the first row of the image.
 void expect_filtered_by_rows(const RandomBoard& board, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
-  ColumnFilter filter(board.width, board.height, 1, test::filter_kernel(board.filter));
-  for (int frame = 0; frame < 2; ++frame)
-    expect_filtered(filter, board, 1, 0, board.height + half + (board.window - 1) / 2, random);
+  expect_two_frames(board, 1, 0, board.height + half + (board.window - 1) / 2, random);
 }
 
 TEST(ColumnFilter, EqualsTheLiteralFilterOnRandomBoards) {
@@ -79,38 +90,26 @@ TEST(ColumnFilter, EqualsTheLiteralFilterOnRandomBoards) {
   }
 }
 
-RandomBoard noise_board(int width, int height, int window, const test::ReferenceKernel& kernel,
-                        SplitMix64& random) {
-  RandomBoard board;
-  board.width = width;
-  board.height = height;
-  board.window = window;
-  board.filter = kernel;
-  board.pictures.resize(1);
-  for (int pixel = 0; pixel < width * height; ++pixel)
-    board.pictures[0].left.push_back(static_cast<std::uint8_t>(random.between(0, 255)));
-  return board;
-}
-
 test::ReferenceKernel differences_kernel(int size) {
   test::ReferenceKernel kernel{size, {}, 3};
   for (int place = 0; place < size * size; ++place) kernel.weights.push_back(place * 7 % 23);
-  int sum = 0;
-  for (const int weight : kernel.weights) sum += weight;
+  const int sum = std::accumulate(kernel.weights.begin(), kernel.weights.end(), 0);
   kernel.weights[static_cast<std::size_t>(size * size / 2)] -= sum;
   return kernel;
 }
 
-// h smaller than, equal to and larger than r; images down to the smallest.
+// Half a kernel is smaller than, equal to and larger than half a window. Windows lie around multiples of the
+// vectors' length, and images go down to the smallest.
 TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
   SplitMix64 random(6);
-  for (const int size : {3, 5, 7, 17, 31}) {
-    for (const int window : {3, 5, 7, 15, 31}) {
+  for (const int size : {3, 5, 7, 9, 17, 31}) {
+    for (const int window : {3, 5, 7, 9, 15, 17, 31}) {
       for (const auto& [width, height] :
            {std::pair(4, 1), std::pair(4, 40), std::pair(36, 3), std::pair(20, 33)}) {
         SCOPED_TRACE("kernel " + std::to_string(size) + ", window " + std::to_string(window) + ", image " +
                      std::to_string(width) + " x " + std::to_string(height));
-        const RandomBoard board = noise_board(width, height, window, differences_kernel(size), random);
+        RandomBoard board = test::noise_board(width, height, window, random);
+        board.filter = differences_kernel(size);
         ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
         ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
       }
@@ -118,7 +117,7 @@ TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
   }
 }
 
-// What enters there is anything.
+// Pixels that enter below the image may have any value.
 TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
   constexpr int kWidth = 12;
   constexpr int kHeight = 4;
@@ -126,11 +125,11 @@ TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
   SplitMix64 random(8);
   for (const int size : {3, 7}) {
     const int half = (size - 1) / 2;
-    const RandomBoard board = noise_board(kWidth, kHeight, 3, differences_kernel(size), random);
-    std::vector<std::uint8_t> pixels = board.pictures[0].left;
+    const test::ReferenceKernel kernel = differences_kernel(size);
+    std::vector<std::uint8_t> pixels = test::noise_board(kWidth, kHeight, 3, random).pictures[0].left;
     for (int pixel = 0; pixel < kBelow * kWidth; ++pixel) pixels.push_back(pixels[pixels.size() - kWidth]);
-    const auto expected = test::reference_filter(kWidth, kHeight + kBelow, pixels, board.filter);
-    ColumnFilter filter(kWidth, kHeight, 1, test::filter_kernel(board.filter));
+    const auto expected = test::reference_filter(kWidth, kHeight + kBelow, pixels, kernel);
+    ColumnFilter filter(kWidth, kHeight, 1, test::filter_kernel(kernel));
     const int first_seen = half * kWidth + half;
     for (int count = 0; count < (kHeight + kBelow) * kWidth; ++count) {
       const auto at = static_cast<std::size_t>(count);
@@ -143,16 +142,15 @@ TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
   }
 }
 
-// 255 * 65793 is the last multiple of 255 below 2^24, the limit of a float's exact integers; every shift
-// keeps the lowest bits of the sum apart somewhere.
+// 255 * 65793 is the last multiple of 255 below 2^24, the limit up to which floats are exact integers. With
+// each shift other low bits of the sum decide the result.
 TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
   SplitMix64 random(7);
   for (const int more : {0, 1, 2}) {
     for (int shift = 0; shift < 32; ++shift) {
-      const test::ReferenceKernel kernel{
-          3, {32767, -32768, 259 + more, -32768, -257 - more, 32767, 0, 0, 0}, shift};
       SCOPED_TRACE("positive weights " + std::to_string(65793 + more) + ", shift " + std::to_string(shift));
-      RandomBoard board = noise_board(12, 9, 3, kernel, random);
+      RandomBoard board = test::noise_board(12, 9, 3, random);
+      board.filter = {3, {32767, -32768, 259 + more, -32768, -257 - more, 32767, 0, 0, 0}, shift};
       for (std::uint8_t& pixel : board.pictures[0].left) {
         if (pixel > 60) pixel = random.chance(50) ? 255 : 0;
       }
@@ -162,24 +160,15 @@ TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
   }
 }
 
-TEST(ColumnFilter, RefusesABrokenKernel) {
-  EXPECT_NO_THROW(ColumnFilter(8, 8, 3, log7()));
+TEST(ColumnFilter, RefusesABrokenKernelAndSizesOutsideTheirRange) {
+  EXPECT_NO_THROW(ColumnFilter(1, 1, 1, log7()));
+  EXPECT_NO_THROW(ColumnFilter(8, 8, kMostRows, std::nullopt));
+  for (const auto& [width, height, rows] :
+       {std::tuple(0, 8, 3), std::tuple(8, 0, 3), std::tuple(8, 8, 0), std::tuple(8, 8, kMostRows + 1)})
+    EXPECT_THROW(ColumnFilter(width, height, rows, std::nullopt), std::invalid_argument);
   FilterKernel kernel = log7();
   kernel.weights[0] = 1;
   EXPECT_THROW(ColumnFilter(8, 8, 3, kernel), std::invalid_argument);
-}
-
-TEST(ColumnFilter, RefusesColumnsOfNoRowsOrTooMany) {
-  EXPECT_NO_THROW(ColumnFilter(8, 8, 1, std::nullopt));
-  EXPECT_NO_THROW(ColumnFilter(8, 8, kMostRows, std::nullopt));
-  EXPECT_THROW(ColumnFilter(8, 8, 0, std::nullopt), std::invalid_argument);
-  EXPECT_THROW(ColumnFilter(8, 8, kMostRows + 1, std::nullopt), std::invalid_argument);
-}
-
-TEST(ColumnFilter, RefusesAnImageWithoutPixels) {
-  EXPECT_NO_THROW(ColumnFilter(1, 1, 3, log7()));
-  EXPECT_THROW(ColumnFilter(0, 8, 3, log7()), std::invalid_argument);
-  EXPECT_THROW(ColumnFilter(8, 0, 3, log7()), std::invalid_argument);
 }
 
 }  // namespace

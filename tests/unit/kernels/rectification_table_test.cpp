@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/random_board.h"
@@ -25,7 +26,7 @@ TEST(RectificationTable, IsTheIdentityWithoutCalibration) {
   EXPECT_EQ(problems(table), Problems());
 }
 
-TEST(RectificationTable, HasItsBitsWhereTheContractSays) {
+TEST(RectificationTable, HasRowColumnAndValidBitInTheirPlaces) {
   EXPECT_EQ(make_entry(0x7FF, 0x7FF), 0x87FF'07FFU);
   EXPECT_EQ(entry_column(0x8123'0456U), 0x456);
   EXPECT_EQ(entry_row(0x8123'0456U), 0x123);
@@ -33,7 +34,7 @@ TEST(RectificationTable, HasItsBitsWhereTheContractSays) {
   EXPECT_FALSE(entry_is_valid(0x7FFF'FFFFU));
 }
 
-TEST(RectificationTable, HasNoOtherBits) {
+TEST(RectificationTable, HasZerosInAllOtherBits) {
   for (int bit = 0; bit < 32; ++bit) {
     RectificationTable table = identity_table(4, 2);
     table.entries[6] = 1U << bit;  // not valid unless bit 31 is set, then pixel (0, 0)
@@ -45,7 +46,7 @@ TEST(RectificationTable, HasNoOtherBits) {
   EXPECT_EQ(problems(table), Problems{"entry (2, 1) = 0x80000800: bits 30..27 and 15..11 must be 0"});
 }
 
-TEST(RectificationTable, HasValidEntriesInsideTheImageOnly) {
+TEST(RectificationTable, PointsInsideTheImageWhereItIsValid) {
   RectificationTable table = identity_table(8, 3);
   table.entries[1] = make_entry(7, 2);
   table.entries[2] = make_entry(8, 3) & ~kEntryValid;
@@ -57,18 +58,15 @@ TEST(RectificationTable, HasValidEntriesInsideTheImageOnly) {
                       "entry (2, 0) = 0x80030007: a valid source position must lie inside the 8 x 3 image"}));
 }
 
-TEST(RectificationTable, IsAtMost2048Wide) {
+TEST(RectificationTable, HasASizeOf1To2048AndAnEntryForEachPixel) {
   EXPECT_EQ(problems(identity_table(2048, 1)), Problems());
   EXPECT_EQ(problems(identity_table(1, 2048)), Problems());
-  EXPECT_EQ(problems({2049, 1, std::vector<std::uint32_t>(2049)}),
-            Problems{"table size = 2049 x 1: must be 1..2048 each"});
-  EXPECT_EQ(problems({1, 2049, std::vector<std::uint32_t>(2049)}),
-            Problems{"table size = 1 x 2049: must be 1..2048 each"});
-  EXPECT_EQ(problems(RectificationTable{0, 5, {}}), Problems{"table size = 0 x 5: must be 1..2048 each"});
-  EXPECT_EQ(problems(RectificationTable{5, 0, {}}), Problems{"table size = 5 x 0: must be 1..2048 each"});
-}
-
-TEST(RectificationTable, HasAnEntryForEachPixel) {
+  for (const auto& [width, height] :
+       {std::pair(2049, 1), std::pair(1, 2049), std::pair(0, 5), std::pair(5, 0)}) {
+    EXPECT_EQ(problems(identity_table(width, height)),
+              Problems{"table size = " + std::to_string(width) + " x " + std::to_string(height) +
+                       ": must be 1..2048 each"});
+  }
   for (const std::size_t entries : {23U, 25U}) {
     EXPECT_EQ(problems({8, 3, std::vector<std::uint32_t>(entries)}),
               Problems{"table entries = " + std::to_string(entries) + ": must be width * height = 24"});
@@ -79,7 +77,7 @@ TEST(RectificationTable, ReportsTheFirstTenProblems) {
   EXPECT_EQ(problems({4, 3, std::vector<std::uint32_t>(12, 0x800U)}).size(), 10U);
 }
 
-TEST(RectificationTable, RectifiesAsTheReference) {
+TEST(RectificationTable, RectifiesAsTheReferenceDoes) {
   int with_table = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const test::RandomBoard board = test::make_random_board(seed);
@@ -91,14 +89,6 @@ TEST(RectificationTable, RectifiesAsTheReference) {
         << describe(board);
   }
   EXPECT_GT(with_table, 100);
-}
-
-TEST(RectificationTable, GivesZeroWhereItIsNotValid) {
-  RectificationTable table = identity_table(4, 1);
-  table.entries = {make_entry(3, 0), make_entry(1, 0) & ~kEntryValid, make_entry(3, 0), 0};
-  GrayImage source(4, 1);
-  source.pixels = {10, 20, 30, 40};
-  EXPECT_EQ(rectify(source, table).pixels, (std::vector<std::uint8_t>{40, 0, 40, 0}));
 }
 
 TEST(RectificationTable, RefusesAnImageOfAnotherSizeAndABrokenTable) {

@@ -19,6 +19,20 @@ inline kernels::GrayImage gray_image(const RandomBoard& board, const std::vector
   return image;
 }
 
+// One pair of noise pictures with `levels` grey levels from 0 to 255.
+inline RandomBoard noise_board(int width, int height, int window, SplitMix64& random, int levels = 256) {
+  RandomBoard board;
+  board.width = width;
+  board.height = height;
+  board.window = window;
+  board.pictures.resize(1);
+  for (auto* side : {&board.pictures[0].left, &board.pictures[0].right}) {
+    for (int pixel = 0; pixel < width * height; ++pixel)
+      side->push_back(static_cast<std::uint8_t>(random.between(0, levels - 1) * 255 / (levels - 1)));
+  }
+  return board;
+}
+
 inline std::optional<kernels::FilterKernel> filter_kernel(const std::optional<ReferenceKernel>& kernel) {
   if (!kernel) return std::nullopt;
   return kernels::FilterKernel{kernel->size, kernel->weights, kernel->shift};

@@ -37,52 +37,49 @@ int sad(const PixelColumns& left, const PixelColumns& right, int column, int d, 
   return sum;
 }
 
-void expect_literal_sums(SadColumns& sums, int window, int disparities, bool extreme, int columns,
-                         test::SplitMix64& random) {
+// One frame through modules of each instruction set. A frame before it must leave no trace.
+void expect_literal_sums(std::vector<SadColumns>& sets, int window, int disparities, bool extreme,
+                         int columns, test::SplitMix64& random) {
   SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities));
   const PixelColumns left = random_columns(columns, window, extreme, random);
   const PixelColumns right = random_columns(columns, window, extreme, random);
-  sums.start_frame();
-  ASSERT_GE(sums.lanes(), disparities);
+  for (SadColumns& sums : sets) {
+    sums.start_frame();
+    ASSERT_GE(sums.lanes(), disparities);
+  }
   for (int column = 0; column < columns; ++column) {
     const auto at = static_cast<std::size_t>(column);
-    sums.push_column(left[at].data(), right[at].data());
-    for (int d = 0; d < disparities && d <= column - window + 1; ++d)
-      ASSERT_EQ(sums.window_sums()[d], sad(left, right, column, d, window)) << "d " << d << ", " << column;
-  }
-}
-
-TEST(SadColumns, HoldTheLiteralSumsOfEachCandidate) {
-  test::SplitMix64 random(1);
-  for (const int window : {3, 7, 31}) {
-    for (const int disparities : {1, 31, 32, 33, 64, 254}) {
-      SadColumns sums(window, disparities);
-      for (const bool extreme : {false, true})
-        expect_literal_sums(sums, window, disparities, extreme, 330, random);
+    for (SadColumns& sums : sets) sums.push_column(left[at].data(), right[at].data());
+    for (int d = 0; d < disparities && d <= column - window + 1; ++d) {
+      const int expected = sad(left, right, column, d, window);
+      for (std::size_t set = 0; set < sets.size(); ++set)
+        ASSERT_EQ(sets[set].window_sums()[d], expected)
+            << simd_sets()[set]->name << ", d " << d << ", " << column;
     }
   }
 }
 
-TEST(SadColumns, HoldThemOverAWholeFrameOfColumns) {
-  test::SplitMix64 random(2);
-  SadColumns sums(3, 64);
-  expect_literal_sums(sums, 3, 64, false, 5000, random);
+std::vector<SadColumns> with_each_instruction_set(int window, int disparities) {
+  std::vector<SadColumns> sets;
+  for (const Simd* simd : simd_sets()) sets.emplace_back(window, disparities, *simd);
+  return sets;
 }
 
-// Where a disparity leads to before the first column too.
-TEST(SadColumns, BeginAFrameAsTheFirst) {
-  test::SplitMix64 random(3);
-  SadColumns used(3, 16);
-  for (const auto& column : random_columns(2500, 3, false, random))
-    used.push_column(column.data(), column.data());
-  used.start_frame();
-  SadColumns fresh(3, 16);
-  const PixelColumns left = random_columns(20, 3, false, random);
-  const PixelColumns right = random_columns(20, 3, false, random);
-  for (std::size_t at = 0; at < left.size(); ++at) {
-    for (SadColumns* const sums : {&used, &fresh}) sums->push_column(left[at].data(), right[at].data());
-    for (int d = 0; d < 16; ++d) ASSERT_EQ(used.window_sums()[d], fresh.window_sums()[d]) << at << ' ' << d;
+TEST(SadColumns, HoldTheLiteralSumsOfEachCandidateWithEachInstructionSet) {
+  test::SplitMix64 random(1);
+  for (const int window : {3, 7, 31}) {
+    for (const int disparities : {1, 31, 32, 33, 64, 254}) {
+      auto sets = with_each_instruction_set(window, disparities);
+      for (const bool extreme : {false, true})
+        expect_literal_sums(sets, window, disparities, extreme, 330, random);
+    }
   }
+}
+
+TEST(SadColumns, HoldTheLiteralSumsOverAWholeFrame) {
+  test::SplitMix64 random(2);
+  auto sets = with_each_instruction_set(3, 64);
+  expect_literal_sums(sets, 3, 64, false, 5000, random);
 }
 
 TEST(SadColumns, HoldTheLargestSum) {
@@ -93,7 +90,17 @@ TEST(SadColumns, HoldTheLargestSum) {
   for (int d = 0; d < 254; ++d) ASSERT_EQ(sums.window_sums()[d], 31 * 31 * 255);
 }
 
-TEST(SadColumns, RefusesAWindowOrDisparitiesOutsideTheirRange) {
+TEST(LaneArray, IsPaddedAlignedAndZero) {
+  for (const auto& [lanes, padded] :
+       {std::pair(1, 16), std::pair(16, 16), std::pair(17, 32), std::pair(254, 256)}) {
+    EXPECT_EQ(padded_lanes(lanes), padded);
+    LaneArray<std::int16_t> array(lanes);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % kLaneAlignment, 0U);
+    for (int lane = 0; lane < padded; ++lane) EXPECT_EQ(array.data()[lane], 0);
+  }
+}
+
+TEST(SadColumns, RefuseAWindowOrDisparitiesOutsideTheirRange) {
   EXPECT_NO_THROW(SadColumns(3, 1));
   EXPECT_NO_THROW(SadColumns(31, 254));
   for (const auto& [window, disparities] :
@@ -109,12 +116,9 @@ TEST(CandidateCount, CountsTheWindowsInsideBothImages) {
         const int r = (window - 1) / 2;
         for (int row = 0; row < height; ++row) {
           for (int column = 0; column < width; ++column) {
+            const bool inside = column + r < width && row - r >= 0 && row + r < height;
             int expected = 0;
-            for (int d = 0; d < disparities; ++d) {
-              const bool inside =
-                  column - d - r >= 0 && column + r < width && row - r >= 0 && row + r < height;
-              expected += inside ? 1 : 0;
-            }
+            for (int d = 0; d < disparities; ++d) expected += inside && column - d - r >= 0 ? 1 : 0;
             ASSERT_EQ(candidate_count(column, row, width, height, window, disparities), expected);
           }
         }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLargestSum = 31 * 31 * 255;
 
-// Window sums of one column; what lies beyond the candidates is smaller than all of them.
+// Window sums of one column. Those beyond the candidates are smaller than all others.
 LaneArray<std::int32_t> random_sums(int disparities, int candidates, int largest, test::SplitMix64& random) {
   LaneArray<std::int32_t> sums(disparities);
   sums.fill(0);
@@ -23,52 +23,34 @@ LaneArray<std::int32_t> random_sums(int disparities, int candidates, int largest
   return sums;
 }
 
-TEST(SelectMinTree, FindsTheFirstOfTheSmallest) {
-  LaneArray<std::int32_t> sums(254);
-  sums.fill(kLargestSum);
-  for (const int smallest : {0, 1, 31, 32, 100, 253}) {
-    EXPECT_EQ(select_min_tree(sums.data(), 254, padded_lanes(254)), 0);
-    sums.data()[smallest] = kLargestSum - 1;
-    EXPECT_EQ(select_min_tree(sums.data(), 254, padded_lanes(254)), smallest);
-    EXPECT_EQ(select_min_tree(sums.data(), smallest + 1, padded_lanes(254)), smallest);
-    EXPECT_EQ(select_min_tree(sums.data(), smallest, padded_lanes(254)),
-              smallest == 0 ? kInvalidDisparity : 0);
-    sums.data()[smallest] = kLargestSum;
-  }
-}
-
-TEST(SelectMinTree, HasNoAnswerWithoutCandidate) {
-  LaneArray<std::int32_t> sums(3);
-  EXPECT_EQ(select_min_tree(sums.data(), 0, padded_lanes(3)), kInvalidDisparity);
-  EXPECT_EQ(select_min_tree(sums.data(), 1, padded_lanes(3)), 0);
-}
-
-TEST(SelectMinTree, EqualsALoop) {
+TEST(SelectMinTree, EqualsALoopWithEachInstructionSet) {
   test::SplitMix64 random(11);
   for (int round = 0; round < 2000; ++round) {
     const int disparities = random.between(1, 254);
-    const int candidates = random.between(1, disparities);
+    const int candidates = random.between(0, disparities);
     const auto sums = random_sums(disparities, candidates, random.chance(50) ? 4 : kLargestSum, random);
     const int* first = sums.data();
-    ASSERT_EQ(select_min_tree(first, candidates, padded_lanes(disparities)),
-              std::min_element(first, first + candidates) - first);
+    for (const Simd* simd : simd_sets())
+      ASSERT_EQ(select_min_tree(first, candidates, padded_lanes(disparities), *simd),
+                candidates == 0 ? kInvalidDisparity : std::min_element(first, first + candidates) - first)
+          << simd->name;
   }
 }
 
-TEST(SelectMinChain, EqualsALoopOverTheDiagonal) {
+TEST(SelectMinChain, EqualsALoopOverTheDiagonalWithEachInstructionSet) {
   test::SplitMix64 random(12);
   for (const int disparities : {1, 2, 31, 32, 33, 80, 254}) {
-    SelectMinChain chain(disparities);
+    std::vector<SelectMinChain> chains;
+    for (const Simd* simd : simd_sets()) chains.emplace_back(disparities, *simd);
     for (const int largest : {1, 4, kLargestSum}) {
       SCOPED_TRACE(std::to_string(disparities) + " disparities, sums up to " + std::to_string(largest));
       std::vector<LaneArray<std::int32_t>> columns;
       std::vector<int> candidates;
-      chain.start_frame();
+      for (SelectMinChain& chain : chains) chain.start_frame();
       for (int column = 0; column < 3 * disparities + 20; ++column) {
         candidates.push_back(random.chance(20) ? 0 : random.between(0, disparities));
         columns.push_back(random_sums(disparities, candidates.back(), largest, random));
-        const int answer = chain.step(columns.back().data(), candidates.back());
-        // The right pixel D-1 columns back met left pixel d columns later as candidate d.
+        // Candidate d of the right pixel D-1 columns back is the left pixel d columns after it.
         int expected = kInvalidDisparity;
         int smallest = 0;
         for (int d = 0; d < disparities; ++d) {
@@ -80,7 +62,9 @@ TEST(SelectMinChain, EqualsALoopOverTheDiagonal) {
             smallest = sum;
           }
         }
-        ASSERT_EQ(answer, expected) << column;
+        for (std::size_t set = 0; set < chains.size(); ++set)
+          ASSERT_EQ(int{chains[set].step(columns.back().data(), candidates.back())}, expected)
+              << simd_sets()[set]->name << ' ' << column;
       }
     }
   }
@@ -91,15 +75,6 @@ TEST(SelectMinChain, RefusesDisparitiesOutsideTheirRange) {
   EXPECT_NO_THROW(SelectMinChain(254));
   EXPECT_THROW(SelectMinChain(0), std::invalid_argument);
   EXPECT_THROW(SelectMinChain(255), std::invalid_argument);
-}
-
-TEST(SelectMinChain, ForgetsThePreviousFrame) {
-  SelectMinChain chain(3);
-  LaneArray<std::int32_t> sums(3);
-  for (int column = 0; column < 5; ++column) chain.step(sums.data(), 3);
-  EXPECT_EQ(chain.step(sums.data(), 0), 0);
-  chain.start_frame();
-  for (int column = 0; column < 5; ++column) EXPECT_EQ(chain.step(sums.data(), 0), kInvalidDisparity);
 }
 
 }  // namespace

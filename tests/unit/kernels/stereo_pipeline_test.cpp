@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,11 +19,9 @@ namespace {
 using test::RandomBoard;
 using test::SplitMix64;
 
-// All pictures of the board through one pipeline for each instruction set, there and back, so that nothing of
-// a frame reaches the next.
+// Sends all pictures of the board through one pipeline for each instruction set, forwards and backwards: no
+// frame may leave a trace in the next.
 void expect_reference(const RandomBoard& board) {
-  const StereoConfig config{board.window, board.disparities, test::filter_kernel(board.filter),
-                            board.lr_tolerance};
   const auto entries = [](const std::optional<std::vector<std::uint32_t>>& table) {
     return table ? table->data() : nullptr;
   };
@@ -35,9 +32,9 @@ void expect_reference(const RandomBoard& board) {
   for (std::size_t picture = 0; picture < board.pictures.size(); ++picture)
     expected.push_back(
         test::compute_reference(test::reference_input(board, static_cast<int>(picture))).disparity);
-  for (const ImageLoops* loops : image_loops()) {
-    SCOPED_TRACE(loops->name);
-    StereoPipeline pipeline(board.width, board.height, config, *loops);
+  for (const Simd* simd : simd_sets()) {
+    SCOPED_TRACE(simd->name);
+    StereoPipeline pipeline(board.width, board.height, test::stereo_config(board), *simd);
     for (const std::size_t picture : order) {
       std::vector<std::uint8_t> disparity(expected[picture].size(), 99);
       pipeline.run(board.pictures[picture].left.data(), board.pictures[picture].right.data(),
@@ -56,33 +53,23 @@ TEST(StereoPipeline, EqualsTheReferenceOnRandomBoardsWithEachInstructionSet) {
   }
 }
 
-RandomBoard noise_board(int width, int height, int window, int disparities, SplitMix64& random) {
-  RandomBoard board;
-  board.width = width;
-  board.height = height;
-  board.window = window;
+// Matches noise pictures, with a left-right check. Two grey levels make many sums equal.
+void expect_noise_matches(int width, int height, int window, int disparities, SplitMix64& random) {
+  SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities) + ", " +
+               std::to_string(width) + " x " + std::to_string(height));
+  RandomBoard board = test::noise_board(width, height, window, random, random.chance(50) ? 2 : 256);
   board.disparities = disparities;
   board.lr_tolerance = 1;
-  board.pictures.resize(1);
-  const int levels = random.chance(50) ? 2 : 256;
-  for (auto* side : {&board.pictures[0].left, &board.pictures[0].right}) {
-    for (int pixel = 0; pixel < width * height; ++pixel)
-      side->push_back(static_cast<std::uint8_t>(random.between(0, levels - 1) * 255 / (levels - 1)));
-  }
-  return board;
+  expect_reference(board);
 }
 
-// Wide images have segments of several vectors in every lane; many disparities reach over more than one of
-// them.
+// In wide images a lane's segment is several vectors long, and many disparities reach over more than one.
 TEST(StereoPipeline, EqualsTheReferenceOnWideAndOnHighImages) {
   SplitMix64 random(11);
   for (int window = 3; window <= 31; window += 2) {
     for (const auto& [width, height] : {std::pair(4 * random.between(50, 110), window + random.between(0, 3)),
                                         std::pair(4 * random.between(8, 14), random.between(50, 150))}) {
-      const RandomBoard board = noise_board(width, height, window, random.between(1, 254), random);
-      SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(board.disparities) +
-                   ", " + std::to_string(width) + " x " + std::to_string(height));
-      ASSERT_NO_FATAL_FAILURE(expect_reference(board));
+      ASSERT_NO_FATAL_FAILURE(expect_noise_matches(width, height, window, random.between(1, 254), random));
     }
   }
 }
@@ -91,26 +78,24 @@ TEST(StereoPipeline, EqualsTheReferenceForEachCountOfDisparities) {
   SplitMix64 random(12);
   for (int disparities = 1; disparities <= 254; ++disparities) {
     const int window = 2 * random.between(1, 6) + 1;
-    const RandomBoard board = noise_board(4 * random.between(1, 40), window + 1, window, disparities, random);
-    SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities) +
-                 ", width " + std::to_string(board.width));
-    ASSERT_NO_FATAL_FAILURE(expect_reference(board));
+    const int width = 4 * random.between(1, 40);
+    ASSERT_NO_FATAL_FAILURE(expect_noise_matches(width, window + 1, window, disparities, random));
   }
 }
 
 void expect_filtered(int width, int height, const std::vector<std::uint8_t>& image,
                      const test::ReferenceKernel& kernel) {
   const auto expected = test::reference_filter(width, height, image, kernel);
-  for (const ImageLoops* loops : image_loops()) {
-    ImageFilter filter(width, height, *test::filter_kernel(kernel), *loops);
+  for (const Simd* simd : simd_sets()) {
+    ImageFilter filter(width, height, *test::filter_kernel(kernel), *simd);
     std::vector<std::uint8_t> filtered(image.size() + ImageFilter::kPadding);
     filter.run(image.data(), filtered.data());
     filtered.resize(image.size());
-    ASSERT_EQ(filtered, expected) << loops->name;
+    ASSERT_EQ(filtered, expected) << simd->name;
   }
 }
 
-// 255 times the positive weights on both sides of 2^31; all shifts.
+// 255 times the positive weights lies on both sides of 2^31.
 TEST(ImageFilter, IsExactOnBothSidesOf32Bits) {
   constexpr int kPairs = 257;  // 255 * (257 * 32767 + 385) = 2^31 - 128
   for (const int more : {385, 386}) {
@@ -138,8 +123,8 @@ TEST(ImageFilter, IsExactOnBothSidesOf32Bits) {
   }
 }
 
-// Kernels with equal rows, whose pixels are added first: all of them, pairs, none.
-TEST(ImageFilter, AddsEqualKernelRowsFirst) {
+// The filter adds the pixels of equal kernel rows first. Here all rows are equal, some, or none.
+TEST(ImageFilter, IsExactForKernelsWithEqualRows) {
   SplitMix64 random(14);
   for (const int size : {3, 7, 9, 31}) {
     for (const int kinds : {1, 2, 3, 31}) {
@@ -148,39 +133,18 @@ TEST(ImageFilter, AddsEqualKernelRowsFirst) {
         for (int column = 0; column < size; ++column)
           kernel.weights.push_back((row % kinds + 1) * (column - size / 2));
       }
-      const RandomBoard board = noise_board(4 * random.between(1, 30), random.between(1, 40), 3, 2, random);
+      const RandomBoard board =
+          test::noise_board(4 * random.between(1, 30), random.between(1, 40), 3, random);
       ASSERT_NO_FATAL_FAILURE(expect_filtered(board.width, board.height, board.pictures[0].left, kernel))
           << "size " << size << ", kinds " << kinds;
     }
   }
 }
 
-TEST(StereoPipeline, RefusesABrokenConfigurationAndNoImage) {
-  StereoConfig config;
-  EXPECT_NO_THROW(StereoPipeline(4, 1, config));
-  EXPECT_THROW(StereoPipeline(0, 1, config), std::invalid_argument);
-  config.window = 4;
-  EXPECT_THROW(StereoPipeline(8, 8, config), std::invalid_argument);
-  config = {};
-  config.disparities = 255;
-  EXPECT_THROW(StereoPipeline(8, 8, config), std::invalid_argument);
-  config = {};
-  config.lr_tolerance = 254;
-  EXPECT_THROW(StereoPipeline(8, 8, config), std::invalid_argument);
-  config = {};
-  config.filter->shift = 32;
-  EXPECT_THROW(StereoPipeline(8, 8, config), std::invalid_argument);
-}
-
-TEST(ImageLoops, AreThoseOfThisMachine) {
-  std::set<std::string> names;
-  for (const ImageLoops* loops : image_loops()) {
-    names.insert(loops->name);
-    EXPECT_LE(loops->lanes, kMostImageLanes);
-    EXPECT_LE(loops->lanes, image_loops().front()->lanes);
-  }
-  EXPECT_EQ(names.size(), image_loops().size());
-  EXPECT_EQ(names.count("base"), 1U);
+TEST(StereoPipeline, RefusesABrokenConfigurationAndAnEmptyImage) {
+  EXPECT_NO_THROW(StereoPipeline(4, 1, {}));
+  EXPECT_THROW(StereoPipeline(0, 1, {}), std::invalid_argument);
+  EXPECT_THROW(StereoPipeline(8, 8, {4, 80, log7(), 0}), std::invalid_argument);
 }
 
 }  // namespace

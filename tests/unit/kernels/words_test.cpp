@@ -7,22 +7,7 @@
 namespace stereotlm::kernels {
 namespace {
 
-TEST(Words, HoldTheLowestColumnInTheLowestByte) {
-  EXPECT_EQ(pixel_of_word(0x44332211U, 0), 0x11);
-  EXPECT_EQ(pixel_of_word(0x44332211U, 1), 0x22);
-  EXPECT_EQ(pixel_of_word(0x44332211U, 2), 0x33);
-  EXPECT_EQ(pixel_of_word(0x44332211U, 3), 0x44);
-  EXPECT_EQ(pixel_of_word(0x44332211U, 4 * 7 + 2), 0x33);
-}
-
-TEST(Words, KeepTheOtherPixelsWhenOneIsInserted) {
-  EXPECT_EQ(insert_pixel(0x44332211U, 0, 0xFF), 0x443322FFU);
-  EXPECT_EQ(insert_pixel(0x44332211U, 1, 0x00), 0x44330011U);
-  EXPECT_EQ(insert_pixel(0x44332211U, 2, 0xAA), 0x44AA2211U);
-  EXPECT_EQ(insert_pixel(0x44332211U, 4 * 9 + 3, 0x80), 0x80332211U);
-}
-
-TEST(Words, AreThoseOfTheReference) {
+TEST(Words, HoldPixelsAsTheReferenceDoes) {
   const std::vector<std::uint8_t> pixels = {0, 1, 254, 255, 128, 7, 0, 99};
   std::vector<std::uint32_t> words(2, 0xDEADBEEFU);
   for (std::size_t index = 0; index < pixels.size(); ++index)

@@ -1,4 +1,4 @@
-// The bridge's DMA channels.
+// The DMA channels of the bridge.
 #include <ostream>
 #include <string>
 
@@ -26,7 +26,7 @@ class PciBridgeDma : public PciBridgeBench {
 
 TEST_F(PciBridgeDma, MovesWordsToTheBoardInBursts) {
   build({32, 64, kCore});
-  put(kData, numbers(70));
+  host.debug_write(kData, numbers(70));
   start(0, kChain, {{kData, 3U << 26U | 50U, 70}});
   run(20);
   EXPECT_EQ(on_board(3ULL << 28U | 200U, 70), numbers(70));
@@ -43,8 +43,8 @@ TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
   build({32, 64, kCore});
   start(1, kChain, {{kData, 7, 45 | bridge::kToPci}});
   run(20);
-  EXPECT_EQ(get(kData, 45), on_board(28, 45));
-  EXPECT_EQ(get(kData + 45 * 4, 1), numbers(1, 0));
+  EXPECT_EQ(host.debug_read(kData, 45), on_board(28, 45));
+  EXPECT_EQ(host.debug_read(kData + 45 * 4, 1), numbers(1, 0));
   EXPECT_EQ(status(), bridge::kDmaDone << 1U);
   EXPECT_EQ(dut->stats().dma_words, 45U);
   EXPECT_EQ(dut->words_taken().total(), 0U);
@@ -52,16 +52,16 @@ TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
 
 TEST_F(PciBridgeDma, FollowsAChain) {
   build();
-  put(kData, numbers(10));
+  host.debug_write(kData, numbers(10));
   start(0, kChain, {{kData, 0, 4}, {kData + 16, 100, 6}, {kData + 0x800, 100, 6 | bridge::kToPci}});
   run(20);
   EXPECT_EQ(on_board(0, 4), numbers(4));
   EXPECT_EQ(on_board(400, 6), numbers(6, 5));
-  EXPECT_EQ(get(kData + 0x800, 6), numbers(6, 5));
+  EXPECT_EQ(host.debug_read(kData + 0x800, 6), numbers(6, 5));
   EXPECT_EQ(status(), bridge::kDmaDone);
 }
 
-TEST_F(PciBridgeDma, HoldsWordsThatWaitForTheLocalBus) {
+TEST_F(PciBridgeDma, CountsTheWordsThatWaitForTheLocalBus) {
   build();
   local.held = true;
   burst(true, kSlave + 400, 3);
@@ -74,19 +74,27 @@ TEST_F(PciBridgeDma, HoldsWordsThatWaitForTheLocalBus) {
   EXPECT_EQ(dut->words_held().total(), 0U);
 }
 
-TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrived) {
+TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrivedAndRefusesAStartMeanwhile) {
   build();
-  local.held = true;
-  start(0, kChain, {{kData, 0, 4}});
-  run(20);
-  EXPECT_EQ(read_register(bridge::kDmaStatus), 1U);
-  EXPECT_EQ(status(), 0U);
-  EXPECT_EQ(dut->words_taken().total(), 4U);
-  EXPECT_EQ(dut->words_held().total(), 0U);  // all on the local bus
-  local.release();
-  run(5);
-  EXPECT_EQ(read_register(bridge::kDmaStatus), 0U);
-  EXPECT_EQ(status(), bridge::kDmaDone);
+  for (const std::uint32_t channel : {0U, 1U}) {
+    write_register(bridge::kDmaControl + channel * bridge::kChannelStride, 2);  // not the start bit
+    EXPECT_EQ(read_register(bridge::kDmaStatus + channel * bridge::kChannelStride), 0U);
+    local.held = true;
+    start(channel, kChain, {{kData, 0, 4}});
+    run(20);
+    EXPECT_EQ(read_register(bridge::kDmaStatus + channel * bridge::kChannelStride), 1U);
+    EXPECT_EQ(status(), 0U);
+    EXPECT_EQ(dut->words_taken().total(), 4U * (channel + 1));
+    EXPECT_EQ(dut->words_held().total(), 0U);  // all on the local bus
+    start(channel, kChain);
+    EXPECT_EQ(status(), bridge::kDmaError << channel);
+    local.release();
+    run(5);
+    EXPECT_EQ(read_register(bridge::kDmaStatus + channel * bridge::kChannelStride), 0U);
+    EXPECT_EQ(status(), (bridge::kDmaError | bridge::kDmaDone) << channel);
+    EXPECT_EQ(local.bursts.size(), channel + 1U);
+    write_register(bridge::kInterruptStatus, bridge::kAllInterrupts);
+  }
 }
 
 // A burst of n words on PCI takes n + wait + 2 clocks, on the local target n + 1 word times.
@@ -99,7 +107,7 @@ TEST_F(PciBridgeDma, OverlapsTheTwoBuses) {
     run(200);
     ASSERT_EQ(local.bursts.size(), before + kBursts);
     const double pci_us = (32 + 8 + 2) / 33.333;
-    // At first there is room for two bursts in the bridge.
+    // The bridge has room for the first two bursts.
     const double each_us =
         (local.bursts.back().at - local.bursts[before + 2].at).to_seconds() * 1e6 / (kBursts - 3);
     EXPECT_GE(each_us, pci_us - 0.001);
@@ -109,17 +117,17 @@ TEST_F(PciBridgeDma, OverlapsTheTwoBuses) {
 
 TEST_F(PciBridgeDma, RunsBothChannelsSideBySide) {
   build();
-  put(kData, numbers(300));
+  host.debug_write(kData, numbers(300));
   start(0, kChain, {{kData, 0, 300}});
   start(1, kChain + 0x40, {{kData + 0x1000, 1U << 26U, 300 | bridge::kToPci}});
   run(60);
   EXPECT_EQ(on_board(0, 300), numbers(300));
-  EXPECT_EQ(get(kData + 0x1000, 300), on_board(1ULL << 28U, 300));
+  EXPECT_EQ(host.debug_read(kData + 0x1000, 300), on_board(1ULL << 28U, 300));
   EXPECT_EQ(status(), bridge::kDmaDone | bridge::kDmaDone << 1U);
 }
 
-// Bursts of the local bus that go through one by one; channel 0 and 1 write to banks of their own, posted
-// writes go to bank 0.
+// The test lets the bursts of the local bus through one by one. Posted writes go to bank 0, channels 0 and 1
+// write to banks 1 and 2.
 class PciBridgeTurns : public PciBridgeDma {
  protected:
   void build_held() {
@@ -132,14 +140,14 @@ class PciBridgeTurns : public PciBridgeDma {
     run(20);
   }
   void post() { burst(true, kSlave, 1); }
-  // The burst under way ends, and the next one begins and is held.
+  // The running burst ends. The next one begins and is held.
   void let_one_through() {
     local.release();
     run(0.001);
     local.held = true;
     run(20);
   }
-  // Of the bursts so far: 'p' posted, or the number of the channel.
+  // The bursts so far: 'p' for posted writes, or the number of the channel.
   std::string order() const {
     std::string order;
     for (const auto& burst : local.bursts) order += "p01"[burst.address >> 28U];
@@ -147,7 +155,7 @@ class PciBridgeTurns : public PciBridgeDma {
   }
 };
 
-TEST_F(PciBridgeTurns, GoToTheChannelThatWasNotServedLast) {
+TEST_F(PciBridgeTurns, ServePostedWritesFirstAndThenTheChannelThatWasNotServedLast) {
   build_held();
   post();
   start_both(8);
@@ -155,12 +163,12 @@ TEST_F(PciBridgeTurns, GoToTheChannelThatWasNotServedLast) {
   EXPECT_EQ(order(), "p1");
   post();
   let_one_through();
-  EXPECT_EQ(order(), "p1p");  // posted writes go first: now both channels wait
+  EXPECT_EQ(order(), "p1p");  // now both channels wait
   for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
   EXPECT_EQ(order(), "p1p010");
 }
 
-TEST_F(PciBridgeTurns, MoveOnWhenNothingWaits) {
+TEST_F(PciBridgeTurns, PassToTheOtherChannelWhenNothingWaits) {
   build_held();
   for (const char* const expected : {"p10", "p10p01", "p10p01p10"}) {
     post();
@@ -170,6 +178,7 @@ TEST_F(PciBridgeTurns, MoveOnWhenNothingWaits) {
   }
 }
 
+// A descriptor for channel 1, and a word on the board whose accesses are refused.
 struct Broken {
   const char* name;
   std::uint32_t chain;
@@ -181,18 +190,16 @@ void PrintTo(const Broken& broken, std::ostream* out) { *out << broken.name; }
 
 class PciBridgeDmaError : public PciBridgeDma, public testing::WithParamInterface<Broken> {};
 
-TEST_P(PciBridgeDmaError, StopsTheChannelAndIsRaised) {
+TEST_P(PciBridgeDmaError, StopsTheChannelUntilItsNextStart) {
   const Broken& broken = GetParam();
   build();
   local.refused_address = broken.refused_address;
-  put(broken.chain / 16 * 16, {broken.pci, 0, broken.words, 0});
-  write_register(bridge::kDmaDescriptor + bridge::kChannelStride, broken.chain);
-  write_register(bridge::kDmaControl + bridge::kChannelStride, 1);
+  host.debug_write(broken.chain, {broken.pci, 0, broken.words, 0});
+  start(1, broken.chain);
   run(20);
   EXPECT_EQ(status(), bridge::kDmaError << 1U);
   EXPECT_EQ(read_register(bridge::kDmaStatus + bridge::kChannelStride), 0U);
   EXPECT_GT(dut->stats().errors, 0U);
-  // The channel can be started again.
   local.refused_address = UINT64_MAX;
   write_register(bridge::kInterruptStatus, bridge::kAllInterrupts);
   start(1, kChain, {{kData, 0, 4}});
@@ -200,31 +207,17 @@ TEST_P(PciBridgeDmaError, StopsTheChannelAndIsRaised) {
   EXPECT_EQ(status(), bridge::kDmaDone << 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(PciBridge, PciBridgeDmaError,
-                         testing::Values(Broken{"chain_not_aligned", 0x108, 0x1000, 4, UINT64_MAX},
-                                         Broken{"no_words", 0x100, 0x1000, 0, UINT64_MAX},
-                                         Broken{"address_not_aligned", 0x100, 0x1002, 4, UINT64_MAX},
-                                         Broken{"no_target", 0x100, 0xF000'0000, 4, UINT64_MAX},
-                                         Broken{"no_target_for_results", 0x100, 0xF000'0000,
-                                                4 | bridge::kToPci, UINT64_MAX},
-                                         Broken{"refused_by_the_board", 0x100, 0x1000, 4, 0},
-                                         Broken{"refused_to_be_read", 0x100, 0x1000, 4 | bridge::kToPci, 0}),
-                         [](const auto& tested) { return tested.param.name; });
-
-TEST_F(PciBridgeDma, RefusesAStartWhileItIsBusy) {
-  build();
-  for (const std::uint32_t channel : {0U, 1U}) {
-    local.held = true;
-    start(channel, kChain, {{kData, 0, 4}});
-    write_register(bridge::kDmaControl + channel * bridge::kChannelStride, 1);
-    EXPECT_EQ(status(), bridge::kDmaError << channel);
-    local.release();
-    run(5);
-    EXPECT_EQ(status(), (bridge::kDmaError | bridge::kDmaDone) << channel);
-    EXPECT_EQ(local.bursts.size(), channel + 1U);
-    write_register(bridge::kInterruptStatus, bridge::kAllInterrupts);
-  }
-}
+constexpr std::uint32_t kNoTarget = 0xF000'0000;
+INSTANTIATE_TEST_SUITE_P(
+    PciBridge, PciBridgeDmaError,
+    testing::Values(Broken{"chain_not_aligned", 0x108, 0x1000, 4, UINT64_MAX},
+                    Broken{"no_words", 0x100, 0x1000, 0, UINT64_MAX},
+                    Broken{"address_not_aligned", 0x100, 0x1002, 4, UINT64_MAX},
+                    Broken{"no_target_to_read", 0x100, kNoTarget, 4, UINT64_MAX},
+                    Broken{"no_target_to_write", 0x100, kNoTarget, 4 | bridge::kToPci, UINT64_MAX},
+                    Broken{"board_refuses_a_write", 0x100, 0x1000, 4, 0},
+                    Broken{"board_refuses_a_read", 0x100, 0x1000, 4 | bridge::kToPci, 0}),
+    [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace stereotlm::pci

@@ -19,9 +19,14 @@
 
 namespace stereotlm::pci {
 
-// A word that tells where it is.
+// A word that names its address.
 constexpr std::uint32_t word_at(std::uint64_t address) {
   return static_cast<std::uint32_t>(address / 4 + 0x1000);
+}
+inline std::vector<std::uint32_t> words_from(std::uint64_t address, std::size_t count) {
+  std::vector<std::uint32_t> words;
+  for (std::size_t i = 0; i < count; ++i) words.push_back(word_at(address + 4 * i));
+  return words;
 }
 
 struct Script {
@@ -30,14 +35,14 @@ struct Script {
   std::size_t words = 1;
 };
 
-// A master that asks for its bursts one after the other: the next at once when one has ended, or only when it
-// is told to. Written words are word_at(their address).
+// A master that runs its bursts one after the other. It requests the next burst when one has ended, or only
+// when the test calls request(). It writes word_at(address).
 class TestMaster : public sc_core::sc_module, public PciMasterIf {
  public:
   struct Ended {
     BurstResult result;
     std::uint64_t address_ps = 0;
-    std::uint64_t granted_ps = 0;  // when begin_burst was called
+    std::uint64_t granted_ps = 0;  // time of begin_burst()
     std::uint64_t end_ps = 0;
     std::vector<std::uint32_t> words;
   };
@@ -46,6 +51,7 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
   std::deque<Script> bursts;
   bool at_once = true;
   std::vector<Ended> ended;
+  int grants = 0;
   std::function<void()> on_begin = [] {};
   std::function<void()> on_end = [] {};
 
@@ -62,47 +68,46 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
     on_begin();
     if (bursts.empty()) return {};
     now_.address_ps = address_clock_ps;
-    now_.granted_ps = Clock::to_ps(sc_core::sc_time_stamp());
+    now_.granted_ps = Clock::now_ps();
     const Script script = bursts.front();
     bursts.pop_front();
-    words_.assign(script.words, 0);
-    for (std::size_t i = 0; script.write && i < script.words; ++i)
-      words_[i] = word_at(script.address + 4 * i);
+    words_ =
+        script.write ? words_from(script.address, script.words) : std::vector<std::uint32_t>(script.words);
     return {script.write, script.address, &words_};
   }
   void end_burst(const BurstResult& result) override {
     now_.result = result;
-    now_.end_ps = Clock::to_ps(sc_core::sc_time_stamp());
+    now_.end_ps = Clock::now_ps();
     now_.words = words_;
     ended.push_back(now_);
     on_end();
     if (at_once && !bursts.empty()) request();
   }
-  int grants = 0;
 
  private:
   Ended now_;
   std::vector<std::uint32_t> words_;
 };
 
-// A target that answers correctly, after the time that the test says, and records what came.
+// A target that answers correctly, after the time that the test sets, and records each access. Reads return
+// word_at(address).
 class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>, public PciStopIf {
  public:
   struct Access {
     bool write = false;
     std::uint64_t address = 0;
     std::vector<std::uint32_t> words;
-    std::uint64_t at_ps = 0;  // with its delay
+    std::uint64_t at_ps = 0;  // its delay included
   };
 
   tlm::tlm_target_socket<32> socket{"socket"};
-  sc_core::sc_time read_waits;   // by wait(), after the delay that came
-  sc_core::sc_time read_delays;  // by annotation
+  sc_core::sc_time read_waits;   // a read blocks for this time, after its delay
+  sc_core::sc_time read_delays;  // added to the delay of a read
   sc_core::sc_time write_delays;
   tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE;
   std::function<std::size_t(std::uint64_t, std::size_t)> writable = [](auto, auto words) { return words; };
   std::vector<Access> accesses;
-  std::vector<std::uint32_t> memory;  // that it grants DMI to, unless empty
+  std::vector<std::uint32_t> memory;  // granted for DMI, unless empty
   std::uint64_t granted_bytes = UINT64_MAX;
   sc_core::sc_time memory_latency;
 
@@ -113,16 +118,13 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
     access.write = payload.is_write();
     access.address = payload.get_address();
     access.at_ps = Clock::to_ps(sc_core::sc_time_stamp() + delay);
-    access.words.resize(payload.get_data_length() / 4);
-    if (payload.is_read()) {
-      for (std::size_t i = 0; i < access.words.size(); ++i) access.words[i] = word_at(access.address + 4 * i);
-      std::memcpy(payload.get_data_ptr(), access.words.data(), payload.get_data_length());
-    } else {
-      std::memcpy(access.words.data(), payload.get_data_ptr(), payload.get_data_length());
-    }
+    access.words = words_from(access.address, payload.get_data_length() / 4);
+    auto* const data = payload.get_data_ptr();
     if (access.write) {
+      std::memcpy(access.words.data(), data, payload.get_data_length());
       delay += write_delays;
     } else {
+      std::memcpy(data, access.words.data(), payload.get_data_length());
       if (read_waits != sc_core::SC_ZERO_TIME) {
         wait(delay + read_waits);
         delay = sc_core::SC_ZERO_TIME;
@@ -141,39 +143,38 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
   }
   bool get_direct_mem_ptr(tlm::tlm_generic_payload& payload, tlm::tlm_dmi& dmi) override {
     const std::uint64_t granted = std::min<std::uint64_t>(granted_bytes, memory.size() * 4);
+    const bool inside = payload.get_address() < granted;
     dmi.allow_read_write();
-    if (payload.get_address() >= granted) {
-      dmi.set_start_address(granted);
-      dmi.set_end_address(UINT64_MAX);
-      return false;
-    }
     dmi.set_dmi_ptr(reinterpret_cast<unsigned char*>(memory.data()));
-    dmi.set_start_address(0);
-    dmi.set_end_address(granted - 1);
+    dmi.set_start_address(inside ? 0 : granted);
+    dmi.set_end_address(inside ? granted - 1 : UINT64_MAX);
     dmi.set_read_latency(memory_latency);
     dmi.set_write_latency(memory_latency);
-    return true;
+    return inside;
   }
   unsigned transport_dbg(tlm::tlm_generic_payload&) override { return 0; }
 };
 
-// A bus with masters m0, m1, .. and a monitored target behind each window.
+// A bus with masters m0, m1, .. and a monitored target behind each window. Slots that `config` names come
+// before the masters, and the last `own_windows` windows stay without a target: the test binds both.
 class PciBusBench {
  public:
-  explicit PciBusBench(PciBusConfig config, std::size_t masters_count = 1) : config_(std::move(config)) {
-    for (std::size_t i = 0; i < masters_count; ++i) config_.masters.push_back("m" + std::to_string(i));
-    bus = std::make_unique<PciBus>("bus", config_);
+  explicit PciBusBench(PciBusConfig config, std::size_t masters_count = 1, std::size_t own_windows = 0)
+      : clock_(config.clock_mhz) {
+    const std::size_t own_slots = config.masters.size();
+    for (std::size_t i = 0; i < masters_count; ++i) config.masters.push_back("m" + std::to_string(i));
+    bus = std::make_unique<PciBus>("bus", config);
     for (std::size_t i = 0; i < masters_count; ++i) {
-      masters.push_back(std::make_unique<TestMaster>(config_.masters[i].c_str()));
-      masters[i]->pci.bind(bus->slots[i]);
+      masters.push_back(std::make_unique<TestMaster>(config.masters[own_slots + i].c_str()));
+      masters[i]->pci.bind(bus->slots[own_slots + i]);
     }
-    for (std::size_t i = 0; i < config_.windows.size(); ++i) {
+    for (std::size_t i = 0; i + own_windows < config.windows.size(); ++i) {
       const std::string name = "t" + std::to_string(i);
       targets.push_back(std::make_unique<TestTarget>(name.c_str()));
       binder.bind(bus->targets[i], targets[i]->socket, "bus_to_" + name);
     }
   }
-  // Window 0 of 64 KiB at 0x10000 alone.
+  // One window of 64 KiB at 0x10000.
   static PciBusConfig with_window(int wait_clocks, int latency_timer_clocks = 255) {
     PciBusConfig config;
     config.latency_timer_clocks = latency_timer_clocks;
@@ -182,7 +183,7 @@ class PciBusBench {
   }
   void bind_stop() { bus->stops[0].bind(*targets[0]); }
 
-  // In simulation, at an absolute time.
+  // Runs `body` in simulation at an absolute time, after a number of delta cycles.
   void at(std::uint64_t time_ps, std::function<void()> body, int deltas = 0) {
     sc_core::sc_spawn([time_ps, deltas, body = std::move(body)] {
       if (time_ps > 0) sc_core::wait(Clock::to_time(time_ps));
@@ -190,10 +191,14 @@ class PciBusBench {
       body();
     });
   }
-  void request_at(std::uint64_t time_ps, std::size_t master = 0) {
-    at(time_ps, [this, master] { masters[master]->request(); });
+  void request_at(std::uint64_t time_ps, std::size_t master = 0, int deltas = 0) {
+    at(
+        time_ps, [this, master] { masters[master]->request(); }, deltas);
   }
-  std::uint64_t edge(std::uint64_t clock) const { return Clock(config_.clock_mhz).edge_ps(clock); }
+  std::uint64_t edge(std::uint64_t clock) const { return clock_.edge_ps(clock); }
+  void simulate_to_edge(std::uint64_t clock) {
+    sc_core::sc_start(Clock::to_time(edge(clock) - Clock::now_ps()));
+  }
 
   static constexpr std::uint32_t kBase = 0x1'0000;
   static constexpr std::uint32_t kBytes = 0x1'0000;
@@ -204,7 +209,7 @@ class PciBusBench {
   std::vector<std::unique_ptr<TestTarget>> targets;
 
  private:
-  PciBusConfig config_;
+  Clock clock_;
 };
 
 inline Script write_of(std::size_t words, std::uint64_t offset = 0) {
@@ -212,12 +217,6 @@ inline Script write_of(std::size_t words, std::uint64_t offset = 0) {
 }
 inline Script read_of(std::size_t words, std::uint64_t offset = 0) {
   return {false, PciBusBench::kBase + offset, words};
-}
-// What a target or a master of a burst of `count` words from this offset of the window on should have got.
-inline std::vector<std::uint32_t> words_from(std::uint64_t address, std::size_t count) {
-  std::vector<std::uint32_t> words;
-  for (std::size_t i = 0; i < count; ++i) words.push_back(word_at(address + 4 * i));
-  return words;
 }
 
 }  // namespace stereotlm::pci

@@ -1,17 +1,23 @@
+// The clocks of a burst with one master and one target.
 #include <gtest/gtest.h>
+
+#include <ostream>
 
 #include "tests/unit/pci/pci_bus_bench.h"
 
-// One master and one target: the clocks of a burst.
 namespace stereotlm::pci {
 namespace {
 
 constexpr int kWait = 4;
 
-TEST(PciBus, TransfersAWordAClockAfterAddressAndWaitClocks) {
+class PciBusBurst : public testing::TestWithParam<bool> {};
+
+TEST_P(PciBusBurst, TransfersAWordAClockAfterAddressAndWaitClocks) {
+  const bool write = GetParam();
+  constexpr std::uint64_t kFirst = 10 + 1 + kWait;
   PciBusBench bench(PciBusBench::with_window(kWait));
   TestMaster& master = *bench.masters[0];
-  master.bursts = {write_of(5)};
+  master.bursts = {{write, PciBusBench::kBase + 0x40, 5}};
   bench.request_at(bench.edge(10));
   sc_core::sc_start();
   ASSERT_EQ(master.ended.size(), 1U);
@@ -20,98 +26,54 @@ TEST(PciBus, TransfersAWordAClockAfterAddressAndWaitClocks) {
   EXPECT_EQ(burst.granted_ps, bench.edge(10));
   EXPECT_EQ(burst.result.end, BurstEnd::kComplete);
   EXPECT_EQ(burst.result.words, 5U);
-  EXPECT_EQ(burst.result.first_data_clock, 10U + kWait + 1);
-  EXPECT_EQ(burst.end_ps, bench.edge(10 + kWait + 1 + 5));
-}
-
-TEST(PciBus, WritesItsTargetOnceAtTheEndOfTheBurst) {
-  PciBusBench bench(PciBusBench::with_window(kWait));
-  bench.masters[0]->bursts = {write_of(5, 0x40)};
-  bench.request_at(0);
-  sc_core::sc_start();
+  EXPECT_EQ(burst.result.first_data_clock, kFirst);
+  EXPECT_EQ(burst.end_ps, bench.edge(kFirst + 5));
   ASSERT_EQ(bench.targets[0]->accesses.size(), 1U);
   const auto& access = bench.targets[0]->accesses[0];
-  EXPECT_TRUE(access.write);
+  EXPECT_EQ(access.write, write);
   EXPECT_EQ(access.address, 0x40U);
-  EXPECT_EQ(access.words, words_from(PciBusBench::kBase + 0x40, 5));
-  EXPECT_EQ(access.at_ps, bench.edge(1 + kWait + 5));
+  EXPECT_EQ(access.words, burst.words);
+  EXPECT_EQ(burst.words, words_from(write ? PciBusBench::kBase + 0x40 : 0x40, 5));
+  EXPECT_EQ(access.at_ps, bench.edge(write ? kFirst + 5 : 11));
 }
 
-TEST(PciBus, ReadsItsTargetOnceInTheAddressClock) {
-  PciBusBench bench(PciBusBench::with_window(kWait));
-  TestMaster& master = *bench.masters[0];
-  master.bursts = {read_of(5, 0x40)};
-  bench.request_at(0);
-  sc_core::sc_start();
-  ASSERT_EQ(bench.targets[0]->accesses.size(), 1U);
-  const auto& access = bench.targets[0]->accesses[0];
-  EXPECT_FALSE(access.write);
-  EXPECT_EQ(access.address, 0x40U);
-  EXPECT_EQ(access.at_ps, bench.edge(1));
-  ASSERT_EQ(master.ended.size(), 1U);
-  EXPECT_EQ(master.ended[0].words, words_from(0x40, 5));
-  EXPECT_EQ(master.ended[0].result.first_data_clock, 1U + kWait);
-  EXPECT_EQ(master.ended[0].end_ps, bench.edge(1 + kWait + 5));
-}
+INSTANTIATE_TEST_SUITE_P(PciBus, PciBusBurst, testing::Bool(),
+                         [](const auto& write) { return write.param ? "write" : "read"; });
 
-TEST(PciBus, BeginsWithTheFirstClockThatBeginsAtOrAfterTheRequest) {
+// Requests of bursts of `words` words, at a clock's edge and some ps.
+struct RequestTimes {
+  const char* name;
+  std::size_t words;
+  std::vector<std::pair<std::uint64_t, int>> requests;
+  std::vector<std::uint64_t> address_clocks;
+};
+void PrintTo(const RequestTimes& times, std::ostream* out) { *out << times.name; }
+
+class PciBusRequest : public testing::TestWithParam<RequestTimes> {};
+
+TEST_P(PciBusRequest, IsGrantedTheFirstClockThatBeginsAtOrAfterIt) {
   PciBusBench bench(PciBusBench::with_window(0));
   TestMaster& master = *bench.masters[0];
   master.at_once = false;
-  master.bursts = {write_of(1), write_of(1), write_of(1)};
-  bench.request_at(bench.edge(100) - 1);
-  bench.request_at(bench.edge(200));
-  bench.request_at(bench.edge(300) + 1);
+  master.bursts.assign(8, write_of(GetParam().words));
+  for (const auto& [clock, offset_ps] : GetParam().requests)
+    bench.request_at(bench.edge(clock) + static_cast<std::uint64_t>(offset_ps));
   sc_core::sc_start();
-  ASSERT_EQ(master.ended.size(), 3U);
-  EXPECT_EQ(master.ended[0].address_ps, bench.edge(100));
-  EXPECT_EQ(master.ended[1].address_ps, bench.edge(200));
-  EXPECT_EQ(master.ended[2].address_ps, bench.edge(301));
-}
-
-TEST(PciBus, LeavesOneIdleClockBetweenBursts) {
-  PciBusBench bench(PciBusBench::with_window(kWait));
-  TestMaster& master = *bench.masters[0];
-  master.bursts = {write_of(7), write_of(3), read_of(2), write_of(1)};
-  bench.request_at(0);
-  sc_core::sc_start();
-  std::vector<std::uint64_t> expected;
-  std::uint64_t clock = 0;
-  for (const std::size_t words : {7U, 3U, 2U, 1U}) {
-    expected.push_back(bench.edge(clock));
-    clock += 1 + kWait + words + 1;
-  }
   std::vector<std::uint64_t> found;
   for (const auto& burst : master.ended) found.push_back(burst.address_ps);
+  std::vector<std::uint64_t> expected;
+  for (const std::uint64_t clock : GetParam().address_clocks) expected.push_back(bench.edge(clock));
   EXPECT_EQ(found, expected);
 }
 
-TEST(PciBus, TakesARequestInTheIdleClockForTheNextClock) {
-  PciBusBench bench(PciBusBench::with_window(0));
-  TestMaster& master = *bench.masters[0];
-  master.at_once = false;
-  master.bursts = {write_of(4), write_of(4), write_of(4)};
-  bench.request_at(0);                   // idle clock: 5
-  bench.request_at(bench.edge(6));       // not before the clock after it; idle clock 11
-  bench.request_at(bench.edge(12) + 1);  // too late for that
-  sc_core::sc_start();
-  ASSERT_EQ(master.ended.size(), 3U);
-  EXPECT_EQ(master.ended[1].address_ps, bench.edge(6));
-  EXPECT_EQ(master.ended[2].address_ps, bench.edge(13));
-}
-
-TEST(PciBus, IgnoresARepeatedRequest) {
-  PciBusBench bench(PciBusBench::with_window(0));
-  TestMaster& master = *bench.masters[0];
-  bench.request_at(bench.edge(3) - 2);
-  bench.request_at(bench.edge(3) - 1);
-  bench.at(
-      bench.edge(3), [&master] { master.request(); }, 5);
-  master.bursts = {write_of(1), write_of(1)};
-  master.at_once = false;
-  sc_core::sc_start();
-  EXPECT_EQ(master.ended.size(), 1U);
-}
+// The idle clock of a burst of 4 words that begins in clock 0 is clock 5.
+INSTANTIATE_TEST_SUITE_P(
+    PciBus, PciBusRequest,
+    testing::Values(RequestTimes{"around_an_edge", 1, {{100, -1}, {200, 0}, {300, 1}}, {100, 200, 301}},
+                    RequestTimes{"in_the_idle_clock", 4, {{0, 0}, {5, 0}, {12, 1}}, {0, 6, 13}},
+                    RequestTimes{"behind_the_idle_clock", 4, {{0, 0}, {6, 0}}, {0, 6}},
+                    RequestTimes{"repeated", 1, {{3, -2}, {3, -1}, {3, 0}}, {3}}),
+    [](const auto& tested) { return tested.param.name; });
 
 struct Rate {
   int wait_clocks;
@@ -120,7 +82,7 @@ struct Rate {
 
 class PciBusRate : public testing::TestWithParam<Rate> {};
 
-TEST_P(PciBusRate, IsThatOfTheBusWithinOnePercent) {
+TEST_P(PciBusRate, IsWithinOnePercentOfARealBus) {
   constexpr std::size_t kBursts = 1000;
   constexpr std::size_t kWords = 32;
   PciBusBench bench(PciBusBench::with_window(GetParam().wait_clocks, 64));
@@ -145,8 +107,7 @@ INSTANTIATE_TEST_SUITE_P(PciBus, PciBusRate,
 
 TEST(PciBus, CountsClocksAndWordsUpToNow) {
   PciBusBench bench(PciBusBench::with_window(kWait));
-  TestMaster& master = *bench.masters[0];
-  master.bursts = {write_of(5)};
+  bench.masters[0]->bursts = {write_of(5)};
   bench.request_at(bench.edge(10));
   const auto expect_at = [&bench](std::uint64_t time_ps, std::uint64_t clocks, std::uint64_t busy) {
     bench.at(time_ps, [&bench, clocks, busy] {
@@ -171,19 +132,6 @@ TEST(PciBus, CountsClocksAndWordsUpToNow) {
   EXPECT_EQ(stats.masters[0].wait_clocks, 0U);
   EXPECT_EQ(stats.masters[0].retries, 0U);
   EXPECT_EQ(stats.masters[0].aborts, 0U);
-}
-
-TEST(PciBus, DoesNotDrift) {
-  PciBusBench bench(PciBusBench::with_window(0));
-  TestMaster& master = *bench.masters[0];
-  master.bursts = {write_of(1), write_of(1)};
-  master.at_once = false;
-  constexpr std::uint64_t kFar = 3'333'300'000;  // 100 s
-  bench.request_at(0);
-  bench.request_at(bench.edge(kFar));
-  sc_core::sc_start();
-  EXPECT_EQ(master.ended[1].address_ps, 100'000'000'000'000U);
-  EXPECT_EQ(master.ended[1].result.first_data_clock, kFar + 1);
 }
 
 }  // namespace

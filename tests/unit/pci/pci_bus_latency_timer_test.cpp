@@ -1,167 +1,94 @@
+// The latency timer cuts a burst with the first word in its clock or later, if another master waits.
 #include <gtest/gtest.h>
+
+#include <ostream>
 
 #include "tests/unit/pci/pci_bus_bench.h"
 
-// When the latency timer cuts a burst: with the first word in clock kTimer or later, if another master waits.
 namespace stereotlm::pci {
 namespace {
 
-constexpr int kWait = 3;
-constexpr int kTimer = 20;
 constexpr std::size_t kWords = 100;
 
-// Master 0 transfers from clock 0 on; master 1 may ask at some time.
-class PciBusLatencyTimer : public testing::Test {
- protected:
-  explicit PciBusLatencyTimer(int wait_clocks = kWait, int timer = kTimer)
-      : bench(PciBusBench::with_window(wait_clocks, timer), 2) {
-    first().bursts = {write_of(kWords)};
-    second().bursts = {write_of(1)};
-    bench.request_at(0, 0);
+struct RequestTime {
+  std::uint64_t clock = 0;
+  std::uint64_t offset_ps = 0;
+  int deltas = 0;
+};
+// A burst of master 0 from clock 0 on, and a request of master 1.
+struct Cut {
+  const char* name;
+  RequestTime request;
+  std::uint64_t last_clock;  // expected clock of the burst's last word
+  Script script = write_of(kWords);
+  int wait_clocks = 3;
+  int timer = 20;
+};
+void PrintTo(const Cut& cut, std::ostream* out) { *out << cut.name; }
+
+class PciBusLatencyTimer : public testing::TestWithParam<Cut> {};
+
+TEST_P(PciBusLatencyTimer, CutsWithAWordInItsClockOrLaterIfAnotherMasterWaits) {
+  const Cut& cut = GetParam();
+  PciBusBench bench(PciBusBench::with_window(cut.wait_clocks, cut.timer), 2);
+  bench.masters[0]->bursts = {cut.script};
+  bench.masters[1]->bursts = {write_of(1)};
+  bench.request_at(0, 0);
+  bench.request_at(bench.edge(cut.request.clock) + cut.request.offset_ps, 1, cut.request.deltas);
+  sc_core::sc_start();
+  ASSERT_EQ(bench.masters[0]->ended.size(), 1U);
+  ASSERT_EQ(bench.masters[1]->ended.size(), 1U);
+  const auto& burst = bench.masters[0]->ended[0];
+  const std::size_t words = cut.last_clock - static_cast<std::uint64_t>(cut.wait_clocks);
+  EXPECT_EQ(burst.result.end, words == cut.script.words ? BurstEnd::kComplete : BurstEnd::kLatencyTimer);
+  EXPECT_EQ(burst.result.words, words);
+  EXPECT_EQ(burst.end_ps, bench.edge(cut.last_clock + 1));
+  EXPECT_EQ(bench.masters[1]->ended[0].address_ps, bench.edge(cut.last_clock + 2));
+  if (cut.script.write) {
+    EXPECT_EQ(bench.targets[0]->accesses[0].words, words_from(PciBusBench::kBase, words));
+  } else {
+    auto expected = words_from(0, words);
+    expected.resize(kWords);
+    EXPECT_EQ(burst.words, expected);
   }
-  TestMaster& first() { return *bench.masters[0]; }
-  TestMaster& second() { return *bench.masters[1]; }
-  // The first burst ends with the word in this clock, and the second's address clock is two later.
-  void expect_cut_in_clock(std::uint64_t clock, int wait_clocks = kWait) {
-    ASSERT_EQ(first().ended.size(), 1U);
-    ASSERT_EQ(second().ended.size(), 1U);
-    EXPECT_EQ(first().ended[0].result.end, BurstEnd::kLatencyTimer);
-    EXPECT_EQ(first().ended[0].result.words, clock - static_cast<std::uint64_t>(wait_clocks));
-    EXPECT_EQ(first().ended[0].end_ps, bench.edge(clock + 1));
-    EXPECT_EQ(second().ended[0].address_ps, bench.edge(clock + 2));
-  }
-  PciBusBench bench;
-};
-
-TEST_F(PciBusLatencyTimer, CutsInItsClockIfAnotherMasterWaitedBefore) {
-  bench.request_at(0, 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer);
 }
 
-TEST_F(PciBusLatencyTimer, CutsInItsClockIfAnotherMasterAsksBefore) {
-  bench.request_at(bench.edge(kTimer - 1), 1);
+INSTANTIATE_TEST_SUITE_P(
+    PciBus, PciBusLatencyTimer,
+    testing::Values(Cut{"another_waits", {}, 20}, Cut{"asked_a_clock_before", {19}, 20},
+                    Cut{"asked_at_its_edge", {20}, 20}, Cut{"asked_in_a_later_delta", {20, 0, 7}, 20},
+                    Cut{"asked_a_ps_behind_its_edge", {20, 1}, 21}, Cut{"asked_later", {50}, 50},
+                    Cut{"asked_in_the_clock_of_the_last_word", {3 + kWords}, 3 + kWords},
+                    Cut{"asked_in_the_clock_of_the_last_word_but_one", {2 + kWords}, 2 + kWords},
+                    Cut{"read", {}, 20, read_of(kWords)},
+                    Cut{"burst_that_ends_with_it", {}, 20, write_of(17)},
+                    Cut{"burst_of_one_more_word", {}, 20, write_of(18)},
+                    Cut{"timer_within_the_wait_clocks", {}, 10, write_of(kWords), 9, 7},
+                    Cut{"timer_0", {}, 1, write_of(kWords), 0, 0}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(PciBus, CutsByTheEarliestOfTwoRequests) {
+  PciBusBench bench(PciBusBench::with_window(3, 20), 3);
+  bench.masters[0]->bursts = {write_of(kWords)};
+  bench.request_at(0, 0);
+  bench.at(bench.edge(5), [&bench] {
+    for (const std::size_t master : {1U, 2U})
+      bench.masters[master]->pci->request(*bench.masters[master], bench.edge(50 - 10 * master));
+  });
   sc_core::sc_start();
-  expect_cut_in_clock(kTimer);
+  EXPECT_EQ(bench.masters[0]->ended[0].end_ps, bench.edge(31));
 }
 
-TEST_F(PciBusLatencyTimer, CutsInItsClockIfAnotherMasterAsksWhenThatBegins) {
-  bench.request_at(bench.edge(kTimer), 1);
+TEST(PciBus, DoesNotCutABurstWhoseOwnMasterAloneRequestsAgain) {
+  PciBusBench bench(PciBusBench::with_window(3, 20));
+  bench.masters[0]->bursts = {write_of(kWords), write_of(1)};
+  bench.masters[0]->at_once = false;
+  bench.request_at(0);
+  bench.request_at(bench.edge(5));
   sc_core::sc_start();
-  expect_cut_in_clock(kTimer);
-}
-
-TEST_F(PciBusLatencyTimer, CutsInItsClockIfAnotherMasterAsksInALaterDeltaOfThatTime) {
-  bench.at(
-      bench.edge(kTimer), [this] { second().request(); }, 7);
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer);
-}
-
-TEST_F(PciBusLatencyTimer, CutsAClockLaterIfAnotherMasterAsksAPicosecondTooLate) {
-  bench.request_at(bench.edge(kTimer) + 1, 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer + 1);
-}
-
-TEST_F(PciBusLatencyTimer, CutsInTheClockThatBeginsWithALaterRequest) {
-  bench.request_at(bench.edge(kTimer + 30), 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer + 30);
-}
-
-TEST_F(PciBusLatencyTimer, CutsByTheEarliestOfTwoRequests) {
-  bench.request_at(bench.edge(kTimer + 10), 1);
-  bench.at(bench.edge(kTimer + 20), [this] { second().request(); });
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer + 10);
-}
-
-TEST_F(PciBusLatencyTimer, LeavesABurstAloneThatNobodyWaitsFor) {
-  sc_core::sc_start();
-  EXPECT_EQ(first().ended[0].result.end, BurstEnd::kComplete);
-  EXPECT_EQ(first().ended[0].result.words, kWords);
-}
-
-TEST_F(PciBusLatencyTimer, LeavesABurstAloneWhoseOwnMasterAsksAgain) {
-  first().bursts.push_back(write_of(1));
-  first().at_once = false;
-  bench.request_at(bench.edge(5), 0);
-  sc_core::sc_start();
-  ASSERT_EQ(first().ended.size(), 2U);
-  EXPECT_EQ(first().ended[0].result.end, BurstEnd::kComplete);
-  EXPECT_EQ(first().ended[0].result.words, kWords);
-}
-
-TEST_F(PciBusLatencyTimer, CompletesWithARequestForTheClockOfTheLastWord) {
-  constexpr std::uint64_t kLast = kWait + kWords;
-  bench.request_at(bench.edge(kLast), 1);
-  sc_core::sc_start();
-  EXPECT_EQ(first().ended[0].result.end, BurstEnd::kComplete);
-  EXPECT_EQ(first().ended[0].end_ps, bench.edge(kLast + 1));
-}
-
-TEST_F(PciBusLatencyTimer, TakesTheLastWordButOneAwayWithARequestForItsClock) {
-  bench.request_at(bench.edge(kWait + kWords - 1), 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kWait + kWords - 1);
-}
-
-TEST_F(PciBusLatencyTimer, CutsAReadAndHandsOverTheWordsTransferredOnly) {
-  first().bursts = {read_of(kWords)};
-  bench.request_at(bench.edge(1), 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer);
-  auto expected = words_from(0, kTimer - kWait);
-  expected.resize(kWords);
-  EXPECT_EQ(first().ended[0].words, expected);
-}
-
-TEST_F(PciBusLatencyTimer, HandsTheTargetTheWordsTransferredOnly) {
-  bench.request_at(0, 1);
-  sc_core::sc_start();
-  EXPECT_EQ(bench.targets[0]->accesses[0].words, words_from(PciBusBench::kBase, kTimer - kWait));
-}
-
-// N words end in clock kWait + N.
-class PciBusLatencyTimerLength : public PciBusLatencyTimer {};
-
-TEST_F(PciBusLatencyTimerLength, CompletesABurstThatEndsInTheClockOfTheTimer) {
-  first().bursts = {write_of(kTimer - kWait)};
-  bench.request_at(0, 1);
-  sc_core::sc_start();
-  EXPECT_EQ(first().ended[0].result.end, BurstEnd::kComplete);
-}
-
-TEST_F(PciBusLatencyTimerLength, CutsABurstThatIsAWordLonger) {
-  first().bursts = {write_of(kTimer - kWait + 1)};
-  bench.request_at(0, 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kTimer);
-}
-
-// The timer of a target that waits longer than it.
-class PciBusShortLatencyTimer : public PciBusLatencyTimer {
- protected:
-  static constexpr int kLongWait = 9;
-  PciBusShortLatencyTimer() : PciBusLatencyTimer(kLongWait, kLongWait - 2) {}
-};
-
-TEST_F(PciBusShortLatencyTimer, AlwaysLetsOneWordThrough) {
-  bench.request_at(0, 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(kLongWait + 1, kLongWait);
-}
-
-class PciBusNoLatencyTimer : public PciBusLatencyTimer {
- protected:
-  PciBusNoLatencyTimer() : PciBusLatencyTimer(0, 0) {}
-};
-
-TEST_F(PciBusNoLatencyTimer, LetsOneWordThroughAtATime) {
-  bench.request_at(0, 1);
-  sc_core::sc_start();
-  expect_cut_in_clock(1, 0);
+  ASSERT_EQ(bench.masters[0]->ended.size(), 2U);
+  EXPECT_EQ(bench.masters[0]->ended[0].result.end, BurstEnd::kComplete);
+  EXPECT_EQ(bench.masters[0]->ended[0].result.words, kWords);
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
+#include <ostream>
 #include <stdexcept>
 
 #include "tests/unit/platform/preloaded_run.h"
@@ -15,17 +17,6 @@ namespace {
 using std::uint64_t;
 using testing::PreloadedRun;
 using testing::small_board;
-
-std::optional<uint64_t> bound_of(const BoardConfig& board, const Tables& tables, const std::string& resource,
-                                 uint64_t frame = 0) {
-  for (const ResourceBound& bound : frame_bounds(board, tables, frame)) {
-    if (bound.resource == resource) return bound.cycles;
-  }
-  return std::nullopt;
-}
-std::optional<uint64_t> bound_of(const BoardConfig& board, const std::string& resource, uint64_t frame = 0) {
-  return bound_of(board, identity_tables(board), resource, frame);
-}
 
 uint64_t largest(const BoardConfig& board, const Tables& tables, uint64_t frame) {
   uint64_t cycles = 0;
@@ -43,8 +34,22 @@ constexpr uint64_t kWords = 16 * 6 / 4;
 constexpr uint64_t kPipeline = 16;
 constexpr uint64_t kAfter = kDrain + 1 + kPipeline;
 
-TEST(FrameBounds, ListPortsThenBanksThenTheMatcher) {
-  const BoardConfig board = small_board();
+class FrameBounds : public ::testing::Test {
+ protected:
+  std::optional<uint64_t> bound_of(const Tables& tables, const std::string& resource, uint64_t frame = 0) {
+    for (const ResourceBound& bound : frame_bounds(board, tables, frame)) {
+      if (bound.resource == resource) return bound.cycles;
+    }
+    return std::nullopt;
+  }
+  std::optional<uint64_t> bound_of(const std::string& resource, uint64_t frame = 0) {
+    return bound_of(identity_tables(board), resource, frame);
+  }
+
+  BoardConfig board = small_board();
+};
+
+TEST_F(FrameBounds, ListPortsThenBanksThenTheMatcher) {
   std::vector<std::string> names;
   for (const ResourceBound& bound : frame_bounds(board, identity_tables(board), 1))
     names.push_back(bound.resource);
@@ -53,113 +58,99 @@ TEST(FrameBounds, ListPortsThenBanksThenTheMatcher) {
                                              "bank bank5", "bank bank6", "bank bank7", "matcher"}));
 }
 
-TEST(FrameBounds, GiveAPortOneSlotOrWordACycle) {
-  const BoardConfig board = small_board();
+TEST_F(FrameBounds, GiveAPortOneSlotOrWordACycle) {
   for (const char* port : {"port left_lut", "port right_lut", "port left_pixel", "port right_pixel"})
-    EXPECT_EQ(bound_of(board, port), kSlots + kPipeline) << port;
-  EXPECT_EQ(bound_of(board, "port result"), kWords + kPipeline);
+    EXPECT_EQ(bound_of(port), kSlots + kPipeline) << port;
+  EXPECT_EQ(bound_of("port result"), kWords + kPipeline);
 }
 
-TEST(FrameBounds, GiveABankItsReadsAndWhatFollowsTheLastOfThem) {
-  BoardConfig board = small_board();
-  EXPECT_EQ(bound_of(board, "bank bank0"), kReads + 2 + kAfter);
-  EXPECT_EQ(bound_of(board, "bank bank6"), kReads + 4 + kAfter);
-  EXPECT_EQ(bound_of(board, "bank bank4"), kWords + kPipeline);
-  EXPECT_EQ(bound_of(board, "bank bank1"), std::nullopt);  // of the other half
-  EXPECT_EQ(bound_of(board, "bank bank1", 1), kReads + 2 + kAfter);
+TEST_F(FrameBounds, GiveABankItsReadsAndTheCyclesAfterTheLast) {
+  EXPECT_EQ(bound_of("bank bank0"), kReads + 2 + kAfter);
+  EXPECT_EQ(bound_of("bank bank6"), kReads + 4 + kAfter);
+  EXPECT_EQ(bound_of("bank bank4"), kWords + kPipeline);
+  EXPECT_EQ(bound_of("bank bank1"), std::nullopt);  // of the other half
+  EXPECT_EQ(bound_of("bank bank1", 1), kReads + 2 + kAfter);
   board.banks[0].kind = memory::BankKind::kZbtFlowThrough;
-  EXPECT_EQ(bound_of(board, "bank bank0"), kReads + 1 + kAfter);
-  EXPECT_EQ(bound_of(board, "bank bank6"), kReads + 3 + kAfter);
+  EXPECT_EQ(bound_of("bank bank0"), kReads + 1 + kAfter);
+  EXPECT_EQ(bound_of("bank bank6"), kReads + 3 + kAfter);
 }
 
-TEST(FrameBounds, AddUpTheAccessesThatShareABank) {
-  BoardConfig board = small_board();
+TEST_F(FrameBounds, AddUpTheAccessesThatShareABank) {
   board.allocation.left_lut = "bank0";
-  EXPECT_EQ(bound_of(board, "bank bank0"), 2 * kReads + 2 + kAfter);
+  EXPECT_EQ(bound_of("bank bank0"), 2 * kReads + 2 + kAfter);
   board.allocation.right_lut = "bank0";
-  EXPECT_EQ(bound_of(board, "bank bank0"), 3 * kReads + 2 + kAfter);
+  EXPECT_EQ(bound_of("bank bank0"), 3 * kReads + 2 + kAfter);
   board.allocation.disparity = {"bank0"};
   // More writes than what follows the last read: all accesses count.
-  EXPECT_EQ(bound_of(board, "bank bank0"),
-            std::max(3 * kReads + 2 + kAfter, 3 * kReads + kWords + kPipeline));
+  EXPECT_EQ(bound_of("bank bank0"), std::max(3 * kReads + 2 + kAfter, 3 * kReads + kWords + kPipeline));
   EXPECT_GT(3 * kReads + kWords + kPipeline, 3 * kReads + 2 + kAfter);
 }
 
-TEST(FrameBounds, CountTheReadsOfLineBuffers) {
-  BoardConfig board = small_board();
+TEST_F(FrameBounds, CountTheReadsOfLineBuffers) {
   board.matcher.fetch = fpga::Fetch::kLineBuffer;
   const uint64_t after = (3 - 1 + 1) + 1 + kPipeline;
-  EXPECT_EQ(bound_of(board, "port left_lut"), uint64_t{16} * 7 + kPipeline);
-  EXPECT_EQ(bound_of(board, "bank bank0"), 16 * 6 + 2 + after);
-  EXPECT_EQ(bound_of(board, "matcher"), 4 + 16 * 7 + after);
+  EXPECT_EQ(bound_of("port left_lut"), uint64_t{16} * 7 + kPipeline);
+  EXPECT_EQ(bound_of("bank bank0"), 16 * 6 + 2 + after);
+  EXPECT_EQ(bound_of("matcher"), 4 + 16 * 7 + after);
 }
 
-TEST(FrameBounds, CountTheReadsOfALargeFilter) {
-  BoardConfig board = small_board();
+TEST_F(FrameBounds, CountTheReadsOfALargeFilter) {
   board.matcher.filter = kernels::log7();  // two strips more, rows 0..5 of -2+3-1 = 0 on
   const uint64_t drain = uint64_t{3} * (3 - 1 + 1 + 3);
-  EXPECT_EQ(bound_of(board, "matcher"), 4 + 16 * 8 * 3 + drain + 1 + kPipeline);
+  EXPECT_EQ(bound_of("matcher"), 4 + 16 * 8 * 3 + drain + 1 + kPipeline);
   // Strips start at rows 0 .. 7: six rows of three, less those below the image.
-  EXPECT_EQ(bound_of(board, "bank bank0"), 16 * (4 * 3 + 2 + 1) + 2 + drain + 1 + kPipeline);
+  EXPECT_EQ(bound_of("bank bank0"), 16 * (4 * 3 + 2 + 1) + 2 + drain + 1 + kPipeline);
   board.matcher.fetch = fpga::Fetch::kLineBuffer;
-  EXPECT_EQ(bound_of(board, "matcher"), 4 + 16 * (6 + 1 + 3) + (3 - 1 + 1 + 3) + 1 + kPipeline);
+  EXPECT_EQ(bound_of("matcher"), 4 + 16 * (6 + 1 + 3) + (3 - 1 + 1 + 3) + 1 + kPipeline);
 }
 
-TEST(FrameBounds, LeaveOutThePixelsOfEntriesThatAreNotValid) {
-  const BoardConfig board = small_board();
+TEST_F(FrameBounds, LeaveOutThePixelsOfEntriesThatAreNotValid) {
   Tables tables = identity_tables(board);
   tables.left->entries[0] = 0;           // row 0 is fetched twice,
   tables.left->entries[16 * 3 + 5] = 0;  // row 3 three times
-  EXPECT_EQ(bound_of(board, tables, "bank bank0"), kReads - 2 - 3 + 2 + kAfter);
-  EXPECT_EQ(bound_of(board, tables, "bank bank6"), kReads + 4 + kAfter);
-  EXPECT_EQ(bound_of(board, tables, "bank bank2"), kReads + 2 + kAfter);
+  EXPECT_EQ(bound_of(tables, "bank bank0"), kReads - 2 - 3 + 2 + kAfter);
+  EXPECT_EQ(bound_of(tables, "bank bank6"), kReads + 4 + kAfter);
+  EXPECT_EQ(bound_of(tables, "bank bank2"), kReads + 2 + kAfter);
   for (std::uint32_t& entry : tables.left->entries) entry = 0;
-  EXPECT_EQ(bound_of(board, tables, "bank bank0"), std::nullopt);
+  EXPECT_EQ(bound_of(tables, "bank bank0"), std::nullopt);
 }
 
-TEST(FrameBounds, KnowNoTableThatDoesNotExist) {
-  BoardConfig board = small_board();
+TEST_F(FrameBounds, LeaveOutATableThatDoesNotExist) {
   board.allocation.left_lut.reset();
-  EXPECT_EQ(bound_of(board, "port left_lut"), std::nullopt);
-  EXPECT_EQ(bound_of(board, "bank bank6"), std::nullopt);
-  EXPECT_EQ(bound_of(board, "bank bank0"), kReads + 2 + kAfter);
-  EXPECT_EQ(bound_of(board, "matcher"), 4 + kSlots + kAfter);
+  EXPECT_EQ(bound_of("port left_lut"), std::nullopt);
+  EXPECT_EQ(bound_of("bank bank6"), std::nullopt);
+  EXPECT_EQ(bound_of("bank bank0"), kReads + 2 + kAfter);
+  EXPECT_EQ(bound_of("matcher"), 4 + kSlots + kAfter);
   board.allocation.right_lut.reset();
-  EXPECT_EQ(bound_of(board, "matcher"), 2 + kSlots + kAfter);
+  EXPECT_EQ(bound_of("matcher"), 2 + kSlots + kAfter);
 }
 
-// A slot stays for the latencies and the cycle in which it is consumed: 2 + 2 + 1 cycles with a table.
-TEST(FrameBounds, GiveThePortThatTakesSlotsThePlacesOfTheLaneForAsLongAsASlotStays) {
-  BoardConfig board = small_board();
+// A slot keeps its place in the lane for both latencies and the cycle in which it is consumed. With a table
+// these are 2 + 2 + 1 cycles.
+TEST_F(FrameBounds, CountTheRoundsOfATablePortThroughTheLane) {
   for (const int places : {1, 2, 4, 5, 6, 64}) {
     board.fpga.lane_fifo_slots = places;
     const uint64_t rounds = (kSlots - 1) / static_cast<uint64_t>(places);
     const uint64_t expected = std::max(kSlots + kPipeline, rounds * 5 + 5 + kAfter);
     EXPECT_EQ(expected > kSlots + kPipeline, places < 6) << "both sides of the gate";
-    EXPECT_EQ(bound_of(board, "port left_lut"), expected) << places;
-    EXPECT_EQ(bound_of(board, "port right_lut"), expected) << places;
-    EXPECT_EQ(bound_of(board, "port left_pixel"), kSlots + kPipeline) << places;
+    EXPECT_EQ(bound_of("port left_lut"), expected) << places;
+    EXPECT_EQ(bound_of("port right_lut"), expected) << places;
+    EXPECT_EQ(bound_of("port left_pixel"), kSlots + kPipeline) << places;
   }
 }
 
-TEST(FrameBounds, GiveThePixelPortThePlacesOfTheLaneWhereThereIsNoTable) {
-  BoardConfig board = small_board();
+TEST_F(FrameBounds, CountTheRoundsOfAPixelPortWithoutTable) {
   board.allocation.left_lut.reset();
   board.fpga.lane_fifo_slots = 2;
   const uint64_t rounds = (kSlots - 1) / 2;
-  EXPECT_EQ(bound_of(board, "port left_pixel"), rounds * 3 + 3 + kAfter);
-  EXPECT_EQ(bound_of(board, "port right_pixel"), kSlots + kPipeline);
-  EXPECT_EQ(bound_of(board, "port right_lut"), rounds * 5 + 5 + kAfter);
+  EXPECT_EQ(bound_of("port left_pixel"), rounds * 3 + 3 + kAfter);
+  EXPECT_EQ(bound_of("port right_pixel"), kSlots + kPipeline);
+  EXPECT_EQ(bound_of("port right_lut"), rounds * 5 + 5 + kAfter);
 }
 
-TEST(FrameBounds, RefuseABoardWithProblems) {
-  BoardConfig board = small_board();
-  board.matcher.window = 4;
-  EXPECT_THROW(frame_bounds(board, Tables{}, 0), std::invalid_argument);
-}
+using CoreBound = FrameBounds;
 
-TEST(CoreBound, RepeatsWithTheLeastCommonMultipleOfTheLists) {
-  BoardConfig board = small_board();
+TEST_F(CoreBound, RepeatsWithTheLeastCommonMultipleOfTheLists) {
   EXPECT_EQ(allocation_period_frames(board), 2U);
   board.allocation.disparity = {"bank4", "bank5", "bank4"};
   EXPECT_EQ(allocation_period_frames(board), 6U);
@@ -168,19 +159,18 @@ TEST(CoreBound, RepeatsWithTheLeastCommonMultipleOfTheLists) {
   EXPECT_EQ(allocation_period_frames(board), 3U);
 }
 
-TEST(CoreBound, RefusesABoardWithProblemsAndNoFrames) {
-  BoardConfig board = small_board();
+TEST_F(CoreBound, RefusesABoardWithProblemsAndNoFrames) {
   EXPECT_THROW(core_bound(board, identity_tables(board), 0), std::invalid_argument);
   EXPECT_NO_THROW(core_bound(board, identity_tables(board), 1));
   board.matcher.window = 4;
   EXPECT_THROW(core_bound(board, Tables{}, 1), std::invalid_argument);
+  EXPECT_THROW(frame_bounds(board, Tables{}, 0), std::invalid_argument);
   board = small_board();
   board.allocation.disparity.clear();
   EXPECT_THROW(core_bound(board, identity_tables(board), 1), std::invalid_argument);
 }
 
-TEST(CoreBound, SumsTheFramesOfTheListsInTurn) {
-  BoardConfig board = small_board();
+TEST_F(CoreBound, SumsTheFramesOfTheListsInTurn) {
   board.allocation.left_lut = "bank1";  // meets the left image in every other frame
   const Tables tables = identity_tables(board);
   const uint64_t first = largest(board, tables, 0);
@@ -196,138 +186,148 @@ TEST(CoreBound, SumsTheFramesOfTheListsInTurn) {
   }
 }
 
-TEST(CoreBound, NamesTheLastOfEqualResources) {
-  BoardConfig board = small_board();
+TEST_F(CoreBound, NamesTheLastOfEqualResources) {
   board.allocation.left_lut = "bank0";
   board.allocation.right_lut = "bank2";
   board.allocation.left_image = {"bank0"};
   board.allocation.right_image = {"bank2"};
-  EXPECT_EQ(bound_of(board, "bank bank0"), bound_of(board, "bank bank2"));
+  EXPECT_EQ(bound_of("bank bank0"), bound_of("bank bank2"));
   EXPECT_EQ(core_bound(board, identity_tables(board), 1).core_limited_by, "bank bank2");
 }
 
-// Boards by name, so that each runs in a process of its own.
+// A changed small board by name, so that each runs in a process of its own.
 struct Case {
-  BoardConfig board;
+  const char* name;
+  std::function<void(BoardConfig&)> change;
+  bool holes = false;  // every third entry of the left table is not valid
+};
+void PrintTo(const Case& tested, std::ostream* out) { *out << tested.name; }
+std::string name_of(const ::testing::TestParamInfo<Case>& tested) { return tested.param.name; }
+
+void set_kinds(BoardConfig& board, memory::BankKind kind, int turnaround) {
+  for (BankConfig& bank : board.banks) bank.kind = kind, bank.turnaround_cycles = turnaround;
+}
+
+class BoundedRun : public ::testing::TestWithParam<Case> {
+ protected:
+  void run(uint64_t frames) {
+    GetParam().change(board);
+    tables = identity_tables(board);
+    for (std::size_t entry = 0; GetParam().holes && entry < tables.left->entries.size(); entry += 3)
+      tables.left->entries[entry] = 0;
+    statistics = PreloadedRun(board, tables, frames).finish();
+    ASSERT_EQ(statistics.frame_cycles.size(), frames);
+    EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+  }
+
+  BoardConfig board = small_board();
   Tables tables;
+  Statistics statistics;
 };
 
-Case board_case(const std::string& name) {
-  BoardConfig board = small_board();
-  auto& matcher = board.matcher;
-  auto& allocation = board.allocation;
-  const auto all_kinds = [&board](memory::BankKind kind, int turnaround) {
-    for (BankConfig& bank : board.banks) bank.kind = kind, bank.turnaround_cycles = turnaround;
-  };
-  bool holes = false;
-  if (name == "line_buffer") matcher.fetch = fpga::Fetch::kLineBuffer;
-  if (name == "log7") matcher.filter = kernels::log7(), matcher.window = 5;
-  if (name == "large_filter") matcher.filter = kernels::log7();
-  if (name == "large_filter_line_buffer")
-    matcher.filter = kernels::log7(), matcher.fetch = fpga::Fetch::kLineBuffer;
-  if (name == "flow_through") all_kinds(memory::BankKind::kZbtFlowThrough, 0);
-  if (name == "one_slow_bank") {
-    all_kinds(memory::BankKind::kZbtFlowThrough, 0);
-    board.banks[7].kind = memory::BankKind::kZbtPipelined;
-  }
-  if (name == "no_tables") allocation.left_lut.reset(), allocation.right_lut.reset();
-  if (name == "no_left_table") allocation.left_lut.reset();
-  if (name == "one_row") board.image = {16, 1};
-  if (name == "window_larger_than_image") matcher.window = 31, matcher.disparities = 40;
-  if (name == "no_pipeline") board.fpga.pipeline_latency_cycles = 0;
-  if (name == "one_place") board.fpga.lane_fifo_slots = 1;
-  if (name == "five_places") board.fpga.lane_fifo_slots = 5;
-  if (name == "holes") holes = true;
-  // Contended.
-  if (name == "table_with_image") allocation.left_lut = "bank0";
-  if (name == "table_with_image_and_holes") allocation.left_lut = "bank0", holes = true;
-  if (name == "result_with_image") allocation.disparity = {"bank0", "bank0"};
-  if (name == "round_robin") {
-    board.fpga.arbiter.policy = memory::ArbitrationPolicy::kRoundRobin;
-    allocation.left_lut = "bank0", allocation.right_lut = "bank0",
-    allocation.right_image = {"bank0", "bank1"};
-  }
-  if (name == "one_bank") {
-    allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
-  }
-  if (name == "sync_burst") {
-    all_kinds(memory::BankKind::kSyncBurst, 2);
-    allocation = {{"bank0"}, {"bank1"}, {"bank0"}, "bank2", "bank3"};
-  }
-  if (name == "one_result_word") board.fpga.result_fifo_words = 1, matcher.fetch = fpga::Fetch::kLineBuffer;
-  if (name == "two_places") board.fpga.lane_fifo_slots = 2;
-  if (name == "four_places") board.fpga.lane_fifo_slots = 4;
-  if (name == "ping_pong") allocation.left_lut = "bank1";
-  Tables tables = identity_tables(board);
-  for (std::size_t entry = 0; holes && entry < tables.left->entries.size(); entry += 3)
-    tables.left->entries[entry] = 0;
-  return {board, tables};
-}
-
 constexpr uint64_t kFrames = 3;
+constexpr auto kFlowThrough = memory::BankKind::kZbtFlowThrough;
 
-class UncontendedBoards : public ::testing::TestWithParam<const char*> {};
+class UncontendedBoards : public BoundedRun {};
 
 TEST_P(UncontendedBoards, TakeExactlyTheirBound) {
-  const Case named = board_case(GetParam());
-  PreloadedRun run(named.board, named.tables, kFrames);
-  const Statistics statistics = run.finish();
-  ASSERT_EQ(statistics.frame_cycles.size(), kFrames);
+  run(kFrames);
   for (uint64_t frame = 0; frame < kFrames; ++frame)
-    EXPECT_EQ(statistics.frame_cycles[frame], largest(named.board, named.tables, frame));
-  EXPECT_EQ(statistics.frames_per_second.core, core_bound(named.board, named.tables, kFrames).core);
-  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+    EXPECT_EQ(statistics.frame_cycles[frame], largest(board, tables, frame));
+  EXPECT_EQ(statistics.frames_per_second.core, core_bound(board, tables, kFrames).core);
 }
 
-INSTANTIATE_TEST_SUITE_P(Bounds, UncontendedBoards,
-                         ::testing::Values("paper", "line_buffer", "log7", "large_filter",
-                                           "large_filter_line_buffer", "flow_through", "one_slow_bank",
-                                           "no_tables", "no_left_table", "one_row",
-                                           "window_larger_than_image", "no_pipeline", "one_place",
-                                           "five_places", "holes"));
+INSTANTIATE_TEST_SUITE_P(
+    Bounds, UncontendedBoards,
+    ::testing::Values(
+        Case{"paper", [](auto&) {}}, Case{"holes", [](auto&) {}, true},
+        Case{"line_buffer", [](auto& b) { b.matcher.fetch = fpga::Fetch::kLineBuffer; }},
+        Case{"log7", [](auto& b) { b.matcher.filter = kernels::log7(), b.matcher.window = 5; }},
+        Case{"large_filter", [](auto& b) { b.matcher.filter = kernels::log7(); }},
+        Case{"large_filter_line_buffer",
+             [](auto& b) { b.matcher.filter = kernels::log7(), b.matcher.fetch = fpga::Fetch::kLineBuffer; }},
+        Case{"flow_through", [](auto& b) { set_kinds(b, kFlowThrough, 0); }},
+        Case{"one_slow_bank",
+             [](auto& b) {
+               set_kinds(b, kFlowThrough, 0);
+               b.banks[7].kind = memory::BankKind::kZbtPipelined;
+             }},
+        Case{"no_tables", [](auto& b) { b.allocation.left_lut.reset(), b.allocation.right_lut.reset(); }},
+        Case{"no_left_table", [](auto& b) { b.allocation.left_lut.reset(); }},
+        Case{"one_row",
+             [](auto& b) {
+               b.image = {16, 1};
+             }},
+        Case{"window_larger_than_image", [](auto& b) { b.matcher.window = 31, b.matcher.disparities = 40; }},
+        Case{"no_pipeline", [](auto& b) { b.fpga.pipeline_latency_cycles = 0; }},
+        Case{"one_place", [](auto& b) { b.fpga.lane_fifo_slots = 1; }},
+        Case{"five_places", [](auto& b) { b.fpga.lane_fifo_slots = 5; }}),
+    name_of);
 
-class ContendedBoards : public ::testing::TestWithParam<const char*> {};
+class ContendedBoards : public BoundedRun {};
 
 TEST_P(ContendedBoards, TakeLongerThanTheirBound) {
-  const Case named = board_case(GetParam());
-  PreloadedRun run(named.board, named.tables, kFrames);
-  const Statistics statistics = run.finish();
-  ASSERT_EQ(statistics.frame_cycles.size(), kFrames);
+  run(kFrames);
   uint64_t measured = 0;
   uint64_t bound = 0;
   for (uint64_t frame = 0; frame < kFrames; ++frame) {
-    EXPECT_GE(statistics.frame_cycles[frame], largest(named.board, named.tables, frame));
+    EXPECT_GE(statistics.frame_cycles[frame], largest(board, tables, frame));
     measured += statistics.frame_cycles[frame];
-    bound += largest(named.board, named.tables, frame);
+    bound += largest(board, tables, frame);
   }
   EXPECT_GT(measured, bound);
-  EXPECT_LT(statistics.frames_per_second.core, core_bound(named.board, named.tables, kFrames).core);
-  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+  EXPECT_LT(statistics.frames_per_second.core, core_bound(board, tables, kFrames).core);
 }
 
-INSTANTIATE_TEST_SUITE_P(Bounds, ContendedBoards,
-                         ::testing::Values("table_with_image", "table_with_image_and_holes",
-                                           "result_with_image", "round_robin", "one_bank", "sync_burst",
-                                           "one_result_word", "ping_pong"));
+INSTANTIATE_TEST_SUITE_P(
+    Bounds, ContendedBoards,
+    ::testing::Values(
+        Case{"table_with_image", [](auto& b) { b.allocation.left_lut = "bank0"; }},
+        Case{"table_with_image_and_holes", [](auto& b) { b.allocation.left_lut = "bank0"; }, true},
+        Case{"result_with_image",
+             [](auto& b) {
+               b.allocation.disparity = {"bank0", "bank0"};
+             }},
+        Case{"round_robin",
+             [](auto& b) {
+               b.fpga.arbiter.policy = memory::ArbitrationPolicy::kRoundRobin;
+               b.allocation.left_lut = b.allocation.right_lut = "bank0";
+               b.allocation.right_image = {"bank0", "bank1"};
+             }},
+        Case{"one_bank",
+             [](auto& b) {
+               b.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
+             }},
+        Case{"sync_burst",
+             [](auto& b) {
+               set_kinds(b, memory::BankKind::kSyncBurst, 2);
+               b.allocation = {{"bank0"}, {"bank1"}, {"bank0"}, "bank2", "bank3"};
+             }},
+        Case{"one_result_word",
+             [](auto& b) { b.fpga.result_fifo_words = 1, b.matcher.fetch = fpga::Fetch::kLineBuffer; }},
+        Case{"ping_pong", [](auto& b) { b.allocation.left_lut = "bank1"; }}),
+    name_of);
 
-class FewPlaces : public ::testing::TestWithParam<const char*> {};
+class FewPlaces : public BoundedRun {};
 
 TEST_P(FewPlaces, TakeLessThanARoundLongerThanTheirBound) {
-  const Case named = board_case(GetParam());
-  PreloadedRun run(named.board, named.tables, 1);
-  const Statistics statistics = run.finish();
-  const uint64_t bound = largest(named.board, named.tables, 0);
-  EXPECT_EQ(core_bound(named.board, named.tables, 1).core_limited_by, "port right_lut");
-  EXPECT_GE(statistics.frame_cycles.at(0), bound);
-  EXPECT_LT(statistics.frame_cycles.at(0), bound + static_cast<uint64_t>(named.board.fpga.lane_fifo_slots));
+  run(1);
+  const uint64_t bound = largest(board, tables, 0);
+  EXPECT_EQ(core_bound(board, tables, 1).core_limited_by, "port right_lut");
+  EXPECT_GE(statistics.frame_cycles[0], bound);
+  EXPECT_LT(statistics.frame_cycles[0], bound + static_cast<uint64_t>(board.fpga.lane_fifo_slots));
 }
 
-INSTANTIATE_TEST_SUITE_P(Bounds, FewPlaces, ::testing::Values("one_place", "two_places", "four_places"));
+INSTANTIATE_TEST_SUITE_P(Bounds, FewPlaces,
+                         ::testing::Values(Case{"one_place", [](auto& b) { b.fpga.lane_fifo_slots = 1; }},
+                                           Case{"two_places", [](auto& b) { b.fpga.lane_fifo_slots = 2; }},
+                                           Case{"four_places", [](auto& b) { b.fpga.lane_fifo_slots = 4; }}),
+                         name_of);
 
 // 40 MHz: a cycle takes 25 ns.
 constexpr double kCycle = 25e-9;
 
-TEST(LeastDelivery, IsWhenTheFramesAreDoneOneAfterAnother) {
+TEST(LeastDelivery, IsTheTimeOfTheFramesOneAfterAnother) {
   const BoardConfig board = small_board();
   const Tables tables = identity_tables(board);
   const auto cycles = static_cast<double>(2 * largest(board, tables, 0) + largest(board, tables, 1));
@@ -339,7 +339,7 @@ TEST(LeastDelivery, IsWhenTheFramesAreDoneOneAfterAnother) {
 
 // Of 100 frames, or the last 10 of them: what the core reads and writes, results read back, and all pairs but
 // the first.
-TEST(LeastDelivery, CountsWhatTheHostMovesInABank) {
+TEST(LeastDelivery, CountsTheWordsThatTheHostMovesInABank) {
   BoardConfig board = small_board();
   board.allocation.left_image = {"bank0"};
   board.allocation.right_image = {"bank2"};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "platform/bounds.h"
@@ -30,10 +31,19 @@ const PortStatistics& port(const Statistics& statistics, const std::string& name
                        [&name](const PortStatistics& row) { return row.name == name; });
 }
 
-TEST(CollectStatistics, GivesTheFiguresOfTheFramesThatEnded) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 2);
-  const Statistics statistics = run.finish();
+class CollectStatistics : public ::testing::Test {
+ protected:
+  Statistics finish(uint64_t frames) {
+    run.emplace(board, identity_tables(board), frames);
+    return run->finish();
+  }
+
+  BoardConfig board = small_board();
+  std::optional<PreloadedRun> run;
+};
+
+TEST_F(CollectStatistics, GivesTheFiguresOfTheFramesThatEnded) {
+  const Statistics statistics = finish(2);
   const uint64_t frame = 4 + 16 * 6 * 3 + 9 + 1 + kPipeline;
   EXPECT_EQ(statistics.board, "fpl2003");
   EXPECT_EQ(statistics.fidelity, "cycle");
@@ -43,14 +53,15 @@ TEST(CollectStatistics, GivesTheFiguresOfTheFramesThatEnded) {
   EXPECT_DOUBLE_EQ(statistics.frames_per_second.core, 40e6 / static_cast<double>(frame));
   EXPECT_EQ(statistics.bound.core, core_bound(board, identity_tables(board), 2).core);
   EXPECT_EQ(statistics.bound.core_limited_by, "matcher");
+  EXPECT_GT(statistics.area.slices, 0);
+  EXPECT_EQ(statistics.area.slices, area_of(board).slices);
+  EXPECT_EQ(statistics.area.block_rams, area_of(board).block_rams);
   EXPECT_EQ(statistics.failed, std::vector<std::string>{});
 }
 
-TEST(CollectStatistics, ListsEveryBankInTheOrderOfTheBoard) {
-  BoardConfig board = small_board();
+TEST_F(CollectStatistics, ListsEveryBankInTheOrderOfTheBoard) {
   board.banks.push_back({"spare", 16});
-  PreloadedRun run(board, identity_tables(board), 2);
-  const Statistics statistics = run.finish();
+  const Statistics statistics = finish(2);
   const auto cycles = static_cast<double>(statistics.cycles);
   ASSERT_EQ(statistics.banks.size(), 9U);
   const uint64_t reads = uint64_t{16} * (6 * 3 - 2);
@@ -69,10 +80,8 @@ TEST(CollectStatistics, ListsEveryBankInTheOrderOfTheBoard) {
   }
 }
 
-TEST(CollectStatistics, ListsEveryPortInTheOrderOfTheContract) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 1);
-  const Statistics statistics = run.finish();
+TEST_F(CollectStatistics, ListsEveryPortInTheOrderOfTheContract) {
+  const Statistics statistics = finish(1);
   std::vector<std::string> names;
   for (const PortStatistics& row : statistics.ports) {
     names.push_back(row.name);
@@ -92,12 +101,10 @@ TEST(CollectStatistics, ListsEveryPortInTheOrderOfTheContract) {
   EXPECT_TRUE(statistics.blame.empty());
 }
 
-TEST(CollectStatistics, BlamesStallsInTheOrderOfPortBankAndBy) {
-  BoardConfig board = small_board();
+TEST_F(CollectStatistics, BlamesStallsInTheOrderOfPortBankAndBy) {
   for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kSyncBurst, bank.turnaround_cycles = 2;
   board.allocation = {{"bank1", "bank0"}, {"bank1", "bank0"}, {"bank1", "bank0"}, "bank1", "bank3"};
-  PreloadedRun run(board, identity_tables(board), 2);
-  const Statistics statistics = run.finish();
+  const Statistics statistics = finish(2);
   EXPECT_EQ(statistics.failed, std::vector<std::string>{});
   const std::vector<std::string> order = {"left_lut", "right_lut",  "left_pixel", "right_pixel", "result",
                                           "host",     "turnaround", "bank0",      "bank1",       "bank2"};
@@ -127,19 +134,8 @@ TEST(CollectStatistics, BlamesStallsInTheOrderOfPortBankAndBy) {
   }
 }
 
-TEST(CollectStatistics, HasTheAreaOfTheBoard) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 1);
-  const Statistics statistics = run.finish();
-  EXPECT_GT(statistics.area.slices, 0);
-  EXPECT_EQ(statistics.area.slices, area_of(board).slices);
-  EXPECT_EQ(statistics.area.block_rams, area_of(board).block_rams);
-}
-
-TEST(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 0);
-  const Statistics statistics = run.finish();
+TEST_F(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {
+  const Statistics statistics = finish(0);
   EXPECT_EQ(statistics.frames, 0U);
   EXPECT_EQ(statistics.cycles, 0U);
   EXPECT_EQ(statistics.frames_per_second.core, 0);
@@ -147,15 +143,13 @@ TEST(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {
   EXPECT_EQ(statistics.failed, std::vector<std::string>{});
 }
 
-TEST(CollectStatistics, TellsWhatDoesNotHoldInTheMiddleOfAFrame) {
-  // There the counters belong to no number of frames.
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 2);
+TEST_F(CollectStatistics, ReportsTheIdentitiesThatDoNotHoldInTheMiddleOfAFrame) {
+  run.emplace(board, identity_tables(board), 2);
   const uint64_t frame = 4 + 16 * 6 * 3 + 9 + 1 + kPipeline;
   sc_core::sc_start(sc_core::sc_time(25, sc_core::SC_NS) * static_cast<double>(frame + 100));
-  const Statistics statistics = run.collect();
+  const Statistics statistics = run->collect();
   ASSERT_EQ(statistics.frames, 1U);
-  const auto& control = run.system.board.core.control();
+  const auto& control = run->system.board.core.control();
   const uint64_t states = control.port_cycles(memory::Port::kLeftLut).sum();
   ASSERT_GT(states, frame - kPipeline);
   EXPECT_THAT(statistics.failed,
@@ -166,20 +160,19 @@ TEST(CollectStatistics, TellsWhatDoesNotHoldInTheMiddleOfAFrame) {
                                    control.left().consumed())));
   EXPECT_THAT(statistics.failed, Contains(StartsWith("bank bank1: busy + turnaround + idle cycles = ")));
   // At the end all of them hold.
-  EXPECT_THAT(run.finish().failed, IsEmpty());
+  EXPECT_THAT(run->finish().failed, IsEmpty());
 }
 
 // Each identity is broken alone, by one counter of a valid run.
-TEST(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 1);
-  const Statistics valid = run.finish();
+TEST_F(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
+  const Statistics valid = finish(1);
   EXPECT_THAT(valid.failed, IsEmpty());
   const uint64_t cycles = valid.cycles;
   const auto expect_failed = [&](const std::string& line, const auto& change) {
-    BoardCounters counters = counters_of(run.system.board);
+    BoardCounters counters = counters_of(run->system.board);
     change(counters);
-    EXPECT_THAT(collect_statistics(board, run.tables, run.system.board, counters).failed, ElementsAre(line));
+    EXPECT_THAT(collect_statistics(board, run->tables, run->system.board, counters).failed,
+                ElementsAre(line));
   };
   for (std::size_t port = 0; port < memory::kPortCount; ++port) {
     const std::string name = fmt::format("port {}: ", memory::kPortNames[port]);
@@ -223,19 +216,18 @@ TEST(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
                 [](BoardCounters& found) { --found.written_words; });
 }
 
-TEST(CollectStatistics, TellsAFrameRateAboveItsBoundWithBothSides) {
-  // The run had no valid entry to read a pixel for; the tables that the bound is told about have all.
-  BoardConfig board = small_board();
+TEST_F(CollectStatistics, ReportsAFrameRateAboveItsBound) {
+  // The left table of the run has no valid entries. The tables of the bound have only valid ones.
   board.allocation.left_lut = "bank0";
   board.allocation.left_image = {"bank0"};
   board.allocation.right_image = {"bank2"};
   Tables empty = identity_tables(board);
   std::fill(empty.left->entries.begin(), empty.left->entries.end(), 0U);
-  PreloadedRun run(board, empty, 1);
-  EXPECT_EQ(run.finish().failed, std::vector<std::string>{});
-  const Statistics statistics = collect_statistics(board, identity_tables(board), run.system.board);
+  run.emplace(board, empty, 1);
+  EXPECT_EQ(run->finish().failed, std::vector<std::string>{});
+  const Statistics statistics = collect_statistics(board, identity_tables(board), run->system.board);
   ASSERT_EQ(statistics.failed.size(), 1U);
-  // With as many digits as tell the two apart, however near they are.
+  // Both rates have as many digits as distinguish them.
   const auto number_after = [&statistics](const std::string& name) {
     const std::size_t at = statistics.failed[0].find(name);
     return at == std::string::npos ? 0 : std::stod(statistics.failed[0].substr(at + name.size()));
@@ -245,13 +237,11 @@ TEST(CollectStatistics, TellsAFrameRateAboveItsBoundWithBothSides) {
   EXPECT_GT(statistics.frames_per_second.core, statistics.bound.core);
 }
 
-TEST(CollectStatistics, CountsNoDebugTransportAsAnAccess) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 2);
-  run.finish();
+TEST_F(CollectStatistics, CountsNoDebugTransportAsAnAccess) {
+  finish(2);
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-    const auto& accesses = run.system.board.banks[bank].stats();
-    EXPECT_EQ(accesses.reads + accesses.writes, run.collect().banks[bank].busy_cycles) << bank;
+    const auto& accesses = run->system.board.banks[bank].stats();
+    EXPECT_EQ(accesses.reads + accesses.writes, run->collect().banks[bank].busy_cycles) << bank;
   }
 }
 

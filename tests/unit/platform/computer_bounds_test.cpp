@@ -10,68 +10,65 @@ namespace {
 // The paper's board: 76,800 words a picture.
 constexpr double kPicture = 640 * 480 / 4;
 
-double bound_of(const BoardConfig& board, const std::string& resource, bool whole_pictures = true) {
-  for (const RateBound& bound : computer_bounds(board, whole_pictures)) {
-    if (bound.resource == resource) return bound.frames_per_second;
+class ComputerBounds : public ::testing::Test {
+ protected:
+  double bound_of(const std::string& resource, bool whole_pictures = true) const {
+    for (const RateBound& bound : computer_bounds(board, whole_pictures)) {
+      if (bound.resource == resource) return bound.frames_per_second;
+    }
+    return 0;
   }
-  return 0;
-}
 
-TEST(ComputerBounds, GiveFreeRunningCamerasTheirFrameClock) {
-  EXPECT_EQ(bound_of(BoardConfig(), "camera"), 29.97);
-}
-
-TEST(ComputerBounds, GiveCamerasOnDemandTheTimeToTheLastPixel) {
   BoardConfig board;
+};
+
+TEST_F(ComputerBounds, GiveCamerasTheirFrameClockOrOnDemandTheTimeToTheLastPixel) {
+  EXPECT_EQ(bound_of("camera"), 29.97);
   board.cameras = {25, CameraTrigger::kOnDemand};
   // 525 lines in 40 ms; the last of 640 pixels of line 480 arrives 639/640 into its active part.
   const double line_s = 0.04 / 525;
-  EXPECT_NEAR(bound_of(board, "camera"), 1 / (479 * line_s + line_s * 52.15 / 63.56 * 639 / 640), 1e-6);
+  EXPECT_NEAR(bound_of("camera"), 1 / (479 * line_s + line_s * 52.15 / 63.56 * 639 / 640), 1e-6);
 }
 
-TEST(ComputerBounds, CountTheBusClocksOfCaptureToTheBoard) {
+TEST_F(ComputerBounds, CountTheBusClocksOfCaptureToTheBoard) {
   // 64 words a burst into the bridge, whose posted writes are less than a FIFO; 32 a burst back to memory,
   // and a descriptor.
   const double capture = 2 * (kPicture + 1200 * (1 + 4 + 1));
   const double result = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
-  EXPECT_DOUBLE_EQ(bound_of(BoardConfig(), "pci"), 33.333e6 / (capture + result));
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + result));
 }
 
-TEST(ComputerBounds, CountTheBusClocksOfCaptureToHostMemoryAndOfTheCopy) {
-  BoardConfig board;
+TEST_F(ComputerBounds, CountTheBusClocksOfCaptureToHostMemoryAndOfTheCopy) {
   board.capture.destination = CaptureDestination::kHostMemory;
   board.bridge.dma_burst_words = 7;
   const double capture = 2 * (kPicture + 549 * (1 + 8 + 1));       // 140 words a burst, the last has 80
   const double copy = 2 * (14 + kPicture + 10'972 * (1 + 8 + 1));  // the last burst has 3 words
   const double result = 14 + kPicture + 10'972 * (1 + 8 + 1);
-  EXPECT_DOUBLE_EQ(bound_of(board, "pci"), 33.333e6 / (capture + copy + result));
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + copy + result));
 }
 
-TEST(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
-  BoardConfig board;
+TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   board.bridge.dma_burst_words = 16;
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 40e6 / (3 * (kPicture + 4800 * 3)));
+  EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture + 4800 * 3)));
   board.bridge.local_clock_mhz = 20;
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 20e6 / (3 * (kPicture + 4800 * 3)));
+  EXPECT_DOUBLE_EQ(bound_of("bridge"), 20e6 / (3 * (kPicture + 4800 * 3)));
   // On a bus of four clocks a cycle the four clocks between two bursts hide in the cycle of the last grant.
   board.bridge.local_clock_mhz = 160;
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 40e6 / (3 * kPicture));
+  EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * kPicture));
   board.bridge.local_clock_mhz = 80;
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
+  EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
 }
 
-TEST(ComputerBounds, LeaveOutWhatCapturesWriteWherePixelsAreDropped) {
-  BoardConfig board;
+TEST_F(ComputerBounds, LeaveOutTheWordsOfCapturesWherePixelsAreDropped) {
   const double moved = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
-  EXPECT_DOUBLE_EQ(bound_of(board, "pci", false), 33.333e6 / moved);
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), 40e6 / (kPicture + 2400 * 3));
+  EXPECT_DOUBLE_EQ(bound_of("pci", false), 33.333e6 / moved);
+  EXPECT_DOUBLE_EQ(bound_of("bridge", false), 40e6 / (kPicture + 2400 * 3));
   board.capture.destination = CaptureDestination::kHostMemory;
-  EXPECT_DOUBLE_EQ(bound_of(board, "pci", false), 33.333e6 / (3 * moved));
-  EXPECT_DOUBLE_EQ(bound_of(board, "bridge", false), bound_of(board, "bridge", true));
+  EXPECT_DOUBLE_EQ(bound_of("pci", false), 33.333e6 / (3 * moved));
+  EXPECT_DOUBLE_EQ(bound_of("bridge", false), bound_of("bridge", true));
 }
 
-TEST(ComputerBounds, OfTheSystemAreTheLeast) {
-  BoardConfig board;
+TEST_F(ComputerBounds, GiveTheSystemTheLeastBound) {
   Bound bound;
   bound.core = 18.5;
   bound.core_limited_by = "matcher";
@@ -87,8 +84,7 @@ TEST(ComputerBounds, OfTheSystemAreTheLeast) {
   EXPECT_EQ(bound.system_limited_by, "pci");
 }
 
-TEST(ComputerBounds, RefuseABoardWithProblems) {
-  BoardConfig board;
+TEST_F(ComputerBounds, RefuseABoardWithProblems) {
   board.cameras.frame_rate_hz = 0;
   EXPECT_THROW(computer_bounds(board, true), std::invalid_argument);
 }

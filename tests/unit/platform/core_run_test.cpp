@@ -36,8 +36,7 @@ TEST(CoreRun, GivesTheWorkedValues) {
               ElementsAre(2534153));
 }
 
-// Again and again in one process.
-TEST(CoreRun, IsTheRunOfTheModules) {
+TEST(CoreRun, EqualsTheRunOfTheModulesEachTime) {
   const BoardConfig board = small_board();
   PreloadedRun run(board, identity_tables(board), 5);
   const Statistics expected = run.finish();
@@ -60,7 +59,7 @@ TEST(CoreRun, IsTheRunOfTheModules) {
   }
 }
 
-TEST(CoreRun, RefusesWhatDoesNotFit) {
+TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {
   BoardConfig board = small_board();
   Tables tables = identity_tables(board);
   EXPECT_THAT(message_of([&] { run_core(board, tables, 0); }), HasSubstr("frames = 0"));
@@ -80,7 +79,7 @@ TEST(CoreRun, RefusesWhatDoesNotFit) {
   EXPECT_THROW(run_core(board, {}, 1), std::invalid_argument);
 }
 
-TEST(CoreRun, EndsAFrameThatDoesNotGoOn) {
+TEST(CoreRun, EndsAFrameThatMakesNoProgress) {
   const BoardConfig board = small_board();
   EXPECT_THAT(message_of([&] { run_core(board, identity_tables(board), 1, 1); }),
               HasSubstr("frame 0 of the core: no slot consumed and no result written for 1 cycles"));

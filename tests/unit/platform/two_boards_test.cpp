@@ -6,8 +6,8 @@
 namespace stereotlm::platform::testing {
 namespace {
 
-// Neither may wait for the other to fall silent.
-TEST(TwoBoards, RunSideBySideAsEachDoesAlone) {
+// Neither board may wait until the other one is idle.
+TEST(TwoBoards, TakeTheSameCyclesSideBySideAsAlone) {
   const BoardConfig first = small_board();
   BoardConfig second = small_board();
   second.image.height = 9;

@@ -14,23 +14,22 @@ namespace {
 
 constexpr const char* kType = "/stereotlm/test";
 
-TEST(SystemcTestMain, FailsATestWithAnUnannouncedWarning) {
-  EXPECT_NONFATAL_FAILURE(SC_REPORT_WARNING(kType, "too hot"), "did not announce");
-}
+void warn(const char* text = "too hot", const char* type = kType) { SC_REPORT_WARNING(type, text); }
 
-TEST(SystemcTestMain, FailsATestWithAnUnannouncedErrorAndStillThrowsIt) {
-  EXPECT_NONFATAL_FAILURE(EXPECT_THROW(SC_REPORT_ERROR(kType, "broken"), sc_core::sc_report), "broken");
-}
-
-TEST(SystemcTestMain, SaysWhereAnUnannouncedReportWasMade) {
+TEST(SystemcTestMain, FailsATestThatDidNotAnnounceAWarningAndSaysWhereItWasMade) {
   testing::TestPartResultArray parts;
   {
     const testing::ScopedFakeTestPartResultReporter reporter(
         testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &parts);
-    SC_REPORT_WARNING(kType, "too hot");
+    warn();
   }
   ASSERT_EQ(parts.size(), 1);
+  EXPECT_TRUE(parts.GetTestPartResult(0).nonfatally_failed());
   EXPECT_STREQ(parts.GetTestPartResult(0).file_name(), __FILE__);
+}
+
+TEST(SystemcTestMain, FailsATestThatDidNotAnnounceAnErrorAndStillThrowsIt) {
+  EXPECT_NONFATAL_FAILURE(EXPECT_THROW(SC_REPORT_ERROR(kType, "broken"), sc_core::sc_report), "broken");
 }
 
 TEST(SystemcTestMain, FailsATestWithAWarningOfTheKernelItself) {
@@ -38,7 +37,7 @@ TEST(SystemcTestMain, FailsATestWithAWarningOfTheKernelItself) {
   EXPECT_NONFATAL_FAILURE(sc_core::sc_signal<bool>("twin"), "already exists");
 }
 
-TEST(SystemcTestMain, AFatalReportStillAborts) {
+TEST(SystemcTestMain, LeavesAFatalReportItsAbort) {
   const auto result = run_in_child([] {
     SC_REPORT_FATAL(kType, "gone");
     return std::string();
@@ -52,11 +51,13 @@ TEST(SystemcTestMain, PrintsNoCopyrightBanner) {
   EXPECT_STREQ(std::getenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE"), "1");
 }
 
-TEST(ExpectedReport, LetsAnAnnouncedWarningPassAndKeepsItsText) {
-  const ExpectedReport expected(kType);
+TEST(ExpectedReport, LetsAsManyReportsPassAsItAnnouncesAndKeepsTheLastText) {
+  const ExpectedReport expected(kType, 2);
   EXPECT_EQ(expected.text(), "");
-  SC_REPORT_WARNING(kType, "too hot");
-  EXPECT_EQ(expected.text(), "too hot");
+  warn("one");
+  warn("two");
+  EXPECT_EQ(expected.text(), "two");
+  EXPECT_NONFATAL_FAILURE(warn("three"), "did not announce");
 }
 
 TEST(ExpectedReport, LeavesAnAnnouncedErrorItsException) {
@@ -64,34 +65,23 @@ TEST(ExpectedReport, LeavesAnAnnouncedErrorItsException) {
   EXPECT_THROW(SC_REPORT_ERROR(kType, "broken"), sc_core::sc_report);
 }
 
-TEST(ExpectedReport, FailsWhenTheReportDoesNotCome) {
-  EXPECT_NONFATAL_FAILURE(ExpectedReport expected(kType), "did not come: 1 missing");
+TEST(ExpectedReport, FailsWhenFewerReportsComeThanItAnnounces) {
+  auto expected = std::make_unique<ExpectedReport>(kType, 3);
+  warn();
+  EXPECT_NONFATAL_FAILURE(expected.reset(), "did not come: 2 missing");
 }
 
 TEST(ExpectedReport, DoesNotStandForAnotherType) {
   const ExpectedReport expected(kType);
-  EXPECT_NONFATAL_FAILURE(SC_REPORT_WARNING("/stereotlm/other", "too hot"), "did not announce");
-  SC_REPORT_WARNING(kType, "too hot");
+  EXPECT_NONFATAL_FAILURE(warn("too hot", "/stereotlm/other"), "did not announce");
+  warn();
 }
 
-TEST(ExpectedReport, StandsForNoMoreThanItsCount) {
-  const ExpectedReport expected(kType, 2);
-  SC_REPORT_WARNING(kType, "one");
-  SC_REPORT_WARNING(kType, "two");
-  EXPECT_NONFATAL_FAILURE(SC_REPORT_WARNING(kType, "three"), "did not announce");
-}
-
-TEST(ExpectedReport, FailsWhenFewerComeThanAnnounced) {
-  auto expected = std::make_unique<ExpectedReport>(kType, 3);
-  SC_REPORT_WARNING(kType, "one");
-  EXPECT_NONFATAL_FAILURE(expected.reset(), "2 missing");
-}
-
-TEST(ExpectedReport, ASecondAnnouncementTakesTheSecondReport) {
+TEST(ExpectedReport, TakesItsReportAfterAnEarlierAnnouncementHasTakenOne) {
   const ExpectedReport first(kType);
   const ExpectedReport second(kType);
-  SC_REPORT_WARNING(kType, "one");
-  SC_REPORT_WARNING(kType, "two");
+  warn("one");
+  warn("two");
   EXPECT_EQ(first.text(), "one");
   EXPECT_EQ(second.text(), "two");
 }
@@ -99,9 +89,9 @@ TEST(ExpectedReport, ASecondAnnouncementTakesTheSecondReport) {
 TEST(ExpectedReport, EndsWithItsScope) {
   {
     const ExpectedReport expected(kType);
-    SC_REPORT_WARNING(kType, "inside");
+    warn();
   }
-  EXPECT_NONFATAL_FAILURE(SC_REPORT_WARNING(kType, "outside"), "did not announce");
+  EXPECT_NONFATAL_FAILURE(warn(), "did not announce");
 }
 
 }  // namespace

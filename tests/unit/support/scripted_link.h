@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -60,32 +61,41 @@ class ScriptedTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_i
   unsigned int transport_dbg(tlm::tlm_generic_payload& payload) override { return on_debug(payload); }
 };
 
-// The test counts the references itself; nothing is freed.
+// Nothing is freed: the payloads belong to the test.
 class CountingManager : public tlm::tlm_mm_interface {
  public:
   int frees = 0;
   void free(tlm::tlm_generic_payload*) override { ++frees; }
 };
 
-// initiator -> monitor -> target, and a correct two-word read at 0x40 to start from.
+// initiator -> monitor -> target, and two correct two-word reads at 0x40 to start from.
 class ScriptedLink : public testing::Test {
- protected:
+ public:
+  using Payload = tlm::tlm_generic_payload;
+
   explicit ScriptedLink(const ProtocolOptions& options = {}) : monitor("monitor", options) {
     initiator.socket.bind(monitor.from_initiator);
     monitor.to_target.bind(target.socket);
     prepare(payload);
+    prepare(other);
   }
 
-  void prepare(tlm::tlm_generic_payload& correct) {
+  void prepare(Payload& correct) {
     correct.set_command(tlm::TLM_READ_COMMAND);
     correct.set_address(0x40);
     correct.set_data_ptr(data.data());
     correct.set_data_length(8);
     correct.set_streaming_width(8);
   }
+  // Acquires both payloads once, as nb_transport needs it.
+  void manage() {
+    for (Payload* managed : {&payload, &other}) {
+      managed->set_mm(&manager);
+      managed->acquire();
+    }
+  }
 
   static void elaborate() { sc_core::sc_start(sc_core::SC_ZERO_TIME); }
-
   // Simulates `body` as a thread process, until nothing is left to do.
   static void simulate(const std::function<void()>& body) {
     sc_core::sc_spawn(body);
@@ -93,8 +103,37 @@ class ScriptedLink : public testing::Test {
   }
 
   void transport() { initiator.socket->b_transport(payload, delay); }
+  tlm::tlm_sync_enum forward(Payload& sent, tlm::tlm_phase phase, sc_core::sc_time annotated = {}) {
+    return initiator.socket->nb_transport_fw(sent, phase, annotated);
+  }
+  tlm::tlm_sync_enum backward(Payload& sent, tlm::tlm_phase phase, sc_core::sc_time annotated = {}) {
+    if (phase == tlm::BEGIN_RESP) sent.set_response_status(tlm::TLM_OK_RESPONSE);
+    return target.socket->nb_transport_bw(sent, phase, annotated);
+  }
+  bool request_dmi() { return initiator.socket->get_direct_mem_ptr(payload, dmi); }
+  unsigned int debug() { return initiator.socket->transport_dbg(payload); }
 
-  // Exactly one violation, with this text in it: one mistake is told once.
+  // The target's b_transport answers OK after `act`.
+  void target_acts(std::function<void(Payload&, sc_core::sc_time&)> act) {
+    target.on_blocking = [act = std::move(act)](Payload& received, sc_core::sc_time& annotated) {
+      received.set_response_status(tlm::TLM_OK_RESPONSE);
+      act(received, annotated);
+    };
+  }
+  // The target grants 0x0..0x7f for reads, unless `spoil` changes that.
+  void target_grants(
+      std::function<void(tlm::tlm_dmi&)> spoil = [](auto&) {}, bool granted = true) {
+    target.on_dmi = [this, spoil = std::move(spoil), granted](Payload&, tlm::tlm_dmi& given) {
+      given.set_dmi_ptr(data.data());
+      given.set_start_address(0);
+      given.set_end_address(0x7f);
+      given.allow_read();
+      spoil(given);
+      return granted;
+    };
+  }
+
+  // Exactly one violation, with this text in it.
   void expect_only(const std::string& text) {
     const auto violations = monitor.take_violations();
     ASSERT_EQ(violations.size(), 1U) << testing::PrintToString(violations);
@@ -104,10 +143,32 @@ class ScriptedLink : public testing::Test {
   ScriptedInitiator initiator{"initiator"};
   ScriptedTarget target{"target"};
   ProtocolMonitor monitor;
+  CountingManager manager;
   std::array<unsigned char, 8> data{};
   std::array<unsigned char, 8> enables{};
-  tlm::tlm_generic_payload payload;
+  Payload payload;
+  Payload other;
+  tlm::tlm_dmi dmi;
   sc_core::sc_time delay;
+};
+
+// What the two ends of a link do, and the only violation that the monitor reports of it. Without a text it
+// must report none: one that is left fails the test as the monitor is destroyed.
+struct Exchange {
+  const char* name;
+  const char* violation;  // null: none
+  std::function<void(ScriptedLink&)> happen;
+  friend void PrintTo(const Exchange& exchange, std::ostream* out) { *out << exchange.name; }
+};
+
+class ExchangeTest : public ScriptedLink, public testing::WithParamInterface<Exchange> {
+ public:
+  void expect_its_violation() {
+    elaborate();
+    GetParam().happen(*this);
+    if (GetParam().violation != nullptr) expect_only(GetParam().violation);
+  }
+  static std::string name(const testing::TestParamInfo<Exchange>& info) { return info.param.name; }
 };
 
 }  // namespace stereotlm::test

@@ -19,7 +19,7 @@ TEST(BoardArea, IsThatOfItsCoreOnItsDevice) {
   EXPECT_EQ(area_items(board).size(), area::items(core).size());
 }
 
-TEST(BoardArea, OfThePapersBoard) {
+TEST(BoardArea, FitsThePapersDevice) {
   const area::Area area = area_of(BoardConfig());
   EXPECT_EQ(area.slices, 7420);
   EXPECT_EQ(area.block_rams, 17);
@@ -27,7 +27,7 @@ TEST(BoardArea, OfThePapersBoard) {
   EXPECT_TRUE(area.fits());
 }
 
-TEST(BoardArea, ChangesWithWhatDecidesTheStructureOnly) {
+TEST(BoardArea, ChangesOnlyWithTheKeysThatChangeTheStructure) {
   const auto slices_after = [](auto change) {
     BoardConfig board;
     change(board);

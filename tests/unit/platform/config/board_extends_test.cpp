@@ -22,45 +22,34 @@ TEST(BoardPresets, AreTheBoardsOfThisProject) {
   EXPECT_THROW(preset_text("fpl2004"), std::out_of_range);
 }
 
-TEST(BoardPresets, HoldThePapersBoardAsTheDefaultOfBoardConfig) {
-  EXPECT_EQ(load_board("fpl2003"), BoardConfig());
-}
-
-TEST(BoardPresets, DifferFromThePapersBoardOnlyInWhatTheyAreFor) {
-  BoardConfig expected;
-  expected.name = "fpl2003-no-calibration";
-  expected.allocation.left_lut = std::nullopt;
-  expected.allocation.right_lut = std::nullopt;
-  EXPECT_EQ(load_board(expected.name), expected);
-
-  expected = BoardConfig();
-  expected.name = "fpl2003-line-buffer";
-  expected.matcher.fetch = fpga::Fetch::kLineBuffer;
-  EXPECT_EQ(load_board(expected.name), expected);
-
-  expected = BoardConfig();
-  expected.name = "fpl2003-qvga";
-  expected.image = {320, 240};
-  EXPECT_EQ(load_board(expected.name), expected);
-
-  expected = BoardConfig();
-  expected.name = "fpl2003-syncburst";
-  for (BankConfig& bank : expected.banks) {
-    bank.kind = memory::BankKind::kSyncBurst;
-    bank.turnaround_cycles = 2;
-  }
-  EXPECT_EQ(load_board(expected.name), expected);
-
-  expected = BoardConfig();
-  expected.name = "fpl2003-triple";
-  expected.banks.push_back({"bank8"});
-  expected.banks.push_back({"bank9"});
-  expected.allocation.left_image = {"bank0", "bank1", "bank8"};
-  expected.allocation.right_image = {"bank2", "bank3", "bank9"};
-  EXPECT_EQ(load_board(expected.name), expected);
+TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
+  const auto expect_preset = [](const std::string& name, const auto& change) {
+    BoardConfig expected;
+    expected.name = name;
+    change(expected);
+    EXPECT_EQ(load_board(name), expected) << name;
+  };
+  expect_preset("fpl2003", [](BoardConfig& /*board*/) {});
+  expect_preset("fpl2003-no-calibration", [](BoardConfig& board) {
+    board.allocation.left_lut.reset();
+    board.allocation.right_lut.reset();
+  });
+  expect_preset("fpl2003-line-buffer",
+                [](BoardConfig& board) { board.matcher.fetch = fpga::Fetch::kLineBuffer; });
+  expect_preset("fpl2003-qvga", [](BoardConfig& board) { board.image = {320, 240}; });
+  expect_preset("fpl2003-syncburst", [](BoardConfig& board) {
+    for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kSyncBurst, bank.turnaround_cycles = 2;
+  });
+  expect_preset("fpl2003-triple", [](BoardConfig& board) {
+    board.banks.push_back({"bank8"});
+    board.banks.push_back({"bank9"});
+    board.allocation.left_image = {"bank0", "bank1", "bank8"};
+    board.allocation.right_image = {"bank2", "bank3", "bank9"};
+  });
 }
 
 TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
+  EXPECT_EQ(load_text("extends: fpl2003-qvga").name, "fpl2003-qvga");
   BoardConfig expected = load_board("fpl2003-syncburst");
   expected.image.width = 320;
   for (BankConfig& bank : expected.banks) bank.turnaround_cycles = 3;
@@ -98,8 +87,6 @@ TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
       "-32768..32767, sum 0");
 }
 
-TEST(BoardExtends, SuppliesTheNameToo) { EXPECT_EQ(load_text("extends: fpl2003-qvga").name, "fpl2003-qvga"); }
-
 TEST(BoardExtends, NamesAPreset) {
   const std::string presets =
       "; presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst or "
@@ -116,7 +103,7 @@ TEST(BoardExtends, NamesAPreset) {
   }
 }
 
-TEST(BoardExtends, IsToldToAFileThatLacksMostKeys) {
+TEST(BoardExtends, IsAdvisedForAFileThatLacksMostKeys) {
   const auto line = [](int missing) {
     return fmt::format(
         "board.yaml:1:1: {} of the 36 keys of a board are missing: begin the file with "
@@ -134,7 +121,7 @@ TEST(BoardExtends, IsToldToAFileThatLacksMostKeys) {
             std::string::npos);
 }
 
-TEST(BoardExtends, IsTheFirstKeyAndStandsOnce) {
+TEST(BoardExtends, IsTheFirstKeyAndAppearsOnce) {
   EXPECT_EQ(refusal_of("name: x\nextends: fpl2003\n"),
             "board.yaml:2:1: extends = fpl2003: extends must be the first key");
   EXPECT_EQ(refusal_of("extends: fpl2003\nname: x\nextends: fpl2003\n"),

@@ -148,7 +148,7 @@ TEST(BoardRoundTrip, WritesTheShortestDecimals) {
   EXPECT_NE(text.find("  frame_rate_hz: 29.97\n"), std::string::npos);
 }
 
-TEST(BoardRoundTrip, ABoardWithProblemsIsNotWritten) {
+TEST(BoardRoundTrip, RefusesToWriteABoardWithProblems) {
   BoardConfig board;
   board.image.width = 3;
   EXPECT_THROW(to_yaml(board), std::invalid_argument);

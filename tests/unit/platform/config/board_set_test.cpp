@@ -42,7 +42,7 @@ TEST(BoardSet, ReplacesTheWholeValue) {
             "entries -32768..32767, sum 0");
 }
 
-TEST(BoardSet, MakesWhatIsNotThere) {
+TEST(BoardSet, AddsValuesThatTheBoardDoesNotHave) {
   const BoardConfig board = load_board("fpl2003", {"ssram.banks.bank9={}", "ssram.banks.bank8.words=1"});
   ASSERT_EQ(board.banks.size(), 10U);
   EXPECT_EQ(board.banks[8].name, "bank9");
@@ -114,9 +114,12 @@ TEST(BoardSet, IsNamedWhereItBreaksARuleWithOtherValues) {
       "it is zbt_flow_through");
 }
 
-TEST(BoardSet, RefusesTheSamePathTwice) {
-  EXPECT_EQ(refusal_of_board("fpl2003", {"image.width=4", "image.width=4"}),
-            "--set image.width: image.width = 4: the same path was set before");
+TEST(BoardSet, RefusesExtendsBadBankNamesAndTheSamePathTwice) {
+  EXPECT_EQ(
+      refusal_of_board("fpl2003", {"extends=fpl2003", "ssram.banks.9={}", "image.width=4", "image.width=4"}),
+      "--set extends: extends = fpl2003: extends stands in the board file\n"
+      "--set ssram.banks.9: ssram.banks.9 = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none\n"
+      "--set image.width: image.width = 4: the same path was set before");
 }
 
 TEST(BoardSet, NamesTheNearestKeyForAnUnknownPath) {
@@ -157,11 +160,6 @@ TEST(BoardSet, RefusesAPathBelowAValueThatIsNoMap) {
             "--set image.width: image.width = 4: image is not a map here; set it as a whole");
 }
 
-TEST(BoardSet, RefusesExtends) {
-  EXPECT_EQ(refusal_of_board("fpl2003", {"extends=fpl2003"}),
-            "--set extends: extends = fpl2003: extends stands in the board file");
-}
-
 TEST(BoardSet, NeedsAPathAndAValue) {
   EXPECT_EQ(refusal_of_board("fpl2003", {"image.width"}),
             "--set image.width: image.width = (nothing): --set needs path=value");
@@ -184,11 +182,6 @@ TEST(BoardSet, TakesOneFlowValue) {
   EXPECT_EQ(load_board("fpl2003", {"name=a=b"}).name, "a=b");
   EXPECT_EQ(load_board("fpl2003", {"matcher.lr_tolerance=off", "matcher.filter=none"}).matcher.lr_tolerance,
             std::nullopt);
-}
-
-TEST(BoardSet, ChecksTheNameOfANewBank) {
-  EXPECT_EQ(refusal_of_board("fpl2003", {"ssram.banks.9={}"}),
-            "--set ssram.banks.9: ssram.banks.9 = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none");
 }
 
 }  // namespace

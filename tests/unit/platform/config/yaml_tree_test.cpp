@@ -10,7 +10,7 @@
 namespace stereotlm::platform {
 namespace {
 
-// "item,item,.."; with a quadratic cost somewhere, so many take longer than a test may.
+// "item,item,..": so many items that a quadratic cost would exceed the time limit of a test.
 std::string many(const std::string& item) {
   constexpr int kCount = 250'000;
   std::string text;
@@ -18,7 +18,7 @@ std::string many(const std::string& item) {
   return text;
 }
 
-TEST(YamlTree, OfALongLineCostsWhatItsLengthSays) {
+TEST(YamlTree, IsReadFromALongLineInLinearTime) {
   const std::string text = many(
       "\"ein ganz langer \xC3\xBC"
       "bertext\"");
@@ -33,7 +33,7 @@ TEST(YamlTree, OfALongLineCostsWhatItsLengthSays) {
   EXPECT_EQ(board.entries[0].value.items.back().place.column, 5 + 250'000 * 27) << "in characters";
 }
 
-TEST(YamlTree, WithBanksWithoutEndIsReadInTheTimeOfItsLength) {
+TEST(YamlTree, IsReadWithManyBanksInLinearTime) {
   std::string text;
   for (int i = 0; i < 250'000; ++i)
     text += "a_bank_with_a_long_name_of_its_own_" + std::to_string(i) + ": {},";
@@ -81,7 +81,7 @@ struct PlacedText {
   int column;  // of the first level that is too deep
 };
 
-TEST(YamlTree, SaysWhereItIsNestedTooDeeply) {
+TEST(YamlTree, NamesThePlaceWhereItIsNestedTooDeeply) {
   const auto nested = [](const std::string& open, const std::string& close) {
     std::string text;
     for (int i = 0; i < 1000; ++i) text += open;

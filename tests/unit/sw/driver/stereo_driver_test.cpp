@@ -63,7 +63,7 @@ void PrintTo(const Buffers& buffers, std::ostream* out) {
 
 class StereoDriverBuffers : public testing::TestWithParam<Buffers> {};
 
-// The machine checks that no buffer is touched by two.
+// The machine checks that no buffer is used by two at once.
 TEST_P(StereoDriverBuffers, DeliverEveryFrameOnceAndInOrder) {
   constexpr std::uint64_t kFrames = 40;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -92,29 +92,23 @@ INSTANTIATE_TEST_SUITE_P(StereoDriver, StereoDriverBuffers,
                                          Buffers{3, 1, false, 3}, Buffers{2, 2, true, 3},
                                          Buffers{1, 1, true, 1}, Buffers{3, 2, true, 2}));
 
-TEST(StereoDriver, UploadsTheTablesBeforeAnythingElse) {
+TEST(StereoDriver, UploadsItsTablesFirst) {
+  DriverConfig config = small(2, 2, 3);
   Listener listener;
   FakeMachine machine(1);
-  StereoDriver driver(small(2, 2, 1), kLeftTable, kRightTable, listener);
-  driver.run(machine);
+  StereoDriver(config, kLeftTable, kRightTable, listener).run(machine);
   EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{
                                  {word_of_bank(30), 4}, {word_of_bank(31) + 5, 4}}));
   for (std::uint32_t word = 0; word < 4; ++word) {
     EXPECT_EQ(machine.board.at(word_of_bank(30) + word), kLeftTable[word]);
     EXPECT_EQ(machine.board.at(word_of_bank(31) + 5 + word), kRightTable[word]);
   }
-}
-
-TEST(StereoDriver, NeedsNoTables) {
-  DriverConfig config = small(2, 2, 3);
-  config.buffers.left_lut.reset();
-  config.buffers.right_lut.reset();
-  Listener listener;
-  FakeMachine machine(1);
-  StereoDriver driver(config, {}, {}, listener);
-  driver.run(machine);
-  EXPECT_TRUE(machine.uploads.empty());
-  EXPECT_EQ(listener.words.size(), 3U);
+  config.buffers.left_lut = config.buffers.right_lut = std::nullopt;
+  Listener other;
+  FakeMachine without_tables(1);
+  StereoDriver(config, {}, {}, other).run(without_tables);
+  EXPECT_TRUE(without_tables.uploads.empty());
+  EXPECT_EQ(other.words.size(), 3U);
 }
 
 TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
@@ -123,8 +117,7 @@ TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
     config.trigger_cameras = on_demand;
     Listener listener;
     FakeMachine machine(1);
-    StereoDriver driver(config, kLeftTable, kRightTable, listener);
-    driver.run(machine);
+    StereoDriver(config, kLeftTable, kRightTable, listener).run(machine);
     EXPECT_EQ(machine.triggers, on_demand ? machine.captures : 0U);
   }
 }
@@ -174,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "DMA channel 1 has met an error", 0}),
     [](const auto& tested) { return tested.param.name; });
 
-// Looks at the driver whenever it waits, or time passes with an access.
+// Calls back before each wait and each write of the driver.
 class WatchedMachine : public FakeMachine {
  public:
   using FakeMachine::FakeMachine;
@@ -190,7 +183,7 @@ class WatchedMachine : public FakeMachine {
   std::function<void()> on_write = [] {};
 };
 
-TEST(StereoDriver, SaysWhatItWaitsFor) {
+TEST(StereoDriver, NamesTheWorkThatItWaitsFor) {
   Listener listener;
   WatchedMachine machine(1);
   DriverConfig config = small(2, 2, 3);
@@ -208,43 +201,43 @@ TEST(StereoDriver, SaysWhatItWaitsFor) {
   EXPECT_THAT(texts, testing::Contains(testing::HasSubstr("read-back of frame 0")));
 }
 
-TEST(StereoDriver, FinishesWhatTheCoreHasBegunWhenItIsToStartNoMore) {
+// Stops the driver at one moment of a run, and checks that it delivers the frames that the core has begun.
+void expect_stop(std::uint64_t seed, std::uint64_t least_frames,
+                 std::function<void()> WatchedMachine::*moment,
+                 const std::function<bool(const Listener&)>& is_due) {
+  Listener listener;
+  WatchedMachine machine(seed);
+  StereoDriver driver(small(2, 2, 1'000'000), kLeftTable, kRightTable, listener);
+  std::optional<std::uint64_t> started;
+  machine.*moment = [&] {
+    if (started || !is_due(listener)) return;
+    started = driver.frames_started();
+    driver.start_no_more();
+  };
+  driver.run(machine);
+  ASSERT_TRUE(started.has_value());
+  EXPECT_GE(*started, least_frames);
+  EXPECT_EQ(machine.core_starts, *started);
+  EXPECT_EQ(listener.frames.size(), *started);
+}
+
+TEST(StereoDriver, DeliversTheStartedFramesWhenItIsToStartNoMore) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    Listener listener;
-    WatchedMachine machine(seed);
-    StereoDriver driver(small(2, 2, 1'000'000), kLeftTable, kRightTable, listener);
-    std::uint64_t started = 0;
-    machine.on_wait = [&] {
-      if (listener.frames.size() < 5 || started > 0) return;
-      started = driver.frames_started();
-      driver.start_no_more();
-    };
-    driver.run(machine);
-    EXPECT_GE(started, 5U);
-    EXPECT_EQ(machine.core_starts, started);
-    EXPECT_EQ(listener.frames.size(), started);
+    SCOPED_TRACE(seed);
+    expect_stop(seed, 5, &WatchedMachine::on_wait,
+                [](const Listener& listener) { return listener.frames.size() >= 5; });
   }
 }
 
 TEST(StereoDriver, CanBeToldToStartNoMoreDuringAnyAccess) {
   for (int moment = 20; moment < 120; ++moment) {
-    Listener listener;
-    WatchedMachine machine(7);
-    StereoDriver driver(small(2, 2, 1'000'000), kLeftTable, kRightTable, listener);
-    std::uint64_t started = 0;
+    SCOPED_TRACE(moment);
     int writes = 0;
-    machine.on_write = [&] {
-      if (++writes != moment) return;
-      started = driver.frames_started();
-      driver.start_no_more();
-    };
-    driver.run(machine);
-    EXPECT_EQ(machine.core_starts, started) << moment;
-    EXPECT_EQ(listener.frames.size(), started) << moment;
+    expect_stop(7, 0, &WatchedMachine::on_write, [&](const Listener&) { return ++writes == moment; });
   }
 }
 
-TEST(StereoDriver, UsesTheMemoryThatItSays) {
+TEST(StereoDriver, UsesJustTheHostMemoryThatItAnnounces) {
   for (const bool to_host : {false, true}) {
     DriverConfig config = small(2, 2, 8);
     config.capture_to_host = to_host;
@@ -260,30 +253,24 @@ TEST(StereoDriver, UsesTheMemoryThatItSays) {
 
 TEST(StereoDriver, RefusesAConfigurationWithProblems) {
   Listener listener;
-  const auto refused = [&](const DriverConfig& config) {
-    EXPECT_EQ(problems(config).size(), 1U);
-    EXPECT_THROW(StereoDriver(config, kLeftTable, kRightTable, listener), std::invalid_argument);
-  };
-  EXPECT_TRUE(problems(small(1, 1, 1)).empty());
-  DriverConfig config = small(1, 1, 0);
-  refused(config);
-  refused(small(0, 1, 1));
-  refused(small(1, 0, 1));
-  config = small(2, 1, 1);
-  config.buffers.right_images.pop_back();
-  refused(config);
-  config = small(1, 1, 1);
-  config.width = 6;
-  refused(config);
-  config = small(1, 1, 1);
-  config.height = 0;
-  refused(config);
-  config = small(1, 1, 1);
-  config.capture_to_host = true;
-  config.host_frames = 0;
-  refused(config);
-  EXPECT_THROW(StereoDriver(small(1, 1, 1), {1, 2, 3}, kRightTable, listener), std::invalid_argument);
-  EXPECT_THROW(StereoDriver(small(1, 1, 1), kLeftTable, {}, listener), std::invalid_argument);
+  const std::vector<std::function<void(DriverConfig&)>> changes = {
+      [](DriverConfig& config) { config.frames = 0; },
+      [](DriverConfig& config) { config.buffers.left_images = config.buffers.right_images = {}; },
+      [](DriverConfig& config) { config.buffers.disparities.clear(); },
+      [](DriverConfig& config) { config.buffers.right_images.pop_back(); },
+      [](DriverConfig& config) { config.width = 6; },
+      [](DriverConfig& config) { config.height = 0; },
+      [](DriverConfig& config) { config.capture_to_host = true, config.host_frames = 0; }};
+  const DriverConfig valid = small(2, 1, 1);
+  EXPECT_TRUE(problems(valid).empty());
+  for (std::size_t change = 0; change < changes.size(); ++change) {
+    DriverConfig config = valid;
+    changes[change](config);
+    EXPECT_EQ(problems(config).size(), 1U) << change;
+    EXPECT_THROW(StereoDriver(config, kLeftTable, kRightTable, listener), std::invalid_argument) << change;
+  }
+  EXPECT_THROW(StereoDriver(valid, {1, 2, 3}, kRightTable, listener), std::invalid_argument);
+  EXPECT_THROW(StereoDriver(valid, kLeftTable, {}, listener), std::invalid_argument);
 }
 
 }  // namespace

@@ -25,53 +25,30 @@ class DocumentFolderTest : public testing::Test {
   fs::path out_ = scratch_.path() / "parent" / "out";
 };
 
-TEST_F(DocumentFolderTest, CreatesTheFolderAndItsParents) {
+TEST_F(DocumentFolderTest, WritesAndReplacesItsFilesAndLeavesOthers) {
   write();
-  for (const auto& [name, bytes] : kContents) EXPECT_EQ(test::read_file(out_ / name), bytes);
-  EXPECT_FALSE(fs::exists(out_ / ".partial"));
-}
-
-TEST_F(DocumentFolderTest, LeavesNothingBehindWithoutACommit) {
-  { const DocumentFolder folder(out_ / "", "doc.md", {"a.csv", "a.png"}); }
-  EXPECT_FALSE(fs::exists(out_.parent_path()));
-}
-
-TEST_F(DocumentFolderTest, KeepsAnEarlierResultWithoutACommit) {
-  write();
-  { const DocumentFolder folder(out_, "doc.md", {"a.csv", "a.png"}); }
-  EXPECT_EQ(test::read_file(out_ / "a.csv"), "1");
-  EXPECT_FALSE(fs::exists(out_ / ".partial"));
-}
-
-TEST_F(DocumentFolderTest, ReplacesAnEarlierResultAndLeavesOtherFiles) {
   test::write_file(out_ / "run", "script");
   test::write_file(out_ / "doc.md", "old");
   test::write_file(out_ / "a.csv", "old");
   write();
+  for (const auto& [name, bytes] : kContents) EXPECT_EQ(test::read_file(out_ / name), bytes);
   EXPECT_EQ(test::read_file(out_ / "run"), "script");
-  EXPECT_EQ(test::read_file(out_ / "doc.md"), "3");
-  EXPECT_EQ(test::read_file(out_ / "a.csv"), "1");
 }
 
-TEST_F(DocumentFolderTest, RefusesAFileOfItsNameThatIsSomebodyElses) {
+TEST_F(DocumentFolderTest, RefusesAFileThatAnotherProgramHasWritten) {
   test::write_file(out_ / "a.csv", "mine");
   EXPECT_THAT(refusal(),
               HasSubstr("out': holds 'a.csv' but no doc.md: only what an earlier one has written"));
   EXPECT_EQ(test::read_file(out_ / "a.csv"), "mine");
 }
 
-TEST_F(DocumentFolderTest, RefusesWhatIsNoFile) {
+TEST_F(DocumentFolderTest, RefusesAFolderOfTheNameOfAFile) {
   test::write_file(out_ / "doc.md", "old");
   fs::create_directory(out_ / "a.png");
   EXPECT_THAT(refusal(), HasSubstr("holds 'a.png', which is no file"));
 }
 
-TEST_F(DocumentFolderTest, RefusesAFileInItsPlace) {
-  test::write_file(out_, "");
-  EXPECT_THAT(refusal(), HasSubstr("out': not a folder"));
-}
-
-TEST_F(DocumentFolderTest, CleansAwayWhatAKilledOneHasLeft) {
+TEST_F(DocumentFolderTest, RemovesTheFilesOfAKilledProcess) {
   test::write_file(out_ / ".partial/new/a.csv", "half");
   test::write_file(out_ / "a.csv", "old, but for its document");
   write();
@@ -79,17 +56,7 @@ TEST_F(DocumentFolderTest, CleansAwayWhatAKilledOneHasLeft) {
   EXPECT_FALSE(fs::exists(out_ / ".partial"));
 }
 
-TEST_F(DocumentFolderTest, RefusesASecondRunIntoTheFolder) {
-  {
-    DocumentFolder first(out_, "doc.md", {"a.csv", "a.png"});
-    EXPECT_EQ(refusal(), "folder '" + out_.string() + "': in use by another run");
-    first.commit(kContents);
-  }
-  EXPECT_EQ(test::read_file(out_ / "a.csv"), "1");
-  EXPECT_NO_THROW(write());
-}
-
-TEST_F(DocumentFolderTest, WritesNothingWhereSomethingOfItsNamesHasComeMeanwhile) {
+TEST_F(DocumentFolderTest, RefusesAtTheCommitWhatHasAppearedUnderItsNames) {
   test::write_file(out_ / "doc.md", "old");
   {
     DocumentFolder folder(out_, "doc.md", {"a.csv", "a.png"});
@@ -111,24 +78,12 @@ TEST_F(DocumentFolderTest, WritesNothingWhereSomethingOfItsNamesHasComeMeanwhile
   EXPECT_EQ(test::read_file(out_ / "a.csv"), "mine");
 }
 
-TEST_F(DocumentFolderTest, RefusesAPartialFolderOfSomebodyElse) {
-  test::write_file(out_ / ".partial" / "thesis.tex", "");
-  EXPECT_THAT(refusal(), HasSubstr("holds '.partial/thesis.tex'"));
-  fs::remove_all(out_ / ".partial");
-  test::write_file(out_ / ".partial", "");
-  EXPECT_THAT(refusal(), HasSubstr("holds '.partial', which is no folder"));
-}
-
 TEST_F(DocumentFolderTest, CommitsAllFilesAndNoOthers) {
   DocumentFolder folder(out_, "doc.md", {"a.csv", "a.png"});
   EXPECT_THROW(folder.commit({{"doc.md", ""}, {"a.csv", ""}}), std::invalid_argument);
   auto more = kContents;
   more["b.csv"] = "";
   EXPECT_THROW(folder.commit(more), std::invalid_argument);
-}
-
-TEST_F(DocumentFolderTest, RefusesAnEmptyName) {
-  EXPECT_THROW(DocumentFolder("", "doc.md", {}), std::runtime_error);
 }
 
 }  // namespace

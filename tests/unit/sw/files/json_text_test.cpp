@@ -38,7 +38,7 @@ TEST(JsonText, EscapesStrings) {
   EXPECT_EQ(json_text({{"a\"b", 1}}), "{\n  \"a\\\"b\": 1\n}\n");
 }
 
-TEST(JsonText, RefusesWhatJsonCannotSay) {
+TEST(JsonText, RefusesValuesThatJsonDoesNotHave) {
   EXPECT_THROW(json_text(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   EXPECT_THROW(json_text(std::numeric_limits<double>::infinity()), std::invalid_argument);
   EXPECT_THROW(json_text("\xFF"), std::invalid_argument);

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -18,13 +19,14 @@
 
 namespace {
 
-int renames_left = -1;         // so many go well; below 0: all
-bool is_killed_there = false;  // by the one after them; else it fails, and all after it
+int renames_left = -1;  // renames that succeed; below 0: all succeed
+bool is_killed_there =
+    false;  // the rename after them kills the process; otherwise it and all later ones fail
 
 }  // namespace
 
-// They take the place of those of the C library.
-extern "C" int fsync(int /*file*/) { return 0; }  // which takes its time
+// These replace the functions of the C library.
+extern "C" int fsync(int /*file*/) { return 0; }  // the real one is slow
 extern "C" int rename(const char* from, const char* to) noexcept {
   if (renames_left == 0 && is_killed_there) raise(SIGKILL);
   if (renames_left == 0) {
@@ -67,23 +69,20 @@ class OutputFolderTest : public ::testing::Test {
     folder.commit();
   }
 
-  // Writes with so many renames that go well. The process is killed by the next one.
-  test::ChildResult write_killed(int renames) const {
-    return test::run_in_child([this, renames] {
+  // Runs `work` in a process that is killed by the rename after `renames` successful ones.
+  static test::ChildResult killed(int renames, const std::function<void()>& work) {
+    return test::run_in_child([renames, &work] {
       renames_left = renames;
       is_killed_there = true;
-      write();
+      work();
       return "";
     });
   }
-  // Begins and ends without a commit; the same.
+  test::ChildResult write_killed(int renames) const {
+    return killed(renames, [this] { write(); });
+  }
   test::ChildResult begin_killed(int renames) const {
-    return test::run_in_child([this, renames] {
-      renames_left = renames;
-      is_killed_there = true;
-      const OutputFolder folder(out_, content());
-      return "";
-    });
+    return killed(renames, [this] { const OutputFolder folder(out_, content()); });
   }
 
   Files files() const {
@@ -152,20 +151,11 @@ TEST_F(OutputFolderTest, IsAsItWasAfterACommitThatFailsAnywhere) {
       EXPECT_THAT(test::message_of([this] { write(); }),
                   HasSubstr("the new files cannot be moved into place: Input/output error"));
       renames_left = -1;
-      // Nothing could be put back: nothing of it is thrown away.
+      // Nothing could be put back, so nothing may be thrown away.
       { const OutputFolder folder(out_, content()); }
       EXPECT_EQ(files(), with_note(earlier)) << renames;
     }
   }
-}
-
-TEST_F(OutputFolderTest, CommitsOnceAndWithItsMark) {
-  OutputFolder folder(out_, content());
-  folder.add("a", "new");
-  EXPECT_THROW(folder.commit(), std::logic_error);
-  folder.add("mark", "new");
-  folder.commit();
-  EXPECT_THROW(folder.commit(), std::logic_error);
 }
 
 }  // namespace

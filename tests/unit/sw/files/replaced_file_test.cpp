@@ -27,7 +27,7 @@ class ReplacedFileTest : public ::testing::Test {
   fs::path path_ = scratch_.path() / "file";
 };
 
-TEST_F(ReplacedFileTest, IsThereWholeAfterTheCommit) {
+TEST_F(ReplacedFileTest, AppearsCompleteAtTheCommit) {
   test::write_file(path_, "old");
   ReplacedFile file(path_);
   file.write("one, ");
@@ -61,7 +61,7 @@ TEST_F(ReplacedFileTest, LeavesAllOtherFilesAlone) {
   EXPECT_EQ(files(), 8);
 }
 
-TEST_F(ReplacedFileTest, WhatAKilledProcessHasLeftAsideGoes) {
+TEST_F(ReplacedFileTest, RemovesTheFileOfAKilledProcess) {
   const auto killed = test::run_in_child([this] {
     ReplacedFile file(path_);
     file.write("half");
@@ -86,7 +86,7 @@ TEST_F(ReplacedFileTest, TakesTheLongestName) {
   EXPECT_EQ(test::read_file(longest), "new");
 }
 
-TEST_F(ReplacedFileTest, TwoAtOnceDoNotMeet) {
+TEST_F(ReplacedFileTest, MayBeReplacedByTwoWritersAtOnce) {
   ReplacedFile first(path_);
   ReplacedFile second(path_);
   first.write("first");
@@ -109,7 +109,7 @@ TEST_F(ReplacedFileTest, LeavesNothingBehindWhereItFails) {
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReplacedFileTest, IsWhatALinkLeadsToAndTheLinkStays) {
+TEST_F(ReplacedFileTest, ReplacesTheTargetOfALinkAndKeepsTheLink) {
   fs::create_directory(scratch_.path() / "real");
   const fs::path target = scratch_.path() / "real" / "target";
   fs::create_symlink("real/target", scratch_.path() / "second");
@@ -124,7 +124,7 @@ TEST_F(ReplacedFileTest, IsWhatALinkLeadsToAndTheLinkStays) {
   EXPECT_THROW(replace_file(scratch_.path() / "round", ""), std::system_error);
 }
 
-TEST_F(ReplacedFileTest, HasTheModeAndTheOwnerThatItHad) {
+TEST_F(ReplacedFileTest, KeepsItsModeAndItsOwner) {
   constexpr uid_t kOther = 4711;
   struct stat now = {};
   for (const mode_t mode : {0600U, 0664U, 0755U, 0440U}) {
@@ -140,7 +140,7 @@ TEST_F(ReplacedFileTest, HasTheModeAndTheOwnerThatItHad) {
   }
 }
 
-TEST_F(ReplacedFileTest, IsARegularFile) {
+TEST_F(ReplacedFileTest, RefusesAFileThatIsNotRegular) {
   ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
   EXPECT_THROW(ReplacedFile{path_}, std::system_error);
   EXPECT_TRUE(fs::is_fifo(path_));

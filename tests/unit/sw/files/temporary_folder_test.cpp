@@ -29,7 +29,7 @@ class TemporaryFolderTest : public ::testing::Test {
   test::ScratchFolder scratch_;
 };
 
-TEST_F(TemporaryFolderTest, LiesWhereTheEnvironmentSays) {
+TEST_F(TemporaryFolderTest, LiesInTheFolderThatTheEnvironmentNames) {
   EXPECT_EQ(temporary_place().folder, "/tmp");
   for (const char* variable : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
     set(variable, scratch_.path() / variable);
@@ -40,7 +40,7 @@ TEST_F(TemporaryFolderTest, LiesWhereTheEnvironmentSays) {
   EXPECT_EQ(temporary_place().variable, "TMP");
 }
 
-TEST_F(TemporaryFolderTest, GoesWithItsFiles) {
+TEST_F(TemporaryFolderTest, IsRemovedWithItsFiles) {
   set("TMPDIR", scratch_.path());
   {
     const TemporaryFolder folder;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/support/scratch_folder.h"
 
@@ -36,6 +38,12 @@ cv::Mat noise(int type) {
 }
 
 std::vector<std::uint8_t> pixels_of(const cv::Mat& grey) { return {grey.datastart, grey.dataend}; }
+
+std::vector<std::uint8_t> grey_pixels_of(const cv::Mat& colour) {
+  cv::Mat grey;
+  cv::cvtColor(colour, grey, cv::COLOR_BGR2GRAY);
+  return pixels_of(grey);
+}
 
 // PNG: length, type, data, CRC-32 of type and data.
 std::string png_chunk(const std::string& type, const std::string& data) {
@@ -94,17 +102,16 @@ TEST_F(LoadTest, TakesGreyJpegAsOpenCVDecodesIt) {
     const std::string bytes = encoded(".jpg", noise(CV_8UC1), {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
     const cv::Mat expected = cv::imread(file(bytes), cv::IMREAD_UNCHANGED);
     EXPECT_EQ(load_gray(file(bytes)).image.pixels, pixels_of(expected));
+    EXPECT_EQ(load_gray(file(bytes + "appended")).image.pixels, pixels_of(expected));
   }
 }
 
 TEST_F(LoadTest, ConvertsColourWithBgr2Gray) {
   const cv::Mat picture = noise(CV_8UC3);
-  cv::Mat expected;
-  cv::cvtColor(picture, expected, cv::COLOR_BGR2GRAY);
   for (const char* extension : {".png", ".bmp", ".ppm", ".tiff"}) {
     const LoadedGray loaded = load_gray(file(encoded(extension, picture)));
     EXPECT_TRUE(loaded.converted_from_colour) << extension;
-    EXPECT_EQ(loaded.image.pixels, pixels_of(expected)) << extension;
+    EXPECT_EQ(loaded.image.pixels, grey_pixels_of(picture)) << extension;
   }
 }
 
@@ -119,15 +126,11 @@ TEST_F(LoadTest, TakesAPaletteAsColour) {
   const std::string png = encoded(".png", picture);
   const LoadedGray loaded = load_gray(file(png_with(png, png_chunk("PLTE", palette), 3)));
   EXPECT_TRUE(loaded.converted_from_colour);
-  cv::Mat expected;
   cv::Mat colours(picture.size(), CV_8UC3);
-  for (int i = 0; i < kWidth * kHeight; ++i) {
-    const std::uint8_t level = picture.at<std::uint8_t>(i / kWidth, i % kWidth);
-    colours.at<cv::Vec3b>(i / kWidth, i % kWidth) =
-        cv::Vec3b(static_cast<std::uint8_t>(255 - level), 0, level);
-  }
-  cv::cvtColor(colours, expected, cv::COLOR_BGR2GRAY);
-  EXPECT_EQ(loaded.image.pixels, pixels_of(expected));
+  std::transform(
+      picture.begin<std::uint8_t>(), picture.end<std::uint8_t>(), colours.begin<cv::Vec3b>(),
+      [](std::uint8_t level) { return cv::Vec3b(static_cast<std::uint8_t>(255 - level), 0, level); });
+  EXPECT_EQ(loaded.image.pixels, grey_pixels_of(colours));
 
   const LoadedGray of_greys = load_gray(file(png_with(png, png_chunk("PLTE", greys), 3)));
   EXPECT_TRUE(of_greys.converted_from_colour);
@@ -148,46 +151,40 @@ TEST_F(LoadTest, DoesNotTurnByExifOrientation) {
   EXPECT_EQ(load_gray(path).image.pixels, load_gray(file(jpeg)).image.pixels);
 }
 
-TEST_F(LoadTest, RefusesAlpha) {
-  const char* rule = ": a picture must be 8-bit grey or 8-bit colour, without alpha";
-  EXPECT_EQ(refusal_of_bytes(encoded(".png", noise(CV_8UC4))), std::string("8-bit colour with alpha") + rule);
-  EXPECT_THAT(refusal_of_bytes(encoded(".tiff", noise(CV_8UC4))), HasSubstr("8-bit colour with alpha"));
-  EXPECT_THAT(refusal_of_bytes(encoded(".webp", noise(CV_8UC4))), HasSubstr("8-bit colour with alpha"));
+TEST_F(LoadTest, RefusesPixelsThatAreNotEightBitGreyOrColour) {
+  EXPECT_EQ(refusal_of_bytes(encoded(".png", noise(CV_8UC4))),
+            "8-bit colour with alpha: a picture must be 8-bit grey or 8-bit colour, without alpha");
   const std::string png = encoded(".png", noise(CV_8UC1));
   const std::string palette = png_chunk("PLTE", std::string(768, 'p'));
-  EXPECT_THAT(refusal_of_bytes(png_with(png, png_chunk("tRNS", std::string(2, '\0')))), HasSubstr("tRNS"));
-  EXPECT_THAT(refusal_of_bytes(png_with(png, palette + png_chunk("tRNS", "tr"), 3)), HasSubstr("alpha"));
-}
-
-TEST_F(LoadTest, RefusesSixteenBitsAndFloats) {
-  for (const char* extension : {".png", ".tiff", ".pgm"}) {
-    EXPECT_THAT(refusal_of_bytes(encoded(extension, noise(CV_16UC1))), HasSubstr("16-bit grey: "))
-        << extension;
-  }
-  EXPECT_THAT(refusal_of_bytes(encoded(".png", noise(CV_16UC3))), HasSubstr("16-bit colour: "));
-  EXPECT_THAT(refusal_of_bytes(encoded(".tiff", noise(CV_32FC1))), HasSubstr("float grey: "));
-  EXPECT_THAT(refusal_of_bytes(encoded(".pfm", noise(CV_32FC1))), HasSubstr("float grey: "));
-}
-
-TEST_F(LoadTest, RefusesGreyThatOpenCVWouldStretch) {
-  EXPECT_THAT(refusal_of_bytes(encoded(".png", noise(CV_8UC1), {cv::IMWRITE_PNG_BILEVEL, 1})),
-              HasSubstr("1-bit grey"));
-  EXPECT_THAT(refusal_of_bytes("P2\n2 1\n100\n0 50\n"), HasSubstr("a maximum level of 100: "));
-  EXPECT_THAT(refusal_of_bytes("P5\n# 255\n2 1\n254\nab"), HasSubstr("a maximum level of 254: "));
-  EXPECT_THAT(refusal_of_bytes("P1\n4 1\n0 1 1 0\n"), HasSubstr("1-bit black and white"));
-  EXPECT_THAT(refusal_of_bytes("P7\nWIDTH 2\nHEIGHT 1\nDEPTH 1\nMAXVAL 15\nTUPLTYPE GRAYSCALE\nENDHDR\nab"),
-              HasSubstr("a maximum level of 15: "));
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {encoded(".tiff", noise(CV_8UC4)), "8-bit colour with alpha"},
+      {encoded(".webp", noise(CV_8UC4)), "8-bit colour with alpha"},
+      {png_with(png, png_chunk("tRNS", std::string(2, '\0'))), "tRNS"},
+      {png_with(png, palette + png_chunk("tRNS", "tr"), 3), "alpha"},
+      {encoded(".png", noise(CV_16UC1)), "16-bit grey: "},
+      {encoded(".tiff", noise(CV_16UC1)), "16-bit grey: "},
+      {encoded(".pgm", noise(CV_16UC1)), "16-bit grey: "},
+      {encoded(".png", noise(CV_16UC3)), "16-bit colour: "},
+      {encoded(".tiff", noise(CV_32FC1)), "float grey: "},
+      {encoded(".pfm", noise(CV_32FC1)), "float grey: "},
+      // OpenCV would stretch these greys, and would read the raster as black.
+      {encoded(".png", noise(CV_8UC1), {cv::IMWRITE_PNG_BILEVEL, 1}), "1-bit grey"},
+      {"P2\n2 1\n100\n0 50\n", "a maximum level of 100: "},
+      {"P5\n# 255\n2 1\n254\nab", "a maximum level of 254: "},
+      {"P1\n4 1\n0 1 1 0\n", "1-bit black and white"},
+      {"P7\nWIDTH 2\nHEIGHT 1\nDEPTH 1\nMAXVAL 15\nTUPLTYPE GRAYSCALE\nENDHDR\nab",
+       "a maximum level of 15: "},
+      {encoded(".ras", noise(CV_8UC1)), "a Sun raster without colour map: "},
+      {"", "an empty file: "},
+      {"x", "not a picture in a format that is read: a picture must be PNG, "},
+      {std::string(5000, 't'), "not a picture in a format that is read: a picture must be PNG, "}};
+  for (const auto& [bytes, message] : refused) EXPECT_THAT(refusal_of_bytes(bytes), HasSubstr(message));
   EXPECT_EQ(load_gray(file("P5\n# 100\n2 1\n255\nab")).image.pixels, (std::vector<std::uint8_t>{'a', 'b'}));
   EXPECT_EQ(load_gray(file("P2\n2 1\n255\n0 50\n")).image.pixels, (std::vector<std::uint8_t>{0, 50}));
-}
-
-TEST_F(LoadTest, RefusesASunRasterThatOpenCVWouldReadAsBlack) {
-  EXPECT_THAT(refusal_of_bytes(encoded(".ras", noise(CV_8UC1))),
-              HasSubstr("a Sun raster without colour map: "));
   EXPECT_TRUE(load_gray(file(encoded(".ras", noise(CV_8UC3)))).converted_from_colour);
 }
 
-TEST_F(LoadTest, RefusesWhatIsNotAReadableFile) {
+TEST_F(LoadTest, RefusesAPathThatIsNotAReadableFile) {
   const std::string missing = scratch_.path() / "missing.png";
   EXPECT_EQ(refusal(missing), "'" + missing + "': no such file: a picture must be a readable regular file");
   EXPECT_THAT(refusal(scratch_.path()), HasSubstr("': a directory: "));
@@ -195,14 +192,6 @@ TEST_F(LoadTest, RefusesWhatIsNotAReadableFile) {
   const std::string pipe = scratch_.path() / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_THAT(refusal(pipe), HasSubstr("': not a regular file: "));
-}
-
-TEST_F(LoadTest, RefusesWhatIsNotAPicture) {
-  EXPECT_THAT(refusal_of_bytes(""), HasSubstr("an empty file: "));
-  EXPECT_THAT(refusal_of_bytes("x"),
-              HasSubstr("not a picture in a format that is read: a picture must be PNG, "));
-  EXPECT_THAT(refusal_of_bytes(std::string(5000, 't')),
-              HasSubstr("not a picture in a format that is read: a picture must be PNG, "));
 }
 
 // Every prefix of a file either lacks pixels, and is refused, or holds them all, and gives the same picture.
@@ -248,18 +237,13 @@ TEST_F(LoadTest, RefusesATruncatedFileOfAnyFormat) {
   }
 }
 
-TEST_F(LoadTest, SaysThatATruncatedFileIsTruncated) {
+TEST_F(LoadTest, ReportsATruncatedFile) {
   const std::string expected = "truncated or damaged: a picture must be complete";
   for (const char* extension : {".png", ".jpg", ".bmp"}) {
     const std::string whole = encoded(extension, noise(CV_8UC1));
     EXPECT_EQ(refusal_of_bytes(whole.substr(0, whole.size() / 2)), expected) << extension;
     EXPECT_EQ(refusal_of_bytes(whole.substr(0, whole.size() - 1)), expected) << extension;
   }
-}
-
-TEST_F(LoadTest, TakesAJpegWithBytesBehindItsEnd) {
-  const std::string jpeg = encoded(".jpg", noise(CV_8UC1));
-  EXPECT_EQ(load_gray(file(jpeg + "appended")).image, load_gray(file(jpeg)).image);
 }
 
 TEST_F(LoadTest, RefusesATruncatedJpegThatHoldsAWholePreview) {
@@ -283,7 +267,7 @@ TEST_F(LoadTest, RefusesDamagedFiles) {
   EXPECT_THAT(refusal_of_bytes(png), HasSubstr("damaged"));
 }
 
-TEST_F(LoadTest, RefusesAPictureThatIsLargerThanABoardsByItsHeader) {
+TEST_F(LoadTest, RefusesAPictureWhoseHeaderExceedsABoardsImages) {
   struct Format {
     const char* extension;
     std::vector<int> parameters;
@@ -315,7 +299,7 @@ TEST_F(LoadTest, RefusesAPictureThatIsLargerThanABoardsByItsHeader) {
   }
 }
 
-// The pixels alone would take gigabytes.
+// The pixels of these pictures would take gigabytes.
 TEST_F(LoadTest, DecodesNothingOfAPictureThatIsTooLarge) {
   const std::string png = encoded(".png", noise(CV_8UC1));
   std::string header = png.substr(16, 13);
@@ -358,29 +342,22 @@ TEST_F(LoadTest, ReadsNothingOfAFileThatIsTooLong) {
   EXPECT_EQ(refusal(path), "'" + path + "': 1099511627776 bytes: a picture must have 67108864 at most");
 }
 
-TEST_F(LoadTest, TruthIsGreyWithItsScale) {
+TEST_F(LoadTest, LoadsTruthAsGreyWithAPositiveScale) {
   const cv::Mat picture = noise(CV_8UC1);
-  const Truth truth = load_truth(file(encoded(".png", picture)), 2.5);
+  const std::string path = file(encoded(".png", picture));
+  const Truth truth = load_truth(path, 2.5);
   EXPECT_EQ(truth.grey.pixels, pixels_of(picture));
   EXPECT_EQ(truth.grey.width, kWidth);
   EXPECT_EQ(truth.scale, 2.5);
-}
-
-TEST_F(LoadTest, TruthMayNotBeColourNorSixteenBit) {
-  const auto refused = [this](const cv::Mat& picture) {
-    const std::string path = file(encoded(".png", picture));
-    return test::message_of([&] { load_truth(path, 1); });
-  };
-  EXPECT_THAT(refused(noise(CV_8UC3)), HasSubstr("': 8-bit colour: ground truth must be 8-bit grey"));
-  EXPECT_THAT(refused(noise(CV_16UC1)), HasSubstr("': 16-bit grey: "));
-}
-
-TEST_F(LoadTest, TruthNeedsAPositiveScale) {
-  const std::string path = file(encoded(".png", noise(CV_8UC1)));
-  for (const double scale : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(load_truth(path, scale), std::invalid_argument) << scale;
-  }
   EXPECT_NO_THROW(load_truth(path, 1e-3));
+  for (const double scale : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    EXPECT_THROW(load_truth(path, scale), std::invalid_argument) << scale;
+  const auto refused = [this](int type) {
+    const std::string other = file(encoded(".png", noise(type)));
+    return test::message_of([&] { load_truth(other, 1); });
+  };
+  EXPECT_THAT(refused(CV_8UC3), HasSubstr("': 8-bit colour: ground truth must be 8-bit grey"));
+  EXPECT_THAT(refused(CV_16UC1), HasSubstr("': 16-bit grey: "));
 }
 
 }  // namespace

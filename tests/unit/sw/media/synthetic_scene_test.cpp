@@ -45,7 +45,7 @@ TEST(SyntheticScene, IsTheSameOnEveryMachine) {
   EXPECT_EQ(sum_of(SyntheticScene(1, 640, 480, 80).frame(1'000'000)), 16971989517634503416U);
 }
 
-TEST(SyntheticScene, ShowsWhatBothCamerasSeeWhereTheDisparitySays) {
+TEST(SyntheticScene, ShiftsWhatBothCamerasSeeByTheDisparity) {
   for (const auto& [width, height, disparities] :
        {std::array{64, 48, 16}, {320, 240, 60}, {4, 1, 2}, {2048, 2, 254}, {8, 100, 254}, {160, 120, 1}}) {
     for (const std::uint64_t number : {0U, 1U, 17U}) {
@@ -61,7 +61,7 @@ TEST(SyntheticScene, ShowsWhatBothCamerasSeeWhereTheDisparitySays) {
   }
 }
 
-TEST(SyntheticScene, IsAnsweredByTheBoardsArithmetic) {
+TEST(SyntheticScene, IsMatchedByTheBoardsArithmetic) {
   for (const auto& [width, height, disparities] :
        {std::array{320, 240, 40}, {640, 480, 80}, {160, 120, 20}}) {
     for (const std::uint64_t number : {0U, 40U}) {
@@ -98,11 +98,9 @@ TEST(SyntheticScene, HasSeveralDepthsWithinTheCandidates) {
     }
   }
   EXPECT_THAT(SyntheticScene(1, 640, 480, 1).frame(0).disparity.pixels, Each(0));
-}
-
-TEST(SyntheticScene, KeepsDisparitiesBelowAQuarterOfTheWidth) {
-  const GrayImage truth = SyntheticScene(1, 64, 48, 254).frame(0).disparity;
-  EXPECT_EQ(*std::max_element(truth.pixels.begin(), truth.pixels.end()), 16);
+  // Disparities stay below a quarter of the width.
+  const GrayImage narrow = SyntheticScene(1, 64, 48, 254).frame(0).disparity;
+  EXPECT_EQ(*std::max_element(narrow.pixels.begin(), narrow.pixels.end()), 16);
 }
 
 TEST(SyntheticScene, HasOcclusions) {
@@ -126,7 +124,7 @@ TEST(SyntheticScene, MovesFromEachFrameToTheNext) {
   }
 }
 
-TEST(SyntheticScene, CanBeAskedForAnyFrameInAnyOrder) {
+TEST(SyntheticScene, GivesItsFramesInAnyOrder) {
   const SyntheticScene scene(3, 64, 48, 16);
   const std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
   const std::uint64_t sum = sum_of(scene.frame(last));
@@ -153,14 +151,16 @@ TEST(SyntheticScene, IsNeverFlat) {
   }
 }
 
-TEST(SyntheticScene, RefusesWhatNoBoardHas) {
-  EXPECT_THROW(SyntheticScene(0, 66, 48, 16), std::invalid_argument);
-  EXPECT_THROW(SyntheticScene(0, 0, 48, 16), std::invalid_argument);
-  EXPECT_THROW(SyntheticScene(0, 2052, 48, 16), std::invalid_argument);
-  EXPECT_THROW(SyntheticScene(0, 64, 0, 16), std::invalid_argument);
-  EXPECT_THROW(SyntheticScene(0, 64, 2049, 16), std::invalid_argument);
-  EXPECT_THROW(SyntheticScene(0, 64, 48, 0), std::invalid_argument);
-  EXPECT_THROW(SyntheticScene(0, 64, 48, 255), std::invalid_argument);
+TEST(SyntheticScene, RefusesSizesThatNoBoardHas) {
+  for (const auto& [width, height, disparities] : {std::array{66, 48, 16},
+                                                   {0, 48, 16},
+                                                   {2052, 48, 16},
+                                                   {64, 0, 16},
+                                                   {64, 2049, 16},
+                                                   {64, 48, 0},
+                                                   {64, 48, 255}})
+    EXPECT_THROW(SyntheticScene(0, width, height, disparities), std::invalid_argument)
+        << width << ' ' << height;
   EXPECT_NO_THROW(SyntheticScene(0, 4, 1, 1));
   EXPECT_NO_THROW(SyntheticScene(0, 2048, 2048, 254));
 }

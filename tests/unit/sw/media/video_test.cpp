@@ -62,6 +62,10 @@ class VideoTest : public ::testing::Test {
     return message.substr(std::min(message.size(), path.size() + 4));
   }
 
+  std::string refusal_of_bytes(const std::string& name, const std::string& bytes) const {
+    return refusal(test::write_file(path(name), bytes));
+  }
+
   test::ScratchFolder scratch_;
 };
 
@@ -143,32 +147,31 @@ TEST_F(VideoTest, TakesAPathWithAColonForAPath) {
   std::filesystem::current_path(earlier);
 }
 
-TEST_F(VideoTest, RefusesWhatIsNoRegularFile) {
+TEST_F(VideoTest, RefusesAFileThatIsNoVideo) {
   EXPECT_THAT(refusal(path("none.avi")), StartsWith("no such file: a video must be a readable regular file"));
   EXPECT_THAT(refusal(scratch_.path()), StartsWith("a directory: "));
   EXPECT_THAT(test::message_of([] { open_video("http://localhost/x.avi"); }), HasSubstr("no such file"));
-}
-
-TEST_F(VideoTest, RefusesWhatIsNoVideo) {
   const std::string rule =
       ": a video must be an AVI, Matroska, WebM, MP4, MPEG, Ogg, ASF, FLV or Y4M file that FFmpeg decodes";
-  EXPECT_EQ(refusal(test::write_file(path("text.avi"), std::string(5000, 't'))), "no video" + rule);
-  EXPECT_EQ(refusal(test::write_file(path("empty.avi"), "")), "no video" + rule);
+  EXPECT_EQ(refusal_of_bytes("text.avi", std::string(5000, 't')), "no video" + rule);
+  EXPECT_EQ(refusal_of_bytes("empty.avi", ""), "no video" + rule);
   cv::imwrite(path("picture.png"), noise(1, CV_8UC3));
   EXPECT_THAT(refusal(path("picture.png")), HasSubstr(rule));
+  const std::string avi = test::read_file(written("m.avi", "MJPG", 1));
+  EXPECT_THAT(refusal_of_bytes("none.avi", avi.substr(0, avi.find("movi") + 4)),
+              StartsWith("no frame can be decoded: "));
 }
 
-TEST_F(VideoTest, RefusesAPlaylistWhoseFilesNobodyHasNamed) {
+TEST_F(VideoTest, RefusesAPlaylistBecauseItNamesOtherFiles) {
   written("a.mp4", "mp4v", 2);
-  EXPECT_THAT(refusal(test::write_file(path("list.txt"), "ffconcat version 1.0\nfile a.mp4\n")),
+  EXPECT_THAT(refusal_of_bytes("list.txt", "ffconcat version 1.0\nfile a.mp4\n"),
               StartsWith("'[concat] Format not on whitelist"));
-  EXPECT_THAT(refusal(test::write_file(path("list.m3u8"),
-                                       "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXTINF:1,\na.mp4\n"
-                                       "#EXT-X-ENDLIST\n")),
-              StartsWith("'[hls] Format not on whitelist"));
+  EXPECT_THAT(
+      refusal_of_bytes("list.m3u8", "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXTINF:1,\na.mp4\n#EXT-X-ENDLIST\n"),
+      StartsWith("'[hls] Format not on whitelist"));
 }
 
-TEST_F(VideoTest, LooksAtTheSizeBeforeItDecodesAFrame) {
+TEST_F(VideoTest, ChecksTheSizeBeforeItDecodesAFrame) {
   const std::string large = written("large.avi", "FFV1", 1, CV_8UC1, {4098, 32});
   EXPECT_EQ(refusal(large), "4098x32 pixels: two of a board's images are 4096x4096 at most");
   EXPECT_EQ(open_video(written("wide.avi", "FFV1", 1, CV_8UC1, {4096, 32}))->width(), 4096);
@@ -187,23 +190,19 @@ TEST_F(VideoTest, ReservesNoMemoryForAFrameThatIsLargerThanTheHeaderSays) {
   const std::size_t at = bytes.rfind("IHDR");
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at + 4, 8, std::string("\0\0\x3E\x80\0\0\x3E\x80", 8));  // 16000x16000
-  EXPECT_THAT(refusal(test::write_file(path("png.avi"), bytes)), StartsWith("'[png] get_buffer() failed'"));
+  EXPECT_THAT(refusal_of_bytes("png.avi", bytes), StartsWith("'[png] get_buffer() failed'"));
 }
 
-TEST_F(VideoTest, RefusesADamagedVideo) {
-  std::string bytes = test::read_file(written("h.mp4", "avc1", 10));
-  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 500; ++i)
-    bytes[i] = static_cast<char>(bytes[i] ^ 0x55);
-  EXPECT_THAT(refusal(test::write_file(path("h.mp4"), bytes)),
+TEST_F(VideoTest, RefusesADamagedOrTruncatedVideoWhereFFmpegReportsIt) {
+  std::string damaged = test::read_file(written("h.mp4", "avc1", 10));
+  for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 500; ++i)
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
+  EXPECT_THAT(refusal_of_bytes("h.mp4", damaged),
               AllOf(StartsWith("'[h264] "), HasSubstr("': a video must decode without errors")));
-}
-
-TEST_F(VideoTest, RefusesATruncatedVideoWhereFFmpegNotices) {
   const std::string mp4 = test::read_file(written("p.mp4", "mp4v", 10));
-  EXPECT_THAT(refusal(test::write_file(path("p.mp4"), mp4.substr(0, mp4.size() / 2))),
-              HasSubstr("moov atom not found"));
+  EXPECT_THAT(refusal_of_bytes("p.mp4", mp4.substr(0, mp4.size() / 2)), HasSubstr("moov atom not found"));
   const std::string mkv = test::read_file(written("f.mkv", "FFV1", 10));
-  EXPECT_THAT(refusal(test::write_file(path("f.mkv"), mkv.substr(0, mkv.size() / 2))),
+  EXPECT_THAT(refusal_of_bytes("f.mkv", mkv.substr(0, mkv.size() / 2)),
               StartsWith("'[matroska,webm] File ended prematurely': a video must decode without errors"));
 }
 
@@ -220,29 +219,24 @@ TEST_F(VideoTest, LeavesOutTheFrameInWhichAnAviIsCut) {
   }
 }
 
-TEST_F(VideoTest, RefusesAVideoWithoutFrames) {
-  std::string bytes = test::read_file(written("m.avi", "MJPG", 1));
-  bytes = bytes.substr(0, bytes.find("movi") + 4);
-  EXPECT_THAT(refusal(test::write_file(path("none.avi"), bytes)), StartsWith("no frame can be decoded: "));
-}
-
-TEST_F(VideoTest, SaysThatAFrameIsNotThereAnyMore) {
+TEST_F(VideoTest, ReportsAFrameThatHasDisappeared) {
   const std::string file = written("m.avi", "MJPG", 10);
   const auto video = open_video(file);
   EXPECT_EQ(video->frame(0).width, kSize.width);
   std::filesystem::remove(file);
-  EXPECT_EQ(test::message_of([&] {
-              video->frame(9);
-              video->frame(5);  // opens the file again
-            }),
+  const auto refusal_of_frame = [&](std::uint64_t frame) {
+    return test::message_of([&] { video->frame(frame); });
+  };
+  video->frame(9);  // an earlier frame needs the file again
+  EXPECT_EQ(refusal_of_frame(5),
             "'" + file + "': frame 5 cannot be decoded any more: a video must not change during a run");
   test::write_file(file, "");
-  EXPECT_THAT(test::message_of([&] { video->frame(0); }), HasSubstr("frame 0 cannot be decoded any more"));
+  EXPECT_THAT(refusal_of_frame(0), HasSubstr("frame 0 cannot be decoded any more"));
   written("m.avi", "MJPG", 3);
   EXPECT_EQ(video->frame(2).width, kSize.width);
-  EXPECT_THAT(test::message_of([&] { video->frame(3); }), HasSubstr("frame 3 cannot be decoded any more"));
+  EXPECT_THAT(refusal_of_frame(3), HasSubstr("frame 3 cannot be decoded any more"));
   written("m.avi", "MJPG", 3, CV_8UC3, {32, 24});
-  EXPECT_THAT(test::message_of([&] { video->frame(0); }), HasSubstr("frame 0 cannot be decoded any more"));
+  EXPECT_THAT(refusal_of_frame(0), HasSubstr("frame 0 cannot be decoded any more"));
 }
 
 }  // namespace

@@ -10,8 +10,10 @@
 namespace stereotlm::paper {
 namespace {
 
-TEST(Claims, AreOfSoundBoards) {
+TEST(Claims, HaveUniqueNamesAndValidBoards) {
+  std::set<std::string> names;
   for (const Claim& claim : claims()) {
+    EXPECT_TRUE(names.insert(claim.name).second) << claim.name;
     EXPECT_FALSE(claim.cases.empty()) << claim.name;
     for (const Case& one : claim.cases) {
       EXPECT_FALSE(one.runs.empty()) << one.name;
@@ -20,12 +22,7 @@ TEST(Claims, AreOfSoundBoards) {
   }
 }
 
-TEST(Claims, HaveNamesOfTheirOwn) {
-  std::set<std::string> names;
-  for (const Claim& claim : claims()) EXPECT_TRUE(names.insert(claim.name).second) << claim.name;
-}
-
-TEST(Claims, OfTheWholeComputerBeginWithTheBoardThatThePaperSaysIsNeeded) {
+TEST(Claims, OfTheWholeComputerBeginWithThePapersBoard) {
   int found = 0;
   for (const Claim& claim : claims()) {
     if (claim.quantity != Quantity::kBanksFound) continue;

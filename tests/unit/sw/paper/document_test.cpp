@@ -54,32 +54,27 @@ std::size_t longest_line(const std::string& text) {
   return longest;
 }
 
-TEST(Document, DoubtsNoRowThatAgrees) { EXPECT_THAT(document(as_printed()), Not(HasSubstr("doubt"))); }
-
-TEST(Document, DoubtsARowThatNeedsAnotherClockThanTheOthers) {
+TEST(Document, DoubtsOnlyARowThatNeedsAnotherClockThanTheOthers) {
   Findings findings = as_printed();
+  EXPECT_THAT(document(findings), Not(HasSubstr("doubt")));
   refute(findings, "table1", 4, 18.6);  // 7x7, printed 18.9
   const std::string text = document(findings);
   EXPECT_THAT(text, HasSubstr("The row of 7x7 deviates by 1.6 %. Reasons to doubt the printed 18.9:"));
   EXPECT_THAT(text, HasSubstr("- It needs 40.54 .. 40.75 MHz, which the rows that agree exclude."));
   EXPECT_THAT(text, HasSubstr("at their clock it would print 18.6 here"));
   EXPECT_THAT(text, HasSubstr("one pixel a cycle and 7 reads of each:\n  40e6 / (640 * 480 * 7) = 18.601."));
-}
-
-TEST(Document, HasNoSuchReasonWhereTheClocksAgree) {
-  Findings findings = as_printed();
   refute(findings, "table1", 4, 18.85);
   EXPECT_THAT(document(findings), Not(HasSubstr("which the rows that agree exclude")));
 }
 
-TEST(Document, HasThePapersOwnRuleOnlyAgainstWhatIsAboveIt) {
+TEST(Document, QuotesThePapersOwnRuleOnlyAgainstARateAboveIt) {
   Findings findings = as_printed();
   refute(findings, "table1", 3, 14.3);  // 9x9, printed 14.5: less than 40e6 / (640 * 480 * 9)
   EXPECT_THAT(document(findings), HasSubstr("The row of 9x9 deviates"));
   EXPECT_THAT(document(findings), Not(HasSubstr("the paper's own rule")));
 }
 
-TEST(Document, SaysWhatTheBanksShow) {
+TEST(Document, ConcludesWhetherTheBanksAreNeeded) {
   Findings findings = as_printed();
   EXPECT_THAT(document(findings), HasSubstr("needs 8 banks, just the paper's 8."));
   EXPECT_THAT(document(findings), HasSubstr("None of these gives with fewer banks what 8 give"));

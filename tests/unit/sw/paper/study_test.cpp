@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "platform/config/board_rules.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -67,15 +67,13 @@ TEST(Study, TakesTheRateOfTheFirstRunWithItsBound) {
   EXPECT_EQ(found.runs.at(0).bound, 61);
   EXPECT_EQ(found.runs.at(0).limited_by, "matcher");
   EXPECT_EQ(found.runs.at(1).rate, 84);
-}
-
-TEST(Study, TakesOfTheComputerTheRateBetweenDeliveries) {
-  const CaseFinding found = only(claim_of(Quantity::kRate, 56, {run_of("matcher.window=7", true)}));
-  EXPECT_EQ(found.modelled, 54);
-  EXPECT_EQ(found.verdict, Verdict::kNotConfirmed);
-  EXPECT_EQ(found.runs.at(0).delivered, 53);
-  EXPECT_EQ(found.runs.at(0).bound, 56);
-  EXPECT_EQ(found.runs.at(0).limited_by, "camera");
+  // The rate of a computer is the one between deliveries.
+  const CaseFinding computer = only(claim_of(Quantity::kRate, 56, {run_of("matcher.window=7", true)}));
+  EXPECT_EQ(computer.modelled, 54);
+  EXPECT_EQ(computer.verdict, Verdict::kNotConfirmed);
+  EXPECT_EQ(computer.runs.at(0).delivered, 53);
+  EXPECT_EQ(computer.runs.at(0).bound, 56);
+  EXPECT_EQ(computer.runs.at(0).limited_by, "camera");
 }
 
 TEST(Study, ComparesRatesAndAreas) {
@@ -89,31 +87,28 @@ TEST(Study, FindsTheFewestBanksThatReachTheFirstRun) {
   const BoardRun all = {"fpl2003", {}, true};
   const BoardRun seven = {"fpl2003", {"allocation.disparity=[bank4, bank4]"}, true};
   const BoardRun slow = {"fpl2003", {"allocation.left_lut=bank4", "allocation.right_lut=bank5"}, true};
-  Claim claim = claim_of(Quantity::kBanksFound, 8, {all, seven, slow});
-  EXPECT_EQ(only(claim).modelled, 7);
-  EXPECT_EQ(only(claim).verdict, Verdict::kNotConfirmed);
-  claim.cases[0].runs.erase(claim.cases[0].runs.begin() + 1);
-  EXPECT_EQ(only(claim).modelled, 8);
-  EXPECT_EQ(only(claim).verdict, Verdict::kOpen);
-}
-
-TEST(Study, HasARowForEachAllocationOfTheComputer) {
-  const BoardRun all = {"fpl2003", {}, true};
-  const BoardRun seven = {"fpl2003", {"allocation.disparity=[bank4, bank4]"}, true};
-  const Findings found = study({claim_of(Quantity::kBanksFound, 8, {all, seven})}, means()).value();
-  ASSERT_EQ(found.banks.size(), 2U);
-  EXPECT_EQ(found.banks[0].banks, 7);
-  EXPECT_EQ(found.banks[0].allocations, std::nullopt);
-  EXPECT_EQ(found.banks[0].command,
+  const CaseFinding open = only(claim_of(Quantity::kBanksFound, 8, {all, slow}));
+  EXPECT_EQ(open.modelled, 8);
+  EXPECT_EQ(open.verdict, Verdict::kOpen);
+  const Findings found = study({claim_of(Quantity::kBanksFound, 8, {all, seven, slow})}, means()).value();
+  EXPECT_EQ(found.of("one").cases.at(0).modelled, 7);
+  EXPECT_EQ(found.of("one").cases.at(0).verdict, Verdict::kNotConfirmed);
+  // A row for each allocation.
+  ASSERT_EQ(found.banks.size(), 3U);
+  const auto row = std::find_if(found.banks.begin(), found.banks.end(),
+                                [](const BankRow& bank_row) { return bank_row.banks == 7; });
+  ASSERT_NE(row, found.banks.end());
+  EXPECT_EQ(row->allocations, std::nullopt);
+  EXPECT_EQ(row->command,
             "stereotlm run fpl2003 --set 'allocation.disparity=[bank4, bank4]' --timing-only --frames 13");
-  EXPECT_THAT(found.banks[0].allocation, HasSubstr("disparity bank4 bank4, left_lut bank6"));
-  EXPECT_EQ(found.banks[1].banks, 8);
+  EXPECT_THAT(row->allocation, HasSubstr("disparity bank4 bank4, left_lut bank6"));
+  EXPECT_EQ(found.banks.back().banks, 8);
 }
 
 // The core of a board whose frames are independent: a cycle for each buffer beside another one in its bank.
 explore::Figures made_up_frame(const explore::Point& point) {
   std::map<std::string, int> buffers;
-  for (const platform::Buffer& buffer : platform::buffers(point.board->allocation)) ++buffers[buffer.bank];
+  for (const platform::PlacedBuffer& buffer : platform::buffers(point.board->allocation)) ++buffers[buffer.bank];
   std::int64_t cycles = 1'000'000;
   for (const auto& [bank, count] : buffers) cycles += 1'000 * (count - 1);
   explore::Figures figures;
@@ -140,6 +135,7 @@ TEST(Study, ProvesHowFewBanksReachTheBestRate) {
   // Two pictures and a result in banks of their own.
   EXPECT_EQ(found.of("one").cases.at(0).modelled, 3);
   EXPECT_EQ(found.of("one").verdict, Verdict::kNotConfirmed);
+  EXPECT_THROW(found.of("nothing"), std::out_of_range);
   ASSERT_EQ(found.banks.size(), 6U);
   EXPECT_EQ(found.banks[2].banks, 3);
   EXPECT_EQ(found.banks[2].allocations, 90U);
@@ -148,7 +144,7 @@ TEST(Study, ProvesHowFewBanksReachTheBestRate) {
   EXPECT_EQ(found.banks[2].measured.rate, found.banks[5].measured.rate);
 }
 
-TEST(Study, SimulatesWhatIsAskedForTwiceOnce) {
+TEST(Study, SimulatesABoardOfTwoClaimsOnce) {
   Means counting = means();
   std::uint64_t total = 0;
   counting.keep_going = [&total](std::uint64_t done, std::uint64_t most_left) {
@@ -194,27 +190,20 @@ TEST(Study, CountsTheBoardsOfAllSearchesAndRuns) {
   EXPECT_TRUE(std::is_sorted(left.rbegin(), left.rend()));
 }
 
-TEST(Study, EndsWithoutFindingsIfItIsToldTo) {
+TEST(Study, EndsWithoutFindingsWhenStoppedAndReportsABoardThatFails) {
+  const std::vector<Claim> rate = {claim_of(Quantity::kRate, 61, {run_of("matcher.window=5")})};
   Means ending = means();
   ending.keep_going = [](std::uint64_t, std::uint64_t) { return false; };
-  EXPECT_FALSE(study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=5")})}, ending).has_value());
-}
-
-TEST(Study, RefusesRatesOfCapturesThatLosePixels) {
+  EXPECT_FALSE(study(rate, ending).has_value());
+  Means failing = means();
+  failing.evaluate = [](const explore::Point&) -> explore::Figures { throw std::runtime_error("burnt"); };
+  EXPECT_THAT([&] { study(rate, failing); }, ThrowsMessage<std::runtime_error>(HasSubstr("burnt")));
+  // A rate does not count if captures lose pixels.
   EXPECT_THAT([] { only(claim_of(Quantity::kRate, 61, {run_of("matcher.window=9", true)})); },
               ThrowsMessage<std::runtime_error>(HasSubstr("--set matcher.window=9")));
 }
 
-TEST(Study, SaysWhyABoardCannotBeSimulated) {
-  Means failing = means();
-  failing.evaluate = [](const explore::Point&) -> explore::Figures { throw std::runtime_error("burnt"); };
-  EXPECT_THAT([&] { study({claim_of(Quantity::kRate, 61, {run_of("matcher.window=9")})}, failing); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("burnt")));
-}
-
-TEST(Study, HasNoFindingOfAnotherName) { EXPECT_THROW(Findings().of("nothing"), std::out_of_range); }
-
-TEST(Study, CommandsAreThoseOfWhatTheNumberIsMadeOf) {
+TEST(Study, CommandsGiveTheFiguresOfANumber) {
   const std::vector<BoardRun> two = {run_of("matcher.window=5"), run_of("matcher.window=7", true)};
   const auto commands = [&](Quantity quantity) {
     const Claim claim = claim_of(quantity, 1, two);
@@ -231,7 +220,7 @@ TEST(Study, CommandsAreThoseOfWhatTheNumberIsMadeOf) {
                           "--out banks.db"));
 }
 
-TEST(Study, ClocksGiveWhatIsPrinted) {
+TEST(Study, FindsTheClocksThatGiveThePrintedRate) {
   Claim claim = claim_of(Quantity::kRate, 61, {run_of("matcher.window=7")});
   const auto clock = clock_for(claim, claim.cases[0], only(claim));
   ASSERT_TRUE(clock.has_value());

@@ -2,68 +2,59 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace stereotlm::paper {
 namespace {
 
 constexpr auto kYes = Verdict::kConfirmed;
 constexpr auto kNo = Verdict::kNotConfirmed;
 
-TEST(Verdict, WithinPercentIsOfThePrintedValueToBothSides) {
-  const Rule rule = {Relation::kWithinPercent, 0.5, ""};
-  EXPECT_EQ(verdict_of(rule, 200, 201), kYes);
-  EXPECT_EQ(verdict_of(rule, 200, 201.001), kNo);
-  EXPECT_EQ(verdict_of(rule, 200, 199), kYes);
-  EXPECT_EQ(verdict_of(rule, 200, 198.999), kNo);
+constexpr auto kOpen = Verdict::kOpen;
+
+struct RuleCase {
+  Rule rule;
+  double printed;
+  double modelled;
+  Verdict expected;
+};
+
+TEST(Verdict, ConfirmsUpToBothEndsOfATolerance) {
+  const Rule percent = {Relation::kWithinPercent, 0.5, ""};
+  const Rule difference = {Relation::kWithin, 1, "percentage point"};
+  const Rule least = {Relation::kAtLeast, 0.5, "frames/s"};
+  const Rule more = {Relation::kMore, 0, ""};
+  const std::vector<RuleCase> cases = {
+      {percent, 200, 201, kYes},    {percent, 200, 201.001, kNo},  {percent, 200, 199, kYes},
+      {percent, 200, 198.999, kNo}, {difference, 21, 22, kYes},    {difference, 21, 22.001, kNo},
+      {difference, 21, 20, kYes},   {difference, 21, 19.999, kNo}, {least, 20, 19.5, kYes},
+      {least, 20, 19.499, kNo},     {least, 20, 2000, kYes},       {more, 20, 20.001, kYes},
+      {more, 20, 20, kNo},          {more, 20, 19.98, kNo}};
+  for (const RuleCase& one : cases)
+    EXPECT_EQ(verdict_of(one.rule, one.printed, one.modelled), one.expected)
+        << text_of(one.rule) << ": " << one.modelled;
 }
 
-TEST(Verdict, WithinIsADifferenceToBothSides) {
-  const Rule rule = {Relation::kWithin, 1, "percentage point"};
-  EXPECT_EQ(verdict_of(rule, 21, 22), kYes);
-  EXPECT_EQ(verdict_of(rule, 21, 22.001), kNo);
-  EXPECT_EQ(verdict_of(rule, 21, 20), kYes);
-  EXPECT_EQ(verdict_of(rule, 21, 19.999), kNo);
-}
-
-TEST(Verdict, AtLeastHasNoUpperEnd) {
-  const Rule rule = {Relation::kAtLeast, 0.5, "frames/s"};
-  EXPECT_EQ(verdict_of(rule, 20, 19.5), kYes);
-  EXPECT_EQ(verdict_of(rule, 20, 19.499), kNo);
-  EXPECT_EQ(verdict_of(rule, 20, 2000), kYes);
-}
-
-TEST(Verdict, MoreIsNotAsMany) {
-  const Rule rule = {Relation::kMore, 0, ""};
-  EXPECT_EQ(verdict_of(rule, 20, 20.001), kYes);
-  EXPECT_EQ(verdict_of(rule, 20, 20), kNo);
-  EXPECT_EQ(verdict_of(rule, 20, 19.98), kNo);
-  EXPECT_EQ(text_of(rule), "more than the printed value");
-}
-
-TEST(Verdict, FewerBanksThanNeededRefuteWhoeverHasFoundThem) {
+TEST(Verdict, ConfirmsANeedOfBanksByAProofOnly) {
   EXPECT_EQ(verdict_of_need(8, 7, true), kNo);
   EXPECT_EQ(verdict_of_need(8, 7, false), kNo);
-}
-
-TEST(Verdict, OnlyAProofConfirmsThatBanksAreNeeded) {
   EXPECT_EQ(verdict_of_need(8, 8, true), kYes);
   EXPECT_EQ(verdict_of_need(8, 9, true), kYes);
-  EXPECT_EQ(verdict_of_need(8, 8, false), Verdict::kOpen);
+  EXPECT_EQ(verdict_of_need(8, 8, false), kOpen);
 }
 
-TEST(Verdict, OfAClaimIsThatOfItsCasesIfTheyAgree) {
+TEST(Verdict, OfAClaimJoinsThoseOfItsCases) {
   EXPECT_EQ(verdict_of_all({kYes, kYes}), kYes);
   EXPECT_EQ(verdict_of_all({kNo, kNo}), kNo);
-  EXPECT_EQ(verdict_of_all({Verdict::kOpen}), Verdict::kOpen);
-  EXPECT_EQ(verdict_of_all({}), Verdict::kOpen);
-}
-
-TEST(Verdict, OfAClaimIsInPartIfSomeCasesAreConfirmed) {
+  EXPECT_EQ(verdict_of_all({kOpen}), kOpen);
+  EXPECT_EQ(verdict_of_all({}), kOpen);
   EXPECT_EQ(verdict_of_all({kYes, kNo}), Verdict::kInPart);
-  EXPECT_EQ(verdict_of_all({Verdict::kOpen, kYes}), Verdict::kInPart);
-  EXPECT_EQ(verdict_of_all({Verdict::kOpen, kNo}), kNo);
+  EXPECT_EQ(verdict_of_all({kOpen, kYes}), Verdict::kInPart);
+  EXPECT_EQ(verdict_of_all({kOpen, kNo}), kNo);
 }
 
-TEST(Verdict, RulesSayTheirTolerance) {
+TEST(Verdict, TextOfARuleNamesItsTolerance) {
+  EXPECT_EQ(text_of(Rule{Relation::kMore, 0, ""}), "more than the printed value");
   EXPECT_EQ(text_of(Rule{Relation::kWithinPercent, 0.35, ""}), "within 0.35 %");
   EXPECT_EQ(text_of(Rule{Relation::kWithin, 1, "percentage point"}), "within 1 percentage point");
   EXPECT_EQ(text_of(Rule{Relation::kAtLeast, 0.5, "frames/s"}),

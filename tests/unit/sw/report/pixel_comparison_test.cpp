@@ -9,20 +9,15 @@ namespace {
 
 using kernels::GrayImage;
 
-TEST(PixelComparison, FindsNothingInTheSamePictures) {
-  PixelComparison pixels;
-  pixels.add(3, GrayImage(4, 2, 7), GrayImage(4, 2, 7));
-  EXPECT_EQ(pixels.frames(), 1U);
-  EXPECT_EQ(pixels.frames_that_differ(), 0U);
-  EXPECT_EQ(pixels.pixels(), 0U);
-  EXPECT_FALSE(pixels.first());
-}
-
 TEST(PixelComparison, CountsPixelsAndNamesTheFirst) {
   PixelComparison pixels;
   const GrayImage a(4, 2, 7);
   GrayImage b = a;
   pixels.add(3, a, b);
+  EXPECT_EQ(pixels.frames(), 1U);
+  EXPECT_EQ(pixels.frames_that_differ(), 0U);
+  EXPECT_EQ(pixels.pixels(), 0U);
+  EXPECT_FALSE(pixels.first());
   b.at(2, 1) = 255;
   b.at(3, 0) = 6;
   pixels.add(5, a, b);

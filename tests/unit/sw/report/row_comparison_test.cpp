@@ -1,11 +1,12 @@
 #include "sw/report/row_comparison.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stereotlm::report {
@@ -14,7 +15,7 @@ namespace {
 using fpga::RowEnd;
 using fpga::RowProfile;
 
-// Rows that take so many cycles each, of which the left pixel port is stalled in every tenth.
+// Rows of the given cycles. The left pixel port is stalled in every tenth cycle.
 RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   RowProfile rows;
   RowEnd end;
@@ -26,7 +27,7 @@ RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   return rows;
 }
 
-TEST(RowsAlone, AreWhatLiesBetweenTwoEnds) {
+TEST(RowsAlone, AreTheDifferencesOfNeighbouringEnds) {
   EXPECT_TRUE(rows_alone({}).empty());
   const RowProfile rows = rows_alone(profile({105, 40, 0, 71}));
   const RowProfile expected = {
@@ -34,28 +35,22 @@ TEST(RowsAlone, AreWhatLiesBetweenTwoEnds) {
   EXPECT_EQ(rows, expected);
 }
 
-// "first..last: sum, least..most, stalls of the left pixel port"
-std::string text_of(const std::vector<RowComparison::Range>& ranges) {
+// "first..last: cycles, least..most, stalls of the port; " of each range
+std::string text_of(const std::vector<RowComparison::Range>& ranges, std::size_t port = 2) {
   std::string text;
   for (const RowComparison::Range& range : ranges) {
-    text += std::to_string(range.first_row) + ".." + std::to_string(range.last_row) + ": " +
-            std::to_string(range.cycles) + ", " + std::to_string(range.least) + ".." +
-            std::to_string(range.most) + ", " + std::to_string(range.stalls[2]) + "; ";
+    text += fmt::format("{}..{}: {}, {}..{}, {}; ", range.first_row, range.last_row, range.cycles,
+                        range.least, range.most, range.stalls[port]);
   }
   return text;
 }
 
-TEST(RowComparison, FindsNothingInTheSameRows) {
+TEST(RowComparison, NamesTheFirstRowThatEndsInAnotherCycle) {
   RowComparison rows;
-  rows.add(profile({10, 20}), profile({10, 20}));
+  rows.add(profile({10, 20, 30}), profile({10, 20, 30}));
   EXPECT_EQ(rows.frames(), 1U);
   EXPECT_FALSE(rows.parting());
   EXPECT_TRUE(rows.ranges(10).empty());
-}
-
-TEST(RowComparison, NamesTheFirstRowThatIsNotWholeInTheSameCycle) {
-  RowComparison rows;
-  rows.add(profile({10, 20, 30}), profile({10, 20, 30}));
   rows.add(profile({10, 20, 30}), profile({10, 21, 29}));
   rows.add(profile({10, 20, 30}), profile({9, 20, 30}));
   ASSERT_TRUE(rows.parting());
@@ -65,7 +60,7 @@ TEST(RowComparison, NamesTheFirstRowThatIsNotWholeInTheSameCycle) {
   EXPECT_EQ(rows.parting()->cycles_b, 31U);
 }
 
-TEST(RowComparison, PutsRowsTogetherThatCostTheSame) {
+TEST(RowComparison, JoinsNeighbouringRowsThatCostTheSame) {
   RowComparison rows;
   rows.add(profile({10, 20, 30, 40, 50, 60, 70}), profile({10, 30, 40, 50, 50, 60, 50}));
   EXPECT_EQ(text_of(rows.ranges(2)), "1..3: 30, 10..10, 3; 6..6: -20, -20..-20, -2; ");
@@ -79,7 +74,7 @@ TEST(RowComparison, SumsUpTheFrames) {
   EXPECT_EQ(rows.frames(), 2U);
 }
 
-TEST(RowComparison, HasNoRangesWhereOneFrameGainsWhatAnotherOneCosts) {
+TEST(RowComparison, HasNoRangesWhereTheFramesCancelOut) {
   RowComparison rows;
   rows.add(profile({10, 20}), profile({20, 10}));
   rows.add(profile({20, 10}), profile({10, 20}));
@@ -87,7 +82,7 @@ TEST(RowComparison, HasNoRangesWhereOneFrameGainsWhatAnotherOneCosts) {
   EXPECT_TRUE(rows.ranges(10).empty());
 }
 
-TEST(RowComparison, DrawsBandsWhereTheRangesAreTooMany) {
+TEST(RowComparison, JoinsRowsToBandsWhereTheRangesAreTooMany) {
   RowComparison rows;
   rows.add(profile({10, 10, 10, 10, 10, 10, 10}), profile({20, 10, 10, 10, 40, 20, 0}));
   EXPECT_EQ(text_of(rows.ranges(4)),
@@ -95,8 +90,8 @@ TEST(RowComparison, DrawsBandsWhereTheRangesAreTooMany) {
   EXPECT_EQ(text_of(rows.ranges(3)), "0..1: 10, 0..10, 1; 4..6: 30, -10..30, 3; ");
 }
 
-// Rows of 10 cycles, with so many stalls of the left table port and of the right one.
-RowProfile stalled(const std::vector<std::array<std::uint64_t, 2>>& stalls) {
+// Rows of 10 cycles with the given stalls of the left and of the right table port.
+RowProfile stalled(const std::vector<std::pair<std::uint64_t, std::uint64_t>>& stalls) {
   RowProfile rows;
   RowEnd end;
   for (const auto& [left, right] : stalls) {
@@ -108,16 +103,7 @@ RowProfile stalled(const std::vector<std::array<std::uint64_t, 2>>& stalls) {
   return rows;
 }
 
-std::string stalls_of(const std::vector<RowComparison::Range>& ranges) {
-  std::string text;
-  for (const RowComparison::Range& range : ranges) {
-    text += std::to_string(range.first_row) + ".." + std::to_string(range.last_row) + ": " +
-            std::to_string(range.stalls[0]) + ", " + std::to_string(range.stalls[1]) + "; ";
-  }
-  return text;
-}
-
-TEST(RowComparison, KeepsRowsThatTakeAsLongAndHaveOtherStalls) {
+TEST(RowComparison, KeepsRowsOfWhichOnlyTheStallsDiffer) {
   RowComparison rows;
   rows.add(stalled({{0, 0}, {4, 0}, {4, 0}, {4, 0}, {1, 1}}),
            stalled({{0, 0}, {0, 4}, {0, 4}, {0, 5}, {1, 1}}));
@@ -125,26 +111,27 @@ TEST(RowComparison, KeepsRowsThatTakeAsLongAndHaveOtherStalls) {
   ASSERT_TRUE(rows.other_stalls());
   EXPECT_EQ(rows.other_stalls()->frame, 0U);
   EXPECT_EQ(rows.other_stalls()->row, 1U);
-  EXPECT_EQ(stalls_of(rows.ranges(10)), "1..2: -8, 8; 3..3: -4, 5; ");
+  EXPECT_EQ(text_of(rows.ranges(10), 0), "1..2: 0, 0..0, -8; 3..3: 0, 0..0, -4; ");
+  EXPECT_EQ(text_of(rows.ranges(10), 1), "1..2: 0, 0..0, 8; 3..3: 0, 0..0, 5; ");
 }
 
-TEST(RowComparison, PutsRowsOfAsManyCyclesTogetherWhereTheirStallsAreTooMany) {
+TEST(RowComparison, JoinsRowsOfEqualCyclesWhereTheirStallsDifferTooOften) {
   RowComparison rows;
   rows.add(stalled({{0, 0}, {0, 0}, {0, 0}}), stalled({{1, 0}, {2, 0}, {3, 0}}));
-  EXPECT_EQ(stalls_of(rows.ranges(3)), "0..0: 1, 0; 1..1: 2, 0; 2..2: 3, 0; ");
-  EXPECT_EQ(stalls_of(rows.ranges(2)), "0..2: 6, 0; ");
+  EXPECT_EQ(text_of(rows.ranges(3), 0), "0..0: 0, 0..0, 1; 1..1: 0, 0..0, 2; 2..2: 0, 0..0, 3; ");
+  EXPECT_EQ(text_of(rows.ranges(2), 0), "0..2: 0, 0..0, 6; ");
 }
 
-TEST(RowComparison, KeepsBandsInWhichOnlyStallsAreOthers) {
+TEST(RowComparison, KeepsBandsOfWhichOnlyTheStallsDiffer) {
   RowComparison rows;
   RowProfile b = stalled({{0, 0}, {7, 0}, {0, 0}, {0, 0}});
   b[2].cycles += 1;
   b[3].cycles += 3;
   rows.add(stalled({{0, 0}, {0, 0}, {0, 0}, {0, 0}}), b);
-  EXPECT_EQ(stalls_of(rows.ranges(2)), "0..1: 7, 0; 2..3: 0, 0; ");
+  EXPECT_EQ(text_of(rows.ranges(2), 0), "0..1: 0, 0..0, 7; 2..3: 3, 1..2, 0; ");
 }
 
-TEST(RowComparison, SumsOfAllRangesAreThoseOfAllRows) {
+TEST(RowComparison, HasRangesThatSumUpToAllRows) {
   std::mt19937 random(1);
   std::uniform_int_distribution<std::uint64_t> few(0, 2);
   const auto made_up = [&] {

@@ -38,56 +38,30 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
   EXPECT_EQ(files_in(folder), 1);
 }
 
-TEST(RowsCsv, LeavesTheFileAsItWasWithoutCommit) {
+TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
-  test::write_file(path, "before");
-  { const RowsCsv csv(path); }
-  EXPECT_EQ(files::read_whole_file(path), "before");
-  EXPECT_EQ(files_in(folder), 1);
-}
-
-TEST(RowsCsv, LeavesFilesOfOtherNamesAlone) {
-  const test::ScratchFolder folder;
-  const auto other = test::write_file(folder.path() / "rows.csv.part", "precious");
-  RowsCsv csv(folder.path() / "rows.csv");
-  EXPECT_EQ(files::read_whole_file(other), "precious");
-  csv.commit();
-  EXPECT_EQ(files::read_whole_file(other), "precious");
-  EXPECT_EQ(files_in(folder), 2);
-}
-
-TEST(RowsCsv, NamesAFileThatCannotBeWritten) {
-  const test::ScratchFolder folder;
-  const std::string missing = (folder.path() / "none" / "rows.csv").string();
+  const auto refusal = [](const auto& refused, const std::string& cause) {
+    return "'" + refused.string() + "': " + cause;
+  };
+  const auto missing = folder.path() / "none" / "rows.csv";
   EXPECT_EQ(test::message_of([&] { const RowsCsv csv(missing); }),
-            "'" + missing + "': cannot be written: No such file or directory");
+            refusal(missing, "cannot be written: No such file or directory"));
   EXPECT_EQ(test::message_of([&] { const RowsCsv csv(folder.path()); }),
-            "'" + folder.path().string() + "': is a folder");
-}
-
-TEST(RowsCsv, SaysThatTheDiskIsFull) {
-  const test::ScratchFolder folder;
-  const auto path = folder.path() / "rows.csv";
-  const std::string message = "'" + path.string() + "': cannot be written: File too large";
+            refusal(folder.path(), "is a folder"));
   {
+    const std::string full = refusal(path, "cannot be written: File too large");
     const test::FileSizeLimit limit(1000);
     RowsCsv csv(path);
-    EXPECT_EQ(test::message_of([&] { csv.add(fpga::RowProfile(100), fpga::RowProfile(100)); }), message);
+    EXPECT_EQ(test::message_of([&] { csv.add(fpga::RowProfile(100), fpga::RowProfile(100)); }), full);
     const test::FileSizeLimit none(0);
-    EXPECT_EQ(test::message_of([&] { const RowsCsv other(path); }), message);
+    EXPECT_EQ(test::message_of([&] { const RowsCsv other(path); }), full);
   }
   EXPECT_EQ(files_in(folder), 0);
-}
-
-TEST(RowsCsv, SaysThatTheFileCannotBeReplaced) {
-  const test::ScratchFolder folder;
-  const auto path = folder.path() / "rows.csv";
   {
     RowsCsv csv(path);
     std::filesystem::create_directory(path);
-    EXPECT_EQ(test::message_of([&] { csv.commit(); }),
-              "'" + path.string() + "': cannot be written: Is a directory");
+    EXPECT_EQ(test::message_of([&] { csv.commit(); }), refusal(path, "cannot be written: Is a directory"));
   }
   EXPECT_EQ(files_in(folder), 1);
 }

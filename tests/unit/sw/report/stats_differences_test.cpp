@@ -28,14 +28,14 @@ TEST(StatsDifferences, NamesEachValueByItsPathInOneLine) {
       ElementsAre(R"(/banks/0/name: fast "bank0", cycle "bank1")", "/banks/0/reads: fast 5, cycle 6"));
 }
 
-TEST(StatsDifferences, CallsAKeyThatOneDoesNotHaveAbsentThere) {
+TEST(StatsDifferences, ReportsAMissingValueAsAbsent) {
   EXPECT_THAT(differences(R"({"a": 1, "b": 2})", R"({"b": 2, "c": 3})"),
               ElementsAre("/a: fast 1, cycle absent", "/c: fast absent, cycle 3"));
   EXPECT_THAT(differences(R"({"list": [1, 2]})", R"({"list": [1]})"),
               ElementsAre("/list/1: fast 2, cycle absent"));
 }
 
-TEST(StatsDifferences, MindsTheLastDigitOfANumber) {
+TEST(StatsDifferences, ComparesNumbersToTheLastDigit) {
   EXPECT_THAT(differences(R"({"rate": 18.600000000000001})", R"({"rate": 18.600000000000005})").size(), 1U);
 }
 

@@ -9,8 +9,8 @@
 namespace stereotlm::report {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 platform::Statistics small_run() {
   platform::Statistics statistics;
@@ -106,26 +106,17 @@ TEST(StatsJson, HasTheKeysOfAComputer) {
 )" + std::string(kArea) + "\n}\n"));
 }
 
-TEST(StatsJson, LeavesOutWhatDoesNotApply) {
+TEST(StatsJson, LeavesOutFiguresThatDoNotExist) {
   platform::Statistics statistics = small_run();
   statistics.blame.clear();
-  const std::string text = stats_json(statistics, std::nullopt);
-  EXPECT_THAT(text, HasSubstr("  \"blame\": [],\n" + std::string(kArea) + "\n}\n"));
-  EXPECT_THAT(text, Not(HasSubstr("failed")));
-  EXPECT_THAT(text, Not(HasSubstr("accuracy")));
-}
-
-TEST(StatsJson, LeavesOutPercentagesOfNothing) {
-  EXPECT_THAT(stats_json(small_run(), Accuracy{std::nullopt, std::nullopt, 0}),
-              HasSubstr("  \"accuracy\": {\"answered_percent\": 0}\n}\n"));
-  EXPECT_THAT(stats_json(small_run(), Accuracy{}), HasSubstr("  \"accuracy\": {}\n}\n"));
-}
-
-TEST(StatsJson, ListsTheIdentitiesThatFailed) {
-  platform::Statistics statistics = small_run();
+  const std::string end = "  \"blame\": [],\n" + std::string(kArea);
+  EXPECT_THAT(stats_json(statistics, std::nullopt), EndsWith(end + "\n}\n"));
+  EXPECT_THAT(stats_json(statistics, Accuracy{std::nullopt, std::nullopt, 0}),
+              EndsWith(end + ",\n  \"accuracy\": {\"answered_percent\": 0}\n}\n"));
+  EXPECT_THAT(stats_json(statistics, Accuracy{}), EndsWith(end + ",\n  \"accuracy\": {}\n}\n"));
   statistics.failed = {"bank0: 1 + 2 = 3, not 4"};
   EXPECT_THAT(stats_json(statistics, std::nullopt),
-              HasSubstr("  \"failed\": [\"bank0: 1 + 2 = 3, not 4\"]\n}\n"));
+              EndsWith(end + ",\n  \"failed\": [\"bank0: 1 + 2 = 3, not 4\"]\n}\n"));
 }
 
 }  // namespace

@@ -2,11 +2,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/file_size_limit.h"
+#include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::runs {
@@ -30,6 +36,13 @@ std::string refusal(const fs::path& dir) {
   return test::message_of([&] { const ResultFolder folder(dir); });
 }
 
+// A result of run.json alone.
+void write(const fs::path& dir) {
+  ResultFolder folder(dir);
+  folder.add("run.json", "new");
+  folder.commit();
+}
+
 class ResultFolderTest : public ::testing::Test {
  protected:
   test::ScratchFolder scratch_;
@@ -47,39 +60,16 @@ TEST_F(ResultFolderTest, CreatesTheFolderAndItsParents) {
   EXPECT_EQ(test::read_file(deep / "frames/000000.png"), std::string("\x01\x00\x02", 3));
 }
 
-TEST_F(ResultFolderTest, AcceptsATrailingSlash) {
-  {
-    ResultFolder folder(out_ / "");
-    folder.add("run.json", "{}");
-    folder.commit();
-  }
+TEST_F(ResultFolderTest, AcceptsATrailingSlashAndALinkToAnEmptyFolder) {
+  write(out_ / "");
   EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
-}
-
-TEST_F(ResultFolderTest, AcceptsAnEmptyFolderAndALinkToOne) {
-  fs::create_directory(out_);
+  fs::remove(out_ / "run.json");
   fs::create_directory_symlink(out_, scratch_.path() / "link");
-  ResultFolder folder(scratch_.path() / "link");
-  folder.add("run.json", "{}");
-  folder.commit();
+  write(scratch_.path() / "link");
   EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
 }
 
-TEST_F(ResultFolderTest, ReplacesAnEarlierResultWhole) {
-  test::write_file(out_ / "run.json", "old");
-  test::write_file(out_ / "depth.ply", "old");
-  test::write_file(out_ / "frames/000007.png", "old");
-  ResultFolder folder(out_);
-  folder.add("run.json", "new");
-  folder.add("stats.json", "new");
-  EXPECT_EQ(test::read_file(out_ / "run.json"), "old") << "nothing moves before the commit";
-  EXPECT_FALSE(fs::exists(out_ / "stats.json"));
-  folder.commit();
-  EXPECT_THAT(names_in(out_), ElementsAre("run.json", "stats.json"));
-  EXPECT_EQ(test::read_file(out_ / "run.json"), "new");
-}
-
-TEST_F(ResultFolderTest, ReplacesEveryFileThatARunWrites) {
+TEST_F(ResultFolderTest, ReplacesEveryFileThatARunWritesAtTheCommit) {
   for (const char* name :
        {"disparity.png", "disparity.pfm", "disparity_color.png", "depth.ply", "depth.png", "stats.json",
         "config.yaml", "run.json", "frames/000000.png", "frames/1234567.png"}) {
@@ -87,25 +77,26 @@ TEST_F(ResultFolderTest, ReplacesEveryFileThatARunWrites) {
   }
   ResultFolder folder(out_);
   folder.add("run.json", "new");
+  folder.add("stats.json", "new");
+  EXPECT_EQ(test::read_file(out_ / "run.json"), "old");
+  EXPECT_EQ(test::read_file(out_ / "stats.json"), "old");
   folder.commit();
-  EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
+  EXPECT_THAT(names_in(out_), ElementsAre("run.json", "stats.json"));
+  EXPECT_EQ(test::read_file(out_ / "run.json"), "new");
 }
 
-TEST_F(ResultFolderTest, RefusesAFolderWithAFileOfSomeoneElse) {
+TEST_F(ResultFolderTest, RefusesAFolderWithAnotherFileOrWithoutRunJson) {
+  test::write_file(out_ / "stats.json", "old");
+  EXPECT_THAT(refusal(out_), HasSubstr("holds 'stats.json' but no run.json"));
   test::write_file(out_ / "run.json", "old");
   test::write_file(out_ / "thesis.tex", "precious");
   EXPECT_EQ(refusal(out_),
             "result folder '" + out_.string() +
                 "': holds 'thesis.tex': must be empty or hold run.json and only files that run writes");
-  EXPECT_THAT(names_in(out_), ElementsAre("run.json", "thesis.tex"));
+  EXPECT_THAT(names_in(out_), ElementsAre("run.json", "stats.json", "thesis.tex"));
 }
 
-TEST_F(ResultFolderTest, RefusesAFolderWithoutRunJson) {
-  test::write_file(out_ / "stats.json", "old");
-  EXPECT_THAT(refusal(out_), HasSubstr("holds 'stats.json' but no run.json"));
-}
-
-TEST_F(ResultFolderTest, RefusesWhatOnlyLooksLikeAResult) {
+TEST_F(ResultFolderTest, RefusesEntriesThatOnlyLookLikeAResult) {
   test::write_file(out_ / "run.json", "old");
   const auto holds = [this](const std::string& name) {
     const std::string message = refusal(out_);
@@ -139,7 +130,7 @@ TEST_F(ResultFolderTest, RefusesWhatOnlyLooksLikeAResult) {
   EXPECT_NO_THROW(ResultFolder{out_}) << "without them it is accepted";
 }
 
-TEST_F(ResultFolderTest, CleansWhatAKilledRunLeft) {
+TEST_F(ResultFolderTest, RemovesTheFilesOfAKilledRun) {
   test::write_file(out_ / ".partial/new/frames/000000.png", "half");
   test::write_file(out_ / ".partial/probe", "");
   test::write_file(out_ / "stats.json", "old");
@@ -150,34 +141,29 @@ TEST_F(ResultFolderTest, CleansWhatAKilledRunLeft) {
   EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
 }
 
-TEST_F(ResultFolderTest, WithoutCommitLeavesNothingBehind) {
-  {
-    ResultFolder folder(out_ / "a");
+TEST_F(ResultFolderTest, LeavesEverythingAsItWasWithoutACommit) {
+  const auto begin = [](const fs::path& dir) {
+    ResultFolder folder(dir);
     folder.add("run.json", "new");
     folder.add("frames/000000.png", "new");
-  }
+  };
+  begin(out_ / "a");
   EXPECT_THAT(names_in(scratch_.path()), IsEmpty()) << "not even the folders it created";
   fs::create_directory(out_);
-  { const ResultFolder folder(out_); }
+  begin(out_);
   EXPECT_THAT(names_in(scratch_.path()), ElementsAre("out")) << "a folder that was there stays";
+  test::write_file(out_ / "run.json", "old");
+  begin(out_);
+  EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
+  EXPECT_EQ(test::read_file(out_ / "run.json"), "old");
 }
 
-TEST_F(ResultFolderTest, WithoutCommitKeepsACreatedFolderThatSomeoneElseUses) {
+TEST_F(ResultFolderTest, KeepsACreatedFolderThatGotAnotherFileWithoutACommit) {
   {
     const ResultFolder folder(out_ / "a");
     test::write_file(out_ / "note", "x");
   }
   EXPECT_THAT(names_in(out_), ElementsAre("note"));
-}
-
-TEST_F(ResultFolderTest, WithoutCommitKeepsTheEarlierResult) {
-  test::write_file(out_ / "run.json", "old");
-  {
-    ResultFolder folder(out_);
-    folder.add("run.json", "new");
-  }
-  EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
-  EXPECT_EQ(test::read_file(out_ / "run.json"), "old");
 }
 
 TEST_F(ResultFolderTest, RefusesASecondRunIntoTheFolder) {
@@ -189,7 +175,7 @@ TEST_F(ResultFolderTest, RefusesASecondRunIntoTheFolder) {
   EXPECT_NO_THROW(ResultFolder{out_});
 }
 
-TEST_F(ResultFolderTest, KeepsFilesThatCameIntoTheFolderMeanwhile) {
+TEST_F(ResultFolderTest, KeepsFilesThatAppearDuringTheRun) {
   test::write_file(out_ / "run.json", "old");
   ResultFolder folder(out_);
   folder.add("run.json", "new");
@@ -198,7 +184,7 @@ TEST_F(ResultFolderTest, KeepsFilesThatCameIntoTheFolderMeanwhile) {
   EXPECT_THAT(names_in(out_), ElementsAre("note", "run.json"));
 }
 
-TEST_F(ResultFolderTest, RefusesToReplaceFramesAmongWhichAFileCameMeanwhile) {
+TEST_F(ResultFolderTest, RefusesToReplaceAFrameFolderThatGotAnotherFile) {
   test::write_file(out_ / "run.json", "old");
   test::write_file(out_ / "frames/000000.png", "old");
   {
@@ -211,7 +197,7 @@ TEST_F(ResultFolderTest, RefusesToReplaceFramesAmongWhichAFileCameMeanwhile) {
   EXPECT_EQ(test::read_file(out_ / "run.json"), "old");
 }
 
-TEST_F(ResultFolderTest, TakesOnlyFilesThatARunWritesAndEachOnce) {
+TEST_F(ResultFolderTest, AcceptsOnlyFilesThatARunWritesAndEachOnce) {
   ResultFolder folder(out_);
   folder.add("stats.json", "x");
   for (const char* name : {"stats.json", "", "notes.txt", "../run.json", "frames/0.png",
@@ -236,6 +222,115 @@ TEST_F(ResultFolderTest, CommitsOnceAndWithRunJson) {
   folder.add("run.json", "x");
   folder.commit();
   EXPECT_THROW(folder.commit(), std::logic_error);
+}
+
+TEST_F(ResultFolderTest, RefusesAPathThatCannotBeAFolder) {
+  const std::string file = test::write_file(scratch_.path() / "file", "x");
+  EXPECT_EQ(refusal(file), "result folder '" + file + "': not a folder");
+  EXPECT_EQ(refusal(file + "/out"),
+            "result folder '" + file + "/out': cannot be written to: Not a directory");
+  fs::create_symlink("nowhere", scratch_.path() / "dangling");
+  EXPECT_THAT(refusal(scratch_.path() / "dangling"), HasSubstr("not a folder"));
+  EXPECT_THAT(refusal(""), HasSubstr("must be named"));
+  EXPECT_THAT(refusal("/proc/stereotlm/out"),
+              HasSubstr("result folder '/proc/stereotlm/out': cannot be written to: "));
+}
+
+TEST_F(ResultFolderTest, RefusesAFolderWithoutPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "permissions do not bind root";
+  fs::permissions(scratch_.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(refusal(scratch_.path()), HasSubstr("cannot be written to: Permission denied"));
+  EXPECT_THAT(refusal(scratch_.path() / "out"), HasSubstr("cannot be written to: Permission denied"));
+  fs::permissions(scratch_.path(), fs::perms::owner_all);
+}
+
+TEST_F(ResultFolderTest, RefusesAFolderThatTakesNoBytes) {
+  {
+    const test::FileSizeLimit limit(0);
+    EXPECT_THAT(refusal(scratch_.path() / "out"), HasSubstr("cannot be written to: File too large"));
+  }
+  EXPECT_TRUE(fs::is_empty(scratch_.path())) << "it changed nothing";
+}
+
+TEST_F(ResultFolderTest, AFileThatDoesNotFitLeavesTheEarlierResultIntact) {
+  test::write_file(scratch_.path() / "run.json", "old");
+  {
+    const test::FileSizeLimit limit(1000);
+    ResultFolder folder(scratch_.path());
+    folder.add("run.json", std::string(1000, 'x'));
+    EXPECT_EQ(
+        test::message_of([&] { folder.add("stats.json", std::string(1001, 'x')); }),
+        "result folder '" + scratch_.path().string() + "': 'stats.json' cannot be written: File too large");
+    EXPECT_FALSE(fs::exists(scratch_.path() / ".partial/new/stats.json"));
+  }
+  EXPECT_EQ(test::read_file(scratch_.path() / "run.json"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(scratch_.path()), {}), 1);
+}
+
+TEST_F(ResultFolderTest, ACommitThatFailsPutsTheEarlierResultBack) {
+  test::write_file(scratch_.path() / "config.yaml", "old");
+  test::write_file(scratch_.path() / "run.json", "old");
+  {
+    ResultFolder folder(scratch_.path());
+    folder.add("config.yaml", "new");
+    folder.add("run.json", "new");
+    folder.add("stats.json", "new");
+    fs::create_directory(scratch_.path() / "stats.json");  // no file can take the name of a folder
+    EXPECT_THAT(test::message_of([&] { folder.commit(); }),
+                HasSubstr("the new files cannot be moved into place: Is a directory"));
+  }
+  EXPECT_EQ(test::read_file(scratch_.path() / "config.yaml"), "old");
+  EXPECT_EQ(test::read_file(scratch_.path() / "run.json"), "old");
+  EXPECT_TRUE(fs::is_directory(scratch_.path() / "stats.json"));
+  EXPECT_FALSE(fs::exists(scratch_.path() / ".partial"));
+}
+
+constexpr const char* kNoSmallDisk = "no small disk can be mounted here";
+
+// Lets this process mount without disturbing anyone: as root, or as the root of a user namespace of its own.
+bool may_mount() {
+  const std::string user = "0 " + std::to_string(geteuid()) + " 1";
+  const std::string group = "0 " + std::to_string(getegid()) + " 1";
+  if (unshare(CLONE_NEWNS) == 0) return true;
+  if (unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return false;
+  const auto set = [](const char* path, const std::string& text) {
+    return static_cast<bool>((std::ofstream(path) << text).flush());
+  };
+  return set("/proc/self/setgroups", "deny") && set("/proc/self/uid_map", user) &&
+         set("/proc/self/gid_map", group);
+}
+
+// For a child process: mounts the disk in a namespace of its own.
+std::string fill_a_small_disk(const fs::path& disk) {
+  if (!may_mount()) return kNoSmallDisk;
+  mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr);
+  if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=64k") != 0) return kNoSmallDisk;
+
+  test::write_file(disk / "run.json", "old");
+  {
+    ResultFolder folder(disk);
+    folder.add("run.json", "new");
+    EXPECT_EQ(
+        test::message_of([&] { folder.add("disparity.png", std::string(100'000, 'x')); }),
+        "result folder '" + disk.string() + "': 'disparity.png' cannot be written: No space left on device");
+  }
+  EXPECT_EQ(test::read_file(disk / "run.json"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1);
+
+  // A disk that is full from the start is known before the run.
+  std::ofstream filler(disk / "filler", std::ios::binary);
+  while (filler.write("x", 1).flush()) {
+  }
+  fs::rename(disk / "filler", disk / "stats.json");
+  EXPECT_THAT(refusal(disk), HasSubstr("cannot be written to: No space left on device"));
+  EXPECT_EQ(test::read_file(disk / "run.json"), "old");
+  return "";
+}
+
+TEST_F(ResultFolderTest, AFullDiskLeavesTheEarlierResultIntact) {
+  const test::ChildResult result = test::run_in_child([&] { return fill_a_small_disk(scratch_.path()); });
+  if (result.text == kNoSmallDisk) GTEST_SKIP() << kNoSmallDisk;
+  EXPECT_TRUE(result.ok()) << result.text;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "sw/files/json_text.h"
+#include "sw/runs/run_json_reader.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::runs {
@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 RecordedOptions pair_of_pictures() {
   RecordedOptions options;
@@ -26,11 +27,27 @@ RecordedOptions pair_of_pictures() {
   return options;
 }
 
+RecordedOptions without_pictures() {
+  RecordedOptions options = pair_of_pictures();
+  options.left.reset();
+  options.right.reset();
+  return options;
+}
+
+constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
+
+// run.json, checked to be read back as it was written.
+std::string text_of(const RecordedOptions& options) {
+  const std::string text = run_json(options);
+  EXPECT_EQ(run_json(parse_run_json(text)), text);
+  return text;
+}
+
 TEST(RunJson, NamesEveryOptionAndTheSumOfEveryInput) {
   RecordedOptions options = pair_of_pictures();
   options.truth = InputFile{"/in/truth.png", "cc"};
   options.truth_scale = 2.5;
-  EXPECT_EQ(run_json(options),
+  EXPECT_EQ(text_of(options),
             R"({
   "schema": 1,
   "command": "run",
@@ -44,18 +61,24 @@ TEST(RunJson, NamesEveryOptionAndTheSumOfEveryInput) {
   "truth_scale": 2.5
 }
 )");
+  options.calibration = InputCalibration{{"/c.yaml", "dd"}, {"/c_left.lut", "ee"}, {"/c_right.lut", "ff"}};
+  options.verify = options.save_frames = true;
+  options.frames = kLargest;
+  text_of(options);
 }
 
-RecordedOptions without_pictures() {
-  RecordedOptions options = pair_of_pictures();
-  options.left.reset();
-  options.right.reset();
-  return options;
+TEST(RunJson, IsReadBack) {
+  const RecordedOptions read = parse_run_json(run_json(pair_of_pictures()));
+  EXPECT_EQ(read.source, "preloaded");
+  EXPECT_EQ(read.frames, 4U);
+  EXPECT_EQ(read.right->path, "/in/right.png");
+  EXPECT_EQ(read.right->sha256, "bb");
+  EXPECT_FALSE(read.truth);
 }
 
-// What stands behind the number of frames.
+// The lines after the number of frames.
 std::string pictures_in(const RecordedOptions& options) {
-  const std::string text = run_json(options);
+  const std::string text = text_of(options);
   const std::string before = "  \"frames\": 4,\n";
   return text.substr(text.find(before) + before.size());
 }
@@ -74,6 +97,7 @@ TEST(RunJson, NamesEveryPictureOfASequence) {
   "save_frames": true
 }
 )");
+  EXPECT_EQ(parse_run_json(run_json(options)).sequence->files.back().path, "right_0.png");
 }
 
 TEST(RunJson, NamesVideosWithTheirLayout) {
@@ -89,10 +113,13 @@ TEST(RunJson, NamesVideosWithTheirLayout) {
 )");
 }
 
-TEST(RunJson, NamesTheSeedOfASyntheticScene) {
+TEST(RunJson, NamesTheSeedOfASyntheticSceneOrTimingOnly) {
   RecordedOptions options = without_pictures();
-  options.synthetic = std::numeric_limits<std::uint64_t>::max();
+  options.synthetic = kLargest;
   EXPECT_EQ(pictures_in(options), "  \"synthetic\": 18446744073709551615\n}\n");
+  options = without_pictures();
+  options.timing_only = true;
+  text_of(options);
 }
 
 TEST(RunJson, LeavesOutOptionsThatWereNotGiven) {
@@ -101,30 +128,64 @@ TEST(RunJson, LeavesOutOptionsThatWereNotGiven) {
   }
 }
 
-TEST(RunJson, RefusesPathsThatCannotBeFoundAgain) {
-  RecordedOptions options = pair_of_pictures();
-  options.left->path = "left.png";
-  EXPECT_EQ(test::message_of([&] { run_json(options); }),
+TEST(RunJson, RefusesRelativePathsAndPathsThatAreNotUtf8) {
+  const std::string relative = ": not an absolute path: run.json needs one";
+  const std::string not_utf8 = ": a path that is not UTF-8: run.json cannot name it";
+  const auto expect_refusal = [](const std::string& message, RecordedOptions options, const auto& change) {
+    change(options);
+    EXPECT_EQ(test::message_of([&] { run_json(options); }), message);
+  };
+  const RecordedOptions pair = pair_of_pictures();
+  expect_refusal("--left 'left.png'" + relative, pair, [](auto& to) { to.left->path = "left.png"; });
+  expect_refusal("--right '/in/\xFF.png'" + not_utf8, pair,
+                 [](auto& to) { to.right->path = "/in/\xFF.png"; });
+  expect_refusal("--truth 'truth.png'" + relative, pair, [](auto& to) { to.truth = {"truth.png", ""}; });
+  const RecordedOptions none = without_pictures();
+  expect_refusal("--sequence 'in'" + relative, none, [](auto& to) { to.sequence = InputFolder{"in", {}}; });
+  expect_refusal("--sequence 'left_\xFF.png'" + not_utf8, none, [](auto& to) {
+    to.sequence = InputFolder{"/in", {{"left_\xFF.png", ""}}};
+  });
+  expect_refusal("--video 'a.avi'" + relative, none, [](auto& to) { to.video = {{"a.avi", ""}}; });
+}
+
+std::string message_of(const std::string& text) {
+  return test::message_of([&] { parse_run_json(text); });
+}
+
+// run.json of a pair, with one text in it replaced.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = run_json(pair_of_pictures());
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+TEST(RunJsonReader, RefusesATextThatRunDoesNotWrite) {
+  EXPECT_THAT(message_of(""), StartsWith("must be as run writes it: "));
+  EXPECT_THAT(message_of("{}"), HasSubstr("version"));
+  EXPECT_THAT(message_of("[]"), StartsWith("must be as run writes it: "));
+  EXPECT_THAT(message_of(changed("4,", "\"4\",")), StartsWith("must be as run writes it: "));
+  EXPECT_EQ(message_of(changed("\"schema\": 1", "\"schema\": 2")), "line 2: must be as run writes it");
+  EXPECT_EQ(message_of(changed("\"command\": \"run\"", "\"command\": \"sweep\"")),
+            "line 3: must be as run writes it");
+  EXPECT_EQ(message_of(changed("\"frames\": 4,", "\"frames\": 4, \"more\": 1,")),
+            "line 7: must be as run writes it");
+  EXPECT_EQ(message_of(changed("\"frames\": 4", "\"frames\": -4")), "line 7: must be as run writes it");
+  EXPECT_EQ(message_of(changed("/in/left.png", "left.png")),
             "--left 'left.png': not an absolute path: run.json needs one");
+}
+
+TEST(RunJsonReader, RefusesOptionsThatNoRunCanHave) {
+  EXPECT_EQ(message_of(changed("preloaded", "film")), "source = film: must be camera or preloaded");
+  EXPECT_EQ(message_of(changed("cycle", "slow")), "fidelity = slow: must be fast or cycle");
+  EXPECT_EQ(message_of(changed("\"frames\": 4", "\"frames\": 0")), "frames = 0: must be 1 or more");
+  RecordedOptions options = pair_of_pictures();
+  options.right.reset();
+  EXPECT_EQ(message_of(run_json(options)), "left and right: one is without the other");
   options = pair_of_pictures();
-  options.right->path = "/in/\xFF.png";
-  EXPECT_EQ(test::message_of([&] { run_json(options); }),
-            "--right '/in/\xFF.png': a path that is not UTF-8: run.json cannot name it");
-  options = pair_of_pictures();
-  options.truth = InputFile{"truth.png", ""};
-  EXPECT_EQ(test::message_of([&] { run_json(options); }),
-            "--truth 'truth.png': not an absolute path: run.json needs one");
-  options = without_pictures();
-  options.sequence = InputFolder{"in", {}};
-  EXPECT_EQ(test::message_of([&] { run_json(options); }),
-            "--sequence 'in': not an absolute path: run.json needs one");
-  options.sequence = InputFolder{"/in", {{"left_\xFF.png", ""}}};
-  EXPECT_EQ(test::message_of([&] { run_json(options); }),
-            "--sequence 'left_\xFF.png': a path that is not UTF-8: run.json cannot name it");
-  options = without_pictures();
-  options.video = {{"a.avi", ""}};
-  EXPECT_EQ(test::message_of([&] { run_json(options); }),
-            "--video 'a.avi': not an absolute path: run.json needs one");
+  options.synthetic = 1;
+  EXPECT_EQ(message_of(run_json(options)), "2 sources of pictures: must be one");
+  EXPECT_EQ(message_of(run_json(without_pictures())), "0 sources of pictures: must be one");
 }
 
 }  // namespace

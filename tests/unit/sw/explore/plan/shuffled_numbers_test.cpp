@@ -10,49 +10,43 @@
 namespace stereotlm::explore {
 namespace {
 
-std::vector<std::uint64_t> shuffled(std::uint64_t size, std::uint64_t seed) {
+std::vector<std::uint64_t> shuffled(std::uint64_t size, std::uint64_t seed, std::uint64_t first_places) {
   const ShuffledNumbers numbers(size, seed);
   std::vector<std::uint64_t> all;
-  for (std::uint64_t place = 0; place < size; ++place) all.push_back(numbers.at(place));
+  for (std::uint64_t place = 0; place < first_places; ++place) all.push_back(numbers.at(place));
   return all;
 }
 
 TEST(ShuffledNumbers, HoldEachNumberOnce) {
   for (const std::uint64_t size : {1U, 2U, 3U, 4U, 5U, 16U, 17U, 1000U, 4097U}) {
-    std::vector<std::uint64_t> numbers = shuffled(size, 7);
+    std::vector<std::uint64_t> numbers = shuffled(size, 7, size);
     std::sort(numbers.begin(), numbers.end());
     for (std::uint64_t i = 0; i < size; ++i) ASSERT_EQ(numbers[i], i) << size;
   }
 }
 
-TEST(ShuffledNumbers, AreOfTheirSeed) {
-  EXPECT_EQ(shuffled(100, 1), shuffled(100, 1));
-  EXPECT_NE(shuffled(100, 1), shuffled(100, 2));
-  EXPECT_FALSE(std::is_sorted(shuffled(100, 1).begin(), shuffled(100, 1).end()));
+TEST(ShuffledNumbers, DependOnTheSeed) {
+  const auto one = shuffled(100, 1, 100);
+  EXPECT_EQ(shuffled(100, 1, 100), one);
+  EXPECT_NE(shuffled(100, 2, 100), one);
+  EXPECT_FALSE(std::is_sorted(one.begin(), one.end()));
 }
 
-// Each number is as often in the first half as in the second.
-TEST(ShuffledNumbers, PreferNoNumber) {
+TEST(ShuffledNumbers, PutEachNumberIntoTheFirstHalfForHalfOfTheSeeds) {
   constexpr std::uint64_t kSize = 10;
-  constexpr int kSeeds = 2000;
+  constexpr std::uint64_t kSeeds = 2000;
   std::vector<int> early(kSize);
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    const ShuffledNumbers numbers(kSize, static_cast<std::uint64_t>(seed));
-    for (std::uint64_t place = 0; place < kSize / 2; ++place) ++early[numbers.at(place)];
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    for (const std::uint64_t number : shuffled(kSize, seed, kSize / 2)) ++early[number];
   }
   for (const int times : early) EXPECT_NEAR(times, kSeeds / 2, 5 * 23) << "five standard deviations";
 }
 
-TEST(ShuffledNumbers, ReachFarBeyondMemory) {
+TEST(ShuffledNumbers, NeedNoMemoryForTheirSize) {
   const std::uint64_t size = std::uint64_t{1} << 62U;
-  const ShuffledNumbers numbers(size, 3);
-  std::set<std::uint64_t> seen;
-  for (std::uint64_t place = 0; place < 1000; ++place) {
-    const std::uint64_t number = numbers.at(place);
-    EXPECT_LT(number, size);
-    seen.insert(number);
-  }
-  EXPECT_EQ(seen.size(), 1000U);
+  const auto numbers = shuffled(size, 3, 1000);
+  EXPECT_LT(*std::max_element(numbers.begin(), numbers.end()), size);
+  EXPECT_EQ(std::set<std::uint64_t>(numbers.begin(), numbers.end()).size(), 1000U);
 }
 
 }  // namespace

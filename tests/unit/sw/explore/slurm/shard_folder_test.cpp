@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/merge_stores.h"
-#include "sw/explore/store/store.h"
-#include "tests/support/scratch_folder.h"
+#include "sw/explore/store/store_reader.h"
+#include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -18,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::message_of;
 using test::read_file;
+using test::write_file;
+using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::UnorderedElementsAre;
 
@@ -30,195 +31,142 @@ ShardedSweep three_shards() {
   return sweep;
 }
 
-class ShardFolderTest : public ::testing::Test {
+class ShardFolderTest : public StoreFiles {
  protected:
-  std::string store() const { return (scratch_.path() / "a.db").string(); }
-  std::string file(const std::string& name) const { return store() + ".shards/" + name; }
-  static void add(const std::string& path, const std::string& hash, const std::string& version = "1") {
-    StoredPoint point;
-    point.hash = hash;
-    point.status = "ok";
-    Store(path, version).add(point);
-  }
-  static std::vector<std::string> names(const fs::path& folder) {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder))
-      names.push_back(entry.path().filename().string());
-    return names;
+  ShardFolderTest() { folder.lock(); }
+
+  static std::string shard_file(const std::string& name) { return "a.db.shards/" + name; }
+  std::string text_of(const std::string& name) const { return read_file(file(shard_file(name))); }
+  void write(const std::string& name, const std::string& text) const {
+    write_file(file(shard_file(name)), text);
   }
 
- private:
-  test::ScratchFolder scratch_;
+  std::string store = file("a.db");
+  ShardFolder folder{store};
 };
 
 TEST(ShardedSweep, SharesItsPoints) {
-  EXPECT_EQ(three_shards().points_of(0), 4U);
-  EXPECT_EQ(three_shards().points_of(1), 3U);
-  EXPECT_EQ(three_shards().points_of(2), 3U);
-  ShardedSweep more = three_shards();
-  more.shards = 11;
-  EXPECT_EQ(more.points_of(10), 0U);
+  ShardedSweep sweep = three_shards();
+  EXPECT_EQ(sweep.points_of(0), 4U);
+  EXPECT_EQ(sweep.points_of(1), 3U);
+  EXPECT_EQ(sweep.points_of(2), 3U);
+  sweep.shards = 11;
+  EXPECT_EQ(sweep.points_of(10), 0U);
 }
 
-TEST_F(ShardFolderTest, IsOfTheSweepThatHasBegunIt) {
-  ShardFolder folder(store());
-  folder.lock();
+TEST_F(ShardFolderTest, BelongsToTheSweepThatHasBegunIt) {
   EXPECT_FALSE(folder.is_of(three_shards()));
-  folder.begin(three_shards());
-  EXPECT_TRUE(folder.is_of(three_shards()));
-  ShardedSweep other = three_shards();
-  other.plan += "run: {source: preloaded}\n";
-  EXPECT_FALSE(folder.is_of(other));
-  other = three_shards();
-  other.board = "extends: fpl2003\n";
-  EXPECT_FALSE(folder.is_of(other));
-  other = three_shards();
-  other.calibration = {"a", "b", "c"};
-  EXPECT_FALSE(folder.is_of(other));
-  folder.begin(other);
-  EXPECT_TRUE(folder.is_of(other));
-  other.calibration->right_lut = "d";
-  EXPECT_FALSE(folder.is_of(other));
-  folder.begin(three_shards());
-  other = three_shards();
-  other.shards = 4;
-  EXPECT_FALSE(folder.is_of(other));
-  other = three_shards();
-  other.version = "2";
-  EXPECT_FALSE(folder.is_of(other));
+  std::vector<ShardedSweep> sweeps(7, three_shards());
+  sweeps[1].plan += "run: {source: preloaded}\n";
+  sweeps[2].board = "extends: fpl2003\n";
+  sweeps[3].shards = 4;
+  sweeps[4].version = "2";
+  sweeps[5].calibration = {"a", "b", "c"};
+  sweeps[6].calibration = {"a", "b", "d"};
+  for (const std::size_t begun : {0U, 5U}) {
+    folder.begin(sweeps[begun]);
+    for (std::size_t i = 0; i < sweeps.size(); ++i) EXPECT_EQ(folder.is_of(sweeps[i]), i == begun) << i;
+  }
 }
 
-TEST_F(ShardFolderTest, HoldsWhatItsTasksNeedAndNothingElse) {
-  ShardFolder folder(store());
-  folder.lock();
+TEST_F(ShardFolderTest, HoldsTheFilesThatItsTasksNeedAndNoOthers) {
   ShardedSweep sweep = three_shards();
   sweep.board = "extends: fpl2003\n";
   sweep.calibration = {"the rig", "left", "right"};
   folder.begin(sweep);
-  EXPECT_EQ(read_file(file("plan.yaml")), sweep.plan);
-  EXPECT_EQ(read_file(file("board.yaml")), *sweep.board);
-  EXPECT_THAT(names(folder.path()),
+  EXPECT_THAT(names_in(folder.path()),
               UnorderedElementsAre("lock", "sweep", "plan.yaml", "board.yaml", "calibration.yaml",
                                    "calibration_left.lut", "calibration_right.lut", "task.sh", "merge.sh"));
-  EXPECT_EQ(read_file(file("calibration.yaml")), "the rig");
-  EXPECT_EQ(read_file(file("calibration_left.lut")), "left");
-  EXPECT_EQ(read_file(file("calibration_right.lut")), "right");
+  EXPECT_EQ(text_of("plan.yaml"), sweep.plan);
+  EXPECT_EQ(text_of("board.yaml"), *sweep.board);
+  EXPECT_EQ(text_of("calibration.yaml"), "the rig");
+  EXPECT_EQ(text_of("calibration_left.lut"), "left");
+  EXPECT_EQ(text_of("calibration_right.lut"), "right");
   folder.begin(three_shards());
-  EXPECT_FALSE(fs::exists(file("calibration.yaml")));
-  EXPECT_FALSE(fs::exists(file("board.yaml")));
+  EXPECT_THAT(names_in(folder.path()),
+              UnorderedElementsAre("lock", "sweep", "plan.yaml", "task.sh", "merge.sh"));
   folder.remove();
   EXPECT_FALSE(folder.exists());
 }
 
-TEST_F(ShardFolderTest, LetsOneProcessIn) {
-  ShardFolder folder(store());
-  folder.lock();
-  ShardFolder other(store());
+TEST_F(ShardFolderTest, IsLockedForOneProcess) {
+  ShardFolder other(store);
   EXPECT_THAT(message_of([&] { other.lock(); }),
               EndsWith("a.db.shards: another process waits for these shards already"));
 }
 
-TEST_F(ShardFolderTest, SaysWhatIsThereAsOfTheLastLook) {
-  ShardFolder folder(store());
-  folder.lock();
+TEST_F(ShardFolderTest, ReportsTheShardsAsOfTheLastRefresh) {
   folder.begin(three_shards());
-  test::write_file(file("shard_1.db"), "");
-  test::write_file(file("shard_2.work"), "");
-  test::write_file(file("shard_1.progress"), "ok 3\n");
+  write("shard_1.db", "");
+  write("shard_2.work", "");
+  write("shard_1.progress", "ok 3\n");
+  write("merged", "");
   EXPECT_FALSE(folder.is_whole(1));
-  folder.look();
+  folder.refresh();
   EXPECT_FALSE(folder.is_whole(0));
   EXPECT_TRUE(folder.is_whole(1));
   EXPECT_FALSE(folder.is_whole(2));
   EXPECT_EQ(folder.counts(1).ok, 3U);
   EXPECT_EQ(folder.counts(0).done(), 0U);
-}
-
-TEST_F(ShardFolderTest, IsMergedIfTheStoreIsThereToo) {
-  ShardFolder folder(store());
-  folder.lock();
-  folder.begin(three_shards());
-  test::write_file(file("merged"), "");
-  folder.look();
-  EXPECT_FALSE(folder.is_merged());
-  add(store(), "h1");
+  EXPECT_FALSE(folder.is_merged()) << "without the store";
+  add("a.db", {ok_point("h1")});
   EXPECT_TRUE(folder.is_merged());
 }
 
 TEST_F(ShardFolderTest, KeepsThePointsOfAllShards) {
-  add(store(), "h1");
-  ShardFolder folder(store());
-  folder.lock();
+  add("a.db", {ok_point("h1")});
   folder.begin(three_shards());
-  add(file("shard_0.db"), "h2");
-  add(file("shard_1.work"), "h3");
-  test::write_file(file("shard_2.work"), "");  // its task has just begun
+  add(shard_file("shard_0.db"), {ok_point("h2")});
+  add(shard_file("shard_1.work"), {ok_point("h3")});
+  write("shard_2.work", "");  // of a task that has just begun
   folder.keep_points("1");
-  add(file("expected.work"), "h1");
-  add(file("expected.work"), "h2");
-  add(file("expected.work"), "h3");
-  merge_stores({file("expected.work")}, file("expected.work"));
-  EXPECT_EQ(read_file(store()), read_file(file("expected.work")));
+  add("expected.db", {ok_point("h1"), ok_point("h2"), ok_point("h3")});
+  merge({"expected.db"}, "expected.db");
+  EXPECT_EQ(read_file(store), read_file(file("expected.db")));
 }
 
 TEST_F(ShardFolderTest, KeepsThePointsOfManyShardsWithFewOpenFiles) {
-  constexpr int kShards = 40;
-  ShardFolder folder(store());
-  folder.lock();
+  constexpr std::size_t kShards = 40;
   folder.begin(three_shards());
-  for (int shard = 0; shard < kShards; ++shard)
-    add(file("shard_" + std::to_string(shard) + ".work"), "h" + std::to_string(shard));
+  for (std::size_t shard = 0; shard < kShards; ++shard)
+    add(shard_file("shard_" + std::to_string(shard) + ".work"), {ok_point("h" + std::to_string(shard))});
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
   const rlimit few = {64, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
   folder.keep_points("1");
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
-  EXPECT_EQ(Database(store(), Database::Access::kRead).number("SELECT count(*) FROM points"), kShards);
+  EXPECT_EQ(hashes("a.db").size(), kShards);
 }
 
-TEST_F(ShardFolderTest, DoesNotMakeAStoreOfNothing) {
-  ShardFolder folder(store());
-  folder.lock();
+TEST_F(ShardFolderTest, MakesNoStoreWithoutPoints) {
   folder.begin(three_shards());
   folder.keep_points("1");
-  EXPECT_FALSE(fs::exists(store()));
+  EXPECT_FALSE(fs::exists(store));
 }
 
-TEST_F(ShardFolderTest, DoesNotMixVersions) {
-  add(store(), "h1", "0");
-  ShardFolder folder(store());
-  folder.lock();
-  EXPECT_THAT(message_of([&] { folder.begin(three_shards()); }),
-              EndsWith("a.db: holds points of version 0; this is version 1: give another file"));
-}
-
-TEST_F(ShardFolderTest, DoesNotMixBanksWhoseNamesDifferOnlyInCase) {
-  StoredPoint point;
-  point.hash = "h1";
-  point.status = "ok";
+TEST_F(ShardFolderTest, RefusesAStoreOfAnotherVersionOrWithBanksThatDifferOnlyInCase) {
+  StoredPoint point = ok_point("h1");
   point.keys = {{"ssram.banks.a.words", std::int64_t{1}}};
-  Store(store(), "1").add(point);
-  ShardFolder folder(store());
-  folder.lock();
+  add("a.db", {point});
   ShardedSweep sweep = three_shards();
   sweep.banks = {"A"};
   EXPECT_THAT(message_of([&] { folder.begin(sweep); }), EndsWith("only in case: give another file"));
+  sweep.version = "2";
+  EXPECT_THAT(message_of([&] { folder.begin(sweep); }),
+              EndsWith("a.db: holds points of version 1; this is version 2: give another file"));
 }
 
 TEST_F(ShardFolderTest, GivesTheStoreTheFormThatManyMayRead) {
-  add(store(), "h1");
-  ShardFolder folder(store());
-  folder.lock();
+  add("a.db", {ok_point("h1")});
   folder.begin(three_shards());
-  FinishedStore read(store(), "1");
-  EXPECT_TRUE(read.has("h1"));
-  EXPECT_FALSE(fs::exists(store() + "-shm"));
+  EXPECT_TRUE(FinishedStore(store, "1").has("h1"));
+  EXPECT_THAT(names(), UnorderedElementsAre("a.db", "a.db.shards"));
 }
 
 TEST_F(ShardFolderTest, FindsTheLastLineOfALog) {
-  EXPECT_EQ(ShardFolder::last_line(test::write_file(file("log"), "one\ntwo\n\n")), "two");
-  EXPECT_EQ(ShardFolder::last_line(test::write_file(file("log"), "one")), "one");
+  EXPECT_EQ(ShardFolder::last_line(write_file(file("log"), "one\ntwo\n\n")), "two");
+  EXPECT_EQ(ShardFolder::last_line(write_file(file("log"), "one")), "one");
   EXPECT_EQ(ShardFolder::last_line(file("none")), "");
 }
 

@@ -12,125 +12,108 @@
 #include <string>
 #include <thread>
 
-#include "sw/explore/store/database.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
 namespace {
 
+namespace fs = std::filesystem;
 using test::message_of;
-using ::testing::EndsWith;
+using test::write_file;
 using namespace std::chrono_literals;
 
-class StoreLockTest : public ::testing::Test {
+class StoreLockTest : public StoreFiles {
  protected:
-  std::string store() const { return (folder_.path() / "a.db").string(); }
-  // What a second lock is refused with.
-  std::string refusal() const {
-    return message_of([&] { const StoreLock second(store(), 0ms); });
+  void expect_locked(const std::string& path) const {
+    EXPECT_EQ(message_of([&] { const StoreLock second(path, 0ms); }),
+              path + ": another process is at work on it: wait for its end, or give another file");
   }
 
- private:
-  test::ScratchFolder folder_;
+  std::string store = file("a.db");
 };
 
-TEST_F(StoreLockTest, IsForOne) {
-  auto first = std::make_unique<StoreLock>(store());
-  EXPECT_EQ(refusal(),
-            store() + ": another process is at work on it: wait for its end, or give another file");
-  first.reset();
-  const StoreLock second(store(), 0ms);
-}
-
-TEST_F(StoreLockTest, HoldsWhileSqliteOpensAndClosesTheFile) {
-  const StoreLock first(store());
-  for (int i = 0; i < 2; ++i) {
-    Database database(store(), Database::Access::kCreate);
-    database.execute("CREATE TABLE IF NOT EXISTS t(x); INSERT INTO t VALUES(1)");
+TEST_F(StoreLockTest, KeepsOtherLocksOutUntilItEnds) {
+  {
+    const StoreLock first(store);
+    for (int i = 0; i < 2; ++i) {
+      Database database(store, Database::Access::kCreate);
+      database.execute("CREATE TABLE IF NOT EXISTS t(x); INSERT INTO t VALUES(1)");
+    }
+    expect_locked(store);  // although SQLite has closed the file
   }
-  EXPECT_THAT(refusal(), EndsWith("give another file"));
+  const StoreLock second(store, 0ms);
 }
 
-TEST_F(StoreLockTest, EndsWithTheProcessAndThoseThatItHasForked) {
+TEST_F(StoreLockTest, EndsWithItsProcess) {
   const pid_t child = fork();
   if (child == 0) {
-    const StoreLock lock(store());
-    test::write_file(store() + ".locked", "");
+    const StoreLock lock(store);
+    write_file(file("locked"), "");
     pause();
   }
-  while (!std::filesystem::exists(store() + ".locked")) std::this_thread::sleep_for(1ms);
-  EXPECT_THAT(refusal(), EndsWith("give another file"));
+  while (!fs::exists(file("locked"))) std::this_thread::sleep_for(1ms);
+  expect_locked(store);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  const StoreLock lock(store(), 0ms);
+  const StoreLock lock(store, 0ms);
 }
 
-TEST_F(StoreLockTest, WaitsForAProcessThatEnds) {
-  auto first = std::make_unique<StoreLock>(store());
+TEST_F(StoreLockTest, WaitsForAnotherLockToEnd) {
+  auto first = std::make_unique<StoreLock>(store);
   std::thread other([&first] {
     std::this_thread::sleep_for(100ms);
     first.reset();
   });
-  const StoreLock second(store(), 60s);
+  const StoreLock second(store, 60s);
   other.join();
 }
 
-TEST_F(StoreLockTest, IsOfTheFileThatIsThere) {
-  const StoreLock first(store());
-  test::write_file(store() + ".new", "");
-  std::filesystem::rename(store() + ".new", store());
-  const StoreLock second(store(), 0ms);
-  EXPECT_THAT(refusal(), EndsWith("give another file"));
+TEST_F(StoreLockTest, LocksTheFileThatHasTheNameNow) {
+  const StoreLock first(store);
+  fs::rename(write_file(file("new"), ""), store);
+  const StoreLock second(store, 0ms);
+  expect_locked(store);
 }
 
-TEST_F(StoreLockTest, LeavesNoEmptyFileThatItHasMade) {
-  { const StoreLock lock(store()); }
-  EXPECT_FALSE(std::filesystem::exists(store()));
+TEST_F(StoreLockTest, RemovesTheFileThatItHasMadeIfItIsStillEmpty) {
+  { const StoreLock lock(store); }
+  EXPECT_FALSE(fs::exists(store));
   {
-    const StoreLock lock(store());
-    test::write_file(store(), "points");
+    const StoreLock lock(store);
+    fs::rename(write_file(file("new"), ""), store);
   }
-  EXPECT_TRUE(std::filesystem::exists(store()));
-  test::write_file(store(), "");
-  { const StoreLock lock(store()); }
-  EXPECT_TRUE(std::filesystem::exists(store())) << "somebody else has made it";
-}
-
-TEST_F(StoreLockTest, LeavesAFileThatHasTakenThePlaceOfItsOwn) {
+  EXPECT_TRUE(fs::exists(store)) << "another file has taken its place";
+  { const StoreLock lock(store); }
+  EXPECT_TRUE(fs::exists(store)) << "the lock has not made it";
+  fs::remove(store);
   {
-    const StoreLock lock(store());
-    std::filesystem::rename(test::write_file(store() + ".new", ""), store());
+    const StoreLock lock(store);
+    write_file(store, "points");
   }
-  EXPECT_TRUE(std::filesystem::exists(store()));
+  EXPECT_TRUE(fs::exists(store));
 }
 
-TEST_F(StoreLockTest, IsOfTheFileBehindALink) {
-  namespace fs = std::filesystem;
-  const std::string target = store() + ".target";
-  fs::create_symlink(target, store());
+TEST_F(StoreLockTest, LocksTheFileBehindALink) {
+  const std::string target = file("target");
+  fs::create_symlink(target, store);
   {
-    const StoreLock lock(store());
+    const StoreLock lock(store);
     EXPECT_TRUE(fs::is_regular_file(target));
-    EXPECT_THAT(message_of([&] { const StoreLock second(target, 0ms); }), EndsWith("give another file"));
+    expect_locked(target);
   }
-  EXPECT_TRUE(fs::is_symlink(store()));
-  EXPECT_FALSE(fs::exists(target)) << "it was made by the lock, and is empty";
+  EXPECT_TRUE(fs::is_symlink(store));
+  EXPECT_FALSE(fs::exists(target)) << "the lock has made it, and it is empty";
 }
 
-TEST_F(StoreLockTest, SaysThatItsFileHasGone) {
+TEST_F(StoreLockTest, ReportsThatItsFileIsGone) {
   for (const bool is_replaced : {false, true}) {
-    const StoreLock lock(store());
+    const StoreLock lock(store);
     lock.check();
-    std::filesystem::remove(store());
-    if (is_replaced) test::write_file(store(), "another");
-    EXPECT_EQ(message_of([&] { lock.check(); }),
-              store() + ": has been removed or replaced meanwhile: what was done is gone with it");
+    fs::remove(store);
+    if (is_replaced) write_file(store, "another");
+    EXPECT_EQ(message_of([&lock] { lock.check(); }),
+              store + ": was removed or replaced while in use: its points are lost");
   }
-}
-
-TEST_F(StoreLockTest, SaysWhyItCannotBe) {
-  EXPECT_EQ(message_of([&] { const StoreLock lock(store() + "/none.db"); }),
-            store() + "/none.db: cannot be opened to write: No such file or directory");
 }
 
 }  // namespace

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <systemc>
+#include <tlm>
+
+#include "models/interrupt.h"
+
+namespace stereotlm::capture {
+
+// A capture, from the frame that it takes to its last word.
+struct Capture {
+  std::uint64_t frame = 0;  // number of the camera frame
+  std::uint64_t begin_ps = 0;
+  std::uint64_t end_ps = 0;
+  std::uint64_t dropped_pixels = 0;
+  std::uint64_t lost_words = 0;
+};
+
+// The registers of a capture board (capture_registers.h): decodes accesses, keeps the armed capture and the
+// status, and drives the interrupt.
+class CaptureRegisterFile : public InterruptIf {
+ public:
+  // Carries out an access and sets its response status. A refused access has no effect; its errors are those
+  // of fpga/register_file.h. Arming counts at the time of the access, `delay` from now. Returns whether the
+  // access triggers the cameras.
+  bool access(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
+  // Debug transport, which only reads.
+  unsigned debug(tlm::tlm_generic_payload& access) const;
+
+  // Whether a capture is armed, and was so at this time.
+  bool armed_at(std::uint64_t time_ps) const { return armed_ && armed_ps_ <= time_ps; }
+  bool capturing() const { return capturing_; }
+  // The armed capture starts. Returns its buffer address.
+  std::uint32_t start();
+  // The bus has not taken some words of the running capture.
+  void lose_words();
+  // The running capture is done.
+  void finish(const Capture& capture);
+  // None before the first capture is done.
+  const std::optional<Capture>& last_capture() const { return last_capture_; }
+
+  bool is_asserted() const override { return done_ || words_lost_; }
+  const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
+
+ private:
+  static tlm::tlm_response_status check(const tlm::tlm_generic_payload& access);
+  std::uint32_t read(std::uint64_t address) const;
+  void arm(std::uint64_t time_ps);
+  void clear(std::uint32_t status_bits);
+
+  std::uint32_t buffer_address_ = 0;
+  bool armed_ = false;
+  std::uint64_t armed_ps_ = 0;
+  std::uint32_t armed_address_ = 0;
+  bool capturing_ = false;
+  bool done_ = false;
+  bool words_lost_ = false;
+  bool arm_refused_ = false;
+  std::optional<Capture> last_capture_;
+  sc_core::sc_event interrupt_changed_{"interrupt_changed"};
+};
+
+}  // namespace stereotlm::capture

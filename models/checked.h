@@ -1,0 +1,17 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace stereotlm {
+
+// Returns the configuration of a block. Throws std::invalid_argument with the block's name and the first
+// problem if problems(config) finds any.
+template <class Config>
+const Config& checked(const std::string& name, const Config& config) {
+  if (const auto found = problems(config); !found.empty())
+    throw std::invalid_argument(name + ": " + found.front());
+  return config;
+}
+
+}  // namespace stereotlm

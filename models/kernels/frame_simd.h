@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+
+namespace stereotlm::kernels {
+
+// The longest vector of all instruction sets. Positions, counts and offsets in this file are in lanes of 16
+// bits, unless their comment names another unit.
+inline constexpr int kMostFrameLanes = 32;
+inline constexpr int kMostFrameVectorBytes = 2 * kMostFrameLanes;
+
+// Filter taps as pairs of neighbouring columns: weights[row * pairs + p] holds the weight of column 2p in the
+// lower half and that of column 2p + 1 in the upper half. A weight that does not exist is 0.
+struct FilterTaps {
+  int rows = 0;
+  int pairs = 0;
+  int shift = 0;
+  const std::int32_t* weights = nullptr;
+};
+
+// How an image is matched: each lane of a vector has its own segment of columns in its own band of rows.
+// Position p of a lane lies p columns right of the first column of its segment.
+struct MatchPlan {
+  int window = 0;
+  int disparities = 0;
+  bool right_based = true;  // whether right-based disparities are wanted
+  int columns = 0;          // positions of a segment, one right window each; a multiple of 8
+  int first_outside = 0;    // from this position on the left window of some lane is outside the image
+};
+
+// The largest window whose sums leave two bits of 16 for the disparity: 7 * 7 * 255 * 4 fits into 16 bits, 9
+// * 9 * 255 * 4 does not. Sums alone fit up to 15 * 15 * 255.
+inline constexpr int kLastNarrowWindow = 7;
+
+// Arrays of vectors, one per position, at multiples of kMostFrameVectorBytes.
+struct MatchMemory {
+  // The pixel that enters the window in the lower byte, the pixel that leaves it in the upper byte.
+  const std::int16_t* right_pixels = nullptr;  // [columns + window - 1]
+  const std::int16_t* left_pixels = nullptr;   // [columns + window + disparities - 2]
+  // [columns + disparities]: the largest value where the left window is outside the image, else the smallest.
+  const std::int16_t* outside = nullptr;
+  // [1]: the largest value in the first lane of each band, else the smallest.
+  const std::int16_t* band_begins = nullptr;
+  std::int16_t* column_sums = nullptr;  // [disparities * (columns + window)], zeros before the first row
+  std::int16_t* right_best = nullptr;   // [2 * columns]
+  std::int16_t* left_best = nullptr;    // [2 * (columns + disparities)]
+};
+
+// The loops over whole images, for one instruction set.
+struct FrameSimd {
+  int lanes;  // of a vector
+
+  // out[i] = source pixel of table[i], 0 where the entry is not valid.
+  void (*rectify)(const std::uint8_t* source, const std::uint32_t* table, int count, int width,
+                  std::uint8_t* out);
+
+  // out[u] = sum over the rows of rows[..][u], for `width` pixels.
+  void (*add_rows)(const std::uint8_t* const* rows, int count, int width, std::int16_t* out);
+  // out[u] = clamp(128 + floor(S / 2^shift), 0, 255), where S = sum over the taps of weight * rows[row][u +
+  // column]. Exact if S fits into 32 bits. Reads the rows and writes `out` up to 64 pixels beyond `width`.
+  void (*filter_row)(const std::int16_t* const* rows, const FilterTaps& taps, int width, std::uint8_t* out);
+
+  // out[i] = entering[i] + 256 * leaving[i].
+  void (*pair_pixels)(const std::uint8_t* entering, const std::uint8_t* leaving, int width,
+                      std::int16_t* out);
+  // Vector i receives from[lane][i] in each lane, for i < count. Reads and writes up to the next multiple of
+  // 8.
+  void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
+  // The reverse, to bytes.
+  void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
+  // Moves all column sums one row down, while the first windows are not complete.
+  void (*add_row)(const MatchPlan& plan, const MatchMemory& memory);
+  // Moves one row down and stores the disparities of the row of windows in right_best and left_best, one per
+  // lane and position.
+  void (*match_row)(const MatchPlan& plan, const MatchMemory& memory);
+};
+
+}  // namespace stereotlm::kernels

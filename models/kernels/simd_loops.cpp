@@ -1,0 +1,15 @@
+#include "models/kernels/simd_loops.h"
+
+#include "models/kernels/frame_simd_vectors.h"
+#include "models/kernels/simd.h"
+
+namespace stereotlm::kernels::STEREOTLM_SIMD {
+
+extern const Simd kSimd;
+constexpr Simd kSimd = {
+    STEREOTLM_SIMD_NAME,
+    {int{kLanes}, rectify, add_rows, filter_row, pair_pixels, to_lanes, from_lanes, add_row, match_row},
+    {step_windows, step_chain, smallest_key, filter_column},
+};
+
+}  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/kernels/column_simd.h"
+#include "models/kernels/frame_simd.h"
+
+// The functions of one instruction set; FrameSimd and ColumnSimd say what they do.
+namespace stereotlm::kernels::STEREOTLM_SIMD {
+
+void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, int width, std::uint8_t* out);
+void add_rows(const std::uint8_t* const* rows, int count, int width, std::int16_t* out);
+void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int width, std::uint8_t* out);
+
+void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int width, std::int16_t* out);
+void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out);
+void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out);
+void add_row(const MatchPlan& plan, const MatchMemory& memory);
+void match_row(const MatchPlan& plan, const MatchMemory& memory);
+
+void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                  std::int16_t* leaving, std::int32_t* windows);
+void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,
+                std::int32_t* next);
+std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes);
+void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
+                   int shift, std::uint8_t* out);
+
+}  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "models/pci/bridge_registers.h"
+
+namespace stereotlm::pci {
+
+class DmaChannel;
+
+// Words that the bridge moves over one of its two buses.
+struct BridgeTransfer {
+  DmaChannel* channel = nullptr;  // null: a read of the slave window
+  bool write = false;
+  std::uint64_t address = 0;  // first byte, as an address on that bus
+  std::vector<std::uint32_t> words = {};
+  bool under_way = false;  // from its start to its end
+  bool failed = false;     // once it has ended: a target refused it
+};
+
+// One DMA channel of the bridge. It follows a chain of descriptors (bridge_registers.h) and splits the words
+// of each descriptor into bursts. While it writes a burst on one bus, it reads the next burst on the other
+// bus; both must end before its next step.
+//
+// The channel decides, and the bridge acts: each step names the transfers that the bridge is to start, and
+// the bridge calls next_step() when one of them has ended. Plain C++ without time.
+class DmaChannel {
+ public:
+  struct Step {
+    std::array<BridgeTransfer*, 2> starts = {};  // in this order; null: no transfer
+    std::uint32_t interrupts = 0;                // bits of kInterruptStatus to raise
+  };
+
+  // `number`: 0..kChannels-1. `burst_words`: the longest burst, in words.
+  DmaChannel(unsigned number, std::size_t burst_words);
+  DmaChannel(const DmaChannel&) = delete;
+  DmaChannel& operator=(const DmaChannel&) = delete;
+
+  // The register kDmaDescriptor. It names the chain that the next start() follows.
+  std::uint32_t descriptor() const { return descriptor_; }
+  void set_descriptor(std::uint32_t address) { descriptor_ = address; }
+  bool busy() const { return busy_; }
+
+  // The start bit of kDmaControl is written. A busy channel raises kDmaError and continues its chain.
+  Step start();
+  // A transfer of this channel has ended. The step is empty while the other transfer is under way.
+  Step next_step();
+
+  BridgeTransfer& on_pci() { return pci_; }
+  BridgeTransfer& on_local_bus() { return local_; }
+  const BridgeTransfer& on_local_bus() const { return local_; }
+  // Whether only its transfer on the local bus keeps the channel from its next step.
+  bool waits_for_local_bus() const { return local_.under_way && !pci_.under_way; }
+
+ private:
+  struct Descriptor {
+    bool to_pci = false;
+    std::uint64_t pci_address = 0;
+    std::uint64_t local_address = 0;
+    std::size_t words = 0;
+    std::uint32_t next = 0;  // PCI address of the next descriptor; 0: none
+  };
+
+  Step finish(std::uint32_t interrupt);
+  Step fetch(std::uint32_t address);
+  bool decode_descriptor();
+  BridgeTransfer& source() { return moving_.to_pci ? local_ : pci_; }
+  BridgeTransfer& read_burst();
+  BridgeTransfer& write_burst();
+  BridgeTransfer& prepare(BridgeTransfer& transfer, bool write) const;
+
+  unsigned number_;
+  std::size_t burst_words_;
+  std::uint32_t descriptor_ = 0;
+  bool busy_ = false;
+  bool fetching_ = false;    // pci_ reads a descriptor
+  Descriptor moving_;        // the descriptor whose words are moved
+  std::size_t written_ = 0;  // words of it whose write has begun
+  BridgeTransfer pci_{this};
+  BridgeTransfer local_{this};
+};
+
+using DmaChannels = std::array<DmaChannel, bridge::kChannels>;
+
+}  // namespace stereotlm::pci

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sw/cli/typed_option.h"
+#include "sw/explore/sweep/sweep.h"
+#include "sw/process/problems.h"
+
+namespace CLI {
+class App;
+}
+
+namespace stereotlm::cli {
+
+// The options of `sweep`.
+class SweepCommandOptions {
+ public:
+  // Adds them to the command, before it is parsed.
+  void add_to(CLI::App& command);
+
+  // Runs in the callback of the command. Throws Refused with everything that is wrong.
+  void check_usage();
+
+  // As they were typed.
+  Typed plan;
+  Typed shard;
+  Typed board;
+  Typed calibration;
+  Typed progress;
+
+  // Set by check_usage().
+  explore::SweepOptions sweep;
+  bool is_slurm = false;
+  std::uint64_t shards = 0;                 // tasks of the job array
+  std::vector<std::string> sbatch_options;  // with their dashes
+
+ private:
+  void check_jobs(process::Problems& problems);
+  void check_shard(process::Problems& problems);
+  void check_launcher(process::Problems& problems);
+  void check_progress(process::Problems& problems) const;
+
+  Typed out_;
+  Typed jobs_;
+  Typed known_;
+  Typed launcher_;
+  Typed shards_;
+  TypedList sbatch_;
+};
+
+}  // namespace stereotlm::cli
