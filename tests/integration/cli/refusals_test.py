@@ -1,6 +1,6 @@
 """Help, and what is refused: wrong command lines, pictures, boards and folders that a run cannot use.
 
-load_test.cpp has every reason against a picture, result_folder*_test.cpp those against a folder.
+load_test.cpp has every reason against a picture, result_folder_test.cpp every one against a folder.
 """
 
 import os

@@ -136,6 +136,17 @@ class Sweep(SweepTest):
         self.succeeds(self.sweep("--board", board))
         self.assertEqual(self.query('SELECT DISTINCT "fpga.clock_mhz" FROM points'), [(50,)])
 
+    def test_names_that_sqlite_would_take_for_no_file_are_files(self):
+        sweep, here = ["sweep", self.plan, "--out"], {"cwd": self.folder}
+        merged = self.folder / "file:merged.db"
+        for name in (":memory:", "file:x.db", "file::memory:?cache=shared"):
+            said = self.succeeds(run(*sweep, name, **here))
+            self.assertIn(f"\n{name}: {POINTS} points\n", said)
+            said = self.succeeds(run(*sweep, "known.db", "--known", name, **here))
+            self.assertIn(f"{POINTS} there already", said)
+            self.succeeds(run("merge", merged.name, name, **here))
+            self.assertTrue(merged.read_bytes() == (self.folder / name).read_bytes())
+
 
 class Studies(SweepTest):
     """The plans in results/, which are examples too."""
