@@ -219,7 +219,7 @@ class Explain(ProgramTest):
         rates = [float(row[0]) for row in rows]
         self.assertEqual(rates, sorted(rates, reverse=True))
 
-    def test_of_the_core(self):
+    def test_the_steps_of_the_core_are_those_of_runs(self):
         text = self.explain(*PRELOADED, *SHARED)
         self.compare(text, *PRELOADED, *SHARED)
         (bank_more,) = (row for row in self.rows(text) if row[2] == "a bank more")
@@ -235,7 +235,7 @@ class Explain(ProgramTest):
         self.assertNotIn("cameras.", text)
         self.assertNotIn("pci", text)
 
-    def test_names_every_resource_with_its_headroom(self):
+    def test_every_resource_is_named_with_its_headroom(self):
         text = self.explain(*PRELOADED, *SHARED)
         bounds = self.succeeds(run("bounds", "fpl2003", *SMALL, *SHARED))
         found = {}
@@ -256,7 +256,7 @@ class Explain(ProgramTest):
         least = min(100 * (cycles / 40e6 * float(found[name]) - 1) for cycles, name in limits)
         self.assertAlmostEqual(headrooms[0], least, delta=0.01)
 
-    def test_of_the_computer_names_its_parts_and_every_knob(self):
+    def test_the_steps_of_the_computer_are_those_of_runs_and_every_knob_is_named(self):
         text = self.explain(*CAMERA_RATES)
         rate = f"{self.rate(*CAMERA_RATES):.3f} frames/s between the first and the last delivery (13 frames)"
         self.assertIn(f"the whole computer: {rate}", text)
@@ -272,7 +272,7 @@ class Explain(ProgramTest):
             if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "allocation.")):
                 self.assertIn(key, text)
 
-    def test_wrong_usage(self):
+    def test_wrong_options_are_refused(self):
         self.refused(run("explain"), "BOARD: missing")
         self.refused_in_one_line(run("explain", "fpl2003", "--source", "x"), "--source = x")
         self.refused_in_one_line(run("explain", "fpl2003", *sets("matcher.window=4")), "matcher.window = 4")

@@ -62,7 +62,7 @@ class Made(CalibrateTest):
         self.is_in(self.home / "rig_drawings", *drawings, "displacement.png", "source_lines.png")
         self.assertEqual(len(set(self.result(self.home / "rig_drawings").values())), len(drawings) + 2)
 
-    def test_of_the_pictures_it_wrote_gives_the_same_tables(self):
+    def test_the_pictures_it_wrote_give_the_same_tables(self):
         process = self.calibrate("--disparity-offset", "0", left="left_*.png", right="right_*.png")
         found, expected = fields(self.succeeds(process)), fields(self.made.stdout)
         self.assertEqual(found["reprojection"], expected["reprojection"])
@@ -199,7 +199,7 @@ class RefusedCalibrations(CalibrateTest):
         process = run("check", "fpl2003", *board, "--calibration", rig)
         self.refused(process, "stereotlm: error: --calibration", *texts)
 
-    def test_are_refused_by_each_command_that_takes_one(self):
+    def test_a_damaged_one_is_refused_by_each_command(self):
         rig = self.copy_of_rig()
         text = rig.read_text()
         rig.write_text(text[: text.index("P2:")])
@@ -209,7 +209,7 @@ class RefusedCalibrations(CalibrateTest):
             self.refused(run(command, "fpl2003", "--calibration", rig), problem)
         self.assertFalse(self.out.exists())
 
-    def test_that_are_not_there_or_damaged(self):
+    def test_missing_and_damaged_ones_are_refused(self):
         rig = self.copy_of_rig()
         text = rig.read_text()
         other_offset = text.replace("disparity_offset: 0", "disparity_offset: 1")
@@ -224,7 +224,7 @@ class RefusedCalibrations(CalibrateTest):
         self.refused_with(self.folder / "rig.yml", "must end in .yaml")
         self.refused_with(self.folder, "must end in .yaml")
 
-    def test_whose_tables_are_missing_too_long_or_others(self):
+    def test_missing_long_and_foreign_tables_are_refused(self):
         rig = self.copy_of_rig()
         for side in SIDES:
             table = self.folder / f"rig_{side}.lut"
@@ -240,14 +240,14 @@ class RefusedCalibrations(CalibrateTest):
         (self.folder / "rig_left.lut").unlink()
         self.refused_with(rig, "rig_left.lut': no such file")
 
-    def test_for_another_board(self):
+    def test_those_for_another_board_are_refused(self):
         size = "image size = 640x480: must be that of the board's images, 320x480"
         self.refused_with(self.rig, f"'{self.rig}': {size}", board=sets("image.width=320"))
         for side in SIDES:
             both = f"goes with a board that has both tables; allocation.{side}_lut = none"
             self.refused_with(self.rig, both, board=sets(f"allocation.{side}_lut=none"))
 
-    def test_inside_the_result_folder(self):
+    def test_one_inside_the_result_folder_is_refused(self):
         self.copy_of_rig()
         self.out.mkdir()
         for path in self.folder.glob("rig*"):
@@ -258,7 +258,7 @@ class RefusedCalibrations(CalibrateTest):
 
 
 class RefusedPictures(CalibrateTest):
-    def test_are_named_and_nothing_is_written(self):
+    def test_each_reason_is_named_and_nothing_is_written(self):
         large = self.file("large.pgm", "P5\n2052 2052\n255\n")
         text = self.file("text.png", "no picture")
         twice = shutil.copy(self.pictures / "left_02.png", self.folder / "twice.png")
@@ -282,11 +282,11 @@ class RefusedPictures(CalibrateTest):
             with self.subTest(texts[0]), self.unchanged(self.folder):
                 self.refused(self.calibrate(left=left, right=right), *texts)
 
-    def test_whose_disparities_do_not_fit(self):
+    def test_too_few_disparities_for_the_grid_are_refused(self):
         lines = self.refused(self.calibrate("--disparities", "3"))
         self.assertRegex(lines[0], r"disparities = 3: must be \d+ or more for the grid's own")
 
-    def test_in_the_folder_of_drawings(self):
+    def test_those_among_its_own_drawings_are_refused(self):
         self.succeeds(self.calibrate())
         drawings = self.folder / "new_drawings"
         left, right = ([drawings / f"{name}_0[0-2].png"] for name in ("corners", "rectified"))
@@ -302,7 +302,7 @@ class RefusedPlaces(CalibrateTest):
             self.refused(self.calibrate(), f"'{path}'", text)
         path.unlink()
 
-    def test_are_files_and_folders_that_calibrate_has_not_made(self):
+    def test_files_that_calibrate_has_not_made_stay(self):
         self.refused_beside("new.yaml", "exists and is no calibration", "precious: 1\n")
         self.refused_beside("new_left.lut", "exists, without its calibration")
         self.copy_of_rig().rename(self.new)
@@ -319,13 +319,13 @@ class RefusedPlaces(CalibrateTest):
         with self.unchanged(self.folder / "new.partial"):
             self.refused(self.calibrate(), "holds 'new.partial/thesis.txt': no killed run has left that")
 
-    def test_are_pictures_that_synthetic_would_replace(self):
+    def test_pictures_that_a_made_up_rig_would_replace_stay(self):
         self.file("new_pictures/left_00.png", "mine")
         command = ["calibrate", "--synthetic", 1, *GRID, "--out", self.new]
         with self.unchanged(self.folder):
             self.refused(run(*command), "new_pictures': exists, without its calibration")
 
-    def test_are_folders_that_are_none(self):
+    def test_missing_folders_are_refused(self):
         for folder in (self.folder / "none", self.left):
             process = self.calibrate("--out", folder / "new.yaml")
             self.refused(process, f"--out '{folder}': no such folder")
@@ -337,7 +337,7 @@ class Usage(ProgramTest):
         lines = self.refused(run("calibrate"), *missing, "a complete command: stereotlm calibrate --left")
         self.assertEqual(len(lines), 6)
 
-    def test_wrong_values(self):
+    def test_wrong_values_are_refused(self):
         good = {"--left": "l", "--right": "r", "--grid": "9x6", "--square-mm": "25", "--out": "rig.yaml"}
         for option, value, problem in (
             ("--grid", "9", "must be columns x rows"),
@@ -370,7 +370,7 @@ class PrintGrid(ProgramTest):
             with self.unchanged(self.folder):
                 self.succeeds(self.print_grid(name))
 
-    def test_refusals(self):
+    def test_wrong_sheets_are_refused(self):
         sheet = self.file("grid.pdf", "precious")
         with self.unchanged(self.folder):
             self.refused(self.print_grid("grid.pdf"), "exists and is another file")

@@ -22,14 +22,14 @@ class CameraTest(ProgramTest):
 
 
 class Results(CameraTest):
-    def test_are_the_same_again_and_of_the_default_source(self):
+    def test_the_same_run_gives_the_same_bytes_and_cameras_are_the_default(self):
         self.camera("--frames", "5")
         self.is_in(self.out, *RESULT_FILES)
         self.assertEqual(self.run_json()["source"], "camera")
         with self.unchanged(self.out):
             self.camera("--frames", "5")
 
-    def test_are_numbered_by_camera_frame(self):
+    def test_frames_are_numbered_by_camera_frame(self):
         sequence = self.sequence(4)
         self.camera("--source", "camera", "--sequence", sequence, "--frames", "6", "--save-frames")
         numbers = sorted(int(name.split(".")[0]) for name in os.listdir(self.out / "frames"))
@@ -42,11 +42,11 @@ class Results(CameraTest):
             self.assertEqual(frame, read_png(alone / f"frames/{number % 4:06}.png"), number)
         self.assertEqual(read_png(self.out / "disparity.png"), frames[numbers[-1]])
 
-    def test_of_a_sequence_are_as_many_as_its_pairs(self):
+    def test_a_sequence_gives_as_many_frames_as_it_has_pairs(self):
         self.camera("--sequence", self.sequence(3))
         self.assertEqual(self.stats()["frames"], 3)
 
-    def test_of_an_interrupted_run_are_those_of_a_whole_run_of_the_frames_delivered(self):
+    def test_an_interrupted_run_equals_a_whole_one_of_the_frames_delivered(self):
         options = ["--sequence", self.sequence(7), "--save-frames"]
         terminal = Terminal(self.arguments(*options, "--frames", "1000000", "--out", self.out))
         status, _ = terminal.interrupt(PROGRESS, signal.SIGINT)
@@ -59,7 +59,7 @@ class Results(CameraTest):
 
 
 class Figures(CameraTest):
-    def test_have_the_keys_of_a_computer(self):
+    def test_a_computer_has_keys_of_its_own(self):
         table = self.camera("--frames", "20")
         stats = self.stats()
         self.assertNotIn("failed", stats)
@@ -85,7 +85,7 @@ class Figures(CameraTest):
             self.assertRegex(table, re.compile(pattern, re.MULTILINE))
         self.assertLessEqual(max(map(len, table.splitlines())), 100)
 
-    def test_that_do_not_exist_are_absent(self):
+    def test_figures_that_do_not_exist_are_absent(self):
         self.camera()  # one frame has no steady rate
         self.assertEqual(list(self.stats()["frames_per_second"]), ["core", "system"])
         self.succeeds(self.run_small("--frames", "2", "--out", self.out))  # without a computer
@@ -94,13 +94,13 @@ class Figures(CameraTest):
         for key in ("pci", "bridge", "cameras", "latency_ms"):
             self.assertNotIn(key, stats)
 
-    def test_blame_the_host_on_a_bank_that_the_core_uses(self):
+    def test_the_host_is_blamed_on_a_bank_that_the_core_uses(self):
         self.camera(*sets("allocation.left_image=[bank0, bank0]"), "--frames", "6")
         (row,) = (row for row in self.stats()["blame"] if row["by"] == "host")
         self.assertEqual((row["port"], row["bank"]), ("left_pixel", "bank0"))
         self.assertGreater(row["cycles"], 0)
 
-    def test_follow_the_keys_of_the_board(self):
+    def test_rates_follow_the_keys_of_the_board(self):
         rates = []
         for assignments in ([], ["capture.destination=host_memory"],
                             ["allocation.left_image=bank0", "allocation.right_image=bank2"]):
@@ -112,14 +112,14 @@ class Figures(CameraTest):
 
 
 class Truth(CameraTest):
-    def test_goes_with_one_pair(self):
+    def test_a_truth_goes_with_one_pair_only(self):
         self.camera("--truth", self.left)
         self.assertIn("accuracy", self.stats())
         rule = "goes with one pair if it comes from cameras, which drop frames: of 3 pairs nobody knows"
         process = run(*self.arguments("--sequence", self.sequence(3), "--truth", self.left))
         self.refused_in_one_line(process, f"--truth: {rule}")
 
-    def test_of_the_synthetic_scene_is_that_of_the_camera_frame(self):
+    def test_the_synthetic_scene_has_the_truth_of_the_camera_frame(self):
         table = self.camera("--synthetic", "1", *sets("matcher.lr_tolerance=1"), "--frames", "4")
         self.assertRegex(table, "accuracy     off by more than 1: ")
 

@@ -56,7 +56,7 @@ class DiffTest(ProgramTest):
 
 
 class Differences(DiffTest):
-    def test_none_of_a_run_and_its_repetition(self):
+    def test_a_run_and_its_repetition_do_not_differ(self):
         a = shared_run(*SCENE, "--frames", "3")
         self.succeeds(self.run_with("--synthetic", "1", "--frames", "3", "--out", self.b))
         with self.unchanged(self.folder):
@@ -65,12 +65,12 @@ class Differences(DiffTest):
         self.assertEqual(lines, [f"A: {a}", f"B: {self.b}", "", "no difference", "", same])
         self.assertIn("no difference", self.lines(a, a))
 
-    def test_of_a_key_without_effect_are_those_of_the_board(self):
+    def test_a_key_without_effect_changes_no_figure(self):
         lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *sets("cameras.frame_rate_hz=25")))
         self.assertEqual(lines[3:5], ["board A B", "cameras.frame_rate_hz 29.97 25"])
         self.assertEqual(lines[6:], ["no figure and no row differs", "", ONE_FRAME])
 
-    def test_of_the_fidelities_are_their_names(self):
+    def test_fidelities_differ_in_their_names_only(self):
         lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *CYCLE))
         self.assertEqual(lines[3:5], ["run options A B", "fidelity fast cycle"])
         self.assertIn("no figure and no row differs", lines)
@@ -83,7 +83,7 @@ class WorkedValues(DiffTest):
         super().setUp()
         self.alone, self.shared = shared_run(*TIMING), shared_run(*TIMING, *SHARED)
 
-    def test_say_what_it_costs_and_who_is_to_blame(self):
+    def test_the_costs_are_blamed_on_the_bank(self):
         lines = self.lines(self.alone, self.shared)
         for line in (
             "allocation.left_lut bank6 bank0",
@@ -104,7 +104,7 @@ class WorkedValues(DiffTest):
         for line in self.succeeds(run("diff", self.alone, self.shared)).splitlines():
             self.assertLessEqual(len(line), max(100, len(str(self.alone)) + 3), line)
 
-    def test_are_in_the_table_for_other_programs(self):
+    def test_the_table_for_other_programs_has_every_row(self):
         path = self.folder / "rows.csv"
         self.lines(self.alone, self.shared, "--csv", path)
         rows = table_of(path)
@@ -119,7 +119,7 @@ class WorkedValues(DiffTest):
 
 
 class Frames(DiffTest):
-    def test_of_different_numbers_are_compared_as_far_as_both_go(self):
+    def test_different_numbers_are_compared_as_far_as_both_go(self):
         lines = self.lines(*(shared_run(*SCENE, "--frames", frames) for frames in ("3", "4")))
         self.assertIn("frames 3 4", lines)
         self.assertIn("frames 3 4 +1", lines)
@@ -128,14 +128,14 @@ class Frames(DiffTest):
         self.assertIn("disparities: the same, pixel for pixel, in 3 frames", lines)
         self.assertFalse([line for line in lines if line.startswith(PARTING)])
 
-    def test_of_another_fetch_have_the_same_pictures(self):
+    def test_another_fetch_gives_the_same_pictures(self):
         a, b = shared_run(*SCENE), shared_run(*SCENE, *sets("matcher.fetch=line_buffer"))
         self.assertEqual((a / "disparity.png").read_bytes(), (b / "disparity.png").read_bytes())
         lines = self.lines(a, b)
         self.assertIn(ONE_FRAME, lines)
         self.assertTrue([line for line in lines if line.startswith(f"{PARTING}0, row 0: ")])
 
-    def test_of_another_size_are_compared_as_a_whole(self):
+    def test_frames_of_another_size_are_compared_as_a_whole(self):
         narrow = sets("image.width=16", f"image.height={HEIGHT}")
         a, b = shared_run(*SCENE), shared_run(*narrow, "--timing-only")
         lines = self.lines(a, b)
@@ -151,12 +151,12 @@ class Frames(DiffTest):
 
 
 class Disparities(DiffTest):
-    def test_are_not_compared_where_one_run_has_none(self):
+    def test_a_run_without_disparities_is_not_compared(self):
         a, b = shared_run(*SCENE), shared_run(*SMALL, "--timing-only")
         self.assertIn("disparities: not compared: there are none in B", self.lines(a, b))
         self.assertIn("disparities: not compared: there are none in A", self.lines(b, a))
 
-    def test_of_other_pictures_differ(self):
+    def test_pixels_that_differ_are_counted(self):
         other = self.file("other.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 3)))
         self.succeeds(self.run_small("--out", self.a))
         self.succeeds(self.run_small("--out", self.b, right=other))
@@ -184,7 +184,7 @@ class Computer(DiffTest):
         source = [*CAMERA_RATES, "--sequence", self.pairs]
         self.succeeds(run("run", "fpl2003", *SMALL, *source, *options, "--out", folder))
 
-    def test_has_figures_of_its_own_and_disparities_of_the_same_camera_frame(self):
+    def test_its_figures_and_disparities_of_the_same_camera_frame_are_compared(self):
         # With one buffer for each input the cameras' frames are others.
         one_buffer = sets("allocation.left_image=bank0", "allocation.right_image=bank2")
         for folder, options in ((self.a, []), (self.b, one_buffer)):
@@ -203,7 +203,7 @@ class Computer(DiffTest):
         self.assertGreater(both, 1)
         self.assertEqual(lines[-1], f"disparities: the same, pixel for pixel, in {both} frames")
 
-    def test_blames_the_host_row_by_row(self):
+    def test_the_host_is_blamed_row_by_row(self):
         self.write(self.a, "--frames", "4")
         self.write(self.b, "--frames", "4", *sets("allocation.left_image=[bank0, bank0]"))
         path = self.folder / "rows.csv"
@@ -212,7 +212,7 @@ class Computer(DiffTest):
         self.assertEqual((row["port"], row["by"]), ("left_pixel", "host"))
         self.assertEqual(sum(int(row["b_left_pixel_stall_cycles"]) for row in table_of(path)), row["cycles"])
 
-    def test_is_compared_with_the_board_alone(self):
+    def test_it_is_compared_with_the_board_alone(self):
         self.write(self.a, "--frames", "3")
         self.write(self.b, "--frames", "1", *PRELOADED)
         only = "pci, bridge, cameras and latency: only in"
@@ -227,7 +227,7 @@ class Computer(DiffTest):
 
 
 class Sources(DiffTest):
-    def test_of_every_kind_are_found_again(self):
+    def test_every_source_is_found_again(self):
         wide = [noise(2 * WIDTH, HEIGHT, seed) for seed in range(3)]
         video = self.file("v.avi", avi(2 * WIDTH, HEIGHT, wide))
         sides = [[noise(WIDTH, HEIGHT, side + frame) for frame in (0, 10)] for side in (1, 2)]
@@ -246,7 +246,7 @@ class Sources(DiffTest):
         self.assertIn("no difference", self.lines("a", "./a/", cwd=self.folder))
 
     @program.slow
-    def test_with_a_calibration_are_found_again(self):
+    def test_a_calibration_is_found_again(self):
         pictures = program.made_rig()[0].parent / "rig_pictures"
         pair = ["--left", pictures / "scene_left.png", "--right", pictures / "scene_right.png"]
         command = ["run", "fpl2003", *PRELOADED, "--calibration", self.copy_of_rig(), *pair]
@@ -266,14 +266,14 @@ class Sources(DiffTest):
         for (name, text), line in zip([(name, text) for name in "AB" for text in texts], lines, strict=True):
             self.assertIn(f"error: {name} '{self.a}': {text}", line)
 
-    def test_that_have_changed_are_refused_with_both_sums(self):
+    def test_changed_files_are_refused_with_both_sums(self):
         self.succeeds(self.run_small("--out", self.a))
         recorded = sha256(self.left)
         self.left.write_bytes(pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 9)))
         rule = f"SHA-256 {sha256(self.left)}: must be that of the file of the run, {recorded}"
         self.refused_in_both(f"--left '{self.left}': {rule}")
 
-    def test_that_are_missing_or_more_are_refused(self):
+    def test_missing_and_additional_files_are_refused(self):
         self.succeeds(self.run_small("--truth", self.right, "--out", self.a))
         self.right.unlink()
         missing = f"'{self.right}': cannot be read: No such file or directory"
@@ -284,7 +284,7 @@ class Sources(DiffTest):
             shutil.copy(pairs / f"{side}_000.png", pairs / f"{side}_100.png")
         self.refused_in_both(f"--sequence '{pairs}': 3 pairs: must be those of the run, 2")
 
-    def test_that_do_not_fit_the_board_any_more_are_refused(self):
+    def test_files_that_no_longer_fit_the_board_are_refused(self):
         self.succeeds(self.run_small("--out", self.a))
         self.change(self.a / "config.yaml", f"width: {WIDTH}", "width: 64")
         size = f"{WIDTH}x{HEIGHT} pixels: must be as large as the board's images, 64x{HEIGHT}"
@@ -303,7 +303,7 @@ class Folders(DiffTest):
         self.change(self.b / name, old, new)
         return run("diff", self.a, self.b)
 
-    def test_that_are_none_are_refused(self):
+    def test_folders_without_a_run_are_refused(self):
         rule = "A and B must be folders that run --out has written"
         none = self.folder / "none"
         rows = [(none, f"error: {rule}: '{none}': no such folder"),
@@ -314,25 +314,25 @@ class Folders(DiffTest):
             rows.append((copy, f"{rule}: '{copy}/{name}': no such file"))
         self.all_refused((["diff", self.a, folder], text) for folder, text in rows)
 
-    def test_with_other_figures_fail(self):
+    def test_other_figures_fail(self):
         other = f"B '{self.b}': run again it has other figures: "
         process = self.diff("stats.json", '"frames": 1', '"frames": 2')
         self.fails(process, f"{other}/frames: recorded 2, again 1\n")
         process = self.diff("stats.json", '"cycles": ', '"cycles": 1')
         self.fails(process, f"{other}/cycles: recorded 1", ", and 1 more\n")
 
-    def test_with_another_board_fail(self):
+    def test_another_board_fails(self):
         process = self.diff("config.yaml", "window: 7", "window: 5")
         self.fails(process, f"B '{self.b}': run again it has other figures: ")
 
-    def test_of_another_version_name_both(self):
+    def test_both_versions_are_named(self):
         version = json.loads((self.b / "run.json").read_text())["version"]
         said = self.succeeds(self.diff("run.json", f'"version": "{version}"', '"version": "0.0.9"'))
         self.assertIn("no figure and no row differs", said)
         process = self.diff("stats.json", '"frames": 1', '"frames": 2')
         self.fails(process, f"again 1; it is of version 0.0.9, this is {version}\n")
 
-    def test_that_run_has_not_written_so_are_refused(self):
+    def test_files_that_run_has_not_written_so_are_refused(self):
         self.fails(self.diff("stats.json", '"schema": 1', '"schema":  1'),
                    f"B '{self.b}': its stats.json is not as run has written it\n")
         process = self.diff("stats.json", '"schema":  1,', '"schema": 1, "failed": ["1 = 2"],')
@@ -348,7 +348,7 @@ class Folders(DiffTest):
         texts = (f"'{self.b}/run.json': must be as run writes it", "config.yaml:2:1: extra")
         self.assertGreater(len(self.refused(process, *texts)), 3)
 
-    def test_of_a_layout_that_does_not_go_with_its_videos_are_refused(self):
+    def test_a_layout_that_does_not_go_with_its_videos_is_refused(self):
         video = self.file("v.avi", avi(2 * WIDTH, HEIGHT, [noise(2 * WIDTH, HEIGHT, 1)]))
         self.succeeds(self.run_with("--video", video, "--video-layout", "side_by_side", "--out", self.b))
         for before, layout in (("side_by_side", "two"), ("two", "three")):
@@ -363,7 +363,7 @@ class Usage(DiffTest):
         rule = "missing: a folder that run --out has written"
         self.assertEqual(lines, [f"stereotlm: error: {name}: {rule}" for name in ("A", "B")])
 
-    def test_wrong_values(self):
+    def test_wrong_values_are_refused(self):
         a = shared_run(*SCENE)
         none, folder = self.folder / "none" / "rows.csv", self.folder / "folder.csv"
         folder.mkdir()

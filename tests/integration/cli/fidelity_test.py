@@ -44,7 +44,7 @@ class FidelityTest(ProgramTest):
 
 
 class Fidelities(FidelityTest):
-    def test_write_and_print_the_same_but_for_their_names(self):
+    def test_both_write_and_print_the_same_but_for_their_names(self):
         sequence = ["--sequence", self.sequence(3), "--frames", "5", "--save-frames"]
         for name, source in SOURCES.items():
             for board, assignments in BOARDS.items():
@@ -143,11 +143,11 @@ class SecondRun(ProgramTest):
         self.assertNotIn("verify", self.run_json())
         self.ends(child)
 
-    def test_of_an_interrupted_run_is_not_compared(self):
+    def test_an_interrupted_run_is_not_compared(self):
         self.check_nothing_is_compared(*self.start("--frames", "1000000000"))
         self.assertGreater(self.stats()["frames"], 0)
 
-    def test_that_an_interrupt_ends_is_not_compared(self):
+    def test_an_interrupted_second_run_is_not_compared(self):
         options = ["--verify", "--frames", "2", "--out", self.out]
         terminal = Terminal(["run", "fpl2003", *PRELOADED, *SLOW, *options])
         terminal.read_until("verifying: 0/2 frames")
@@ -156,14 +156,14 @@ class SecondRun(ProgramTest):
         note = "stereotlm: note: --verify: interrupted: nothing is compared"
         self.assertEqual(terminal.shown(), [note, ""])
 
-    def test_of_a_run_that_is_killed_ends(self):
+    def test_the_second_run_ends_with_a_killed_first(self):
         terminal, child = self.start("--frames", "1000000000")
         terminal.process.kill()
         terminal.finish()
         self.ends(child)
 
     @program.slow
-    def test_is_shown_with_its_progress(self):
+    def test_the_progress_of_the_second_run_is_shown(self):
         terminal = Terminal(["run", "fpl2003", *PRELOADED, "--timing-only", "--frames", "6", "--verify"])
         terminal.read_until(r"verifying: [1-9]\d*/6 frames")
         status, out = terminal.finish()
@@ -174,7 +174,7 @@ class SecondRun(ProgramTest):
         self.assertNotIn("nan", terminal.text)
 
     @program.slow
-    def test_that_was_killed_is_an_error(self):
+    def test_a_killed_second_run_is_an_error(self):
         terminal, child = self.start(*CYCLE, "--frames", "2000")
         os.kill(child, signal.SIGKILL)
         status, _ = terminal.finish()

@@ -54,7 +54,7 @@ class PaperTest(ProgramTest):
 
 
 class Numbers(PaperTest):
-    def test_of_rates_are_those_of_the_commands(self):
+    def test_rates_are_those_of_the_commands(self):
         rows = self.claim("table1")
         for row in [rows[0], rows[4], self.claim("small")[0]]:
             stats = self.rates(row["command"])
@@ -67,7 +67,7 @@ class Numbers(PaperTest):
             self.assertEqual(float(row["model"]), stats["frames_per_second"]["steady"])
             self.assertEqual(float(row["bound"]), stats["bound"]["system"])
 
-    def test_of_tables_agree_with_the_claims(self):
+    def test_tables_agree_with_the_claims(self):
         for row, claim in zip(self.table("table1"), self.claim("table1")):
             self.assertEqual(row["model_frames_per_second"], claim["model"])
             self.assertEqual(row["verdict"], claim["verdict"])
@@ -78,13 +78,13 @@ class Numbers(PaperTest):
             self.assertEqual(row["model_frames_per_second"], rate["model"])
             self.assertEqual(size["case"], f"{row['disparities']} disparities")
 
-    def test_of_areas_are_those_of_bounds(self):
+    def test_areas_are_those_of_bounds(self):
         for row in self.table("table2"):
             said = self.succeeds(run(*shlex.split(row["size_command"])[1:]))
             self.assertIn(f"({float(row['model_slices_percent']):.2f} %)", said)
 
     @program.slow
-    def test_of_banks_are_those_of_allocate(self):
+    def test_banks_are_those_of_allocate(self):
         for claim in ("banks", "banks_of_matching"):
             rows = [row for row in self.table("banks") if row["claim"] == claim]
             words = shlex.split(rows[0]["command"])
@@ -96,7 +96,7 @@ class Numbers(PaperTest):
                 self.assertRegex(said, rf"\n +{numbers}  {row['allocation']}\n")
 
     @program.slow
-    def test_of_banks_of_the_computer_are_those_of_runs_that_use_them(self):
+    def test_runs_of_the_computer_use_the_banks_of_their_row(self):
         rows = [row for row in self.table("banks") if row["claim"] == "banks_of_computer"]
         self.assertEqual([row["banks"] for row in rows], ["5", "6", "7", "8"])
         row = rows[1]
@@ -108,7 +108,7 @@ class Numbers(PaperTest):
 
 
 class Verdicts(PaperTest):
-    def test_of_table_1_without_a_filter_confirm_all_windows_but_7x7(self):
+    def test_table_1_without_a_filter_is_confirmed_but_for_7x7(self):
         for row in self.table("table1"):
             printed, modelled = float(row["paper_frames_per_second"]), float(row["model_frames_per_second"])
             deviation = 100 * (modelled / printed - 1)
@@ -123,7 +123,7 @@ class Verdicts(PaperTest):
         report = self.files["paper.md"].decode()
         self.assertIn("The row of 7x7 deviates by 1.6 %. Reasons to doubt the printed 18.9:", report)
 
-    def test_of_table_2_confirm_the_sizes_within_a_point(self):
+    def test_sizes_of_table_2_are_confirmed_within_a_point(self):
         rows = self.table("table2")
         self.assertEqual([row["disparities"] for row in rows], ["80", "160", "200"])
         for row in rows:
@@ -218,7 +218,7 @@ class Meanwhile(PaperTest):
 
 
 class Refusals(ProgramTest):
-    def test_of_arguments_and_folders(self):
+    def test_wrong_arguments_and_folders_are_refused(self):
         table = self.file("out/table1.csv", "mine")
         none = self.folder / "none"
         paper = ["paper", "--out"]

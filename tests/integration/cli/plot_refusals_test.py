@@ -28,7 +28,7 @@ class Earlier(PlotTest):
         wait_until((self.out / ".partial" / "new").exists)
         return process
 
-    def test_stay_when_new_ones_cannot_be_moved_into_place(self):
+    def test_earlier_files_stay_when_new_ones_cannot_be_moved_into_place(self):
         process = self.begin(banks_csv="a", banks_png="b", states_svg="c", window_csv="d")
         (self.out / "use.png").mkdir()
         problem = f"the figures cannot be moved into place: Is a directory: '{self.out}/use.png'"
@@ -37,7 +37,7 @@ class Earlier(PlotTest):
         self.assertEqual(self.result(), texts)
         self.is_in(self.out, *texts, "use.png")
 
-    def test_stay_when_it_is_interrupted(self):
+    def test_earlier_files_stay_when_it_is_interrupted(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             process = self.begin(banks_csv="earlier")
             process.send_signal(number)
@@ -45,7 +45,7 @@ class Earlier(PlotTest):
             self.assertEqual(self.result(), {"banks.csv": b"earlier"})
             self.is_in(self.out, "banks.csv")
 
-    def test_of_a_killed_process_go(self):
+    def test_files_of_a_killed_process_go(self):
         for name in ("new", "earlier"):
             self.file(f"out/.partial/{name}/window.png")
         self.plot("window", self.sweep(WINDOWS))
@@ -65,7 +65,7 @@ class Refusals(PlotTest):
         self.assertFalse(self.out.exists())
         return [line.removeprefix("stereotlm: error: ") for line in lines]
 
-    def test_of_the_command_line_are_said_at_once(self):
+    def test_wrong_command_lines_are_refused_at_once(self):
         axes = "must be two columns, each with min or max: area.slices:min,frames_per_second.core:max"
         lines = self.refused(run("plot", "--pareto", "a:max", "--only", "b"))
         self.assertEqual([line.removeprefix("stereotlm: error: ") for line in lines], [
@@ -80,7 +80,7 @@ class Refusals(PlotTest):
             self.refused_in_one_line(process, f"--pareto = {wrong}: must be two columns")
 
     @program.slow
-    def test_of_keys_and_columns_name_the_nearest(self):
+    def test_unknown_keys_and_columns_are_refused_with_the_nearest(self):
         only = ("matcher.widow=3", "matcher.fetch=row", "frames_per_second.core=3")
         options = [word for each in only for word in ("--only", each)]
         axes = "frames_per_sec.core:max,matcher.fetch:min"
@@ -99,7 +99,7 @@ class Refusals(PlotTest):
         self.assertEqual(lines, [f"--pareto = {axes}: column pci.clocks is empty"])
 
     @program.slow
-    def test_of_databases(self):
+    def test_databases_without_points_of_a_sweep_are_refused(self):
         none, foreign = self.folder / "none.db", self.folder / "foreign.db"
         change(foreign, "CREATE TABLE points(a)")
         early = make_database(self.folder / "early.db", HEADER, [])
@@ -119,7 +119,7 @@ class Refusals(PlotTest):
             self.assertEqual(self.refused_plot(path), [f"{path}: {reason}"])
 
     @program.slow
-    def test_of_folders_with_files_that_it_does_not_write(self):
+    def test_folders_with_files_of_others_are_refused(self):
         def file(path):
             path.write_text("mine")
 
@@ -141,7 +141,7 @@ class Refusals(PlotTest):
                              ("/proc/none/out", "cannot be written to")):
             self.refused_in_one_line(script(ALL, self.store, "--out", out), f"--out {out}: {problem}")
 
-    def test_of_figures_that_do_not_apply(self):
+    def test_figures_that_do_not_apply_are_refused(self):
         process = script("plot_disparities.py", self.store, "--out", self.out)
         reason = "disparities not drawn: all points have matcher.disparities = absent"
         self.refused_in_one_line(process, f"plot_disparities.py: error: {reason}")
@@ -150,7 +150,7 @@ class Refusals(PlotTest):
         self.refused_in_one_line(process, f"plot_window.py: error: {reason}")
         self.assertFalse(self.out.exists())
 
-    def test_without_matplotlib_or_scripts(self):
+    def test_missing_matplotlib_and_scripts_are_named(self):
         for error, text in (("ImportError", "needs matplotlib, which ./setup installs"),
                             ("ValueError", "matplotlib cannot be loaded")):
             self.file("matplotlib.py", f"raise {error}('no such thing')\n")
@@ -165,7 +165,7 @@ class Refusals(PlotTest):
 
 class Environment(PlotTest):
     @program.slow
-    def test_has_no_effect(self):
+    def test_variables_of_python_have_no_effect(self):
         store = self.sweep(WINDOWS)
         self.file("matplotlib.py", "raise ImportError('another one')\n")
         self.succeeds(run("plot", store, "--out", self.out))

@@ -81,7 +81,7 @@ class FigureTest(PlotTest):
 
 
 class Figures(FigureTest):
-    def test_of_a_sweep(self):
+    def test_a_sweep_has_the_figures_that_apply_with_its_data(self):
         store = self.sweep(PLAN)
         said = self.succeeds(run("plot", store, "--out", self.out)).splitlines()
         self.assertEqual(said[0], f"{store}: 12 of 24 points; left out: 12 impossible")
@@ -136,7 +136,7 @@ class Figures(FigureTest):
         self.assertIn("area, % of the slices", " ".join(self.texts("disparities")))
         self.assertEqual(len(self.curves("disparities")), 2 * 6)  # in two panels
 
-    def test_of_allocations(self):
+    def test_allocations_have_banks_stalls_and_a_front(self):
         store = self.sweep(ALLOCATIONS)
         said = self.plot("all", store)
         rows, blame = self.database(store)
@@ -169,7 +169,7 @@ class Figures(FigureTest):
         self.assertIn("1", fastest)
         self.shows("pareto", "bound of a point of the front")
 
-    def test_of_banks_go_through_the_best_allocation(self):
+    def test_lines_of_banks_go_through_the_best_allocation(self):
         header = [*ALLOCATED, "fpga.clock_mhz", *RATES]
         allocations = (("bank0", "[bank0, bank0]", 8), ("none", "[bank1]", 12), ("bank2", "[bank1]", 10))
         rows = [("made", "preloaded", lut, image, clock, rate * clock, 13 * clock)
@@ -185,7 +185,7 @@ class Figures(FigureTest):
         self.shows("banks", "banks used by the allocation", "best allocation", "every allocation", "bound",
                    "fpga.clock_mhz = 1")
 
-    def test_of_banks_take_no_allocation_that_loses_pixels_for_the_best(self):
+    def test_an_allocation_that_loses_pixels_is_not_the_best(self):
         lost = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
         header = [*ALLOCATED, *RATES, *lost]
         one, two, losing = (("made", "camera", lut, "[bank1]", rate, 13, 0, pixels)
@@ -197,7 +197,7 @@ class Figures(FigureTest):
             heights.append(low - high)
         self.assertAlmostEqual(*heights, places=3)
 
-    def test_of_the_whole_computer(self):
+    def test_the_whole_computer_has_two_rates(self):
         store = self.sweep(WINDOWS.replace("preloaded", "camera, frames: 3"))
         self.plot("window", store)
         self.is_in(self.out, *("window" + ending for ending in ENDINGS))
@@ -207,7 +207,7 @@ class Figures(FigureTest):
         self.shows("window", "whole computer, steady frames/s", "from power-up, tables included")
         self.assertEqual((len(self.curves("window")), len(self.curves("window", "5.5"))), (2, 2))
 
-    def test_mark_points_that_lose_pixels(self):
+    def test_points_that_lose_pixels_are_marked(self):
         store = self.sweep(LOSING)
         rows, _ = self.database(store)
         losing = {key for key, row in rows.items() if row["cameras.left.dropped_pixels"]}
@@ -225,7 +225,7 @@ class Figures(FigureTest):
         self.plot("window", store, "--only", f"fpga.priority={order}")
         self.assertNotIn("loses pixels", self.texts("window"))
 
-    def test_with_more_combinations_than_lines(self):
+    def test_too_many_combinations_are_drawn_without_lines(self):
         header = [*HEADER, "fpga.clock_mhz", "fpga.arbitration", *RATES]
         rows = [("made", "preloaded", window, clock, kind, clock / window / (1 + weight), clock / window)
                 for window in (3, 5) for clock in range(20, 40) for weight, kind in enumerate(("$a$", "$c$"))]
@@ -239,7 +239,7 @@ class Figures(FigureTest):
         self.assertIn("4 points, 2 lines", said)
         self.shows("window", "fpga.arbitration = $a$")
 
-    def test_tell_by_how_much_keys_that_look_the_same_differ(self):
+    def test_lines_that_look_the_same_are_noted_with_their_difference(self):
         header = [*HEADER, "fpga.lane_fifo_slots", *RATES]
         rows = [("made", "preloaded", window, slots, rate * 100 / window, rate * 100 / window)
                 for window in (3, 5) for slots, rate in ((8, 0.996), (16, 1), (32, 1))]
@@ -269,7 +269,7 @@ class ParetoFront(FigureTest):
         one, other = ([sign * value for sign, value in zip(signs, pair)] for pair in (one, other))
         return all(a <= b for a, b in zip(one, other)) and one != other
 
-    def test_is_that_of_a_comparison_of_all_with_all(self):
+    def test_the_front_is_that_of_a_comparison_of_all_with_all(self):
         generator = random.Random(1)
         pairs = [(generator.randrange(12), generator.randrange(12) / 4) for _ in range(60)]  # with equal ones
         rows = [("made", "preloaded", number, *pair) for number, pair in enumerate([*pairs, (3, None)])]
@@ -289,7 +289,7 @@ class ParetoFront(FigureTest):
         self.shows("pareto", note)
         self.is_from(store, table, "front")
 
-    def test_names_its_points_by_what_varies(self):
+    def test_points_are_named_by_what_varies(self):
         rows = [("made", "preloaded", *row) for row in ((40, 5, 9), (50, 7, 12), (60, 7, 12), (70, 8, 11))]
         self.front(make_database(self.folder / "named.db", self.HEADER, rows), "min", "max")
         axes = ("area, LUTs (less is better)", "capture_to_host.p50, ms (more is better)")
@@ -308,7 +308,7 @@ class Columns(FigureTest):
             return [found for each in value for found in self.paths(f"{path}.{each['name']}", each)]
         return [path]
 
-    def test_are_keys_or_figures(self):
+    def test_columns_are_keys_or_figures(self):
         load = "pci.load: [{burst_words: 16, interval_us: 50, access_us: 1}]"
         plan = SMALL_BOARD.replace("preloaded", "camera, frames: 2")
         store = self.sweep(plan + f"vary: {{matcher.window: [3], {load}}}\n")
@@ -330,7 +330,7 @@ class Columns(FigureTest):
         known = {key for key in known if not key.startswith(others)} | {"run.source", "run.frames"}
         self.assertEqual({key for key in keys if not key.startswith(others)}, known)
 
-    def test_of_figures_make_no_lines(self):
+    def test_columns_of_figures_make_no_lines(self):
         plan = "board: fpl2003\nrun: {source: camera, frames: 5}\nvary: {matcher.window: [5, 7, 9]}\n"
         store = self.sweep(plan)
         taken = [row["bridge.posted_words.counted"] for row in self.database(store)[0].values()]
@@ -346,7 +346,7 @@ class ChangedDatabases(FigureTest):
         self.store = self.sweep(ALLOCATIONS + "  matcher.disparities: [4, 8]\n")
         self.hash = sorted(self.database(self.store)[0])[1]
 
-    def test_are_refused_where_a_value_is_no_number(self):
+    def test_values_that_are_no_numbers_are_refused(self):
         whole = self.store.read_bytes()
         columns = {
             "disparities": [*RATES, "matcher.disparities", "area.slices_percent"],
@@ -368,7 +368,7 @@ class ChangedDatabases(FigureTest):
                 self.refused_in_one_line(process, f"plot_{figure}.py: error: {problem}\n")
                 self.store.write_bytes(whole)
 
-    def test_are_refused_where_frames_blame_or_text_are_wrong(self):
+    def test_wrong_frames_blame_and_text_are_refused(self):
         whole = self.store.read_bytes()
         number = re.escape(reader.NUMBER)
         axes = "area.luts:min,bound.core:max"
@@ -387,7 +387,7 @@ class ChangedDatabases(FigureTest):
             self.assertRegex(process.stderr, problem)
             self.store.write_bytes(whole)
 
-    def test_are_drawn_without_a_point_that_lacks_what_it_need_not_have(self):
+    def test_a_point_without_a_figure_that_it_need_not_have_is_left_out(self):
         change(self.store, 'UPDATE points SET "frames_per_second.core" = NULL WHERE hash = ?', self.hash)
         said = self.plot("all", self.store)
         self.assertIn("\npareto       47 points", said)
@@ -398,7 +398,7 @@ class ChangedDatabases(FigureTest):
 
 
 class Names(FigureTest):
-    def test_of_strange_characters_are_drawn_and_those_that_the_font_lacks_are_told_once(self):
+    def test_characters_that_the_font_lacks_are_noted_once(self):
         names = '"\N{SUPERSCRIPT TWO}", "b", "\N{ARABIC-INDIC DIGIT TWO}", "\u65e5\u672c board"'
         store = self.sweep(SMALL_BOARD + f"vary: {{matcher.window: [3, 5], name: [{names}]}}\n")
         process = script("plot_window.py", store, "--out", self.out)
@@ -409,7 +409,7 @@ class Names(FigureTest):
 
 
 class Studies(FigureTest):
-    def test_of_fetch_takes_for_fitting_what_plot_does(self):
+    def test_the_study_of_fetch_takes_for_fitting_what_plot_does(self):
         """Neither too many slices, block RAMs nor multipliers."""
         results = pathlib.Path(__file__).resolve().parents[3] / "results"
         (self.folder / "results" / "fetch").mkdir(parents=True)

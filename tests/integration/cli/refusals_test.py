@@ -1,6 +1,6 @@
 """Help, and what is refused: wrong command lines, pictures, boards and folders that a run cannot use.
 
-load_test.cpp has every reason against a picture, result_folder*_test.cpp those against a folder.
+load_test.cpp has every reason against a picture, result_folder_test.cpp every one against a folder.
 """
 
 import os
@@ -22,30 +22,30 @@ NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
 
 
 class Help(ProgramTest):
-    def test_of_the_program_names_every_command_and_the_exit_statuses(self):
+    def test_the_program_names_every_command_and_the_exit_statuses(self):
         for option in ("--help", "-h"):
             text = self.succeeds(run(option))
             for part in [*COMMANDS, *UNBUILT_COMMANDS, "Exit status: 0"]:
                 self.assertIn(part, text)
 
-    def test_of_run_names_its_options_and_defaults(self):
+    def test_run_names_its_options_and_defaults(self):
         text = self.succeeds(run("run", "--help"))
         for part in OPTIONS_OF_RUN.split(","):
             self.assertIn(part, text)
 
-    def test_of_each_command_says_how_to_use_it_in_104_columns(self):
+    def test_each_command_says_how_to_use_it_in_104_columns(self):
         for command in ([], *([command] for command in COMMANDS)):
             text = self.succeeds(run(*command, "--help"))
             self.assertIn(" ".join(["Usage: stereotlm", *command]), text)
             for line in text.splitlines():
                 self.assertLessEqual(len(line), 104, line)
 
-    def test_names_the_version(self):
+    def test_the_version_is_named(self):
         self.assertRegex(self.succeeds(run("--version")), r"^stereotlm \d+\.\d+\.\d+\n$")
 
 
 class CommandLine(ProgramTest):
-    def test_with_a_wrong_command_is_refused(self):
+    def test_wrong_commands_are_refused(self):
         self.all_refused([
             ([], "a command is missing", f"{', '.join(COMMANDS[:-1])} or {COMMANDS[-1]}"),
             ([""], "a command is missing"),
@@ -55,7 +55,7 @@ class CommandLine(ProgramTest):
             (["--frames", "1", "run", "fpl2003"], "'--frames': a command comes first"),
         ])
 
-    def test_with_what_is_not_in_this_version_is_refused(self):
+    def test_what_is_not_in_this_version_is_refused(self):
         for command in UNBUILT_COMMANDS:
             for rest in ([], ["fpl2003"], ["--help"], ["--out", "a", "b", "--bogus", "3"]):
                 self.refused_in_one_line(run(command, *rest), f"error: {command}: not in this version")
@@ -64,7 +64,7 @@ class CommandLine(ProgramTest):
             self.refused_in_one_line(run("run", "fpl2003", *arguments), text)
         self.refused_in_one_line(self.run_small(*UNBUILT_OPTION_OF_RUN), text)
 
-    def test_with_unknown_options_is_refused_with_the_nearest(self):
+    def test_unknown_options_are_refused_with_the_nearest(self):
         for command in COMMANDS:
             self.refused_in_one_line(run(command, "--bogus"), "--bogus", f"stereotlm {command} --help")
         nearest = {"--fames": "--frames", "--rigth": "--right", "--sett": "--set", "--verfy": "--verify"}
@@ -75,7 +75,7 @@ class CommandLine(ProgramTest):
         lines = self.refused(run("run", "fpl2003", "--fames", "3", "--out", "a", "--verfy"))
         self.assertEqual([line.split()[2] for line in lines], ["--fames:", "--verfy:"])
 
-    def test_with_too_many_arguments_or_values_missing_or_given_twice_is_refused(self):
+    def test_options_without_value_or_given_twice_are_refused(self):
         self.refused_in_one_line(run("check", "fpl2003", "fpl2003-qvga"), "fpl2003-qvga")
         self.refused_in_one_line(run("keys", "fpl2003"), "fpl2003")
         for option in ("--left", "--frames", "--out", "--source", "--set"):
@@ -83,12 +83,12 @@ class CommandLine(ProgramTest):
             if option != "--set":
                 self.refused_in_one_line(run("run", "fpl2003", option, "1", option, "1"), option)
 
-    def test_without_a_board_is_refused(self):
+    def test_a_board_is_needed(self):
         for command in ("run", "check", "bounds"):
             self.refused(run(command), "stereotlm: error: BOARD: missing")
         self.refused_in_one_line(run("check", "keys"), "keys: not a preset")  # nor a command
 
-    def test_with_wrong_values_is_refused_with_the_rule(self):
+    def test_wrong_values_are_refused_with_the_rule(self):
         truth = [*self.pair, "--truth", self.left]
         for before, option, rule, *values in (
             (self.pair, "--source", "camera or preloaded", "foo", "Preloaded", ""),
@@ -101,7 +101,7 @@ class CommandLine(ProgramTest):
             run_it = ["run", "fpl2003", *before, option]
             self.all_refused(([*run_it, value], f"{option} = {value}: must be {rule}") for value in values)
 
-    def test_with_options_that_do_not_go_together_is_refused(self):
+    def test_options_that_do_not_go_together_are_refused(self):
         one_source = "a run has one source of pictures: --left F"
         no_disparities = "does not go with --timing-only, which has no disparities"
         pair, timing, saved = self.pair, [*self.pair, "--timing-only"], ["--save-frames", "--out", self.out]
@@ -163,7 +163,7 @@ class Pictures(ProgramTest):
     def picture(self, width, height):
         return self.file(f"{width}x{height}.pgm", pgm(width, height, bytes(width * height)))
 
-    def test_are_refused_with_their_option_path_and_reason(self):
+    def test_wrong_pictures_are_refused_with_option_path_and_reason(self):
         comment = b"P5\n# \r30000 30000 255\n1 1 255\nx"  # which a decoder may take for the size
         size = f"pixels: must be as large as the board's images, {WIDTH}x{HEIGHT}"
         sizes = ((WIDTH + 1, HEIGHT), (WIDTH - 1, HEIGHT), (WIDTH, HEIGHT + 1), (WIDTH, HEIGHT - 1))
@@ -184,21 +184,21 @@ class Pictures(ProgramTest):
                     self.assertTrue(line.startswith(f"stereotlm: error: {option} '{path}': {reason}"), line)
                 self.assertFalse(self.out.exists())
 
-    def test_of_two_wrong_sizes_are_named_both(self):
+    def test_two_wrong_sizes_are_both_named(self):
         wide, high = self.picture(40, 24), self.picture(32, 30)
         process = self.run_small(left=wide, right=high)
         self.assertEqual(len(self.refused(process, f"--left '{wide}': 40x24", f"--right '{high}': 32x30")), 2)
 
-    def test_of_ground_truth_may_not_be_in_colour(self):
+    def test_ground_truth_may_not_be_in_colour(self):
         colour = self.file("colour.ppm", ppm(WIDTH, HEIGHT, noise(3 * WIDTH, HEIGHT, 1)))
         self.refused_in_one_line(self.run_small("--truth", colour), f"--truth '{colour}': 8-bit colour")
 
-    def test_that_may_not_be_read_are_refused(self):
+    def test_files_without_permission_are_refused(self):
         self.left.chmod(0)
         process = run(*self.run_arguments(), preexec_fn=of_plain_user)
         self.refused_in_one_line(process, f"--left '{self.left}': Permission denied")
 
-    def test_with_paths_that_run_json_cannot_hold_are_refused(self):
+    def test_paths_that_run_json_cannot_hold_are_refused(self):
         strange = os.fsdecode(b"\xff")
         for side in ("left", "right"):
             shutil.copy(self.left, self.folder / f"{side}_{strange}.png")
@@ -210,7 +210,7 @@ class Pictures(ProgramTest):
 
 
 class Environment(ProgramTest):
-    def test_sets_nothing_of_opencv(self):
+    def test_variables_of_opencv_have_no_effect(self):
         expected = self.succeeds(self.run_small())
         values = {"WIDTH": "1", "HEIGHT": "-1", "PIXELS": "many", "PARAMS": ""}
         variables = {f"OPENCV_IO_MAX_IMAGE_{name}": value for name, value in values.items()}
@@ -219,7 +219,7 @@ class Environment(ProgramTest):
 
 
 class Boards(ProgramTest):
-    def test_are_refused_at_once_with_the_pictures_and_the_folder(self):
+    def test_a_wrong_board_is_refused_together_with_pictures_and_folder(self):
         none = self.folder / "none"
         board = sets("matcher.window=4")
         lines = self.refused(self.run_small(*board, "--out", self.left, left=none))
@@ -232,7 +232,7 @@ class Boards(ProgramTest):
         lines = self.refused(self.run_with("--sequence", none, *board), "--set matcher.window", "--sequence")
         self.assertEqual(len(lines), 2)
 
-    def test_are_refused_where_they_are_no_preset_or_a_bank_is_too_small(self):
+    def test_unknown_presets_and_small_banks_are_refused(self):
         words = WIDTH * HEIGHT // 4
         bank = "ssram.banks.bank4.words"
         self.succeeds(self.run_small(*sets(f"{bank}={words}")))
@@ -243,7 +243,7 @@ class Boards(ProgramTest):
 
 class Paths(ProgramTest):
     @program.slow
-    def test_that_lead_nowhere_are_refused_with_their_option(self):
+    def test_paths_that_lead_nowhere_are_refused_with_their_option(self):
         self.succeeds(self.run_small("--out", self.out))
         plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [5, 7]}\n")
         sweep = ["sweep", plan, "--out"]
@@ -280,7 +280,7 @@ class Paths(ProgramTest):
 
 
 class OutputFolders(ProgramTest):
-    def test_with_files_of_others_are_refused(self):
+    def test_folders_with_files_of_others_are_refused(self):
         self.file("out/thesis.tex", "years of work")
         refusal = "stereotlm: error: result folder"
         with self.unchanged(self.folder):
@@ -297,7 +297,7 @@ class OutputFolders(ProgramTest):
             refusals = [f"--{name} '{path}': inside the result folder '{out}', {rule}" for name in names]
             self.assertEqual(lines, [f"stereotlm: error: {refusal}" for refusal in refusals])
 
-    def test_with_pictures_of_the_run_are_refused(self):
+    def test_folders_with_pictures_of_the_run_are_refused(self):
         self.succeeds(self.run_small("--out", self.out))
         for names in (["left"], ["right"], ["truth"], ["left", "right", "truth"]):
             self.refused_inside(self.out, self.out / "disparity.png", *names)
@@ -314,13 +314,13 @@ class OutputFolders(ProgramTest):
             picture = self.file(f"out/{below}/000000.png", self.left.read_bytes())
             self.refused_inside(self.out, picture, "left")
 
-    def test_may_lie_beside_a_picture_of_the_run(self):
+    def test_a_folder_may_lie_beside_a_picture_of_the_run(self):
         self.out.mkdir()
         shutil.copy(self.left, self.folder / "out.pgm")  # its name begins like the folder's
         for left in (self.folder / "out.pgm", self.out / ".." / "left.pgm"):
             self.succeeds(self.run_small("--out", self.out, left=left))
 
-    def test_of_a_refused_run_stay_as_they_were(self):
+    def test_a_refused_run_leaves_the_folder_as_it_was(self):
         none = self.folder / "none.pgm"
         self.refused(self.run_small("--out", self.out / "a" / "b", left=none))
         self.assertFalse(self.out.exists())
@@ -328,7 +328,7 @@ class OutputFolders(ProgramTest):
         with self.unchanged(self.out):
             self.refused(self.run_small("--out", self.out, left=none))
 
-    def test_on_a_full_disk_stay_as_they_were(self):
+    def test_a_full_disk_leaves_the_folder_as_it_was(self):
         def run_with_file_limit(limit, *more):
             set_limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
             return run(*self.run_arguments("--out", self.out, *more), preexec_fn=set_limit)

@@ -21,7 +21,7 @@ def frame_names(count):
 
 
 class ResultFiles(ProgramTest):
-    def test_are_all_there_and_agree(self):
+    def test_all_files_are_there_and_agree(self):
         self.succeeds(self.run_small("--out", self.out, "--frames", "3", *sets("matcher.disparities=8")))
         self.is_in(self.out, *RESULT_FILES)
         width, height, channels, rows = read_png(self.out / "disparity.png")
@@ -62,7 +62,7 @@ class ResultFiles(ProgramTest):
         for first, second in (("bank0", "bank1"), ("bank2", "bank3")):
             self.assertEqual(banks[first]["reads"], 2 * banks[second]["reads"])
 
-    def test_are_byte_identical_again_and_disparities_for_any_number_of_frames(self):
+    def test_the_same_run_gives_the_same_bytes(self):
         options = ["--out", self.out, "--truth", self.left, "--truth-scale", "4"]
         self.succeeds(self.run_small(*options))
         with self.unchanged(self.out):
@@ -94,7 +94,7 @@ class ResultFiles(ProgramTest):
         self.assertEqual(said["truth_scale"], 0.5)
         self.assertEqual("stereotlm " + said["version"], self.succeeds(run("--version")).strip())
 
-    def test_are_not_written_without_out(self):
+    def test_nothing_is_written_without_out(self):
         with self.unchanged(self.folder):
             self.succeeds(run(*self.run_arguments(), cwd=self.folder))
 
@@ -125,7 +125,7 @@ class Matching(ProgramTest):
 
 
 class Output(ProgramTest):
-    def test_is_a_table_and_nothing_on_standard_error(self):
+    def test_a_table_is_printed_and_nothing_on_standard_error(self):
         process = self.run_small()
         text = self.succeeds(process)
         for word in ("core", "bound", "bank7", "worst stall"):
@@ -133,7 +133,7 @@ class Output(ProgramTest):
         self.assertNotIn("SystemC", text)
         self.assertEqual(process.stderr, "")
 
-    def test_to_a_closed_pipe_does_not_cost_the_results(self):
+    def test_a_closed_pipe_does_not_cost_the_results(self):
         read_end, write_end = os.pipe()
         os.close(read_end)
         process = self.start(*self.run_arguments("--out", self.out), stdout=write_end)
@@ -142,12 +142,12 @@ class Output(ProgramTest):
         self.is_in(self.out, *RESULT_FILES)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
-    def test_to_a_full_disk_is_an_error(self):
+    def test_a_full_disk_behind_standard_output_is_an_error(self):
         with open("/dev/full", "w") as full:
             process = self.start("keys", stdout=full)
         self.ends(process, 1, out=None, errors="stereotlm: error: standard output: No space left on device\n")
 
-    def test_to_closed_standard_streams_does_not_get_into_the_results(self):
+    def test_closed_standard_streams_do_not_get_into_the_results(self):
         command = program.words(self.run_arguments("--out", self.out))
         shell = ["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh"]
         process = subprocess.run(shell + command, timeout=60, check=False)
@@ -160,7 +160,7 @@ class SaveFrames(ProgramTest):
     def save(self, *more):
         self.succeeds(self.run_small("--save-frames", "--out", self.out, *more))
 
-    def test_writes_the_disparities_of_each_frame(self):
+    def test_every_frame_is_saved(self):
         self.save("--frames", "100")
         self.is_in(self.out, *RESULT_FILES, "frames")
         self.is_in(self.out / "frames", *frame_names(100))
@@ -168,7 +168,7 @@ class SaveFrames(ProgramTest):
         self.assertEqual(set(self.result(self.out / "frames").values()), {last})
         self.assertEqual(read_png(self.out / "disparity.png")[:3], (WIDTH, HEIGHT, 1))
 
-    def test_on_a_full_disk_is_an_error_that_keeps_the_earlier_result(self):
+    def test_a_full_disk_keeps_the_earlier_result(self):
         self.succeeds(self.run_small("--out", self.out))
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
         with self.unchanged(self.out):
@@ -231,7 +231,7 @@ class ProgressLine(ProgramTest):
         self.assertRegex(left, r"^\d+:\d\d$")
         self.assertEqual(terminal.shown(), [""])
 
-    def test_fits_into_a_narrow_terminal_where_a_signal_that_the_caller_ignores_changes_nothing(self):
+    def test_fits_into_a_narrow_terminal_and_outlives_a_signal_that_the_caller_ignores(self):
         ignore = lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
         terminal = self.start_slow(columns=20, preexec_fn=ignore)
         status, out = terminal.interrupt(r"/1000 fra", signal.SIGINT)
@@ -252,7 +252,7 @@ class Interrupted(ProgramTest):
         self.assertEqual(status, 130)
         return terminal, out
 
-    def test_has_the_result_of_a_whole_run_of_the_frames_that_were_finished(self):
+    def test_an_interrupted_run_equals_a_whole_one_of_the_finished_frames(self):
         terminal, out = self.interrupt("--out", self.out)
         self.is_in(self.out, *RESULT_FILES)
         stats = self.stats()
@@ -267,10 +267,10 @@ class Interrupted(ProgramTest):
         self.succeeds(self.run_small("--out", whole, "--frames", frames))
         self.assertTrue(self.result() == self.result(whole))
 
-    def test_prints_the_table_without_out_too(self):
+    def test_the_table_is_printed_without_out_too(self):
         self.assertIn("worst stall", self.interrupt(number=signal.SIGTERM)[1])
 
-    def test_before_the_first_frame_is_finished_leaves_the_earlier_result(self):
+    def test_an_interrupt_in_the_first_frame_leaves_the_earlier_result(self):
         self.succeeds(self.run_small("--out", self.out))
         size = 2048
         big = self.file("big.pgm", pgm(size, size, bytes(size * size)))

@@ -58,7 +58,7 @@ class SlurmCommands(SweepTest):
 
 
 class Options(SlurmCommands):
-    def test_of_the_launcher(self):
+    def test_options_of_the_launcher_are_checked(self):
         self.refused_in_one_line(self.sweep("--shards", 2), "--shards: goes with --launcher slurm")
         self.refused_in_one_line(self.sweep("--sbatch", "exclusive"), "--sbatch: goes with --launcher slurm")
         for shards in (0, 1001, "x", ""):
@@ -67,7 +67,7 @@ class Options(SlurmCommands):
         for option, value in (("--jobs", 2), ("--shard", "0/2"), ("--known", "a.db"), ("--progress", "a")):
             self.refused_in_one_line(self.launch(option, value), f"{option}: not with --launcher slurm")
 
-    def test_of_sbatch(self):
+    def test_options_of_sbatch_are_checked_and_passed_on(self):
         long_option = "must be a long option of sbatch without its dashes"
         given = "given by the launcher"
         for rule, *options in ((long_option, "--partition=long", "p long", "", "=3", "-n"),
@@ -80,7 +80,7 @@ class Options(SlurmCommands):
 
 
 class Commands(SlurmCommands):
-    def test_that_are_missing_or_say_something_else_are_named(self):
+    def test_missing_and_strange_commands_are_named(self):
         needed = "not found in PATH; Slurm's commands sbatch, squeue and scancel are needed"
         for name in ("sbatch", "squeue"):
             (self.commands / name).unlink()
@@ -96,12 +96,12 @@ class Commands(SlurmCommands):
             self.refused_in_one_line(self.launch(), f"{name}: {problem}")
         self.assertEqual(list(self.folder.glob("points.db*")), [])
 
-    def test_do_not_see_variables_that_change_what_they_print(self):
+    def test_commands_do_not_see_variables_that_change_what_they_print(self):
         self.write("squeue", '#!/bin/sh\nenv | grep -e ^SQUEUE_ -e ^SBATCH_ >"$FAKE/variables"\nexit 1\n')
         self.launch(SQUEUE_PARTITION="other", SBATCH_PARTITION="long")
         self.assertEqual((self.commands / "variables").read_text(), "SBATCH_PARTITION=long\n")
 
-    def test_that_refuse_the_merge_have_the_shards_cancelled(self):
+    def test_a_refused_merge_cancels_the_shards(self):
         refuse = 'echo "sbatch: error: too many jobs" >&2; exit 1 #'
         self.write("sbatch", SBATCH.replace('echo "$job|N/A', refuse))
         lines = self.refused(self.launch(END="PENDING"), "error: --launcher slurm: sbatch: too many jobs")
@@ -109,14 +109,14 @@ class Commands(SlurmCommands):
         self.assertEqual((self.commands / "cancelled").read_text(), "1\n")
         self.assertFalse(self.shards.exists())
 
-    def test_that_keep_failing_end_the_waiting(self):
+    def test_commands_that_keep_failing_end_the_waiting(self):
         fail = '[ ! -e "$FAKE/queue" ] || { echo "squeue: error: no answer" >&2; exit 1; }\n'
         self.write("squeue", SQUEUE + fail)
         notes = self.failed(self.launch(END="RUNNING"), f"error: squeue: no answer; {JOBS_CONTINUE}")
         self.assertEqual(notes[2:], ["squeue: no answer: asking again"])
         self.assertTrue(self.shards.exists())
 
-    def test_that_cannot_cancel_leave_the_jobs(self):
+    def test_a_failing_scancel_leaves_the_jobs(self):
         self.write("scancel", "#!/bin/sh\necho 'scancel: error: no answer' >&2\nexit 1\n")
         process = self.start(*self.command(), env={**self.environment, "END": "PENDING"})
         for _ in range(2):
@@ -127,7 +127,7 @@ class Commands(SlurmCommands):
 
 
 class LostWork(SlurmCommands):
-    def test_is_submitted_three_times(self):
+    def test_lost_shards_are_submitted_three_times(self):
         process = self.launch(TASK='echo no such thing >>"$FOLDER/shard_0.log"', END="OUT_OF_MEMORY")
         kept = f"finished points are kept in {self.shards}: run the same command to resume"
         log = f"its log {self.shards}/shard_0.log ends with: no such thing"
@@ -138,11 +138,11 @@ class LostWork(SlurmCommands):
             expected.append(f"lost: shard 0 (OUT_OF_MEMORY); submitting {end}")
         self.assertEqual([re.sub(r"into .*", "", note) for note in notes], expected)
 
-    def test_without_a_log_says_what_must_be_shared(self):
+    def test_a_missing_log_says_what_must_be_shared(self):
         no_log = f"there is no {self.shards}/shard_0.log: the nodes must share"
         self.failed(self.launch(END="COMPLETED"), f"(COMPLETED); {no_log}")
 
-    def test_that_gets_further_is_not_given_up(self):
+    def test_shards_that_get_further_are_not_given_up(self):
         further = 'echo "ok $job" >"$FOLDER/shard_0.progress"; [ "$job" -le 8 ] || touch "$FOLDER/shard_0.db"'
         copy = 'cp "$FOLDER/../other.db" "$FOLDER/../points.db"'
         done = f'[ "$job" -le 8 ] || {copy}; touch "$FOLDER/merged"'
@@ -152,7 +152,7 @@ class LostWork(SlurmCommands):
         self.assertEqual(process.stderr.count("submitting again"), 4)
         self.assertFalse(self.shards.exists())
 
-    def test_may_be_the_merge(self):
+    def test_a_lost_merge_is_submitted_again(self):
         process = self.launch(TASK='touch "$FOLDER/shard_0.db"', MERGE='echo disk full >"$FOLDER/merge.log"')
         log = f"its log {self.shards}/merge.log ends with: disk full;"
         notes = self.failed(process, f"error: the merge {LOST} (FAILED); {log}")
@@ -161,7 +161,7 @@ class LostWork(SlurmCommands):
 
 
 class Folders(SlurmCommands):
-    def test_that_are_not_of_a_sweep_or_cannot_be_made_are_refused(self):
+    def test_folders_of_others_and_impossible_ones_are_refused(self):
         self.file("points.db.shards/mine")
         loop, none = self.folder / "loop.db", self.folder / "none" / "a.db"
         loop.symlink_to(loop.name)

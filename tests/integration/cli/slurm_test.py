@@ -97,7 +97,7 @@ class SlurmTest(SweepTest):
 
 
 class Results(SlurmTest):
-    def test_are_those_of_a_local_sweep(self):
+    def test_results_are_those_of_a_local_sweep(self):
         process = self.launch()
         said = self.succeeds(process)
         local = self.succeeds(self.sweep(store=self.folder / "local.db"))
@@ -112,7 +112,7 @@ class Results(SlurmTest):
         self.succeeds(self.sweep(plan=more, store=self.folder / "local.db"))
         self.assertTrue(self.store.read_bytes() == (self.folder / "local.db").read_bytes())
 
-    def test_are_of_plan_board_and_tables_as_they_were_submitted(self):
+    def test_plan_board_and_tables_count_as_they_were_submitted(self):
         rig = self.copy_of_rig()
         board = self.file("board.yaml", "extends: fpl2003\nfpga: {clock_mhz: 50}\n")
         text = f"board: {board}\nrun: {{calibration: {rig}}}\nvary: {{matcher.disparities: [10, 19]}}\n"
@@ -130,7 +130,7 @@ class Results(SlurmTest):
 
 
 class Progress(SlurmTest):
-    def test_is_shown(self):
+    def test_progress_is_shown(self):
         terminal = Terminal(self.command(plan=self.slow), columns=120, env=cluster.environment)
         terminal.read_until(r"/20 points   .* left   2 running, 1 waiting \(\w+\)")
         terminal.read_until(r"[1-9]\d*/20 points   \d+\.\d %   \d+\.\d points/s   \d+:\d\d left   \d running")
@@ -139,7 +139,7 @@ class Progress(SlurmTest):
         self.assertIn(ALL_DONE, out)
         self.assert_whole()
 
-    def test_uses_the_processors_of_the_jobs(self):
+    def test_workers_use_the_processors_of_their_job(self):
         process = self.begin_points("--sbatch", "cpus-per-task=2")
         self.assertEqual(len(self.running()), 1)  # of two processors
         self.assertGreaterEqual(len(self.programs(" --jobs 2 ")), 3)  # the program and two workers
@@ -154,19 +154,19 @@ class LostShards(SlurmTest):
         self.assertRegex(errors, rf"{lost}{job}shard {shard} of 3\n{job}the merge into")
         self.assert_whole()
 
-    def test_that_were_cancelled_are_submitted_again(self):
+    def test_cancelled_shards_are_submitted_again(self):
         process = self.begin_points()
         cluster.say("scancel", f"{self.running()['0']}_0")
         self.submitted_again(process, 0, "CANCELLED")
 
-    def test_that_were_killed_are_submitted_again(self):
+    def test_killed_shards_are_submitted_again(self):
         process = self.begin_points(shard=1)
         os.kill(min(self.programs("--shard 1/3")), signal.SIGKILL)
         self.submitted_again(process, 1, "FAILED")
 
 
 class Refusals(SlurmTest):
-    def test_in_the_words_of_slurm_leave_nothing(self):
+    def test_refusals_quote_slurm_and_leave_nothing(self):
         disparities = "matcher.disparities: {from: 1, to: 50, step: 1}"
         many = self.file("many.yaml", PLAN.replace("[3, 5, 7]", f"[3]\n  {disparities}"))
         slurm = "error: --launcher slurm: sbatch: "
@@ -193,7 +193,7 @@ class Refusals(SlurmTest):
 
 
 class Interrupted(SlurmTest):
-    def test_by_the_keyboard_it_cancels_and_goes_on_later(self):
+    def test_an_interrupt_cancels_the_jobs_and_keeps_their_points(self):
         process = self.begin_points()
         os.killpg(process.pid, signal.SIGINT)
         out, errors = process.communicate(timeout=60)
@@ -208,7 +208,7 @@ class Interrupted(SlurmTest):
         self.assertIn(f"{kept} there already", self.succeeds(self.launch(plan=self.slow)))
         self.assert_whole()
 
-    def test_when_killed_the_same_command_waits_for_the_jobs(self):
+    def test_a_killed_command_given_again_waits_for_its_jobs(self):
         process = self.begin_points()
         self.refused_in_one_line(self.launch(plan=self.slow), "points.db.shards: another process waits")
         self.close(process)
@@ -221,7 +221,7 @@ class Interrupted(SlurmTest):
         self.assertEqual(said.stderr, f"stereotlm: note: the jobs are there already: {jobs}\n")
         self.assert_whole()
 
-    def test_when_killed_the_jobs_do_it_all(self):
+    def test_the_jobs_of_a_killed_command_do_it_all(self):
         self.close(self.begin_points())
         wait_until(lambda: not cluster.jobs())
         self.assertTrue(self.store.read_bytes() == self.local(self.slow))
@@ -230,7 +230,7 @@ class Interrupted(SlurmTest):
         self.assertEqual(said.stderr, "")
         self.assert_whole()
 
-    def test_when_all_is_killed_another_plan_keeps_the_points(self):
+    def test_another_plan_keeps_the_points_of_killed_jobs(self):
         self.close(self.begin_points())
         self.end_jobs()
         self.assertFalse(self.store.exists())

@@ -52,7 +52,7 @@ class Sequence(SourceTest):
     def refused_sequence(self, folder, *texts, **options):
         self.refused_source(["--sequence", folder], *texts, **options)
 
-    def test_shows_its_pairs_in_the_order_of_names_byte_by_byte(self):
+    def test_pairs_are_shown_in_the_order_of_names_byte_by_byte(self):
         for number, name in enumerate(["", "0", "10", "9", "B", "a"]):
             for side in ("left", "right"):
                 self.file(f"names/{side}_{name}.png", self.picture(number, side))
@@ -61,7 +61,7 @@ class Sequence(SourceTest):
         (self.folder / "names" / "frames").mkdir()
         self.shows_pairs(6, "--sequence", self.folder / "names")
 
-    def test_is_in_run_json_with_its_absolute_path_and_sums(self):
+    def test_run_json_has_its_absolute_path_and_sums(self):
         folder = self.sequence(3)
         options = ["--sequence", "sequence", "--frames", "5", "--out", self.out]
         self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *options, cwd=self.folder))
@@ -72,7 +72,7 @@ class Sequence(SourceTest):
         self.assertEqual(said["files"], [{"name": name, "sha256": sha256(folder / name)} for name in names])
         self.assertEqual(self.run_json()["frames"], 5)
 
-    def test_says_how_many_pictures_were_colour(self):
+    def test_pictures_in_colour_are_counted(self):
         folder = self.sequence(3)
         for name in ("left_001.png", "right_002.png"):
             self.file(f"sequence/{name}", ppm(WIDTH, HEIGHT, noise(3 * WIDTH, HEIGHT, 1)))
@@ -81,7 +81,7 @@ class Sequence(SourceTest):
         note = f"--sequence '{folder}': 2 of 6 pictures: colour, converted to grey"
         self.assertEqual(process.stderr, f"stereotlm: note: {note}\n")
 
-    def test_refuses_what_is_no_folder_of_pairs(self):
+    def test_what_is_no_folder_of_pairs_is_refused(self):
         rule = ": a sequence must be a readable folder"
         self.refused_sequence(self.folder / "none", f"none': No such file or directory{rule}")
         self.refused_sequence(self.left, f"left.pgm': Not a directory{rule}")
@@ -94,7 +94,7 @@ class Sequence(SourceTest):
         self.addCleanup(folder.chmod, 0o700)
         self.refused_sequence(folder, f"Permission denied{rule}", preexec_fn=of_plain_user)
 
-    def test_refuses_a_picture_without_partner(self):
+    def test_a_picture_without_partner_is_refused(self):
         folder = self.sequence(4)
 
         def refused(picture, partner, more=""):
@@ -109,7 +109,7 @@ class Sequence(SourceTest):
             (folder / f"left_00{number}.png").unlink()
         refused("right_01.png", "left_01.png")
 
-    def test_refuses_the_first_picture_that_cannot_be_used(self):
+    def test_the_first_picture_that_cannot_be_used_is_refused(self):
         folder = self.sequence(3)
         self.file("sequence/left_002.png")
         self.refused_sequence(folder, f"'{folder}/left_002.png': an empty file: a picture must be")
@@ -118,7 +118,7 @@ class Sequence(SourceTest):
         size = f"{WIDTH}x{high} pixels: must be as large as the board's images, {WIDTH}x{HEIGHT}"
         self.refused_sequence(folder, f"'{folder}/right_001.png': {size}")
 
-    def test_that_is_checked_can_be_interrupted_and_leaves_nothing(self):
+    def test_an_interrupt_while_it_is_checked_leaves_nothing(self):
         picture = self.file("large.pgm", pgm(1024, 1024, bytes(1024 * 1024)))
         folder = self.folder / "long"
         folder.mkdir()
@@ -148,7 +148,7 @@ class Video(SourceTest):
         *videos, text = videos_and_text
         self.refused_source(["--video", *videos, "--video-layout", layout], text)
 
-    def test_of_each_layout_shows_its_pairs_and_is_in_run_json(self):
+    def test_each_layout_shows_its_pairs_and_is_in_run_json(self):
         for layout, videos in (
             ("two", [self.video("l.avi", 6, "left"), self.video("r.avi", 6, "right")]),
             ("side_by_side", [self.video("s.avi", 6, "left", "right")]),
@@ -161,7 +161,7 @@ class Video(SourceTest):
                 self.assertEqual([file["sha256"] for file in said["video"]], list(map(sha256, videos)))
                 self.assertEqual(said["video_layout"], layout)
 
-    def test_refuses_frames_of_another_size_or_number(self):
+    def test_frames_of_another_size_or_number_are_refused(self):
         one, both = self.video("l.avi", 1, "left"), self.video("s.avi", 1, "left", "right")
         wide, high = 2 * WIDTH, 2 * HEIGHT
         rule = "must be as large as"
@@ -175,12 +175,12 @@ class Video(SourceTest):
         more = self.video("r.avi", 2, "right")
         self.refused_video("two", one, more, f"--video '{more}': 2 frames: must have as many as '{one}', 1")
 
-    def test_refuses_what_cannot_be_decoded(self):
+    def test_what_cannot_be_decoded_is_refused(self):
         self.refused_video("side_by_side", self.folder / "none.avi", "none.avi': no such file: ")
         text = self.file("text.avi", "text\n" * 1000)
         self.refused_video("side_by_side", text, "text.avi': no video: a video must be an AVI")
 
-    def test_says_that_its_header_promises_more(self):
+    def test_a_header_that_promises_more_frames_is_noted(self):
         video = self.video("s.avi", 4, "left", "right")
         video.write_bytes(video.read_bytes()[: -7 * WIDTH * HEIGHT])
         source = ["--video", video, "--video-layout", "side_by_side"]
@@ -190,7 +190,7 @@ class Video(SourceTest):
         self.assertEqual(process.stderr, f"stereotlm: note: {note}\n")
         self.assertEqual(self.stats()["frames"], 2)
 
-    def test_and_sequence_are_not_replaced_by_their_results(self):
+    def test_sources_inside_the_result_folder_are_refused(self):
         self.succeeds(self.run_small("--out", self.out))
         video = self.video("out/frames/000000.png", 1, "left", "right")
         inside = self.sequence(2, "out/frames/sequence")
@@ -202,18 +202,18 @@ class Video(SourceTest):
 
 
 class Synthetic(SourceTest):
-    def test_moves_and_is_the_same_when_run_again(self):
+    def test_the_scene_moves_and_is_the_same_again(self):
         frames = self.frames_of("--synthetic", "1", "--frames", "4")
         self.assertEqual(len(set(frames)), 4)
         self.assertEqual(self.frames_of("--synthetic", "1"), frames[:1])
         self.assertNotEqual(self.frames_of("--synthetic", "2"), frames[:1])
 
-    def test_takes_every_seed(self):
+    def test_every_seed_is_taken(self):
         self.succeeds(self.run_with("--synthetic", "0"))
         self.succeeds(self.run_with("--synthetic", "18446744073709551615", "--out", self.out))
         self.assertEqual(self.run_json()["synthetic"], 18446744073709551615)
 
-    def test_prints_its_accuracy_and_keeps_it_out_of_the_figures(self):
+    def test_its_accuracy_is_printed_and_kept_out_of_the_figures(self):
         board = sets("image.width=160", "image.height=120", "matcher.fetch=line_buffer")
         source = ["--synthetic", "3", "--frames", "2", "--out", self.out]
         table = self.succeeds(run("run", "fpl2003", *PRELOADED, *board, *source))
@@ -228,13 +228,13 @@ class Truth(SourceTest):
         self.succeeds(self.run_with(*source, "--truth", self.left, "--out", self.out))
         return self.stats()["accuracy"]
 
-    def test_is_of_the_pair_that_the_last_frame_shows(self):
+    def test_the_truth_is_of_the_pair_that_the_last_frame_shows(self):
         folder = self.sequence(3)
         for frames, last in ((["--frames", "2"], 1), ([], 2), (["--frames", "4"], 0)):
             pair = ["--left", folder / f"left_00{last}.png", "--right", folder / f"right_00{last}.png"]
             self.assertEqual(self.accuracy("--sequence", folder, *frames), self.accuracy(*pair))
 
-    def test_goes_with_a_video(self):
+    def test_a_truth_goes_with_a_video(self):
         frame = self.side(0, "left") + self.side(0, "right")
         video = self.file("t.avi", avi(WIDTH, 2 * HEIGHT, [frame, frame]))
         self.assertTrue(self.accuracy("--video", video, "--video-layout", "top_bottom"))
@@ -265,7 +265,7 @@ class Memory(SourceTest):
         """But for `kept` kB."""
         self.assertLess(self.peak(long) - self.peak(short), kept + 12000)
 
-    def test_is_flat_over_a_thousand_pairs_of_a_sequence(self):
+    def test_a_thousand_pairs_of_a_sequence_take_no_more(self):
         folders = []
         for length in (30, 1000):
             folders.append(self.folder / f"{length}")
@@ -279,7 +279,7 @@ class Memory(SourceTest):
         self.flat(short, long, kept=pictures)
         self.flat(short, [*short, "--frames", "1000"])
 
-    def test_is_flat_over_a_thousand_frames_of_other_sources(self):
+    def test_a_thousand_frames_of_other_sources_take_no_more(self):
         frames = [noise(2 * self.WIDE, self.HIGH, seed) for seed in range(30)]
         video = self.file("v.avi", avi(2 * self.WIDE, self.HIGH, frames))
         for source in (["--video", video, "--video-layout", "side_by_side"], ["--synthetic", "1"]):

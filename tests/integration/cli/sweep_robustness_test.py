@@ -71,7 +71,7 @@ class FullDisk(RobustnessTest):
         disk = {"FULL_DISK_FOLDER": str(self.disk.resolve()), "FULL_DISK_BYTES": str(size)}
         return run(*arguments, env={**os.environ, "LD_PRELOAD": FULL_DISK, **disk})
 
-    def test_at_any_time_is_said_and_loses_nothing(self):
+    def test_a_disk_full_at_any_time_loses_nothing(self):
         """From the first byte of the database to the last one of the merge."""
         expected = self.expected()
         full_at_begin = full_later = 0
@@ -98,7 +98,7 @@ class FullDisk(RobustnessTest):
         self.assertGreater(full_at_begin, 1)
         self.assertGreater(full_later, 5)
 
-    def test_in_a_merge_keeps_all_points(self):
+    def test_a_disk_full_in_a_merge_keeps_all_points(self):
         expected = self.expected()
         self.succeeds(self.sweep())
         with self.unchanged(self.disk):
@@ -112,13 +112,13 @@ class FullDisk(RobustnessTest):
         self.assertEqual(self.points(), POINTS + 1)
         self.finished(self.expected(more), more)
 
-    def test_is_said_of_the_file_with_the_progress(self):
+    def test_a_disk_full_for_the_progress_is_refused(self):
         progress = self.disk / "progress"
         store = self.folder / "a.db"
         process = self.on_disk_of(0, "sweep", self.plan, "--out", store, "--progress", progress)
         self.refused_in_one_line(process, f"--progress {progress}: No space left on device")
 
-    def test_that_is_a_limit_on_files_is_said_too(self):
+    def test_a_limit_on_the_size_of_files_loses_nothing(self):
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
@@ -130,7 +130,7 @@ class FullDisk(RobustnessTest):
 
 
 class Killed(RobustnessTest):
-    def test_at_any_time_it_goes_on_to_the_same_bytes(self):
+    def test_a_kill_at_any_time_leads_to_the_same_bytes(self):
         """Ten times, each at another moment between its begin and its end."""
         expected = self.expected()
         begin = time.monotonic()
@@ -146,7 +146,7 @@ class Killed(RobustnessTest):
             self.finished(expected)
             self.store.unlink()
 
-    def test_workers_again_and_again_make_rows_of_their_points(self):
+    def test_points_whose_workers_are_killed_three_times_become_rows(self):
         slow = self.file("slow.yaml", SLOW)
         process = self.start("sweep", slow, "--out", self.store, "--jobs", 1)
         kills = 0
@@ -185,7 +185,7 @@ def descendants(pid):
 
 
 class LockedDatabase(RobustnessTest):
-    def test_is_waited_for(self):
+    def test_a_lock_is_waited_for(self):
         self.succeeds(self.sweep())
         for begin in ("BEGIN IMMEDIATE", "BEGIN EXCLUSIVE"):
             connection = self.lock(begin)
@@ -198,7 +198,7 @@ class LockedDatabase(RobustnessTest):
                 _, errors = process.communicate(timeout=60)
                 self.assertEqual(process.returncode, 0, errors)
 
-    def test_that_a_merge_writes_is_refused_at_once(self):
+    def test_a_database_that_a_merge_writes_is_refused_at_once(self):
         """Also where the merge is the first to write to it. It waits for the database that it reads."""
         self.succeeds(self.sweep())
         connection = self.lock("BEGIN EXCLUSIVE")
@@ -216,7 +216,7 @@ class LockedDatabase(RobustnessTest):
 
 
 class OpenFiles(RobustnessTest):
-    def test_that_are_too_few_are_refused_with_how_many_jobs_they_are_enough_for(self):
+    def test_too_few_open_files_are_refused_with_the_jobs_that_they_allow(self):
         def sweep_with(files, jobs):
             limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
             command = ["sweep", self.plan, "--known", self.whole, "--out", self.store, "--jobs", jobs]
@@ -242,7 +242,7 @@ class OpenFiles(RobustnessTest):
 
 
 class ReadOnly(RobustnessTest):
-    def test_files_and_folders_are_refused(self):
+    def test_read_only_files_and_folders_are_refused(self):
         self.succeeds(self.sweep())
         rule = "cannot be opened to write: Permission denied"
         new = self.disk / "new.db"
@@ -273,7 +273,7 @@ connection.execute("UPDATE keys SET name = name || 'x'")
 os._exit(0)
 """
 
-    def test_in_a_database_that_is_only_read_is_said_with_the_cure(self):
+    def test_an_unfinished_change_is_refused_with_the_cure(self):
         expected = self.expected()
         self.succeeds(self.sweep())
         subprocess.run([sys.executable, "-c", self.CHANGE, str(self.store)], check=True)

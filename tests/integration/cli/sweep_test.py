@@ -58,7 +58,7 @@ class SweepTest(ProgramTest):
 
 
 class Sweep(SweepTest):
-    def test_keeps_what_each_run_says(self):
+    def test_each_point_keeps_what_its_run_says(self):
         said = self.succeeds(self.sweep())
         self.assertIn(f"{POINTS} points: {OK} ok, {IMPOSSIBLE} impossible, 0 failed", said)
         self.assertIn(f"points.db: {POINTS} points\n", said)
@@ -87,7 +87,7 @@ class Sweep(SweepTest):
             lines = self.refused(run("run", board, "--timing-only"))
             self.assertEqual([line.split(": ", 1)[1] for line in lines], [reason])
 
-    def test_of_the_whole_computer_keeps_its_figures(self):
+    def test_points_of_the_computer_keep_its_figures(self):
         plan = self.file("computer.yaml", "board: fpl2003\nrun: {source: camera, frames: 3}\n")
         self.succeeds(self.sweep(plan=plan))
         columns = '"frames_per_second.steady", "pci.busy_clocks", "cameras.left.frames"'
@@ -96,7 +96,7 @@ class Sweep(SweepTest):
         frames = stats["cameras"][0]["frames"]
         self.assertEqual(figures, [stats["frames_per_second"]["steady"], stats["pci"]["busy_clocks"], frames])
 
-    def test_gives_the_same_bytes_for_jobs_and_shards(self):
+    def test_jobs_and_shards_give_the_same_bytes(self):
         self.succeeds(self.sweep("--jobs", 1))
         expected = self.store.read_bytes()
         two = self.folder / "two.db"
@@ -112,7 +112,7 @@ class Sweep(SweepTest):
         self.assertEqual(merged.read_bytes(), expected)
         self.assertEqual(list(self.folder.glob("*wal*")), [])
 
-    def test_leaves_out_the_points_of_its_database_and_of_another(self):
+    def test_known_points_are_left_out(self):
         more = self.file("more.yaml", MORE)
         other = self.folder / "other.db"
         progress = self.folder / "progress"  # which is replaced
@@ -131,17 +131,28 @@ class Sweep(SweepTest):
         self.assertIn("2 ok, 2 impossible, 0 failed, 4 there already", said)
         self.assertIn(f"points.db: {POINTS + 4} points", said)
 
-    def test_of_another_board_than_the_plan_names(self):
+    def test_an_option_replaces_the_board_of_the_plan(self):
         board = self.file("board.yaml", "extends: fpl2003\nfpga: {clock_mhz: 50}\n")
         self.succeeds(self.sweep("--board", board))
         self.assertEqual(self.query('SELECT DISTINCT "fpga.clock_mhz" FROM points'), [(50,)])
+
+    def test_names_that_sqlite_would_take_for_no_file_are_files(self):
+        sweep, here = ["sweep", self.plan, "--out"], {"cwd": self.folder}
+        merged = self.folder / "file:merged.db"
+        for name in (":memory:", "file:x.db", "file::memory:?cache=shared"):
+            said = self.succeeds(run(*sweep, name, **here))
+            self.assertIn(f"\n{name}: {POINTS} points\n", said)
+            said = self.succeeds(run(*sweep, "known.db", "--known", name, **here))
+            self.assertIn(f"{POINTS} there already", said)
+            self.succeeds(run("merge", merged.name, name, **here))
+            self.assertTrue(merged.read_bytes() == (self.folder / name).read_bytes())
 
 
 class Studies(SweepTest):
     """The plans in results/, which are examples too."""
 
     @program.slow
-    def test_are_plans_whose_first_points_are_boards_that_run(self):
+    def test_the_first_point_of_each_plan_runs(self):
         names = {plan.parent.name for plan in STUDIES}
         self.assertLessEqual({"arbitration", "bank_kinds", "banks", "buffers", "fetch"}, names)
         for plan in STUDIES:
@@ -172,7 +183,7 @@ vary:
     def plan_of(self, rig, name="plan.yaml", text=TEXT):
         return self.file(name, text.replace("RIG", str(rig)))
 
-    def test_gives_what_each_run_says(self):
+    def test_each_point_keeps_what_its_run_with_tables_says(self):
         said = self.succeeds(self.sweep())
         reason = "run.calibration: goes with a board that has both tables; allocation.left_lut = none"
         self.assertIn("6 points: 4 ok, 2 impossible, 0 failed", said)
@@ -192,7 +203,7 @@ vary:
         stats = self.run_point(config, "--frames", 2, "--calibration", self.rig)
         self.assertEqual(figures, [stats["frames_per_second"]["system"], stats["pci"]["busy_clocks"]])
 
-    def test_is_found_from_the_working_directory_and_replaced_by_the_option(self):
+    def test_the_calibration_is_found_from_the_working_directory_and_replaced_by_the_option(self):
         self.succeeds(self.sweep())
         relative = self.plan_of("rig.yaml", "relative.yaml")
         none = self.plan_of("none.yaml", "none.yaml")
@@ -205,7 +216,7 @@ vary:
         process = self.sweep(plan=relative)
         self.refused_in_one_line(process, f"{relative}:3:39: run.calibration 'rig.yaml': no such file")
 
-    def test_is_for_images_of_its_size(self):
+    def test_the_calibration_is_for_images_of_its_size(self):
         sizes = "zip:\n  - {image.width: [640, 320], image.height: [480, 240]}\n"
         said = self.succeeds(self.sweep(plan=self.plan_of(self.rig, "sizes.yaml", self.TEXT + sizes)))
         self.assertIn("12 points: 4 ok, 8 impossible, 0 failed", said)
@@ -228,7 +239,7 @@ vary:
 class Refusals(SweepTest):
     """tests/unit/sw/explore has every way in which a plan or a condition is wrong."""
 
-    def test_of_plans_name_place_value_and_rule(self):
+    def test_plans_are_refused_with_place_value_and_rule(self):
         for text, where, rule in (
             (PLAN.replace("[3, 5, 7]", "[3, 4, 7]"), "6:23", "matcher.window = 4: "),
             (f"{PLAN}where:\n  - random() > 0\n", "10:5",
@@ -239,13 +250,13 @@ class Refusals(SweepTest):
             self.assertEqual(lines[-1], f"{plan}: the plan would have {POINTS} points")
         self.assertFalse(self.store.exists())
 
-    def test_of_a_condition_that_one_point_shows_to_be_wrong_do_not_advise_to_repeat_it(self):
+    def test_a_condition_that_fails_at_one_point_is_to_be_corrected(self):
         condition = "iif(matcher.window = 5, json('{' || image.width), 1)"
         plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n")
         problem = f"where = {condition}: malformed JSON; finished points are kept: correct the plan\n"
         self.fails(self.sweep(plan=plan), f"stereotlm: error: {plan}:10:5: {problem}")
 
-    def test_of_options_and_databases(self):
+    def test_wrong_options_and_databases_are_refused(self):
         sweep = ["sweep", self.plan, "--out", self.store]
         none = self.folder / "none" / "file"
         shards = ("3/3", "1", "x/2", "-1/2", "1/0")
@@ -270,7 +281,7 @@ class Refusals(SweepTest):
             self.refused(run("sweep"), "PLAN: missing", "--out: missing")
             self.refused(run("merge"), "OUT: missing", "DB: missing")
 
-    def test_of_banks_whose_names_differ_only_in_case(self):
+    def test_banks_whose_names_differ_only_in_case_are_refused(self):
         buffers = "left_image: A, right_image: a, disparity: A, left_lut: a, right_lut: A"
         board = f"extends: fpl2003\nssram: {{banks: {{A: {{}}, a: {{}}}}}}\nallocation: {{{buffers}}}\n"
         twins = self.file("twins.yaml", board + f"image: {{width: {WIDTH}, height: {HEIGHT}}}\n")
@@ -283,7 +294,7 @@ class Refusals(SweepTest):
         self.refused_in_one_line(run("explain", twins, "--source", "preloaded"), f"{twins}: {rule}")
         self.assertFalse(self.store.exists())
 
-    def test_of_files_that_the_progress_would_replace(self):
+    def test_files_that_the_progress_would_replace_are_refused(self):
         (self.folder / "link").symlink_to(self.plan)
         (self.folder / "sub").mkdir()
         self.succeeds(self.sweep(store=self.folder / "known.db"))
@@ -330,7 +341,7 @@ class Meanwhile(SweepTest):
         self.succeeds(self.sweep(plan=self.many, store=whole))
         self.assertTrue(self.store.read_bytes() == whole.read_bytes())
 
-    def test_the_loss_of_its_database_is_said_without_saying_that_anything_is_kept(self):
+    def test_a_lost_database_is_not_said_to_be_kept(self):
         for another in (None, "", "another file"):
             process = self.begin()
             self.store.unlink()
@@ -341,7 +352,7 @@ class Meanwhile(SweepTest):
             for left in self.folder.glob("points.db*"):
                 left.unlink()
 
-    def test_damage_to_its_database_is_said_without_saying_that_anything_is_kept(self):
+    def test_a_damaged_database_is_not_said_to_be_kept(self):
         process = self.begin()
         with open(self.store, "r+b") as damaged:
             damaged.write(b"damage" * 1000)
