@@ -6,8 +6,8 @@ set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test program
 
 option(STEREOTLM_SLOW_TESTS "Build the tests with the label slow" ON)
 
-# The headers that take longest to read, once for all test programs of a kind. The sources include what they use all
-# the same: to see that they do, configure with CMAKE_DISABLE_PRECOMPILE_HEADERS.
+# The headers that take longest to read, precompiled for all test programs of a kind. Every source includes what it
+# uses all the same. The preset debug, without unity builds, and CMAKE_DISABLE_PRECOMPILE_HEADERS check that.
 function(stereotlm_precompile_headers name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
@@ -16,6 +16,7 @@ function(stereotlm_precompile_headers name)
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stereotlm_warnings)
   target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS} -fpch-preprocess)  # as ccache needs it
   target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()
 
 # stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label...] [TIMEOUT seconds] [SYSTEMC])
@@ -41,6 +42,9 @@ function(stereotlm_add_test name)
   else()
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
     target_precompile_headers(${name} REUSE_FROM stereotlm_test_headers)
+  endif()
+  if(NOT arg_LABELS STREQUAL "slow")
+    add_dependencies(quick_tests ${name})
   endif()
   gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
     DISCOVERY_TIMEOUT 60)

@@ -12,7 +12,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kExample =
+constexpr const char* kCalibrateExample =
     "stereotlm calibrate --left 'left*.jpg' --right 'right*.jpg' --grid 9x6 --square-mm 25 --out rig.yaml";
 constexpr const char* kPrintExample = "stereotlm calibrate --print-grid 9x6 --square-mm 25 --out grid.pdf";
 
@@ -69,7 +69,7 @@ void CalibrateOptions::check_usage() {
   }
   check_out(problems);
   if (!problems.empty()) {
-    problems.add_note(std::string("a complete command: ") + (print_grid ? kPrintExample : kExample));
+    problems.add_note(std::string("a complete command: ") + (print_grid ? kPrintExample : kCalibrateExample));
   }
   problems.check();
   for (const std::string& problem : calib::problems(grid)) problems.add(fmt::format("grid: {}", problem));

@@ -21,7 +21,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDiffFooter =
     "Both are run again from their config.yaml and run.json, after a check of every input by its\n"
     "SHA-256, and must give the figures of their stats.json. What is not the same is printed;\n"
     "differences are B - A. A row of results is whole with the write of its last word. Its cycles are\n"
@@ -93,7 +93,7 @@ void add_diff(CLI::App& program, Action& action) {
     action = [options] { return diff(*options); };
   };
   options->add_to(
-      add_command(program, "diff", "Compare two runs, frame by frame and row by row", parsed, kFooter));
+      add_command(program, "diff", "Compare two runs, frame by frame and row by row", parsed, kDiffFooter));
 }
 
 }  // namespace stereotlm::cli

@@ -32,7 +32,7 @@ namespace stereotlm::cli {
 namespace {
 
 constexpr const char* kScript = "plot_paper.py";
-constexpr const char* kFooter =
+constexpr const char* kPaperFooter =
     "Written are paper.md, every claim with paper value, model value, bound, rule, verdict and the commands\n"
     "that give the numbers again; claims.csv with a row for each case; table1.csv, table2.csv and "
     "banks.csv;\n"
@@ -122,7 +122,7 @@ void add_paper(CLI::App& program, Action& action) {
     action = [options] { return compare_with_paper(*options); };
   };
   options->add_to(
-      add_command(program, "paper", "Compare the paper's figures with the model's", parsed, kFooter));
+      add_command(program, "paper", "Compare the paper's figures with the model's", parsed, kPaperFooter));
 }
 
 }  // namespace stereotlm::cli

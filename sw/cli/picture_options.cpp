@@ -5,7 +5,8 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kSources = "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED";
+constexpr const char* kPictureOptions =
+    "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED";
 
 }  // namespace
 
@@ -27,7 +28,7 @@ void PictureOptions::add_to(CLI::App& command) {
 
 void PictureOptions::check_given(process::Problems& problems, bool may_be_missing) const {
   if (!may_be_missing && sources_given().empty())
-    problems.add(fmt::format("pictures: missing: a run needs {}", kSources));
+    problems.add(fmt::format("pictures: missing: a run needs {}", kPictureOptions));
   if (left_.is_given() == right_.is_given()) return;
   problems.add(left_.is_given() ? "--right: missing: goes with --left F"
                                 : "--left: missing: goes with --right F");
@@ -36,7 +37,8 @@ void PictureOptions::check_given(process::Problems& problems, bool may_be_missin
 void PictureOptions::check_usage(process::Problems& problems) {
   const std::vector<std::string> given = sources_given();
   if (given.size() > 1) {
-    problems.add(fmt::format("{}: a run has one source of pictures: {}", fmt::join(given, ", "), kSources));
+    problems.add(
+        fmt::format("{}: a run has one source of pictures: {}", fmt::join(given, ", "), kPictureOptions));
   }
   if (left_.is_given()) source.pair = {left_.text, right_.text};
   if (sequence_.is_given()) source.sequence = sequence_.text;

@@ -12,7 +12,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kPlotFooter =
     "Each figure that applies to the database is drawn, as NAME.png and NAME.svg, with its data in "
     "NAME.csv:\n"
     "  window       frames per second against matcher.window\n"
@@ -69,7 +69,7 @@ int plot(const PlotOptions& options) {
 void add_plot(CLI::App& program, Action& action) {
   const auto options = std::make_shared<PlotOptions>();
   const auto parsed = [options, &action] { action = [options] { return plot(*options); }; };
-  options->add_to(add_command(program, "plot", "Draw the figures of a sweep", parsed, kFooter));
+  options->add_to(add_command(program, "plot", "Draw the figures of a sweep", parsed, kPlotFooter));
 }
 
 }  // namespace stereotlm::cli

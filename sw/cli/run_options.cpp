@@ -13,7 +13,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kExample = "stereotlm run fpl2003 --left left.png --right right.png";
+constexpr const char* kRunExample = "stereotlm run fpl2003 --left left.png --right right.png";
 
 const std::vector<std::string> kSources = {"camera", "preloaded"};  // the first is the default
 const std::vector<std::string> kFidelities = {"fast", "cycle"};
@@ -68,7 +68,7 @@ void RunOptions::check_usage() {
   check_choices(problems);
   check_numbers(problems);
   check_combinations(problems);
-  if (!is_complete) problems.add_note(std::string("a complete command: ") + kExample);
+  if (!is_complete) problems.add_note(std::string("a complete command: ") + kRunExample);
   problems.check();
   if (truth_.is_given()) truth = truth_.text;
   if (out_.is_given()) out = out_.text;

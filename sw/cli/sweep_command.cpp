@@ -36,7 +36,7 @@ constexpr std::chrono::seconds kBetweenCounts{2};
 // How long to wait for a process that locks a database of which only the readability is checked.
 constexpr std::chrono::seconds kBriefTimeout{5};
 
-constexpr const char* kFooter =
+constexpr const char* kSweepFooter =
     "A plan is a YAML file, such as\n"
     "  board: fpl2003                                       # a preset or a board file\n"
     "  run: {source: preloaded}                             # how each point runs, see below\n"
@@ -246,7 +246,7 @@ void add_sweep(CLI::App& program, Action& action) {
     action = [options] { return sweep(*options); };
   };
   options->add_to(add_command(program, "sweep", "Simulate all points of a plan, and keep their figures",
-                              parsed, kFooter));
+                              parsed, kSweepFooter));
 }
 
 }  // namespace stereotlm::cli

@@ -11,7 +11,7 @@
 namespace stereotlm::runs {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenLooks{100};
+constexpr std::chrono::milliseconds kBetweenPolls{100};
 
 }  // namespace
 
@@ -51,7 +51,7 @@ bool FrameAlignment::read(Side& side) {
   do {
     if (process::interrupted()) return false;
     progress_.show([this](double) { return fmt::format("{}/{} frames compared", rows_.frames(), frames_); });
-  } while (!side.rerun.has_news(kBetweenLooks));
+  } while (!side.rerun.has_news(kBetweenPolls));
   side.ahead = side.rerun.next();
   return true;
 }

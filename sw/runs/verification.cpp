@@ -18,7 +18,7 @@ namespace stereotlm::runs {
 namespace {
 
 constexpr std::size_t kMostLines = 10;
-constexpr std::chrono::milliseconds kBetweenLooks{100};
+constexpr std::chrono::milliseconds kPollInterval{100};
 
 struct Interrupted {};
 
@@ -79,7 +79,7 @@ std::optional<std::string> Verification::next_of_other(ProgressLine& progress, s
   do {
     if (process::interrupted()) throw Interrupted();
     progress.show([&](double) { return verification_text(frames_compared, results_.size()); });
-  } while (!other_->has_news(kBetweenLooks));
+  } while (!other_->has_news(kPollInterval));
   return other_->next();
 }
 
