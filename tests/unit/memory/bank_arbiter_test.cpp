@@ -101,7 +101,7 @@ struct Cycle {
 
 // The result port writes, all others read.
 void expect_grants_by_age(int turnaround, std::initializer_list<Cycle> cycles) {
-  BankArbiter arbiter({"age", ArbiterConfig{}.priority}, turnaround);
+  BankArbiter arbiter(arbiter_of("age"), turnaround);
   for (const Cycle& cycle : cycles)
     EXPECT_EQ(arbitrate(arbiter, cycle.number, cycle.requests, kResult), cycle.granted) << cycle.number;
 }
