@@ -251,6 +251,7 @@ TEST_F(CaptureRegisters, ReportALineThatNoCaptureExpects) {
 
 TEST(CaptureBoard, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(CaptureBoard("refused", CaptureBoardConfig{140, 141}), std::invalid_argument);
+  EXPECT_THROW(CaptureFifo(CaptureBoardConfig{4, 5}), std::invalid_argument);
 }
 
 }  // namespace
