@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 platform::BoardConfig small_board(std::vector<std::string> sets = {}) {
   sets.insert(sets.begin(),
               {"image.width=64", "image.height=48", "matcher.disparities=16", "cameras.frame_rate_hz=1000"});
-  sets.emplace_back("fpga.clock_mhz=14.5");
+  sets.emplace_back("fpga.clock_mhz=13.4");
   return platform::load_board("fpl2003", sets);
 }
 
@@ -143,7 +143,7 @@ TEST_F(CameraSimulationTest, KeepsTheOldPixelsWhereTheFifoWasFull) {
 }
 
 TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
-  pairs.failing_frame = 5;
+  pairs.failing_frame = 6;
   build(100);
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
   EXPECT_EQ(message_of_running(), "the disk is gone");
