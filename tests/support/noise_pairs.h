@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "models/host/frame_source.h"
+#include "models/kernels/gray_image.h"
 #include "models/kernels/stereo.h"
 #include "platform/config/board_config.h"
 

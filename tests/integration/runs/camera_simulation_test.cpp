@@ -58,8 +58,8 @@ class CameraSimulationTest : public testing::Test {
   std::optional<runs::CameraSimulation> simulation;
 };
 
-// The cameras write into the buffer that the core does not read, so a capture waits for the next camera frame.
-// random_computers_test.cpp compares every figure.
+// The cameras write into the buffer that the core does not read, so a capture waits for the next camera
+// frame. random_computers_test.cpp compares every figure.
 TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfThreePairsInFiveCameraFrames) {
   build(31);
   const std::vector<runs::Result> results = run();

@@ -13,7 +13,8 @@
 
 #include "calib/grid_pose.h"
 
-// calibrate_test.cpp finds the grids and the matches in the pictures: the rig and the disparities are recovered.
+// calibrate_test.cpp finds the grids and the matches in the pictures: the rig and the disparities are
+// recovered.
 namespace stereotlm::calib {
 namespace {
 

@@ -36,8 +36,8 @@ TEST_P(PciBusBurst, TransfersAWordAClockAfterAddressAndWaitClocks) {
 INSTANTIATE_TEST_SUITE_P(PciBus, PciBusBurst, testing::Bool(),
                          [](const auto& write) { return write.param ? "write" : "read"; });
 
-// Windows in any order, up to the end of the address space, and the rate of a real bus with their wait clocks:
-// bursts of 32 words, 33.33 MHz.
+// Windows in any order, up to the end of the address space, and the rate of a real bus with their wait
+// clocks: bursts of 32 words, 33.33 MHz.
 TEST(PciBus, ReachesEachWindowWithinOnePercentOfTheRateOfARealBus) {
   constexpr std::size_t kBursts = 1000;
   constexpr std::size_t kWords = 32;

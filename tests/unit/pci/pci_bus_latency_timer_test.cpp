@@ -1,5 +1,5 @@
-// The latency timer cuts a burst with the first word in its clock or later, if another master waits. The random
-// boards of pci_bus_random_test.cpp have other timers, wait clocks and lengths.
+// The latency timer cuts a burst with the first word in its clock or later, if another master waits. The
+// random boards of pci_bus_random_test.cpp have other timers, wait clocks and lengths.
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kWords = 100;
 
-// A burst of master 0 from clock 0 on, and a request of master 1 at a clock's edge, or some ps or deltas later.
+// A burst of master 0 from clock 0 on, and a request of master 1 at a clock's edge, or some ps or deltas
+// later.
 struct Cut {
   const char* name;
   std::uint64_t clock;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint64_t kUs = 1'000'000;  // ps
 
-// The load on a bus with a target and another master. Its times and its words are compared with those of the literal load in
-// tests/integration/runs/random_computers_test.cpp.
+// The load on a bus with a target and another master. Its times and its words are compared with those of the
+// literal load in tests/integration/runs/random_computers_test.cpp.
 class TrafficGeneratorTest : public testing::Test {
  protected:
   void build(std::uint32_t address) {

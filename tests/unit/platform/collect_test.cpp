@@ -21,8 +21,8 @@ using testing::kPipeline;
 using testing::PreloadedRun;
 using testing::small_board;
 
-// tests/integration/core/random_boards_test.cpp compares the counters of banks and ports with those of the plain
-// cycle loop.
+// tests/integration/core/random_boards_test.cpp compares the counters of banks and ports with those of the
+// plain cycle loop.
 class CollectStatistics : public ::testing::Test {
  protected:
   Statistics finish(uint64_t frames) {

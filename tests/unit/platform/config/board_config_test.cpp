@@ -64,6 +64,17 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
                 "matcher.filter.shift = 32: must be 0..31", "matcher.lr_tolerance = 254: 0..253 or off"}));
 }
 
+TEST(BoardConfig, DiffersInEachFieldOfALoad) {
+  BoardConfig board;
+  board.pci.load = PciLoadConfig{1, 2, 3, 4};
+  BoardConfig other = board;
+  EXPECT_EQ(other, board);
+  for (const PciLoadConfig& load : {PciLoadConfig{5, 2, 3, 4}, {1, 5, 3, 4}, {1, 2, 5, 4}, {1, 2, 3, 5}}) {
+    other.pci.load = load;
+    EXPECT_NE(other, board);
+  }
+}
+
 TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
             Problems{"cameras.trigger = 2: free_running or on_demand"});
