@@ -28,9 +28,6 @@ class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
   // Throws std::invalid_argument if the configuration has problems.
   TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config);
 
-  // Completed transfers.
-  std::uint64_t transfers() const { return transfers_; }
-
  private:
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
@@ -39,8 +36,8 @@ class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
 
   TrafficGeneratorConfig config_;
   std::vector<std::uint32_t> words_;
-  std::size_t words_done_ = 0;  // words of the running transfer that have been read
-  std::uint64_t transfers_ = 0;
+  std::size_t words_done_ = 0;   // words of the running transfer that have been read
+  std::uint64_t transfers_ = 0;  // completed
 };
 
 }  // namespace stereotlm::pci

@@ -5,11 +5,24 @@
 #include <stdexcept>
 
 #include "models/host/frame_source.h"
+#include "models/kernels/gray_image.h"
 #include "models/kernels/stereo.h"
 #include "platform/config/board_config.h"
-#include "tests/support/noise_picture.h"
 
 namespace stereotlm::test {
+
+// A picture of noise. `number` selects the noise, `shift` moves it to the left by so many columns.
+inline kernels::GrayImage noise_picture(int width, int height, std::uint64_t number, int shift = 0) {
+  kernels::GrayImage picture(width, height);
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const auto place = static_cast<std::uint32_t>(row * 4096 + column + shift);
+      const std::uint32_t mixed = (place + static_cast<std::uint32_t>(number) * 77'777U) * 2'654'435'761U;
+      picture.at(column, row) = static_cast<std::uint8_t>(mixed >> 24U);
+    }
+  }
+  return picture;
+}
 
 // Pair k is noise of its own, of which the left picture is shifted by `shift` columns.
 class NoisePairs : public host::FrameSource {

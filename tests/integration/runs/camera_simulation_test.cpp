@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 platform::BoardConfig small_board(std::vector<std::string> sets = {}) {
   sets.insert(sets.begin(),
               {"image.width=64", "image.height=48", "matcher.disparities=16", "cameras.frame_rate_hz=1000"});
-  sets.emplace_back("fpga.clock_mhz=14.5");
+  sets.emplace_back("fpga.clock_mhz=13.4");
   return platform::load_board("fpl2003", sets);
 }
 
@@ -58,48 +58,18 @@ class CameraSimulationTest : public testing::Test {
   std::optional<runs::CameraSimulation> simulation;
 };
 
-TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfItsCameraFrames) {
-  build(8);
+// The cameras write into the buffer that the core does not read, so a capture waits for the next camera
+// frame. random_computers_test.cpp compares every figure.
+TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfThreePairsInFiveCameraFrames) {
+  build(31);
   const std::vector<runs::Result> results = run();
-  ASSERT_EQ(results.size(), 8U);
-  for (std::size_t frame = 0; frame < results.size(); ++frame) {
-    EXPECT_EQ(results[frame].disparity, test::disparity_of(pairs.pair(results[frame].number), board))
-        << frame;
-    if (frame > 0) {
-      EXPECT_GT(results[frame].number, results[frame - 1].number);
-    }
-  }
+  ASSERT_EQ(results.size(), 31U);
+  for (const runs::Result& result : results)
+    EXPECT_EQ(result.disparity, test::disparity_of(pairs.pair(result.number), board)) << result.number;
   EXPECT_EQ(simulation->last().number, results.back().number);
-}
-
-TEST_F(CameraSimulationTest, AccountsForTheComputer) {
-  build(8);
-  const std::vector<runs::Result> results = run();
   const platform::Statistics statistics = simulation->statistics();
   EXPECT_THAT(statistics.failed, IsEmpty());
-  EXPECT_EQ(statistics.frames, 8U);
-  EXPECT_EQ(statistics.frame_cycles.size(), 8U);
-  ASSERT_TRUE(statistics.computer.has_value());
-  const platform::ComputerStatistics& computer = *statistics.computer;
-  ASSERT_EQ(computer.cameras.size(), 2U);
-  for (const platform::CameraStatistics& camera : computer.cameras) {
-    EXPECT_EQ(camera.frames, camera.captured_frames + camera.dropped_frames);
-    EXPECT_GE(camera.captured_frames, 8U);
-    EXPECT_GT(camera.frames, results.back().number);
-    EXPECT_EQ(camera.dropped_pixels, 0U);
-  }
-  // The cameras' frames are 1 ms long.
-  EXPECT_GT(computer.capture_to_host_ms.min, 1.0);
-  EXPECT_LE(computer.capture_to_host_ms.min, computer.capture_to_host_ms.p50);
-  EXPECT_LE(computer.capture_to_host_ms.p99, computer.capture_to_host_ms.max);
-  const std::uint64_t words = 64 * 48 / 4;
-  EXPECT_EQ(computer.dma_words, 8 * words + 2 * 4 * words);  // results and tables
-  ASSERT_EQ(computer.pci_masters.size(), 4U);
-  EXPECT_GE(computer.pci_masters[1].words, 8 * words);
-  EXPECT_LE(computer.pci_busy_clocks, computer.pci_clocks);
-  EXPECT_LE(computer.local_busy_clocks, computer.local_clocks);
-  EXPECT_LT(*statistics.frames_per_second.system, *statistics.bound.system);
-  EXPECT_LT(*statistics.frames_per_second.steady, 1000);
+  EXPECT_NEAR(*statistics.frames_per_second.steady, 600, 6);
 }
 
 TEST_F(CameraSimulationTest, HasNoSteadyRateOfOneFrame) {
@@ -173,7 +143,7 @@ TEST_F(CameraSimulationTest, KeepsTheOldPixelsWhereTheFifoWasFull) {
 }
 
 TEST_F(CameraSimulationTest, PassesOnWhatTheSourceThrows) {
-  pairs.failing_frame = 5;
+  pairs.failing_frame = 6;
   build(100);
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
   EXPECT_EQ(message_of_running(), "the disk is gone");

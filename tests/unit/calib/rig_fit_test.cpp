@@ -11,11 +11,11 @@
 namespace stereotlm::calib {
 namespace {
 
-const GridShape kShape = {9, 6, 25};
-constexpr int kPairs = 12;
-
 class RigFitTest : public testing::Test {
  protected:
+  static constexpr GridShape kShape = {9, 6, 25};
+  static constexpr int kPairs = 12;
+
   RigFitTest() {
     for (int number = 0; number < kPairs; ++number) {
       const auto corners = known_.grid_corners(kShape, number);

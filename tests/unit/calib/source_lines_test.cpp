@@ -12,13 +12,6 @@ namespace {
 using kernels::make_entry;
 using kernels::RectificationTable;
 
-// A table of four columns with one valid entry in each row.
-RectificationTable table_of_rows(const std::vector<std::uint32_t>& entries) {
-  RectificationTable table{4, static_cast<int>(entries.size()), {}};
-  for (const std::uint32_t entry : entries) table.entries.insert(table.entries.end(), {0, 0, entry, 0});
-  return table;
-}
-
 // The definition of the header, entry by entry.
 std::vector<int> expected_lines(const RectificationTable& table, int lines) {
   std::vector<int> expected;
@@ -32,14 +25,6 @@ std::vector<int> expected_lines(const RectificationTable& table, int lines) {
     expected.push_back(named.empty() ? 0 : *last - *first + 1);
   }
   return expected;
-}
-
-TEST(SourceLines, CountLinesBetweenThoseThatEntriesName) {
-  const RectificationTable table = table_of_rows(
-      {make_entry(3, 4), make_entry(0, 1), make_entry(1, 1), make_entry(0, 0), make_entry(0, 3)});
-  EXPECT_EQ(source_lines(table, 1), (std::vector<int>{1, 1, 1, 1, 1}));
-  EXPECT_EQ(source_lines(table, 2), (std::vector<int>{4, 1, 2, 4}));
-  EXPECT_EQ(source_lines(table, 3), (std::vector<int>{4, 2, 4}));
 }
 
 TEST(SourceLines, FollowTheirDefinitionForAnyTable) {

@@ -17,6 +17,8 @@
 
 namespace stereotlm::capture {
 
+constexpr std::uint32_t kAddress = 0x1000;  // of the buffer
+
 // A picture of noise for each frame.
 class NoiseSource : public CameraSource {
  public:
@@ -96,8 +98,6 @@ inline void run_to(std::uint64_t time_ps) {
 // One side on its own. The pictures are small: 16 x 3 pixels. The FIFO has 4 words and requests the bus with 2.
 class CaptureBench : public testing::Test {
  protected:
-  static constexpr std::uint32_t kAddress = 0x1000;
-
   void build() { side.emplace("", camera, board, clock_mhz); }
   // Arms at time 0, in time for frame 0.
   void build_and_arm() {

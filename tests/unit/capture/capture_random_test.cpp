@@ -10,8 +10,6 @@
 namespace stereotlm::capture {
 namespace {
 
-constexpr std::uint32_t kAddress = 0x4000;
-
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : engine_(seed) {}

@@ -2,6 +2,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "models/capture/capture_fifo.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/refused_access.h"
 #include "tests/unit/capture/capture_bench.h"
@@ -251,6 +252,7 @@ TEST_F(CaptureRegisters, ReportALineThatNoCaptureExpects) {
 
 TEST(CaptureBoard, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(CaptureBoard("refused", CaptureBoardConfig{140, 141}), std::invalid_argument);
+  EXPECT_THROW(CaptureFifo(CaptureBoardConfig{4, 5}), std::invalid_argument);
 }
 
 }  // namespace

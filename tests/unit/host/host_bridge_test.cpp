@@ -37,11 +37,6 @@ class HostBridgeTest : public testing::Test {
     sc_core::sc_start();
   }
   void write_words() { EXPECT_EQ(cpu.write_words(kBase + 0x20, {5, 6, 7}).status, tlm::TLM_OK_RESPONSE); }
-  void read_words(std::size_t count) {
-    const auto answer = cpu.read_words(kBase + 0x20, count);
-    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(answer.words, pci::words_from(0x20, count));
-  }
   std::uint64_t edge(std::uint64_t clock) const { return bench->edge(clock); }
   pci::TestTarget& target() { return *bench->targets[0]; }
   pci::PciBus::MasterStats stats() const { return bench->bus->stats().masters[0]; }
@@ -70,16 +65,6 @@ TEST_F(HostBridgeTest, AccessesAWordInOneBurstAtTheTimeOfTheAccess) {
   EXPECT_EQ(stats().transactions, 2U);
 }
 
-TEST_F(HostBridgeTest, TransfersSeveralWordsInOneBurst) {
-  build();
-  simulate([this] {
-    write_words();
-    read_words(3);
-  });
-  ASSERT_EQ(target().accesses.size(), 2U);
-  EXPECT_EQ(target().accesses[0].words, (Words{5, 6, 7}));
-}
-
 TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
   build();
   int refusals = 3;
@@ -89,7 +74,8 @@ TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
     EXPECT_EQ(Clock::now_ps(), edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
   });
   EXPECT_EQ(stats().retries, 3U);
-  EXPECT_EQ(stats().words, 3U);
+  ASSERT_EQ(target().accesses.size(), 1U);
+  EXPECT_EQ(target().accesses[0].words, (Words{5, 6, 7}));
 }
 
 TEST_F(HostBridgeTest, ContinuesADisconnectedBurst) {
@@ -107,7 +93,9 @@ TEST_F(HostBridgeTest, ContinuesAReadThatTheLatencyTimerCut) {
   bench->masters[0]->bursts = {pci::read_of(1)};
   simulate([this] {
     bench->masters[0]->request();
-    read_words(40);
+    const auto answer = cpu.read_words(kBase + 0x20, 40);
+    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(answer.words, pci::words_from(0x20, 40));
   });
   EXPECT_EQ(stats().transactions, 2U);
   EXPECT_EQ(stats().words, 40U);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -143,11 +142,6 @@ class IdealHostTest : public testing::Test {
   std::uint8_t* buffer(std::uint64_t base_register) {
     return at(registers_of::base_address(written[base_register].back()));
   }
-  std::vector<std::uint32_t> words(std::uint32_t bank, std::uint32_t first, std::size_t count) {
-    std::vector<std::uint32_t> copy(count);
-    std::memcpy(copy.data(), banks.at(bank).data() + std::size_t{4} * first, 4 * count);
-    return copy;
-  }
 
   test::MonitoringBinder binder;
   test::ScriptedTarget register_target{"register_target"};
@@ -169,6 +163,7 @@ class IdealHostTest : public testing::Test {
   std::unique_ptr<IdealHost> host;
 };
 
+// random_boards_test.cpp compares runs with tables and with lists of buffers.
 TEST_F(IdealHostTest, RunsEachFrameWithItsOwnPairInNoTimeOfItsOwn) {
   build(config(3));
   sc_core::sc_start();
@@ -189,40 +184,6 @@ TEST_F(IdealHostTest, RunsEachFrameWithItsOwnPairInNoTimeOfItsOwn) {
   // Sides without tables.
   EXPECT_EQ(written.count(registers_of::kLeftLutBase), 0U);
   EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
-}
-
-TEST_F(IdealHostTest, UsesEachListInTurn) {
-  IdealHostConfig lists = config(5);
-  lists.buffers.left_images = {registers_of::base(0, 0), registers_of::base(0, 8), registers_of::base(0, 16)};
-  lists.buffers.right_images = {registers_of::base(1, 0), registers_of::base(1, 8)};
-  lists.buffers.disparities = {registers_of::base(2, 4)};
-  build(lists);
-  sc_core::sc_start();
-  const auto expected = [](const std::vector<std::uint32_t>& list) {
-    std::vector<std::uint32_t> values;
-    for (std::size_t frame = 0; frame < 5; ++frame) values.push_back(list[frame % list.size()]);
-    return values;
-  };
-  EXPECT_EQ(written[registers_of::kLeftImageBase], expected(lists.buffers.left_images));
-  EXPECT_EQ(written[registers_of::kRightImageBase], expected(lists.buffers.right_images));
-  EXPECT_EQ(written[registers_of::kDisparityBase], expected(lists.buffers.disparities));
-  EXPECT_EQ(sink.images[4], GrayImage(kWidth, kHeight, 83));
-}
-
-TEST_F(IdealHostTest, LoadsEachTableBeforeTheFirstFrame) {
-  IdealHostConfig tables = config(2);
-  tables.buffers.left_lut = registers_of::base(3, 2);
-  tables.buffers.right_lut = registers_of::base(4, 0);
-  kernels::RectificationTable left = kernels::identity_table(kWidth, kHeight);
-  kernels::RectificationTable right = left;
-  right.entries[3] = 0;
-  build(tables, &left, &right);
-  sc_core::sc_start(sc_core::SC_ZERO_TIME);
-  EXPECT_EQ(words(3, 2, kPixels), left.entries);
-  EXPECT_EQ(words(4, 0, kPixels), right.entries);
-  sc_core::sc_start();
-  EXPECT_EQ(written[registers_of::kLeftLutBase], std::vector<std::uint32_t>{*tables.buffers.left_lut});
-  EXPECT_EQ(written[registers_of::kRightLutBase], std::vector<std::uint32_t>{*tables.buffers.right_lut});
 }
 
 TEST_F(IdealHostTest, DoesNothingForNoFrames) {

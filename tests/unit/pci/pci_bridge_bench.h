@@ -26,7 +26,6 @@ class LocalTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>
     bool write = false;
     std::uint64_t address = 0;
     std::vector<std::uint32_t> words;
-    sc_core::sc_time at;
   };
 
   tlm::tlm_target_socket<32> socket{"socket"};
@@ -58,7 +57,6 @@ class LocalTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>
     burst.write = payload.is_write();
     burst.address = payload.get_address();
     burst.words.resize(payload.get_data_length() / 4);
-    burst.at = sc_core::sc_time_stamp() + delay;
     const bool refused = burst.address == refused_address;
     payload.set_response_status(refused ? tlm::TLM_ADDRESS_ERROR_RESPONSE : tlm::TLM_OK_RESPONSE);
     if (refused) return tlm::TLM_COMPLETED;

@@ -97,35 +97,6 @@ TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrivedAndRefusesAStartMeanwhile) 
   }
 }
 
-// A burst of n words on PCI takes n + wait + 2 clocks, on the local target n + 1 word times.
-TEST_F(PciBridgeDma, OverlapsTheTwoBuses) {
-  build({32, 64, kCore});
-  constexpr std::uint32_t kBursts = 40;
-  for (const bool to_pci : {false, true}) {
-    const std::size_t before = local.bursts.size();
-    start(0, kChain, {{kData, 0, (32 * kBursts) | (to_pci ? bridge::kToPci : 0U)}});
-    run(200);
-    ASSERT_EQ(local.bursts.size(), before + kBursts);
-    const double pci_us = (32 + 8 + 2) / 33.333;
-    // The bridge has room for the first two bursts.
-    const double each_us =
-        (local.bursts.back().at - local.bursts[before + 2].at).to_seconds() * 1e6 / (kBursts - 3);
-    EXPECT_GE(each_us, pci_us - 0.001);
-    EXPECT_LE(each_us, pci_us + 3 / 33.333) << to_pci;  // the next request may miss a clock
-  }
-}
-
-TEST_F(PciBridgeDma, RunsBothChannelsSideBySide) {
-  build();
-  host.debug_write(kData, numbers(300));
-  start(0, kChain, {{kData, 0, 300}});
-  start(1, kChain + 0x40, {{kData + 0x1000, 1U << 26U, 300 | bridge::kToPci}});
-  run(60);
-  EXPECT_EQ(on_board(0, 300), numbers(300));
-  EXPECT_EQ(host.debug_read(kData + 0x1000, 300), on_board(1ULL << 28U, 300));
-  EXPECT_EQ(status(), bridge::kDmaDone | bridge::kDmaDone << 1U);
-}
-
 // The test lets the bursts of the local bus through one by one. Posted writes go to bank 0, channels 0 and 1
 // write to banks 1 and 2.
 class PciBridgeTurns : public PciBridgeDma {

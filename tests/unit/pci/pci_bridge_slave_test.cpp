@@ -72,29 +72,6 @@ TEST_F(PciBridgeSlave, CountsWordsForEachBuffer) {
   EXPECT_EQ(dut->words_held().words(), (std::vector<std::uint64_t>{1, 1, 2}));
 }
 
-TEST_F(PciBridgeSlave, GivesPlacesBackAtTheEndOfTheLocalBurst) {
-  build({4, 8, kCore});
-  local.word_time = sc_core::sc_time(1, sc_core::SC_US);
-  EXPECT_EQ(burst(true, kSlave, 8).result.words, 8U);
-  run(3);
-  EXPECT_EQ(burst(true, kSlave + 32, 1).result.words, 0U);
-  run(2);  // the first four words have taken 5 us
-  EXPECT_EQ(burst(true, kSlave + 32, 5).result.words, 4U);
-}
-
-TEST_F(PciBridgeSlave, SendsWordsInOrderAndJoinsContiguousOnes) {
-  build({6, 64, kCore});
-  local.held = true;
-  burst(true, kSlave, 1);
-  burst(true, kSlave + 4, 8);
-  burst(true, kSlave + 400, 2);
-  local.release();
-  run(10);
-  std::vector<std::pair<std::uint64_t, std::size_t>> bursts;
-  for (const auto& done : local.bursts) bursts.emplace_back(done.address, done.words.size());
-  EXPECT_EQ(bursts, (std::vector<std::pair<std::uint64_t, std::size_t>>{{0, 1}, {4, 6}, {28, 2}, {400, 2}}));
-}
-
 TEST_F(PciBridgeSlave, ReadsBehindTheWritesPostedBefore) {
   build({1, 64, kCore});
   local.word_time = sc_core::sc_time(500, sc_core::SC_NS);

@@ -29,6 +29,8 @@ inline std::vector<std::uint32_t> words_from(std::uint64_t address, std::size_t 
   return words;
 }
 
+constexpr int kWait = 4;  // wait clocks of most windows
+
 struct Script {
   bool write = true;
   std::uint64_t address = 0;
@@ -57,11 +59,6 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
 
   explicit TestMaster(const sc_core::sc_module_name& name) : sc_module(name) {}
   void request() { pci->request(*this); }
-  std::size_t words_done() const {
-    std::size_t words = 0;
-    for (const Ended& burst : ended) words += burst.result.words;
-    return words;
-  }
 
   PciBurst begin_burst(std::uint64_t address_clock_ps) override {
     ++grants;

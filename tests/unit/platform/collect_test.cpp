@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
-#include <tuple>
 
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
@@ -17,20 +15,14 @@ namespace stereotlm::platform {
 namespace {
 
 using std::uint64_t;
-using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using testing::kPipeline;
 using testing::PreloadedRun;
 using testing::small_board;
-using ::testing::StartsWith;
 
-constexpr uint64_t kPipeline = 16;
-
-const PortStatistics& port(const Statistics& statistics, const std::string& name) {
-  return *std::find_if(statistics.ports.begin(), statistics.ports.end(),
-                       [&name](const PortStatistics& row) { return row.name == name; });
-}
-
+// tests/integration/core/random_boards_test.cpp compares the counters of banks and ports with those of the
+// plain cycle loop.
 class CollectStatistics : public ::testing::Test {
  protected:
   Statistics finish(uint64_t frames) {
@@ -59,78 +51,17 @@ TEST_F(CollectStatistics, GivesTheFiguresOfTheFramesThatEnded) {
   EXPECT_EQ(statistics.failed, std::vector<std::string>{});
 }
 
-TEST_F(CollectStatistics, ListsEveryBankInTheOrderOfTheBoard) {
+TEST_F(CollectStatistics, GivesTheUseOfEveryBankInTheOrderOfTheBoard) {
   board.banks.push_back({"spare", 16});
   const Statistics statistics = finish(2);
   const auto cycles = static_cast<double>(statistics.cycles);
   ASSERT_EQ(statistics.banks.size(), 9U);
-  const uint64_t reads = uint64_t{16} * (6 * 3 - 2);
   for (std::size_t i = 0; i < 9; ++i) {
     const BankStatistics& bank = statistics.banks[i];
     EXPECT_EQ(bank.name, board.banks[i].name);
-    // Images and results alternate between two banks, tables do not.
-    const uint64_t expected_reads = i < 4 ? reads : i == 6 || i == 7 ? 2 * reads : 0;
-    EXPECT_EQ(bank.reads, expected_reads) << i;
-    EXPECT_EQ(bank.writes, i == 4 || i == 5 ? 24U : 0U) << i;
-    EXPECT_EQ(bank.busy_cycles, bank.reads + bank.writes);
-    EXPECT_EQ(bank.idle_cycles, statistics.cycles - bank.busy_cycles);
-    EXPECT_EQ(bank.turnaround_cycles + bank.contended_cycles, 0U);
+    EXPECT_EQ(bank.busy_cycles > 0, i < 8);
     EXPECT_DOUBLE_EQ(bank.utilization, static_cast<double>(bank.busy_cycles) / cycles);
     EXPECT_DOUBLE_EQ(bank.megabytes_per_second, 4 * static_cast<double>(bank.busy_cycles) * 40 / cycles);
-  }
-}
-
-TEST_F(CollectStatistics, ListsEveryPortInTheOrderOfTheContract) {
-  const Statistics statistics = finish(1);
-  std::vector<std::string> names;
-  for (const PortStatistics& row : statistics.ports) {
-    names.push_back(row.name);
-    EXPECT_EQ(row.grants + row.stall_cycles + row.passed_cycles + row.idle_cycles + row.blocked_cycles +
-                  row.starved_cycles,
-              statistics.cycles)
-        << row.name;
-  }
-  EXPECT_EQ(names, (std::vector<std::string>{"left_lut", "right_lut", "left_pixel", "right_pixel", "result",
-                                             "host"}));
-  const uint64_t slots = uint64_t{16} * 6 * 3;
-  EXPECT_EQ(port(statistics, "left_lut").grants, slots - 32);
-  EXPECT_EQ(port(statistics, "left_lut").passed_cycles, 32U);
-  EXPECT_EQ(port(statistics, "left_lut").idle_cycles, statistics.cycles - slots);
-  EXPECT_EQ(port(statistics, "result").grants, 24U);
-  EXPECT_EQ(port(statistics, "host").idle_cycles, statistics.cycles);
-  EXPECT_TRUE(statistics.blame.empty());
-}
-
-TEST_F(CollectStatistics, BlamesStallsInTheOrderOfPortBankAndBy) {
-  for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kSyncBurst, bank.turnaround_cycles = 2;
-  board.allocation = {{"bank1", "bank0"}, {"bank1", "bank0"}, {"bank1", "bank0"}, "bank1", "bank3"};
-  const Statistics statistics = finish(2);
-  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
-  const std::vector<std::string> order = {"left_lut", "right_lut",  "left_pixel", "right_pixel", "result",
-                                          "host",     "turnaround", "bank0",      "bank1",       "bank2"};
-  const auto place = [&order](const std::string& name) {
-    return std::find(order.begin(), order.end(), name) - order.begin();
-  };
-  const auto key = [&place](const BlameRow& row) {
-    return std::make_tuple(place(row.port), row.bank, place(row.by));
-  };
-  EXPECT_TRUE(std::is_sorted(statistics.blame.begin(), statistics.blame.end(),
-                             [&key](const BlameRow& a, const BlameRow& b) { return key(a) < key(b); }));
-  std::map<std::string, uint64_t> blamed;
-  bool by_turnaround = false;
-  bool by_port = false;
-  for (const BlameRow& row : statistics.blame) {
-    EXPECT_GT(row.cycles, 0U);
-    blamed[row.port] += row.cycles;
-    (row.by == "turnaround" ? by_turnaround : by_port) = true;
-  }
-  EXPECT_TRUE(by_turnaround);
-  EXPECT_TRUE(by_port);
-  for (const PortStatistics& row : statistics.ports)
-    EXPECT_EQ(blamed[row.name], row.stall_cycles) << row.name;
-  for (const BankStatistics& bank : statistics.banks) {
-    EXPECT_EQ(bank.busy_cycles + bank.turnaround_cycles + bank.idle_cycles, statistics.cycles);
-    EXPECT_EQ(bank.turnaround_cycles > 0, bank.name == "bank0" || bank.name == "bank1") << bank.name;
   }
 }
 
@@ -141,26 +72,6 @@ TEST_F(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {
   EXPECT_EQ(statistics.frames_per_second.core, 0);
   EXPECT_EQ(statistics.banks.at(0).utilization, 0);
   EXPECT_EQ(statistics.failed, std::vector<std::string>{});
-}
-
-TEST_F(CollectStatistics, ReportsTheIdentitiesThatDoNotHoldInTheMiddleOfAFrame) {
-  run.emplace(board, identity_tables(board), 2);
-  const uint64_t frame = 4 + 16 * 6 * 3 + 9 + 1 + kPipeline;
-  sc_core::sc_start(sc_core::sc_time(25, sc_core::SC_NS) * static_cast<double>(frame + 100));
-  const Statistics statistics = run->collect();
-  ASSERT_EQ(statistics.frames, 1U);
-  const auto& control = run->system.board.core.control();
-  const uint64_t states = control.port_cycles(fpga::lut_port(fpga::Side::kLeft)).sum();
-  ASSERT_GT(states, frame - kPipeline);
-  EXPECT_THAT(statistics.failed,
-              Contains(fmt::format("port left_lut: sum of its states = {}, but cycles = {}", states,
-                                   frame - kPipeline)));
-  EXPECT_THAT(statistics.failed,
-              Contains(fmt::format("left lane: slots consumed = {}, but slots of the sequence = 288",
-                                   control.lane(fpga::Side::kLeft).consumed())));
-  EXPECT_THAT(statistics.failed, Contains(StartsWith("bank bank1: busy + turnaround + idle cycles = ")));
-  // At the end all of them hold.
-  EXPECT_THAT(run->finish().failed, IsEmpty());
 }
 
 // Each identity is broken alone, by one counter of a valid run.
@@ -235,14 +146,6 @@ TEST_F(CollectStatistics, ReportsAFrameRateAboveItsBound) {
   EXPECT_EQ(number_after("frames_per_second.core = "), statistics.frames_per_second.core);
   EXPECT_EQ(number_after(", but bound.core = "), statistics.bound.core);
   EXPECT_GT(statistics.frames_per_second.core, statistics.bound.core);
-}
-
-TEST_F(CollectStatistics, CountsNoDebugTransportAsAnAccess) {
-  finish(2);
-  for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-    const auto& accesses = run->system.board.banks[bank].stats();
-    EXPECT_EQ(accesses.reads + accesses.writes, run->collect().banks[bank].busy_cycles) << bank;
-  }
 }
 
 }  // namespace

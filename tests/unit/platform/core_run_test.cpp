@@ -17,8 +17,6 @@ namespace {
 using test::message_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::PreloadedRun;
 using testing::small_board;
 
 // Contract section 2, worked values.
@@ -36,29 +34,6 @@ TEST(CoreRun, GivesTheWorkedValues) {
   EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.disparity=[bank0, bank0]",
                            "ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}"}),
               ElementsAre(2534153));
-}
-
-TEST(CoreRun, EqualsTheRunOfTheModulesEachTime) {
-  const BoardConfig board = small_board();
-  PreloadedRun run(board, identity_tables(board), 5);
-  const Statistics expected = run.finish();
-  for (int again = 0; again < 2; ++again) {
-    const Statistics found = run_core(run.config, run.tables, 5);
-    EXPECT_EQ(found.frame_cycles, expected.frame_cycles);
-    EXPECT_EQ(found.cycles, expected.cycles);
-    EXPECT_EQ(found.frames_per_second.core, expected.frames_per_second.core);
-    EXPECT_EQ(found.bound.core_limited_by, expected.bound.core_limited_by);
-    EXPECT_THAT(found.failed, IsEmpty());
-    ASSERT_EQ(found.ports.size(), expected.ports.size());
-    for (std::size_t port = 0; port < found.ports.size(); ++port) {
-      EXPECT_EQ(found.ports[port].grants, expected.ports[port].grants) << found.ports[port].name;
-      EXPECT_EQ(found.ports[port].starved_cycles, expected.ports[port].starved_cycles)
-          << found.ports[port].name;
-    }
-    ASSERT_EQ(found.banks.size(), expected.banks.size());
-    for (std::size_t bank = 0; bank < found.banks.size(); ++bank)
-      EXPECT_EQ(found.banks[bank].reads, expected.banks[bank].reads) << found.banks[bank].name;
-  }
 }
 
 TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {

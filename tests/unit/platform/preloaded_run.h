@@ -9,6 +9,8 @@
 
 namespace stereotlm::platform::testing {
 
+constexpr std::uint64_t kPipeline = 16;  // cycles
+
 // A small board without contention: 16 x 6 pixels, 3 x 3 windows, three disparities, no filter.
 inline BoardConfig small_board() {
   BoardConfig board;
