@@ -74,14 +74,6 @@ TEST(RowComparison, SumsUpTheFrames) {
   EXPECT_EQ(rows.frames(), 2U);
 }
 
-TEST(RowComparison, HasNoRangesWhereTheFramesCancelOut) {
-  RowComparison rows;
-  rows.add(profile({10, 20}), profile({20, 10}));
-  rows.add(profile({20, 10}), profile({10, 20}));
-  EXPECT_TRUE(rows.parting());
-  EXPECT_TRUE(rows.ranges(10).empty());
-}
-
 TEST(RowComparison, JoinsRowsToBandsWhereTheRangesAreTooMany) {
   RowComparison rows;
   rows.add(profile({10, 10, 10, 10, 10, 10, 10}), profile({20, 10, 10, 10, 40, 20, 0}));
