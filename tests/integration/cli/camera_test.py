@@ -67,22 +67,6 @@ class Figures(CameraTest):
         self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
         self.assertIn("\nlatency      capture to host, ms: min ", table)
 
-    def test_the_host_is_blamed_on_a_bank_that_the_core_uses(self):
-        self.camera(*sets("allocation.left_image=[bank0, bank0]"), "--frames", "6")
-        (row,) = (row for row in self.stats()["blame"] if row["by"] == "host")
-        self.assertEqual((row["port"], row["bank"]), ("left_pixel", "bank0"))
-        self.assertGreater(row["cycles"], 0)
-
-    def test_rates_follow_the_keys_of_the_board(self):
-        rates = []
-        for assignments in ([], ["capture.destination=host_memory"],
-                            ["allocation.left_image=bank0", "allocation.right_image=bank2"]):
-            self.camera(*sets(*assignments), "--frames", "30")
-            rates.append(self.stats()["frames_per_second"]["steady"])
-        self.assertEqual(sorted(rates), [rates[2], rates[0], rates[1]])
-        self.camera(*sets("cameras.trigger=on_demand"), "--frames", "6")
-        self.assertEqual([camera["dropped_frames"] for camera in self.stats()["cameras"]], [0, 0])
-
 
 class Truth(CameraTest):
     def test_a_truth_goes_with_one_pair_only(self):

@@ -238,7 +238,7 @@ class Sources(DiffTest):
         for options in (
             "--left left.pgm --right right.pgm --truth left.pgm --truth-scale 0.5",
             "--sequence sequence --save-frames --frames 5",
-            "--video v.avi --video-layout side_by_side",
+            "--video v.avi --video-layout side_by_side --truth left.pgm",
             "--video 0.avi 1.avi --video-layout two",
             "--synthetic 18446744073709551615 --frames 2",
             "--synthetic 0 --verify",

@@ -184,11 +184,6 @@ class Pictures(ProgramTest):
                     self.assertTrue(line.startswith(f"stereotlm: error: {option} '{path}': {reason}"), line)
                 self.assertFalse(self.out.exists())
 
-    def test_two_wrong_sizes_are_both_named(self):
-        wide, high = self.picture(40, 24), self.picture(32, 30)
-        process = self.run_small(left=wide, right=high)
-        self.assertEqual(len(self.refused(process, f"--left '{wide}': 40x24", f"--right '{high}': 32x30")), 2)
-
     def test_ground_truth_may_not_be_in_colour(self):
         colour = self.file("colour.ppm", ppm(WIDTH, HEIGHT, noise(3 * WIDTH, HEIGHT, 1)))
         self.refused_in_one_line(self.run_small("--truth", colour), f"--truth '{colour}': 8-bit colour")
@@ -231,14 +226,6 @@ class Boards(ProgramTest):
             self.assertTrue(line.startswith(start), line)
         lines = self.refused(self.run_with("--sequence", none, *board), "--set matcher.window", "--sequence")
         self.assertEqual(len(lines), 2)
-
-    def test_unknown_presets_and_small_banks_are_refused(self):
-        words = WIDTH * HEIGHT // 4
-        bank = "ssram.banks.bank4.words"
-        self.succeeds(self.run_small(*sets(f"{bank}={words}")))
-        process = self.run_small(*sets(f"{bank}={words - 1}"))
-        self.refused_in_one_line(process, f"{bank} = {words - 1}: 1 words missing")
-        self.refused_in_one_line(self.run_small(board="fpl"), "fpl: not a preset")
 
 
 class Paths(ProgramTest):

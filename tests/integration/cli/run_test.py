@@ -59,25 +59,6 @@ class ResultFiles(ProgramTest):
         with self.unchanged(self.folder):
             self.succeeds(run(*self.run_arguments(), cwd=self.folder))
 
-
-class Matching(ProgramTest):
-    def test_finds_the_shift_of_a_picture(self):
-        shift = 3
-        scene = noise(WIDTH + shift, HEIGHT, 5)
-        rows = [scene[y * (WIDTH + shift) :] for y in range(HEIGHT)]
-        right = self.file("r.pgm", pgm(WIDTH, HEIGHT, b"".join(row[shift : shift + WIDTH] for row in rows)))
-        left = self.file("l.pgm", pgm(WIDTH, HEIGHT, b"".join(row[:WIDTH] for row in rows)))
-        truth = self.file("t.pgm", pgm(WIDTH, HEIGHT, bytes([2 * shift]) * (WIDTH * HEIGHT)))
-        options = [*sets("matcher.disparities=8", "matcher.filter=none"), "--out", self.out]
-        known = ["--truth", truth, "--truth-scale", "2"]
-        table = self.succeeds(self.run_small(*options, *known, left=left, right=right))
-        answered = {d for row in read_png(self.out / "disparity.png")[3] for d in row if d != 255}
-        self.assertEqual(answered, {shift})
-        accuracy = self.stats()["accuracy"]
-        self.assertEqual((accuracy["bad_1_percent"], accuracy["bad_2_percent"]), (0, 0))
-        self.assertGreater(accuracy["answered_percent"], 40)
-        self.assertIn("off by more than 1: 0.00 %", table)
-
     def test_converts_colour_and_says_so(self):
         left = self.file("colour.ppm", ppm(WIDTH, HEIGHT, noise(3 * WIDTH, HEIGHT, 1)))
         process = self.run_small(left=left)

@@ -187,12 +187,6 @@ class Video(SourceTest):
 
 
 class Synthetic(SourceTest):
-    def test_the_scene_moves_and_is_the_same_again(self):
-        frames = self.frames_of("--synthetic", "1", "--frames", "4")
-        self.assertEqual(len(set(frames)), 4)
-        self.assertEqual(self.frames_of("--synthetic", "1"), frames[:1])
-        self.assertNotEqual(self.frames_of("--synthetic", "2"), frames[:1])
-
     def test_its_accuracy_is_printed_and_kept_out_of_the_figures(self):
         board = sets("image.width=160", "image.height=120", "matcher.fetch=line_buffer")
         source = ["--synthetic", "3", "--frames", "2", "--out", self.out]
@@ -213,11 +207,6 @@ class Truth(SourceTest):
         for frames, last in ((["--frames", "2"], 1), ([], 2), (["--frames", "4"], 0)):
             pair = ["--left", folder / f"left_00{last}.png", "--right", folder / f"right_00{last}.png"]
             self.assertEqual(self.accuracy("--sequence", folder, *frames), self.accuracy(*pair))
-
-    def test_a_truth_goes_with_a_video(self):
-        frame = self.side(0, "left") + self.side(0, "right")
-        video = self.file("t.avi", avi(WIDTH, 2 * HEIGHT, [frame, frame]))
-        self.assertTrue(self.accuracy("--video", video, "--video-layout", "top_bottom"))
 
 
 class Memory(SourceTest):

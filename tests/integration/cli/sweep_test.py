@@ -87,15 +87,6 @@ class Sweep(SweepTest):
             lines = self.refused(run("run", board, "--timing-only"))
             self.assertEqual([line.split(": ", 1)[1] for line in lines], [reason])
 
-    def test_points_of_the_computer_keep_its_figures(self):
-        plan = self.file("computer.yaml", "board: fpl2003\nrun: {source: camera, frames: 3}\n")
-        self.succeeds(self.sweep(plan=plan))
-        columns = '"frames_per_second.steady", "pci.busy_clocks", "cameras.left.frames"'
-        ((config, *figures),) = self.query(f"SELECT config, {columns} FROM points")
-        stats = self.run_point(config, "--frames", 3)
-        frames = stats["cameras"][0]["frames"]
-        self.assertEqual(figures, [stats["frames_per_second"]["steady"], stats["pci"]["busy_clocks"], frames])
-
     def test_shards_give_the_same_bytes(self):
         self.succeeds(self.sweep("--jobs", 1))
         expected = self.store.read_bytes()

@@ -27,14 +27,6 @@ RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   return rows;
 }
 
-TEST(RowsAlone, AreTheDifferencesOfNeighbouringEnds) {
-  EXPECT_TRUE(rows_alone({}).empty());
-  const RowProfile rows = rows_alone(profile({105, 40, 0, 71}));
-  const RowProfile expected = {
-      {105, {0, 0, 10, 0, 0}}, {40, {0, 0, 4, 0, 0}}, {0, {}}, {71, {0, 0, 7, 0, 0}}};
-  EXPECT_EQ(rows, expected);
-}
-
 // "first..last: cycles, least..most, stalls of the port; " of each range
 std::string text_of(const std::vector<RowComparison::Range>& ranges, std::size_t port = 2) {
   std::string text;
