@@ -191,8 +191,9 @@ TEST(PixelsLine, CountsThePixelsThatDifferAndNamesTheFirst) {
   EXPECT_EQ(pixels_line(pixels), "disparities: 1 pixel differs, in 1 of 2 frames; " + first);
   other.at(2, 0) = other.at(2, 1) = 255;
   pixels.add(5, image, other);
-  EXPECT_EQ(pixels_line(pixels), "disparities: 4 pixels differ, in 2 of 3 frames; " + first);
-  EXPECT_THROW(pixels.add(6, image, kernels::GrayImage(8, 1)), std::invalid_argument);
+  pixels.add(6, image, image);
+  EXPECT_EQ(pixels_line(pixels), "disparities: 4 pixels differ, in 2 of 4 frames; " + first);
+  EXPECT_THROW(pixels.add(7, image, kernels::GrayImage(8, 1)), std::invalid_argument);
 }
 
 }  // namespace
