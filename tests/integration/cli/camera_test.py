@@ -67,6 +67,10 @@ class Figures(CameraTest):
         self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
         self.assertIn("\nlatency      capture to host, ms: min ", table)
 
+    def test_cameras_on_demand_drop_no_frame(self):
+        self.camera(*sets("cameras.trigger=on_demand"), "--frames", "6")
+        self.assertEqual([camera["dropped_frames"] for camera in self.stats()["cameras"]], [0, 0])
+
 
 class Truth(CameraTest):
     def test_a_truth_goes_with_one_pair_only(self):
