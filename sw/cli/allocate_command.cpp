@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -344,19 +343,14 @@ int allocate(const AllocateOptions& options) {
 }  // namespace
 
 void add_allocate(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<AllocateOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return allocate(*options); };
-  };
-  options->add_to(add_command(
-      program, "allocate", "Find the best allocation of the buffers to banks, and prove it", parsed,
+  add_command(
+      program, action, "allocate", "Find the best allocation of the buffers to banks, and prove it", allocate,
       "Every different way to place the buffers in at most N banks is tried: placements that differ only\n"
       "by an exchange of banks that are alike count as one, and those whose bound is below the best rate\n"
       "of as many banks are not simulated, or not to the end. For each number of banks: how many\n"
       "placements fit, the best frame rate beside its bound, how many reach it, and one that does. An\n"
       "allocation with which captures lose pixels does not count. DB is continued: after an interruption,\n"
-      "give the same command."));
+      "give the same command.");
 }
 
 }  // namespace stereotlm::cli

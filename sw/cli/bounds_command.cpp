@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -195,19 +194,14 @@ int bounds(const BoardOptions& options) {
 }  // namespace
 
 void add_bounds(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<BoardOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return bounds(*options); };
-  };
-  options->add_to(add_command(
-      program, "bounds",
-      "Say what limits the frame rate: ports, banks, matcher, cameras, buses; and the area", parsed,
+  add_command(
+      program, action, "bounds",
+      "Say what limits the frame rate: ports, banks, matcher, cameras, buses; and the area", bounds,
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
       "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera\n"
       "as long as no pixel is dropped. Last an estimate of what the core takes of its FPGA.\n"
-      "Tables, where the board has them, are the identity, or those of --calibration."));
+      "Tables, where the board has them, are the identity, or those of --calibration.");
 }
 
 }  // namespace stereotlm::cli

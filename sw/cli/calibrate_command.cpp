@@ -261,13 +261,8 @@ int calibrate(const CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<CalibrateOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return calibrate(*options); };
-  };
-  options->add_to(add_command(program, "calibrate",
-                              "Make a board's tables from pictures of a grid, or draw the grid", parsed));
+  add_command(program, action, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
+              calibrate);
 }
 
 }  // namespace stereotlm::cli

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
@@ -29,12 +27,7 @@ int check(const BoardOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<BoardOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return check(*options); };
-  };
-  options->add_to(add_command(program, "check", "Validate a board and nothing else", parsed));
+  add_command(program, action, "check", "Validate a board and nothing else", check);
 }
 
 }  // namespace stereotlm::cli

@@ -87,13 +87,7 @@ int diff(const DiffOptions& options) {
 }  // namespace
 
 void add_diff(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<DiffOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return diff(*options); };
-  };
-  options->add_to(
-      add_command(program, "diff", "Compare two runs, frame by frame and row by row", parsed, kDiffFooter));
+  add_command(program, action, "diff", "Compare two runs, frame by frame and row by row", diff, kDiffFooter);
 }
 
 }  // namespace stereotlm::cli

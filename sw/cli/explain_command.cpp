@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
@@ -308,20 +307,16 @@ int explain(const ExplainOptions& options) {
 }  // namespace
 
 void add_explain(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<ExplainOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return explain(*options); };
-  };
-  options->add_to(add_command(
-      program, "explain", "Say what limits a board, and what one step of each knob gains or costs", parsed,
+  add_command(
+      program, action, "explain", "Say what limits a board, and what one step of each knob gains or costs",
+      explain,
       "The board is simulated, and then once more with each of its knobs one step up or down: a cycle, a "
       "MHz,\n"
       "a place in a queue, a word of a burst, a buffer, a bank. What comes out is sorted by the frame rate. "
       "A\n"
       "bank more is the best of giving any one buffer a new bank of its own, a bank less the best of moving\n"
       "all buffers of one bank into another. The size of the images, the depth of banks and the device "
-      "stay."));
+      "stay.");
 }
 
 }  // namespace stereotlm::cli

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,6 +18,11 @@ namespace {
 struct MergeOptions {
   Typed out;
   TypedList inputs;
+
+  void add_to(CLI::App& command) {
+    out.add_to(command, "OUT", " ", "The database to write");
+    inputs.add_to(command, "DB", "...", "Databases of sweep, such as those of its shards");
+  }
 
   void check_usage() const {
     process::Problems problems;
@@ -45,17 +49,10 @@ int merge(const MergeOptions& options) {
 }  // namespace
 
 void add_merge(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<MergeOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return merge(*options); };
-  };
-  CLI::App& command = add_command(
-      program, "merge", "Put the points of several databases of sweep into one", parsed,
+  add_command(
+      program, action, "merge", "Put the points of several databases of sweep into one", merge,
       "The bytes of OUT depend on nothing but the points: neither on the number of databases nor on their\n"
       "order. OUT may be one of them. Databases that hold different results of one point are an error.");
-  options->out.add_to(command, "OUT", " ", "The database to write");
-  options->inputs.add_to(command, "DB", "...", "Databases of sweep, such as those of its shards");
 }
 
 }  // namespace stereotlm::cli

@@ -21,9 +21,9 @@
 #include "sw/paper/study.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
+#include "sw/process/program.h"
 #include "sw/process/python_script.h"
 #include "sw/process/streams.h"
-#include "sw/process/program.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
@@ -116,13 +116,8 @@ int compare_with_paper(const PaperOptions& options) {
 }  // namespace
 
 void add_paper(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<PaperOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return compare_with_paper(*options); };
-  };
-  options->add_to(
-      add_command(program, "paper", "Compare the paper's figures with the model's", parsed, kPaperFooter));
+  add_command(program, action, "paper", "Compare the paper's figures with the model's", compare_with_paper,
+              kPaperFooter);
 }
 
 }  // namespace stereotlm::cli

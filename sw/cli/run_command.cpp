@@ -103,12 +103,7 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<RunOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return run(*options); };
-  };
-  options->add_to(add_command(program, "run", "Simulate a board on pairs of pictures", parsed));
+  add_command(program, action, "run", "Simulate a board on pairs of pictures", run);
 }
 
 }  // namespace stereotlm::cli

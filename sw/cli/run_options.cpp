@@ -50,17 +50,17 @@ void RunOptions::add_to(CLI::App& command) {
            "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
            "--out, numbered by "
            "camera frame");
-  unbuilt_.add(command, "--trace", 1);
+  trace_.add_to(command);
   set_footer(command,
-             paragraph("", 0, fmt::format("Not in this version: {}.", unbuilt_.names())) +
+             paragraph("", 0, fmt::format("Not in this version: {}.", trace_.name())) +
                  "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
                  "those that the\ncore has begun are finished first.");
 }
 
 void RunOptions::check_usage() {
   process::Problems problems;
-  unbuilt_.report(problems);
-  problems.check();  // now, because one of these options may replace the pictures
+  trace_.report(problems);
+  problems.check();  // now, because nothing else is to be said of such a run
   board.check_given(problems);
   pictures.check_given(problems, timing_only);
   const bool is_complete = problems.empty();

@@ -48,7 +48,7 @@ class RunOptions {
   Typed truth_;
   Typed truth_scale_;
   Typed out_;
-  UnbuiltOptions unbuilt_;
+  UnbuiltOption trace_{"--trace"};
 };
 
 }  // namespace stereotlm::cli

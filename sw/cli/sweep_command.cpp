@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -240,13 +239,8 @@ int sweep(const SweepCommandOptions& options) {
 }  // namespace
 
 void add_sweep(CLI::App& program, Action& action) {
-  const auto options = std::make_shared<SweepCommandOptions>();
-  const auto parsed = [options, &action] {
-    options->check_usage();
-    action = [options] { return sweep(*options); };
-  };
-  options->add_to(add_command(program, "sweep", "Simulate all points of a plan, and keep their figures",
-                              parsed, kSweepFooter));
+  add_command(program, action, "sweep", "Simulate all points of a plan, and keep their figures", sweep,
+              kSweepFooter);
 }
 
 }  // namespace stereotlm::cli

@@ -11,21 +11,12 @@ constexpr std::array kCommands = {"report"};
 
 }  // namespace
 
-void UnbuiltOptions::add(CLI::App& command, const std::string& name, int values) {
-  CLI::Option* option = values == 0 ? command.add_flag(name) : command.add_option(name)->expected(0, values);
-  options_.emplace_back(name, option->take_all()->group(""));
+void UnbuiltOption::add_to(CLI::App& command) {
+  option_ = command.add_option(name_)->expected(0, 1)->take_all()->group("");
 }
 
-std::string UnbuiltOptions::names() const {
-  std::string names;
-  for (const auto& [name, option] : options_) names += (names.empty() ? "" : ", ") + name;
-  return names;
-}
-
-void UnbuiltOptions::report(process::Problems& problems) const {
-  for (const auto& [name, option] : options_) {
-    if (option->count() > 0) problems.add(name + ": " + kNotInThisVersion);
-  }
+void UnbuiltOption::report(process::Problems& problems) const {
+  if (option_->count() > 0) problems.add(name_ + ": " + kNotInThisVersion);
 }
 
 std::string unbuilt_commands() {

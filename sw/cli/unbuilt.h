@@ -2,7 +2,6 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "sw/process/problems.h"
 
@@ -15,19 +14,21 @@ namespace stereotlm::cli {
 
 // Options and commands of contract section 5 that this version does not have. They get a message of their own
 // instead of one about an unknown option.
-class UnbuiltOptions {
+class UnbuiltOption {
  public:
-  // Adds an option with at most `values` values.
-  void add(CLI::App& command, const std::string& name, int values);
+  explicit UnbuiltOption(std::string name) : name_(std::move(name)) {}
 
-  // "--sequence, --video, .."
-  std::string names() const;
+  const std::string& name() const { return name_; }
 
-  // Reports each of these options that was given.
+  // Adds the option, with at most one value.
+  void add_to(CLI::App& command);
+
+  // Reports the option if it was given.
   void report(process::Problems& problems) const;
 
  private:
-  std::vector<std::pair<std::string, const CLI::Option*>> options_;
+  std::string name_;
+  const CLI::Option* option_ = nullptr;
 };
 
 inline constexpr const char* kNotInThisVersion = "not in this version";

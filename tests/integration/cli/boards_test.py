@@ -176,8 +176,6 @@ class Bounds(ProgramTest):
         self.assertEqual(head.split(), "parts count LUTs flip-flops block RAMs multipliers".split())
         numbers = [list(map(int, line.split()[-4:])) for line in items]
         self.assertEqual(whole.split(), ["all", *(str(sum(column)) for column in zip(*numbers))])
-        windows = next(line.split() for line in items if "window modules" in line)
-        self.assertEqual(windows[2:], ["80", "2960", "1120", "0", "0"])
         area = "7420 of 33792 slices (21.96 %), 17 of 144 block RAMs, 22 of 144 multipliers"
         self.assertEqual(last, f"area of the core: {area}")
         self.assertLessEqual(max(map(len, lines[1:])), 100)

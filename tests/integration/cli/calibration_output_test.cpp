@@ -1,3 +1,5 @@
+// A calibration on a machine that fails. files::OutputFolder, which writes results and documents too, is tested
+// here only.
 #include "sw/cli/calibration_output.h"
 
 #include <fcntl.h>
@@ -22,20 +24,20 @@
 
 namespace {
 
-enum class Fault { kKill, kFailOnce, kFailFromThenOn };
+enum class Fault { kKill, kKillInRename, kFailOnce, kFailFromThenOn };
 
 int steps_left = -1;  // calls that change a file system and go well; below 0: all
 Fault fault = Fault::kKill;
 int failures = 0;
 
 // Whether the call that asks fails, with errno.
-bool fails() {
-  if (steps_left < 0) return false;
+bool fails(bool is_rename = false) {
+  if (steps_left < 0 || (fault == Fault::kKillInRename && !is_rename)) return false;
   if (steps_left > 0) {
     --steps_left;
     return false;
   }
-  if (fault == Fault::kKill) raise(SIGKILL);
+  if (fault == Fault::kKill || fault == Fault::kKillInRename) raise(SIGKILL);
   if (fault == Fault::kFailOnce) steps_left = -1;
   ++failures;
   errno = EIO;
@@ -53,7 +55,7 @@ long address(const char* path) { return reinterpret_cast<long>(path); }
 extern "C" {
 int fsync(int /*file*/) { return fails() ? -1 : 0; }  // which takes its time
 int rename(const char* from, const char* to) noexcept {
-  return call(SYS_renameat, AT_FDCWD, address(from), AT_FDCWD, address(to));
+  return fails(true) ? -1 : static_cast<int>(syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
 }
 int mkdir(const char* path, mode_t mode) noexcept {
   return call(SYS_mkdirat, AT_FDCWD, address(path), static_cast<long>(mode));
@@ -102,7 +104,7 @@ Files calibration(const std::string& what, bool has_pictures) {
   Files files = {{"rig.yaml", text + "# " + what + '\n'},
                  {"rig_left.lut", what},
                  {"rig_right.lut", what},
-                 {"rig_drawings/corners_00.png", what},
+                 {"rig_drawings/corners_0" + what + ".png", what},
                  {"rig_drawings/displacement.png", what}};
   if (has_pictures) files["rig_pictures/left_00.png"] = what;
   return files;
@@ -144,6 +146,19 @@ class CalibrationOutputTest : public ::testing::Test {
     return files;
   }
 
+  // Whether a fault behind so many calls that go well kills a process that does this.
+  template <typename Work>
+  static bool is_killed(Fault kind, int steps, const Work& work) {
+    const auto end = test::run_in_child([&] {
+      fault = kind;
+      steps_left = steps;
+      work();
+      steps_left = -1;
+      return "";
+    });
+    return end.exit_status == 128 + SIGKILL;
+  }
+
   // Lets each call in turn fail, from the first one to that where all go well. `attempt`: with the number of
   // calls that go well; false if none has failed.
   template <typename Attempt>
@@ -168,19 +183,30 @@ class CalibrationOutputTest : public ::testing::Test {
 
 TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAKillAnywhere) {
   const auto attempt = [this](int steps, const Files& fresh) {
-    const auto end = test::run_in_child([&] {
-      fault = Fault::kKill;
-      steps_left = steps;
-      write(fresh);
-      steps_left = -1;
-      return "";
-    });
-    return end.exit_status == 128 + SIGKILL;
+    return is_killed(Fault::kKill, steps, [&] { write(fresh); });
   };
   at_every_step({}, calibration("new", false), attempt);
   at_every_step(calibration("old", false), calibration("new", false), attempt);
   at_every_step(calibration("old", false), calibration("new", true), attempt);
   at_every_step(calibration("old", true), calibration("new", false), attempt);
+}
+
+TEST_F(CalibrationOutputTest, IsAsItWasAfterItsRepairIsKilledAnywhere) {
+  const Files fresh = calibration("new", true);
+  for (const Files& earlier : {Files(), calibration("old", true)}) {
+    int steps = 0;
+    for (bool has_begun = true; has_begun; ++steps) {
+      for (int repaired = 0, is_repaired = false; !is_repaired; ++repaired) {
+        begin_with(earlier);
+        has_begun = is_killed(Fault::kKillInRename, steps, [&] { write(fresh); });
+        is_repaired = !is_killed(Fault::kKillInRename, repaired, [&] { begin(true); });
+        is_killed(Fault::kKillInRename, repaired / 2, [&] { begin(true); });
+        begin(true);
+        EXPECT_EQ(files(), has_begun ? earlier : fresh) << steps << ", " << repaired;
+      }
+    }
+    EXPECT_EQ(steps, 1 + (earlier.empty() ? 5 : 10));  // all go well in the last one
+  }
 }
 
 TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAFailureAnywhere) {

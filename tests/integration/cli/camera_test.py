@@ -1,7 +1,6 @@
 """run --source camera: the whole computer around a small board."""
 
 import os
-import re
 import signal
 
 import program
@@ -42,10 +41,6 @@ class Results(CameraTest):
             self.assertEqual(frame, read_png(alone / f"frames/{number % 4:06}.png"), number)
         self.assertEqual(read_png(self.out / "disparity.png"), frames[numbers[-1]])
 
-    def test_a_sequence_gives_as_many_frames_as_it_has_pairs(self):
-        self.camera("--sequence", self.sequence(3))
-        self.assertEqual(self.stats()["frames"], 3)
-
     def test_an_interrupted_run_equals_a_whole_one_of_the_frames_delivered(self):
         options = ["--sequence", self.sequence(7), "--save-frames"]
         terminal = Terminal(self.arguments(*options, "--frames", "1000000", "--out", self.out))
@@ -59,12 +54,10 @@ class Results(CameraTest):
 
 
 class Figures(CameraTest):
-    def test_a_computer_has_keys_of_its_own(self):
+    def test_a_computer_has_figures_of_its_own(self):
         table = self.camera("--frames", "20")
         stats = self.stats()
         self.assertNotIn("failed", stats)
-        self.assertEqual(list(stats["frames_per_second"]), ["core", "system", "steady"])
-        self.assertEqual(list(stats["bound"]), ["core", "core_limited_by", "system", "system_limited_by"])
         self.assertLess(stats["frames_per_second"]["system"], stats["bound"]["system"])
         masters = [master["name"] for master in stats["pci"]["masters"]]
         self.assertEqual(masters, ["host", "left_capture", "right_capture", "bridge"])
@@ -72,41 +65,9 @@ class Figures(CameraTest):
         tables = 2 * WIDTH * HEIGHT
         self.assertEqual(stats["bridge"]["dma_words"], 20 * words + tables)
         self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
-        for camera in stats["cameras"]:
-            self.assertEqual(camera["frames"], camera["captured_frames"] + camera["dropped_frames"])
-        latency = stats["latency_ms"]["capture_to_host"]
-        self.assertEqual(list(latency), ["min", "p50", "p95", "p99", "max"])
-        self.assertEqual(sorted(latency.values()), list(latency.values()))
-        self.assertEqual(stats["ports"][-1]["name"], "host")
-        self.assertGreater(stats["ports"][-1]["grants"], 0)
-        for pattern in (r"^system +[\d.]+ frames/s   steady", r"^left_capture +\d+ +\d+", r"^pci bus +busy",
-                        r"^local bus +busy", r"^left +\d+ +\d+ +\d+ +\d+ +0 +0 +0$",
-                        r"^latency +capture to host, ms: min"):
-            self.assertRegex(table, re.compile(pattern, re.MULTILINE))
-        self.assertLessEqual(max(map(len, table.splitlines())), 100)
+        self.assertIn("\nlatency      capture to host, ms: min ", table)
 
-    def test_figures_that_do_not_exist_are_absent(self):
-        self.camera()  # one frame has no steady rate
-        self.assertEqual(list(self.stats()["frames_per_second"]), ["core", "system"])
-        self.succeeds(self.run_small("--frames", "2", "--out", self.out))  # without a computer
-        stats = self.stats()
-        self.assertEqual(list(stats["frames_per_second"]), ["core"])
-        for key in ("pci", "bridge", "cameras", "latency_ms"):
-            self.assertNotIn(key, stats)
-
-    def test_the_host_is_blamed_on_a_bank_that_the_core_uses(self):
-        self.camera(*sets("allocation.left_image=[bank0, bank0]"), "--frames", "6")
-        (row,) = (row for row in self.stats()["blame"] if row["by"] == "host")
-        self.assertEqual((row["port"], row["bank"]), ("left_pixel", "bank0"))
-        self.assertGreater(row["cycles"], 0)
-
-    def test_rates_follow_the_keys_of_the_board(self):
-        rates = []
-        for assignments in ([], ["capture.destination=host_memory"],
-                            ["allocation.left_image=bank0", "allocation.right_image=bank2"]):
-            self.camera(*sets(*assignments), "--frames", "30")
-            rates.append(self.stats()["frames_per_second"]["steady"])
-        self.assertEqual(sorted(rates), [rates[2], rates[0], rates[1]])
+    def test_cameras_on_demand_drop_no_frame(self):
         self.camera(*sets("cameras.trigger=on_demand"), "--frames", "6")
         self.assertEqual([camera["dropped_frames"] for camera in self.stats()["cameras"]], [0, 0])
 
@@ -115,6 +76,7 @@ class Truth(CameraTest):
     def test_a_truth_goes_with_one_pair_only(self):
         self.camera("--truth", self.left)
         self.assertIn("accuracy", self.stats())
+        self.assertEqual(list(self.stats()["frames_per_second"]), ["core", "system"])  # one frame: no steady
         rule = "goes with one pair if it comes from cameras, which drop frames: of 3 pairs nobody knows"
         process = run(*self.arguments("--sequence", self.sequence(3), "--truth", self.left))
         self.refused_in_one_line(process, f"--truth: {rule}")

@@ -63,14 +63,6 @@ class TimingOnly(FidelityTest):
                 self.assertEqual(sorted(without), ["config.yaml", "said", "stats.json"])
                 self.same_at_both(*timing)
 
-    def test_writes_no_pictures_and_is_named_in_run_json(self):
-        self.succeeds(self.run_it("--timing-only", "--frames", "2", "--out", self.out))
-        self.is_in(self.out, "config.yaml", "run.json", "stats.json")
-        said = self.run_json()
-        self.assertEqual((said["timing_only"], said["fidelity"], said["frames"]), (True, "fast", 2))
-        for name in ("verify", "left", "right", "synthetic"):
-            self.assertNotIn(name, said)
-
     def test_goes_with_pictures_that_are_checked(self):
         self.succeeds(self.run_it("--timing-only", *self.pair, "--out", self.out))
         self.assertEqual(self.run_json()["left"]["path"], str(self.left))

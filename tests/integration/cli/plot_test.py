@@ -330,13 +330,6 @@ class Columns(FigureTest):
         known = {key for key in known if not key.startswith(others)} | {"run.source", "run.frames"}
         self.assertEqual({key for key in keys if not key.startswith(others)}, known)
 
-    def test_columns_of_figures_make_no_lines(self):
-        plan = "board: fpl2003\nrun: {source: camera, frames: 5}\nvary: {matcher.window: [5, 7, 9]}\n"
-        store = self.sweep(plan)
-        taken = [row["bridge.posted_words.counted"] for row in self.database(store)[0].values()]
-        self.assertGreater(len(set(taken)), 1)
-        self.assertIn("3 points, 1 line\n", self.plot("window", store))
-
 
 class ChangedDatabases(FigureTest):
     """What cannot be drawn is named by point, value and rule."""

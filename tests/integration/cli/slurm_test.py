@@ -147,22 +147,14 @@ class Progress(SlurmTest):
 
 
 class LostShards(SlurmTest):
-    def submitted_again(self, process, shard, end):
-        _, errors = self.finishes(process)
-        job = r"stereotlm: note: job \d+: "
-        lost = rf"note: lost: shard {shard} \({end}\); submitting again\n"
-        self.assertRegex(errors, rf"{lost}{job}shard {shard} of 3\n{job}the merge into")
-        self.assert_whole()
-
-    def test_cancelled_shards_are_submitted_again(self):
-        process = self.begin_points()
-        cluster.say("scancel", f"{self.running()['0']}_0")
-        self.submitted_again(process, 0, "CANCELLED")
-
     def test_killed_shards_are_submitted_again(self):
         process = self.begin_points(shard=1)
         os.kill(min(self.programs("--shard 1/3")), signal.SIGKILL)
-        self.submitted_again(process, 1, "FAILED")
+        _, errors = self.finishes(process)
+        job = r"stereotlm: note: job \d+: "
+        lost = r"note: lost: shard 1 \(FAILED\); submitting again\n"
+        self.assertRegex(errors, rf"{lost}{job}shard 1 of 3\n{job}the merge into")
+        self.assert_whole()
 
 
 class Refusals(SlurmTest):

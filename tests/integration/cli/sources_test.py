@@ -9,7 +9,7 @@ import time
 
 import program
 from pictures import avi, noise, pgm, ppm
-from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets, sha256
+from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
 
 ALONE = {}  # the disparities of pairs of a sequence, each run alone, by number
 
@@ -60,17 +60,6 @@ class Sequence(SourceTest):
             self.file(f"names/{other}", "x")
         (self.folder / "names" / "frames").mkdir()
         self.shows_pairs(6, "--sequence", self.folder / "names")
-
-    def test_run_json_has_its_absolute_path_and_sums(self):
-        folder = self.sequence(3)
-        options = ["--sequence", "sequence", "--frames", "5", "--out", self.out]
-        self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *options, cwd=self.folder))
-        said = self.run_json()["sequence"]
-        self.assertTrue(os.path.isabs(said["path"]))
-        self.assertTrue(os.path.samefile(said["path"], folder))
-        names = [f"{side}_{number:03}.png" for number in range(3) for side in ("left", "right")]
-        self.assertEqual(said["files"], [{"name": name, "sha256": sha256(folder / name)} for name in names])
-        self.assertEqual(self.run_json()["frames"], 5)
 
     def test_pictures_in_colour_are_counted(self):
         folder = self.sequence(3)
@@ -148,7 +137,7 @@ class Video(SourceTest):
         *videos, text = videos_and_text
         self.refused_source(["--video", *videos, "--video-layout", layout], text)
 
-    def test_each_layout_shows_its_pairs_and_is_in_run_json(self):
+    def test_each_layout_shows_its_pairs(self):
         for layout, videos in (
             ("two", [self.video("l.avi", 6, "left"), self.video("r.avi", 6, "right")]),
             ("side_by_side", [self.video("s.avi", 6, "left", "right")]),
@@ -156,10 +145,6 @@ class Video(SourceTest):
         ):
             with self.subTest(layout):
                 self.shows_pairs(6, "--video", *videos, "--video-layout", layout)
-                said = self.run_json()
-                self.assertEqual([file["path"] for file in said["video"]], list(map(str, videos)))
-                self.assertEqual([file["sha256"] for file in said["video"]], list(map(sha256, videos)))
-                self.assertEqual(said["video_layout"], layout)
 
     def test_frames_of_another_size_or_number_are_refused(self):
         one, both = self.video("l.avi", 1, "left"), self.video("s.avi", 1, "left", "right")
@@ -202,17 +187,6 @@ class Video(SourceTest):
 
 
 class Synthetic(SourceTest):
-    def test_the_scene_moves_and_is_the_same_again(self):
-        frames = self.frames_of("--synthetic", "1", "--frames", "4")
-        self.assertEqual(len(set(frames)), 4)
-        self.assertEqual(self.frames_of("--synthetic", "1"), frames[:1])
-        self.assertNotEqual(self.frames_of("--synthetic", "2"), frames[:1])
-
-    def test_every_seed_is_taken(self):
-        self.succeeds(self.run_with("--synthetic", "0"))
-        self.succeeds(self.run_with("--synthetic", "18446744073709551615", "--out", self.out))
-        self.assertEqual(self.run_json()["synthetic"], 18446744073709551615)
-
     def test_its_accuracy_is_printed_and_kept_out_of_the_figures(self):
         board = sets("image.width=160", "image.height=120", "matcher.fetch=line_buffer")
         source = ["--synthetic", "3", "--frames", "2", "--out", self.out]
@@ -233,11 +207,6 @@ class Truth(SourceTest):
         for frames, last in ((["--frames", "2"], 1), ([], 2), (["--frames", "4"], 0)):
             pair = ["--left", folder / f"left_00{last}.png", "--right", folder / f"right_00{last}.png"]
             self.assertEqual(self.accuracy("--sequence", folder, *frames), self.accuracy(*pair))
-
-    def test_a_truth_goes_with_a_video(self):
-        frame = self.side(0, "left") + self.side(0, "right")
-        video = self.file("t.avi", avi(WIDTH, 2 * HEIGHT, [frame, frame]))
-        self.assertTrue(self.accuracy("--video", video, "--video-layout", "top_bottom"))
 
 
 class Memory(SourceTest):

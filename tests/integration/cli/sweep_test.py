@@ -87,21 +87,9 @@ class Sweep(SweepTest):
             lines = self.refused(run("run", board, "--timing-only"))
             self.assertEqual([line.split(": ", 1)[1] for line in lines], [reason])
 
-    def test_points_of_the_computer_keep_its_figures(self):
-        plan = self.file("computer.yaml", "board: fpl2003\nrun: {source: camera, frames: 3}\n")
-        self.succeeds(self.sweep(plan=plan))
-        columns = '"frames_per_second.steady", "pci.busy_clocks", "cameras.left.frames"'
-        ((config, *figures),) = self.query(f"SELECT config, {columns} FROM points")
-        stats = self.run_point(config, "--frames", 3)
-        frames = stats["cameras"][0]["frames"]
-        self.assertEqual(figures, [stats["frames_per_second"]["steady"], stats["pci"]["busy_clocks"], frames])
-
-    def test_jobs_and_shards_give_the_same_bytes(self):
+    def test_shards_give_the_same_bytes(self):
         self.succeeds(self.sweep("--jobs", 1))
         expected = self.store.read_bytes()
-        two = self.folder / "two.db"
-        self.succeeds(self.sweep("--jobs", 2, store=two))
-        self.assertEqual(two.read_bytes(), expected)
         shards = [self.folder / f"shard{number}.db" for number in range(3)]
         for number, store in enumerate(shards):
             said = self.succeeds(self.sweep("--shard", f"{number}/3", store=store))
@@ -217,12 +205,7 @@ vary:
         self.refused_in_one_line(process, f"{relative}:3:39: run.calibration 'rig.yaml': no such file")
 
     def test_the_calibration_is_for_images_of_its_size(self):
-        sizes = "zip:\n  - {image.width: [640, 320], image.height: [480, 240]}\n"
-        said = self.succeeds(self.sweep(plan=self.plan_of(self.rig, "sizes.yaml", self.TEXT + sizes)))
-        self.assertIn("12 points: 4 ok, 8 impossible, 0 failed", said)
         rule = "image size = 640x480: must be that of the board's images, 320x240"
-        self.assertIn(f"  6 impossible: run.calibration: {rule}\n", said)
-        self.store.unlink()
         small = ["--board", "fpl2003-qvga"]
         process = self.sweep(*small)
         self.refused_in_one_line(process, f"{self.plan}:3:39: run.calibration '{self.rig}': {rule}")
@@ -342,15 +325,10 @@ class Meanwhile(SweepTest):
         self.assertTrue(self.store.read_bytes() == whole.read_bytes())
 
     def test_a_lost_database_is_not_said_to_be_kept(self):
-        for another in (None, "", "another file"):
-            process = self.begin()
-            self.store.unlink()
-            if another is not None:
-                self.store.write_text(another)
-            gone = f"{self.store}: was removed or replaced while in use: its points are lost"
-            self.ends(process, 1, errors=f"stereotlm: error: {gone}\n")
-            for left in self.folder.glob("points.db*"):
-                left.unlink()
+        process = self.begin()
+        self.store.unlink()
+        gone = f"{self.store}: was removed or replaced while in use: its points are lost"
+        self.ends(process, 1, errors=f"stereotlm: error: {gone}\n")
 
     def test_a_damaged_database_is_not_said_to_be_kept(self):
         process = self.begin()

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -59,18 +58,6 @@ TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
   const std::string expected(
       "Pf\n2 2\n-1.0\n\x00\x00\x80\x7F\x00\x00\x9E\x42\x00\x00\x00\x00\x00\x00\x80\x3F", 28);
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()), expected);
-}
-
-TEST(EncodePfm, IsReadByOpenCV) {
-  kernels::GrayImage disparity(5, 3, 7);
-  disparity.at(1, 0) = 12;
-  disparity.at(4, 2) = kernels::kInvalidDisparity;
-  const cv::Mat read = cv::imdecode(encode_pfm(disparity), cv::IMREAD_UNCHANGED);
-  ASSERT_EQ(read.type(), CV_32FC1);
-  ASSERT_EQ(read.size(), cv::Size(5, 3));
-  EXPECT_EQ(read.at<float>(0, 1), 12);
-  EXPECT_EQ(read.at<float>(1, 1), 7);
-  EXPECT_EQ(read.at<float>(2, 4), std::numeric_limits<float>::infinity());
 }
 
 TEST(Encoders, RefuseAnImageThatIsEmptyOrNotWhole) {

@@ -34,20 +34,14 @@ TEST(SideBySide, ShowsGreyAndColouredPicturesUnchanged) {
   EXPECT_GT(nearest[2], nearest[0]) << "the largest disparity is red";
 }
 
-TEST(SideBySide, CaptionsEachPictureAboveIt) {
-  const cv::Mat canvas = drawn({{"left", kernels::GrayImage(80, 10)},
-                                {"", kernels::GrayImage(80, 10)},
-                                {"x", kernels::GrayImage(80, 10)}});
-  EXPECT_TRUE(has_ink(canvas, {kLeft, 8, 80, 24}));
-  EXPECT_FALSE(has_ink(canvas, {kLeft + 88, 8, 80, 24}));
-  EXPECT_TRUE(has_ink(canvas, {kLeft + 176, 8, 80, 24}));
-}
-
-TEST(SideBySide, FitsALongCaptionToItsPicture) {
-  const cv::Mat canvas =
-      drawn({{std::string(60, 'm'), kernels::GrayImage(120, 10)}, {"", kernels::GrayImage(80, 10)}});
-  EXPECT_TRUE(has_ink(canvas, {kLeft, 8, 120, 24}));
-  EXPECT_FALSE(has_ink(canvas, {kLeft + 128, 8, 80, 24}));
+TEST(SideBySide, CaptionsEachPictureAboveItInItsWidth) {
+  for (const std::string& caption : {std::string("left"), std::string(60, 'm')}) {
+    const kernels::GrayImage picture(80, 10);
+    const cv::Mat canvas = drawn({{caption, picture}, {"", picture}, {"x", picture}});
+    EXPECT_TRUE(has_ink(canvas, {kLeft, 8, 80, 24}));
+    EXPECT_FALSE(has_ink(canvas, {kLeft + 88, 8, 80, 24}));
+    EXPECT_TRUE(has_ink(canvas, {kLeft + 176, 8, 80, 24}));
+  }
 }
 
 TEST(SideBySide, RefusesWhatCannotBeShown) {

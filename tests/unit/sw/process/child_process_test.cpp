@@ -41,11 +41,6 @@ TEST(Pipe, LeavesNoFileOpen) {
   EXPECT_EQ(open_files(), before);
 }
 
-TEST(ChildProcess, ReturnsTheStatusOfItsWork) {
-  EXPECT_EQ(WEXITSTATUS(ChildProcess([] { return 3; }).wait()), 3);
-  EXPECT_EQ(WTERMSIG(ChildProcess([] { return raise(SIGKILL); }).wait()), SIGKILL);
-}
-
 TEST(ChildProcess, IsGoneWhenItIsDestroyed) {
   Pipe pipe;
   {

@@ -27,13 +27,6 @@ TEST(Child, SendsMessagesOfAnySizeAndContentInOrder) {
   EXPECT_EQ(child.next(), std::nullopt);
 }
 
-TEST(Child, WorksOnACopy) {
-  int value = 1;
-  Child child([&value](const Child::Tell& tell) { tell(std::to_string(++value)); });
-  EXPECT_EQ(child.next(), "2");
-  EXPECT_EQ(value, 1);
-}
-
 TEST(Child, HasNewsOnceItHasSentAMessageOrEnded) {
   Pipe gate;
   Child child([&gate](const Child::Tell& tell) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -180,15 +181,19 @@ TEST(BlameTable, IsSortedByTheDifference) {
 TEST(PixelsLine, CountsThePixelsThatDifferAndNamesTheFirst) {
   PixelComparison pixels;
   EXPECT_EQ(pixels_line(pixels), "disparities: not compared: no camera frame is in both\n");
-  kernels::GrayImage image(4, 2, 7);
+  const kernels::GrayImage image(4, 2, 7);
+  kernels::GrayImage other = image;
   pixels.add(0, image, image);
   EXPECT_EQ(pixels_line(pixels), "disparities: the same, pixel for pixel, in 1 frame\n");
-  kernels::GrayImage other = image;
-  other.at(2, 1) = 255;
+  other.at(3, 0) = 6;
   pixels.add(4, image, other);
-  EXPECT_EQ(
-      pixels_line(pixels),
-      "disparities: 1 pixel differs, in 1 of 2 frames; the first in frame 4 at (2, 1): 7 in A, 255 in B\n");
+  const std::string first = "the first in frame 4 at (3, 0): 7 in A, 6 in B\n";
+  EXPECT_EQ(pixels_line(pixels), "disparities: 1 pixel differs, in 1 of 2 frames; " + first);
+  other.at(2, 0) = other.at(2, 1) = 255;
+  pixels.add(5, image, other);
+  pixels.add(6, image, image);
+  EXPECT_EQ(pixels_line(pixels), "disparities: 4 pixels differ, in 2 of 4 frames; " + first);
+  EXPECT_THROW(pixels.add(7, image, kernels::GrayImage(8, 1)), std::invalid_argument);
 }
 
 }  // namespace

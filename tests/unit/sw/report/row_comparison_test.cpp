@@ -27,14 +27,6 @@ RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   return rows;
 }
 
-TEST(RowsAlone, AreTheDifferencesOfNeighbouringEnds) {
-  EXPECT_TRUE(rows_alone({}).empty());
-  const RowProfile rows = rows_alone(profile({105, 40, 0, 71}));
-  const RowProfile expected = {
-      {105, {0, 0, 10, 0, 0}}, {40, {0, 0, 4, 0, 0}}, {0, {}}, {71, {0, 0, 7, 0, 0}}};
-  EXPECT_EQ(rows, expected);
-}
-
 // "first..last: cycles, least..most, stalls of the port; " of each range
 std::string text_of(const std::vector<RowComparison::Range>& ranges, std::size_t port = 2) {
   std::string text;
@@ -72,14 +64,6 @@ TEST(RowComparison, SumsUpTheFrames) {
   rows.add(profile({10, 20, 30}), profile({10, 30, 20}));
   EXPECT_EQ(text_of(rows.ranges(3)), "0..1: 20, 10..10, 2; 2..2: -10, -10..-10, -1; ");
   EXPECT_EQ(rows.frames(), 2U);
-}
-
-TEST(RowComparison, HasNoRangesWhereTheFramesCancelOut) {
-  RowComparison rows;
-  rows.add(profile({10, 20}), profile({20, 10}));
-  rows.add(profile({20, 10}), profile({10, 20}));
-  EXPECT_TRUE(rows.parting());
-  EXPECT_TRUE(rows.ranges(10).empty());
 }
 
 TEST(RowComparison, JoinsRowsToBandsWhereTheRangesAreTooMany) {

@@ -41,16 +41,9 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
 TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
-  const auto refusal = [](const auto& refused, const std::string& cause) {
-    return "'" + refused.string() + "': " + cause;
-  };
-  const auto missing = folder.path() / "none" / "rows.csv";
-  EXPECT_EQ(test::message_of([&] { const RowsCsv csv(missing); }),
-            refusal(missing, "cannot be written: No such file or directory"));
-  EXPECT_EQ(test::message_of([&] { const RowsCsv csv(folder.path()); }),
-            refusal(folder.path(), "is a folder"));
+  const std::string refusal = "'" + path.string() + "': cannot be written: ";
   {
-    const std::string full = refusal(path, "cannot be written: File too large");
+    const std::string full = refusal + "File too large";
     const test::FileSizeLimit limit(1000);
     RowsCsv csv(path);
     EXPECT_EQ(test::message_of([&] { csv.add(fpga::RowProfile(100), fpga::RowProfile(100)); }), full);
@@ -61,7 +54,7 @@ TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
   {
     RowsCsv csv(path);
     std::filesystem::create_directory(path);
-    EXPECT_EQ(test::message_of([&] { csv.commit(); }), refusal(path, "cannot be written: Is a directory"));
+    EXPECT_EQ(test::message_of([&] { csv.commit(); }), refusal + "Is a directory");
   }
   EXPECT_EQ(files_in(folder), 1);
 }

@@ -67,15 +67,6 @@ TEST(RunJson, NamesEveryOptionAndTheSumOfEveryInput) {
   text_of(options);
 }
 
-TEST(RunJson, IsReadBack) {
-  const RecordedOptions read = parse_run_json(run_json(pair_of_pictures()));
-  EXPECT_EQ(read.source, "preloaded");
-  EXPECT_EQ(read.frames, 4U);
-  EXPECT_EQ(read.right->path, "/in/right.png");
-  EXPECT_EQ(read.right->sha256, "bb");
-  EXPECT_FALSE(read.truth);
-}
-
 // The lines after the number of frames.
 std::string pictures_in(const RecordedOptions& options) {
   const std::string text = text_of(options);
@@ -120,12 +111,6 @@ TEST(RunJson, NamesTheSeedOfASyntheticSceneOrTimingOnly) {
   options = without_pictures();
   options.timing_only = true;
   text_of(options);
-}
-
-TEST(RunJson, LeavesOutOptionsThatWereNotGiven) {
-  for (const char* key : {"truth", "sequence", "video", "synthetic", "save_frames"}) {
-    EXPECT_THAT(run_json(pair_of_pictures()), Not(HasSubstr(key)));
-  }
 }
 
 TEST(RunJson, RefusesRelativePathsAndPathsThatAreNotUtf8) {

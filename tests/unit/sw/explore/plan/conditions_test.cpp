@@ -85,7 +85,7 @@ TEST(Conditions, CountBanksByTheirWords) {
 }
 
 // The reason for which a text is refused; empty if it is an expression.
-std::string refusal(const std::string& text) {
+std::string reason_against(const std::string& text) {
   try {
     const Conditions compiled = conditions({text});
     return "";
@@ -120,18 +120,19 @@ TEST(Conditions, AreRefusedWithTheReason) {
       {"match() depends on more than its arguments", {"board.name MATCH 'fpl*'"}},
       {"", {"1 -- a comment", "1 /* a comment */", "(1)", "board.name <> ')' AND 1"}}};
   for (const auto& [reason, texts] : refusals) {
-    for (const std::string& text : texts) EXPECT_EQ(refusal(text), reason) << text;
+    for (const std::string& text : texts) EXPECT_EQ(reason_against(text), reason) << text;
   }
   for (const std::string call :
        {"random()", "randomblob(4)", "changes()", "total_changes()", "last_insert_rowid()", "date('now')",
         "time()", "datetime('now')", "julianday('now')", "unixepoch('now')", "strftime('%s')", "current_time",
         "current_date", "current_timestamp", "load_extension('x')", "sqlite_version()", "count(*)",
         "MATCH('a', 'b')"})
-    EXPECT_THAT(refusal(call + " IS NOT NULL"), HasSubstr("() depends on more than its arguments")) << call;
+    EXPECT_THAT(reason_against(call + " IS NOT NULL"), HasSubstr("() depends on more than its arguments"))
+        << call;
 }
 
 TEST(Conditions, AreRefusedInOneShortLine) {
-  const std::string reason = refusal("board.name = 'fpl\n2003" + std::string(100'000, 'x'));
+  const std::string reason = reason_against("board.name = 'fpl\n2003" + std::string(100'000, 'x'));
   EXPECT_THAT(reason, HasSubstr("unrecognized token: \"'fpl 2003xxx"));
   EXPECT_LT(reason.size(), 100U);
 }

@@ -164,11 +164,5 @@ TEST_F(ShardFolderTest, GivesTheStoreTheFormThatManyMayRead) {
   EXPECT_THAT(names(), UnorderedElementsAre("a.db", "a.db.shards"));
 }
 
-TEST_F(ShardFolderTest, FindsTheLastLineOfALog) {
-  EXPECT_EQ(ShardFolder::last_line(write_file(file("log"), "one\ntwo\n\n")), "two");
-  EXPECT_EQ(ShardFolder::last_line(write_file(file("log"), "one")), "one");
-  EXPECT_EQ(ShardFolder::last_line(file("none")), "");
-}
-
 }  // namespace
 }  // namespace stereotlm::explore

@@ -26,13 +26,14 @@ BoardPoints points_with(const std::vector<std::string>& windows) {
 }
 
 // Made-up figures; the window 9 fails.
-Figures evaluate(const Point& point) {
+Figures figures_of_window(const Point& point) {
   if (point.board->matcher.window == 9) throw std::runtime_error("too large");
   return {{{"cycles", std::int64_t{100} * point.board->matcher.window}, {"frames_per_second.core", 2.5}}, {}};
 }
 
 bool run(Batch& batch, const BoardPoints& points, bool to_its_end = true) {
-  return batch.run(points, evaluate, "1", 2, [to_its_end](const SweepCounts&) { return to_its_end; });
+  return batch.run(points, figures_of_window, "1", 2,
+                   [to_its_end](const SweepCounts&) { return to_its_end; });
 }
 
 TEST(Batch, KeepsTheResultsOfAllItsRuns) {
