@@ -13,14 +13,14 @@ class Option;
 
 namespace stereotlm::cli {
 
-// Options and commands of contract section 5 that this version does not have. They get a message of their own
-// instead of one about an unknown option.
+// Options of contract section 5 that this version does not implement. The parser accepts them, so that the
+// command can refuse them with kNotInThisVersion instead of as unknown options.
 class UnbuiltOptions {
  public:
   // Adds an option with at most `values` values.
   void add(CLI::App& command, const std::string& name, int values);
 
-  // "--sequence, --video, .."
+  // The names of all these options, such as "--sequence, --video".
   std::string names() const;
 
   // Reports each of these options that was given.
@@ -32,8 +32,9 @@ class UnbuiltOptions {
 
 inline constexpr const char* kNotInThisVersion = "not in this version";
 
-// "calibrate, explain, .."
+// The names of the commands of contract section 5 that this version does not implement, separated by commas.
 std::string unbuilt_commands();
+// Adds these commands to the program, hidden from its help. Each throws Refused with kNotInThisVersion.
 void add_unbuilt_commands(CLI::App& program);
 bool is_unbuilt(const CLI::App& command);
 
