@@ -1,5 +1,5 @@
-# The package stereotlm, for other SystemC projects: libraries, headers below include/stereotlm (include paths start
-# there), and a CMake package that finds SystemC as this project does.
+# Installs the package stereotlm for other SystemC projects: libraries, headers below include/stereotlm
+# (include paths start there), and a CMake package that finds SystemC as this project does.
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/stereotlm)

@@ -9,6 +9,6 @@ find_package(Threads REQUIRED)
 add_library(stereotlm_systemc INTERFACE IMPORTED)
 add_library(stereotlm::systemc ALIAS stereotlm_systemc)
 target_include_directories(stereotlm_systemc SYSTEM INTERFACE ${SYSTEMC_INCLUDE_DIR})
-# Dynamic processes are not compiled in unless asked for; TLM's convenience sockets need them.
+# SystemC enables dynamic processes only with this macro; TLM's convenience sockets need them.
 target_compile_definitions(stereotlm_systemc INTERFACE SC_INCLUDE_DYNAMIC_PROCESSES)
 target_link_libraries(stereotlm_systemc INTERFACE ${SYSTEMC_LIBRARY} Threads::Threads)

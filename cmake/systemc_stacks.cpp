@@ -1,10 +1,10 @@
-// What SystemC 2.3.4 does not tell the address sanitizer about the stacks of its processes. Linked into the
-// programs that simulate, where they are built with that sanitizer.
+// Informs the address sanitizer about the stacks of SystemC processes, as far as SystemC 2.3.4 does not.
+// Linked into the programs that simulate if they are built with that sanitizer.
 //
-// The sanitizer knows the bounds of one stack, the current one: it uses them where an exception is thrown and
+// The sanitizer knows the bounds of one stack, the current one. It uses them where an exception is thrown and
 // where a function that does not return is called. SystemC announces a switch to another process. It gives no
-// bounds for the main stack, and announces nothing when a process has ended. The definitions here take the
-// place of those in libsystemc and libasan, and add both.
+// bounds for the main stack, and announces nothing when a process has ended. The definitions here replace
+// those of libsystemc and libasan, and add the two missing parts.
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -28,13 +28,13 @@ Stack stack_of_this_thread() {
   return stack;
 }
 
-// The definition that one of this file has displaced.
+// The library's definition of a function that this file defines too.
 template <typename Function>
 Function* displaced(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-// Before sc_main.
+// Determined before sc_main begins.
 const Stack kMainStack = stack_of_this_thread();
 auto* const kStartSwitch =
     displaced<void(void**, const void*, std::size_t)>("__sanitizer_start_switch_fiber");
@@ -56,7 +56,8 @@ extern "C" void* sc_cor_qt_aborthelp(void* /*old_stack*/, void* /*old_process*/,
 
 namespace sc_core {
 
-// Its header is not installed: the members of SystemC's sc_cor and of sc_cor_qt up to those that are used.
+// SystemC does not install the header of this class. Declares the members of its sc_cor and sc_cor_qt up to
+// the last one that is used.
 class sc_cor {
  public:
   void* functions;
@@ -69,7 +70,7 @@ class sc_cor_pkg_qt {
   void abort(sc_cor* next);
 };
 
-// Ends the process that runs and goes on with the next one, or with the main program.
+// Ends the running process and switches to `next`: another process, or the main program.
 void sc_cor_pkg_qt::abort(sc_cor* next) {
   __sanitizer_start_switch_fiber(nullptr, next->stack, next->stack_bytes);
   kAbort(this, next);

@@ -6,22 +6,24 @@ set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test program
 
 option(STEREOTLM_SLOW_TESTS "Build the tests with the label slow" ON)
 
-# The headers that take longest to read, precompiled for all test programs of a kind. Every source includes what it
-# uses all the same. The preset debug, without unity builds, and CMAKE_DISABLE_PRECOMPILE_HEADERS check that.
+# Precompiles the headers that take longest to compile, for all test programs of a kind. Every source still
+# includes what it uses; the preset debug, which has no unity builds, checks that if
+# CMAKE_DISABLE_PRECOMPILE_HEADERS is set.
 function(stereotlm_precompile_headers name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
   file(GENERATE OUTPUT ${source} CONTENT "")
   add_library(${name} OBJECT ${source})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} stereotlm_warnings)
-  target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS} -fpch-preprocess)  # as ccache needs it
+  target_compile_options(${name} PRIVATE ${STEREOTLM_TEST_OPTIONS} -fpch-preprocess)  # ccache needs it
   target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()
 
 # stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label...] [TIMEOUT seconds] [SYSTEMC])
-# One test program; ctest runs each of its cases in a process of its own, because SystemC elaborates once per
-# process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails it.
+# Adds one test program. ctest runs each of its cases in a process of its own, because SystemC elaborates once
+# per process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails
+# it.
 function(stereotlm_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "SYSTEMC" "TIMEOUT" "SOURCES;LIBRARIES;LABELS")
   if(NOT arg_LABELS)

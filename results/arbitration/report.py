@@ -1,4 +1,7 @@
-"""usage: report.py CORE.db COMPUTER.db: arbitration.png, core.csv, computer.csv and README.md, beside this script."""
+"""usage: report.py CORE.db COMPUTER.db
+
+Writes arbitration.png, core.csv, computer.csv and README.md beside this script.
+"""
 import pathlib
 import sys
 
@@ -8,13 +11,13 @@ import study  # noqa: E402
 
 DEFAULT = "[host, result, left_pixel, right_pixel, left_lut, right_lut]"
 BUFFERS = ("left_image", "right_image", "left_lut", "right_lut", "disparity")
-# What shares banks -> the banks of BUFFERS, in the core alone.
+# By what shares banks, for the core alone: the banks of BUFFERS.
 CORE = {
     "results with left table": "0 1 2 3 2", "results with right table": "0 1 2 3 3", "results with left pictures": "0 1 2 3 0",
     "both pictures": "0 0 2 3 4", "both tables": "0 1 2 2 4", "tables with their pictures": "0 1 0 1 4",
     "tables with the other side's": "0 1 1 0 4", "the best of 3 banks": "0 1 1 2 0", "everything": "0 0 0 0 0",
 }
-# What shares banks -> the bank of the first left picture and that of the first result, in the computer.
+# By what shares banks, for the whole computer: the lists of banks of the left pictures and of the results.
 COMPUTER = {
     "nothing (8 banks)": ("[bank0, bank1]", "[bank4, bank5]"),
     "the buffers of each list (5 banks)": ("[bank0, bank0]", "[bank2, bank2]"),
@@ -30,7 +33,7 @@ POLICIES = {
 
 
 def read_core(database):
-    """Of each allocation and policy: the slowest, the default and the fastest order."""
+    """A row for each allocation and policy: rates of the slowest, the default and the fastest order of priority."""
     found = study.points(database, policy="fpga.arbitration", order="fpga.priority", rate="frames_per_second.core",
                          bound="bound.core", **{name: f"allocation.{name}" for name in BUFFERS})
     rows = []

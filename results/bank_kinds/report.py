@@ -1,4 +1,7 @@
-"""usage: report.py CORE.db COMPUTER.db: bank_kinds.png, core.csv, computer.csv and README.md, beside this script."""
+"""usage: report.py CORE.db COMPUTER.db
+
+Writes bank_kinds.png, core.csv, computer.csv and README.md beside this script.
+"""
 import pathlib
 import sys
 
@@ -7,7 +10,7 @@ sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
 
 KINDS = [("zbt_pipelined", 0), ("zbt_flow_through", 0), *(("sync_burst", clocks) for clocks in (1, 2, 3, 4))]
-# What shares banks -> the allocation's left_image, right_image, left_lut, disparity.
+# By what shares banks: the banks of left_image, right_image, left_lut and disparity in the allocation.
 CORE = {
     "nothing": ("[bank0]", "[bank1]", "bank2", "[bank4]"),
     "results with left pictures": ("[bank0]", "[bank1]", "bank2", "[bank0]"),
@@ -28,7 +31,10 @@ STYLES = ["o-", "s--", "^-", "v--", "D:"]
 
 
 def read(database, shares, **more):
-    """The points, by what they share and then in the order of KINDS; turnaround_cycles 0 where there is none."""
+    """The points of a database, in the order of `shares` and then of KINDS.
+
+    turnaround_cycles is 0 for kinds without it.
+    """
     found = study.points(database, **COLUMNS, **more)
     for point in found:
         point["turnaround_cycles"] = point["turnaround_cycles"] or 0

@@ -1,4 +1,8 @@
-"""usage: report.py QUEUES.db: banks.png, queues.csv and README.md from the texts of `allocate` beside this script."""
+"""usage: report.py QUEUES.db
+
+Reads QUEUES.db, and the texts that `allocate` has printed, beside this script. Writes banks.png, queues.csv and
+README.md beside it.
+"""
 import pathlib
 import re
 import sys
@@ -7,7 +11,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
 
-# File -> what was searched.
+# By name of the output file: what `allocate` searched.
 SEARCHES = {
     "core": "core alone, ZBT",
     "core_sync_burst": "core alone, sync burst, 2 clocks",
@@ -20,13 +24,14 @@ SEARCHES = {
 }
 DRAWN = {"core": ("o-", "tab:blue"), "core_sync_burst": ("o--", "tab:cyan"), "computer": ("s-", "tab:red"),
          "computer_sync_burst": ("s--", "tab:orange"), "computer_long_queues": ("s-", "tab:green")}
-# Banks, allocations, simulated, best rate, bound, steady (of a computer), reached by, one of them.
+# A row that `allocate` prints: banks, allocations, simulated, best rate, bound, steady rate (only for a whole
+# computer), number of allocations that reach the best rate, one of them.
 ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
 BANKS = range(1, 9)
 
 
 def read(name):
-    """Of each number of banks: the best frame rate and what reaches it."""
+    """By number of banks: the values of the row, such as the best rate and an allocation that reaches it."""
     found = {}
     for line in (HERE / f"{name}.txt").read_text().splitlines():
         if row := ROW.fullmatch(line):

@@ -1,4 +1,7 @@
-"""usage: report.py BUFFERS.db: buffers.png, buffers.csv and README.md, beside this script."""
+"""usage: report.py BUFFERS.db
+
+Writes buffers.png, buffers.csv and README.md beside this script.
+"""
 import pathlib
 import sys
 

@@ -1,4 +1,7 @@
-"""usage: report.py CORE.db COMPUTER.db: computer.csv and README.md, beside this script."""
+"""usage: report.py CORE.db COMPUTER.db
+
+Writes computer.csv and README.md beside this script.
+"""
 import pathlib
 import sys
 

@@ -21,8 +21,8 @@
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/media/synthetic_scene.h"
+#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
-#include "sw/process/program.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -103,12 +103,13 @@ class ScenePairs : public host::FrameSource {
   host::StereoPair pair_;
 };
 
-// "left_image bank0 bank1, .., right_lut bank0"
+// The placement as text: "left_image bank0 bank1, .., right_lut bank0".
 std::string text_of(const BoardConfig& board, const Placement& placement) {
   return explore::allocation_text(explore::placed(board, placement));
 }
 
-// The search and its board, from which the lines of the report are made.
+// The parts from which the functions below make the lines of the report: the search, its board, and the upper
+// bound of the frame rate of a board.
 struct Context {
   const AllocationSearch& search;
   const BoardConfig& board;
@@ -137,10 +138,10 @@ std::string table(const Context& context, const std::vector<BestPlacement>& all)
   return text;
 }
 
-// Runs the best allocation for each number of banks with pixels, fed by an ideal host with a different pair
-// in each frame. Throws unless all compute the same disparities, and, for the core alone, need the cycles
-// that the search has found. Returns a line with the number of allocations; empty if there are none or after
-// an interrupt.
+// Simulates the best allocation for each number of banks, with pixels: an ideal host supplies a different
+// pair for each frame. Throws if two allocations compute different disparities. For the core alone, also
+// throws if an allocation needs another number of cycles than the search has found. Returns a line with the
+// number of allocations; empty if there are none, or after an interrupt.
 std::string check_pixels(const Context& context, const platform::Tables& tables,
                          const std::vector<BestPlacement>& all) {
   ScenePairs pairs(context.board);
@@ -173,7 +174,8 @@ std::string check_pixels(const Context& context, const platform::Tables& tables,
                      checked, frames);
 }
 
-// The result of the search: the best rate of all, and the fewest banks that keep `keep_percent` of it.
+// The lines with the result of the search: the best rate of all, and the fewest banks that keep
+// `keep_percent` of it.
 std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
   const auto is_out = [](const BestPlacement& best) { return best.reached_by == 0; };
   const bool holds_buffers_only = !all.empty() && is_out(all.front());
@@ -200,7 +202,8 @@ std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
                      keep_percent, kept->banks, rate_text(rate(*kept)), 100 * rate(*kept) / rate(*top));
 }
 
-// The numbers of allocations that do not count.
+// The lines with the numbers of allocations that do not count, because they lose pixels or could not be
+// simulated.
 std::string not_counted_text(const Context& context, const std::vector<BestPlacement>& all,
                              const std::string& store) {
   std::uint64_t losing = 0;
@@ -221,7 +224,7 @@ std::string not_counted_text(const Context& context, const std::vector<BestPlace
   return text;
 }
 
-// The allocations that were tried, and the reason why no others are needed.
+// The lines that state how many allocations were tried, and why no others are needed.
 std::string space_text(const Context& context, int banks) {
   const AllocationSearch& search = context.search;
   std::string text =
@@ -259,7 +262,8 @@ AllocationSearch search_of(const BoardConfig& board, int banks, const explore::P
   }
 }
 
-// "; with N some do": the fewest banks above `banks` into which allocations fit; empty if there are none.
+// "; with N some do": N is the fewest banks, more than `banks`, into which N allocations fit; empty if there
+// are none.
 std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run) {
   const auto most = static_cast<int>(board.banks.size());
   const auto no_bound = [](const BoardConfig&) { return 0.0; };

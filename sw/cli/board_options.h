@@ -15,14 +15,15 @@ class App;
 
 namespace stereotlm::cli {
 
-// BOARD and the options of every command that takes a board.
+// The argument BOARD and the options --set and --calibration, which all commands that take a board share.
 class BoardOptions {
  public:
   // Adds the options to a command, before parsing.
   void add_to(CLI::App& command);
 
-  // To be called in the command's callback: reports missing options, or throws Refused.
+  // To be called in the command's callback: reports a missing BOARD.
   void check_given(process::Problems& problems);
+  // To be called in the command's callback: throws Refused if BOARD is missing.
   void check_usage();
 
   // BOARD as typed.
@@ -31,8 +32,8 @@ class BoardOptions {
   // Loads the board. Reports all problems and returns nullopt if there are any.
   std::optional<platform::BoardConfig> load(process::Problems& problems) const;
 
-  // Loads the calibration and checks that it fits the board; nullopt if no calibration was given. Reports all
-  // problems and returns nullopt if there are any. `board`: null if it has problems.
+  // Loads the calibration and checks that it fits the board. Returns nullopt if none was given, or if there
+  // are problems, which it reports. `board`: null if the board has problems; the fit is then not checked.
   std::optional<runs::CalibrationInput> load_calibration(const platform::BoardConfig* board,
                                                          process::Problems& problems) const;
 

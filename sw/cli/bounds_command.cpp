@@ -33,15 +33,15 @@ void add_new(Names& names, const std::string& name) {
 struct Row {
   std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
   std::uint64_t cycles = 0;
-  Names banks;  // banks with this role
+  Names banks;  // banks with this role; empty for a port
 
   std::string label() const { return banks.empty() ? role : fmt::format("bank {}", fmt::join(banks, ", ")); }
 };
 
-// A list of the allocation and its banks.
+// A list of buffers in the allocation, such as left_image, and banks in it.
 struct List {
   std::string name;  // "left_image"
-  Names banks;       // banks in the list
+  Names banks;       // banks that the frames of the group use
 };
 
 // Frames whose bounds differ only in the names of banks.
@@ -51,7 +51,7 @@ struct Group {
   std::vector<Row> rows;
 };
 
-// The buffers of a frame.
+// The buffers that a frame uses.
 std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
   std::vector<PlacedBuffer> all = platform::buffers(board.allocation);
   std::map<platform::Buffer, std::uint64_t> lengths;
@@ -85,7 +85,8 @@ Group group_of(const BoardConfig& board, const platform::Tables& tables, std::ui
   return group;
 }
 
-// Adds the frame of `other` to the group if its bounds are equal.
+// If `group` and `other` have equal bounds, adds the frame and the banks of `other` to `group` and returns
+// true. `other` has one frame.
 bool take_in(Group& group, const Group& other) {
   const auto is_like = [](const Row& a, const Row& b) { return a.role == b.role && a.cycles == b.cycles; };
   if (!std::is_permutation(group.rows.begin(), group.rows.end(), other.rows.begin(), other.rows.end(),
@@ -105,7 +106,7 @@ bool take_in(Group& group, const Group& other) {
   return true;
 }
 
-// "frame 0", "frames 0-5", "frames 0, 2-3"
+// The numbers of frames as text: "frame 0", "frames 0-5", "frames 0, 2-3".
 std::string frames_text(const std::vector<std::uint64_t>& frames) {
   std::string text = frames.size() == 1 ? "frame " : "frames ";
   for (std::size_t first = 0; first < frames.size();) {

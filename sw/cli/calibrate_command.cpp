@@ -121,12 +121,12 @@ class Calibrator {
     return kInterrupted;
   }
 
-  // Runs on a separate thread, because OpenCV cannot be stopped. An interrupt ends the process.
+  // Calibrates on a separate thread, because OpenCV cannot be stopped: an interrupt ends the process.
   void calibrate() {
-    constexpr std::chrono::milliseconds kBetweenLooks{50};
+    constexpr std::chrono::milliseconds kPollInterval{50};
     auto result =
         std::async(std::launch::async, runs::calibration_functions().calibrate, std::cref(request_));
-    while (result.wait_for(kBetweenLooks) != std::future_status::ready) {
+    while (result.wait_for(kPollInterval) != std::future_status::ready) {
       if (!process::interrupted()) continue;
       output_.reset();
       std::_Exit(leave());
@@ -153,7 +153,7 @@ class Calibrator {
     }
   }
 
-  // Refuses pictures inside the folder of drawings, which is replaced as a whole.
+  // Reports pictures that lie in the folder of drawings, which is replaced as a whole.
   void check_pictures_survive(process::Problems& problems) const {
     std::error_code none;  // a missing folder holds no picture
     const fs::path drawings = fs::weakly_canonical(output_->files().drawings, none);
@@ -204,7 +204,8 @@ class Calibrator {
                  functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
   }
 
-  // Writes the pictures of the calibration, and a scene with the disparities that the board should find.
+  // Writes the pictures that the calibration used, and a stereo pair of a scene with the disparities that the
+  // board should find.
   void write_synthetic(const fs::path& folder) {
     const runs::MediaFunctions& media = runs::media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {
@@ -225,7 +226,7 @@ class Calibrator {
     output_->add(folder / "scene_truth.png", media.encode_png_gray(grey));
   }
 
-  // Grey levels per disparity.
+  // Grey levels per disparity in the truth of the scene.
   int truth_scale() const { return 255 / options_.disparities; }
 
   std::string written_text() const {

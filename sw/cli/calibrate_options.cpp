@@ -27,20 +27,19 @@ void CalibrateOptions::add_to(CLI::App& command) {
   left_.takes(1, -1);
   right_.add_to(command, "--right", "'GLOB'", "The right camera's pictures, as many, in the same order");
   right_.takes(1, -1);
-  synthetic_.add_to(
-      command, "--synthetic", "SEED",
-      "Instead of pictures of a rig: a made one whose parameters are known, another one for each "
-      "SEED, 0 or more; its pictures are written too, those of a scene to run among them");
+  synthetic_.add_to(command, "--synthetic", "SEED",
+                    "Instead of pictures: a synthetic rig with known parameters, another one for each "
+                    "SEED, 0 or more; also writes its pictures, and those of a scene to run");
   grid_.add_to(
       command, "--grid", "CxR",
       "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6)");
   square_.add_to(command, "--square-mm", "S", "A side of its squares, in millimetres");
   disparities_.add_to(command, "--disparities", "D",
-                      "Candidates of the board that the tables are for, 1..254 (default 80)");
+                      "Disparities of the board for which the tables are made, 1..254 (default 80)");
   offset_.add_to(
       command, "--disparity-offset", "auto|N",
-      "What the left table leaves out of every disparity (default auto: such that those of the grid fit; "
-      "with --synthetic 0, which suits its scene)");
+      "Columns that the left table subtracts from every disparity (default auto: so that the grid fits; "
+      "with --synthetic: 0, which suits its scene)");
   print_grid_.add_to(command, "--print-grid", "CxR",
                      "Draw such a grid to print, true to scale, with --square-mm and --out alone");
   out_.add_to(command, "--out", "F.yaml",

@@ -15,7 +15,7 @@ class App;
 
 namespace stereotlm::cli {
 
-// The options of `calibrate`.
+// Parses and checks the options of `calibrate`.
 class CalibrateOptions {
  public:
   // Adds the options to the command, before parsing.
@@ -31,7 +31,7 @@ class CalibrateOptions {
   std::vector<std::string> right;
   std::optional<std::uint64_t> synthetic;  // seed of a synthetic rig
   int disparities = 80;
-  std::optional<int> disparity_offset;  // nullopt: auto
+  std::optional<int> disparity_offset;  // columns; nullopt: auto
   std::string out;
 
  private:

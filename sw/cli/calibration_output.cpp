@@ -41,7 +41,8 @@ const runs::RigFiles& in_a_folder(const runs::RigFiles& files) {
                                        fs::status_known(status) ? "no such folder" : error.message()));
 }
 
-// An entry, in a folder that is replaced as a whole, that calibrate did not write.
+// Returns an entry of `folder` that `calibrate` has not written; nullopt if there is none. `ours`: the names
+// that `calibrate` writes.
 std::optional<fs::path> foreign_file(const fs::path& folder, const Patterns& ours) {
   for (const fs::path& name : files::entries(folder)) {
     const bool is_ours = std::any_of(ours.begin(), ours.end(), [&name](const char* pattern) {
@@ -77,7 +78,8 @@ void check_folder(const fs::path& folder, const Patterns& ours) {
   }
 }
 
-// `in_commit`: a killed run was moving its files into place; the calibration is moved last.
+// Throws std::runtime_error if a file that would be replaced was not written by `calibrate`. `in_commit`: a
+// killed run was moving its files into place. The calibration may then be missing, because it is moved last.
 void check_earlier(const runs::RigFiles& files, bool makes_pictures, bool in_commit) {
   std::vector<fs::path> replaced = {files.left_lut, files.right_lut, files.drawings};
   if (makes_pictures) replaced.push_back(files.pictures);

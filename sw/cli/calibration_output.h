@@ -11,24 +11,27 @@
 
 namespace stereotlm::cli {
 
-// The files of calibrate. commit() replaces an earlier calibration F.yaml as a whole; before, it is unchanged.
-// Other files in the folder stay. An OutputFolder whose mark is F.yaml; new files are first written to the folder
-// F.partial beside F.yaml.
+// Writes the files of `calibrate`: the calibration F.yaml, its tables and its pictures. commit() replaces an
+// earlier calibration as a whole; until then the earlier files are unchanged. Other files in the folder stay.
+// Implemented by an OutputFolder whose mark is F.yaml; new files are first written to the folder F.partial
+// beside F.yaml.
 class CalibrationOutput {
  public:
-  // Checks that the folder is writable. Changes nothing and throws std::runtime_error if it does not exist or is
-  // not writable, if F.yaml exists and is no calibration, or if a file beside it has a name that calibrate uses
-  // but was not written by calibrate. `makes_pictures`: writes F_pictures/ too; otherwise that folder stays.
+  // Checks that the folder of F.yaml is writable. Throws std::runtime_error, and changes nothing, if
+  // - the folder does not exist or is not writable,
+  // - F.yaml exists and is no calibration, or
+  // - a file beside F.yaml has a name that `calibrate` uses but was not written by `calibrate`.
+  // `makes_pictures`: also writes F_pictures/; otherwise an existing F_pictures/ stays.
   CalibrationOutput(const std::string& calibration, bool makes_pictures);
 
   const runs::RigFiles& files() const { return files_; }
 
-  // Adds a file. `file`: one of files(), or one below a folder of files(). Throws std::runtime_error if it cannot
-  // be stored.
+  // Adds a file. `file`: one of files(), or a path inside one of their folders. Throws std::runtime_error if
+  // it cannot be stored.
   void add(const std::filesystem::path& file, std::string_view bytes);
   void add(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes);
 
-  // Replaces the earlier calibration. If it fails, restores all files and throws std::runtime_error.
+  // Replaces the earlier calibration. If this fails, restores all files and throws std::runtime_error.
   void commit() { folder_.commit(); }
 
  private:

@@ -40,7 +40,7 @@ std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictu
                      pictures, result.calibration.grid.corners(), corners, result.left_out.size());
 }
 
-// For the centre of the picture.
+// The nearest and the farthest depth that the disparities cover, at the centre of the picture.
 std::string depths_text(const Calibration& made) {
   const calib::DepthGeometry geometry = {made.rectification.q, made.disparity_offset};
   const auto depth = [&](int disparity) {

@@ -7,7 +7,7 @@
 namespace stereotlm::cli {
 
 // The summary that calibrate prints: pairs and corners, the rig, its errors, and the use of the tables.
-// `pictures`: number of pairs given.
+// `pictures`: number of pairs that were given to calibrate().
 std::string calibration_summary(const calib::CalibrationResult& result, std::size_t pictures);
 
 }  // namespace stereotlm::cli

@@ -3,7 +3,8 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/typed_option.h"
 
-// Implements both headers. Only this file includes CLI11 in full, because it takes long to compile.
+// Implements add_command.h and typed_option.h. The commands include these instead of CLI11, which takes long
+// to compile.
 namespace stereotlm::cli {
 
 template <typename Text>

@@ -12,9 +12,9 @@
 #include "sw/cli/exit_status.h"
 #include "sw/cli/text.h"
 #include "sw/cli/unbuilt.h"
+#include "sw/process/installation.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
-#include "sw/process/program.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -31,7 +31,7 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_subcommand(const CLI::App* command) const override {
     return paragraph("  " + command->get_name(), kIndent, command->get_description());
   }
-  // The only positional, BOARD, is required.
+  // All positional arguments, such as BOARD, are required: no brackets around their names.
   std::string make_option_usage(const CLI::Option* option) const override { return option->get_name(); }
 
  private:

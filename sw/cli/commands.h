@@ -8,11 +8,12 @@ class App;
 
 namespace stereotlm::cli {
 
-// The work of a command. Returns the exit status. Throws Refused before it has any effect.
+// Executes the command that was parsed and returns the exit status. Throws Refused if the command cannot be
+// done; it has then had no effect.
 using Action = std::function<int()>;
 
-// Each adds one command to the program. Parsing sets `action` if the command line has that command, and throws
-// Refused if its options are wrong.
+// Each function adds one command to the program. Parsing sets `action` if the command line has that command,
+// and throws Refused if its options are wrong.
 void add_run(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_boards(CLI::App& program, Action& action);

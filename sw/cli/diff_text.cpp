@@ -34,7 +34,7 @@ Values options_of(const runs::RecordedRun& run) {
 struct RunFigures {
   explicit RunFigures(const runs::RecordedRun& run) : document(Json::parse(run.stats_json)) {
     for (platform::BoardValue& value : explore::figures_of(document).values) {
-      // Not compared here: they follow from other figures, or are compared per frame.
+      // Leaves out figures that follow from others, and frame_cycles, which is compared frame by frame.
       const auto ends_in = [&value](const std::string& key) {
         return value.path.size() >= key.size() &&
                value.path.compare(value.path.size() - key.size(), key.size(), key) == 0;
@@ -45,7 +45,8 @@ struct RunFigures {
     }
   }
 
-  // The figures below some keys. With one key, their paths omit that key.
+  // The figures whose paths begin with one of `keys`. If there is only one key, the paths in the result omit
+  // it.
   Values below(const std::vector<std::string>& keys) const {
     Values found;
     for (platform::BoardValue value : values) {

@@ -22,8 +22,8 @@
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/store/bank_names.h"
 #include "sw/explore/sweep/batch.h"
+#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
-#include "sw/process/program.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -58,7 +58,7 @@ struct ExplainOptions {
   }
 };
 
-// The result of one board.
+// The result of the simulation of one board.
 struct Rate {
   double frames_per_second = 0;
   bool loses_pixels = false;
@@ -135,15 +135,15 @@ class Explanation {
   // A resource of the board and its bound.
   struct Resource {
     std::string name;
-    double frames_per_second = 0;  // the bound
-    double headroom_percent = 0;   // of the bound over the present rate
-    std::uint64_t frame = 0;       // the frame of the turn with the least headroom
+    double frames_per_second = 0;  // its bound
+    double headroom_percent = 0;   // by how much the bound exceeds the present rate
+    std::uint64_t frame = 0;       // the frame with the least headroom
     bool varies = false;           // the headroom is larger in other frames
   };
 
-  // All resources, the least headroom first. A resource of the core has its least headroom over the frames of
-  // one turn. The time of a frame is its number of cycles; in a computer it also has its share of the time
-  // between frames.
+  // All resources, the least headroom first. For a resource of the core, the headroom is the least over the
+  // frames of one allocation period. The bound is compared with the time of the frame: its cycles and, for a
+  // whole computer, its share of the time between frames.
   std::vector<Resource> resources_of(const Rate& now) {
     const auto frame_cycles = nlohmann::json::parse(batch_.row_of(points_.point(0)).text("frame_cycles"))
                                   .get<std::vector<double>>();
@@ -290,7 +290,7 @@ int explain(const ExplainOptions& options) {
   process::Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
-  temporary_folder(problems);  // reports early if there cannot be one
+  temporary_folder(problems);  // the simulations need one: reports now if it cannot be created
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();

@@ -71,7 +71,8 @@ Names own_parts(const Names& files) {
   return names;
 }
 
-// If each side misses a different picture, all pairs between the two would be wrong.
+// Prints a note about the first pair whose names differ: if each side lacks a different picture, all pairs
+// between these two are wrong.
 void compare_names(const Names& left, const Names& right) {
   const Names left_parts = own_parts(left);
   const Names right_parts = own_parts(right);
@@ -124,7 +125,7 @@ class Loader {
     }
   }
 
-  // A picture that appears twice would count twice without new information.
+  // Reports a picture that appears twice: it would count twice without new information.
   void check_new(const std::string& option, const std::string& path, const kernels::GrayImage& image) {
     const auto [known, is_new] =
         paths_.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), path);

@@ -8,10 +8,11 @@
 
 namespace stereotlm::cli {
 
-// Loads the pictures that match the patterns, as pairs; both sides are sorted by name. Reports problems: a pattern
-// without files, different counts, a file that is no picture, a picture that appears twice, different sizes.
-// Prints notes on standard error: pictures that were converted to grey, and pairs whose names differ in more than
-// the parts that all names of a side share. Stops when interrupted().
+// Loads the pictures of the calibration grid that match the patterns. Sorts both sides by name, and pairs
+// them in this order. Reports problems: a pattern without files, different counts, a file that is no picture,
+// a picture that appears twice, different sizes. Prints notes on standard error: how many pictures were
+// converted to grey, and the first pair whose names differ after the prefix and suffix that all names of a
+// side share are removed. Returns early when interrupted().
 std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string>& left,
                                                    const std::vector<std::string>& right,
                                                    process::Problems& problems);

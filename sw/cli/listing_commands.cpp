@@ -17,7 +17,7 @@
 namespace stereotlm::cli {
 namespace {
 
-// The first line of a preset's file is a comment with the purpose of the board.
+// The purpose of a preset: its file begins with a comment line that states it.
 std::string description(std::string_view file) {
   const std::string line(file.substr(0, file.find('\n')));
   return line.substr(std::min(line.size(), line.find_first_not_of("# ")));

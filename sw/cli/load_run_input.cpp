@@ -12,9 +12,9 @@
 #include "calib/calibration.h"
 #include "platform/config/board_yaml.h"
 #include "sw/files/sha256.h"
+#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/process/program.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/sources/media_library.h"
@@ -75,7 +75,7 @@ class InputLoader {
   }
 
  private:
-  // Runs a step and reports its exception. `option`: its prefix in the message, may be empty.
+  // Calls `step` and reports the exception that it throws. `option`: prefix of the message; may be empty.
   void attempt(const std::string& option, const std::function<void()>& step) {
     try {
       step();
@@ -102,8 +102,8 @@ class InputLoader {
   void check_truth() {
     if (!options_.truth || !options_.camera || !source_.pairs || source_.pairs->length() == 1) return;
     problems_.add(fmt::format(
-        "--truth: goes with one pair if it comes from cameras, which drop frames: of {} pairs nobody knows "
-        "which the last frame will show (or --source preloaded)",
+        "--truth: cameras drop frames: which of {} pairs the last frame shows is not known before the run: "
+        "must be a run with one pair, or with --source preloaded",
         source_.pairs->length()));
   }
 
@@ -123,7 +123,8 @@ class InputLoader {
     return reported.empty();
   }
 
-  // Warns if the pictures do not fit the calibration: the file of another rig cannot be detected by itself.
+  // Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration
+  // may be of another rig, which its file alone does not reveal.
   void say_how_rows_agree() {
     constexpr double kDoubtful = 1.5;  // pixels
     constexpr std::size_t kFew = 10;
@@ -156,7 +157,7 @@ class InputLoader {
     process::say(
         "note",
         fmt::format(
-            "--calibration: was made for {} disparities: of this board's {} the nearest things need more",
+            "--calibration: was made for {} disparities: the nearest objects exceed the {} of this board",
             made_for, has));
   }
 
@@ -175,7 +176,7 @@ class InputLoader {
     run.frames = input_.frames;
     run.truth_scale = options_.truth_scale;
     run.save_frames = options_.save_frames;
-    run_json(run);  // throws now instead of after the run
+    run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
   }
 
   const RunOptions& options_;

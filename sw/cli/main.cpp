@@ -14,7 +14,8 @@ std::string text_of(const sc_core::sc_report& report) {
   return std::string(report.get_msg_type()) + ": " + report.get_msg();
 }
 
-// Replaces SystemC's report handler, which prints to standard output. An error is thrown to its catcher.
+// Replaces SystemC's report handler, which prints to standard output. Warnings are printed on standard error;
+// errors are thrown, as by default.
 void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
   if (report.get_severity() == sc_core::SC_WARNING) process::say("warning", text_of(report));
   sc_core::sc_report_handler::default_handler(

@@ -19,6 +19,7 @@
 #include "sw/files/whole_file.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
+#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
 #include "sw/process/program.h"
@@ -53,7 +54,7 @@ struct PaperOptions {
   }
 };
 
-// nullopt if it was interrupted.
+// Simulates everything that the claims of the paper need. Returns nullopt if interrupted.
 std::optional<paper::Findings> study() {
   runs::PointSimulator simulator;
   runs::ProgressLine progress;
@@ -72,7 +73,8 @@ std::optional<paper::Findings> study() {
   return paper::study(paper::claims(), means);
 }
 
-// Adds the pictures of the tables. Returns false if interrupted. `folder`: for temporary files.
+// Draws figures from the tables in `files`, which has contents by name, and adds the figures to it. Returns
+// false if interrupted. `folder`: for temporary files.
 bool draw(const std::filesystem::path& folder, std::map<std::string, std::string>& files) {
   for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
   const auto end = process::run_script(kScript, {"--out=" + folder.string(), "--", folder.string()});

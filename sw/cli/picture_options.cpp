@@ -23,7 +23,7 @@ void PictureOptions::add_to(CLI::App& command) {
       "Where --video has the pictures of a pair: two (files), side_by_side or top_bottom (in one "
       "file, the left one in the left or upper half of each frame)");
   synthetic_.add_to(command, "--synthetic", "SEED",
-                    "A made scene that moves, with known disparities; another one for each SEED, 0 or more");
+                    "A synthetic moving scene with known disparities; another one for each SEED, 0 or more");
 }
 
 void PictureOptions::check_given(process::Problems& problems, bool may_be_missing) const {

@@ -15,17 +15,20 @@ class App;
 
 namespace stereotlm::cli {
 
-// The options of `run` that select its pictures.
+// Parses and checks the options of `run` that select its pictures.
 class PictureOptions {
  public:
   // Adds the options to the command, before parsing.
   void add_to(CLI::App& command);
 
-  // To be called in the command's callback: report missing options, and all other problems.
+  // To be called in the command's callback: reports missing options. `may_be_missing`: the run needs no
+  // pictures.
   void check_given(process::Problems& problems, bool may_be_missing) const;
+  // To be called after check_given(): reports all other problems.
   void check_usage(process::Problems& problems);
 
-  // Set by check_usage(). Exactly one member is set if there were no problems and the source is required.
+  // Set by check_usage(). If there were no problems, exactly one member is set, or none if pictures may be
+  // missing.
   runs::PictureSource source;
 
  private:

@@ -18,16 +18,17 @@ constexpr const char* kPlotFooter =
     "  disparities  frames per second, and area, against matcher.disparities\n"
     "  banks        frames per second against the banks that the allocation uses\n"
     "  states       what each port does in the cycles of a frame\n"
-    "  stalls       stall cycles of each port by whom they are blamed on\n"
+    "  stalls       stall cycles of each port by their cause\n"
     "  use          how busy each bank is\n"
-    "  pareto       two columns of the database, and the points than which none is better in both;\n"
+    "  pareto       two columns of the database, and the points that no other point dominates;\n"
     "               beside the columns there is banks_used\n"
-    "Points that differ in more than the x axis are a line each. Of more than 16 points states, stalls and\n"
-    "use show some; the figure says which. DIR must be empty or hold only such files, which are replaced.\n"
+    "Points that differ in keys besides the x axis are on separate lines. Of more than 16 points, states,\n"
+    "stalls and use show some; the figure says which. DIR must be empty or hold only such files, which\n"
+    "are replaced.\n"
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
 
-// The arguments are passed to the script, which checks them.
+// The options of `plot`. They are passed to the script, which checks them.
 struct PlotOptions {
   Typed database;
   Typed out;
@@ -46,7 +47,7 @@ struct PlotOptions {
 
   void check_usage() const {}  // the script does that
 
-  // Passes values that look like options as values.
+  // The arguments of the script, in a form in which it does not take a value such as "--x" for an option.
   std::vector<std::string> arguments() const {
     std::vector<std::string> words;
     if (out.is_given()) words.push_back("--out=" + out.text);

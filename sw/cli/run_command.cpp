@@ -23,7 +23,7 @@ namespace {
 
 using runs::Simulation;
 
-// Problems here are found before the first cycle.
+// Builds the simulation. If that fails, refuses the command, because no cycle has been simulated yet.
 std::unique_ptr<Simulation> build(const runs::RunInput& input, host::FrameSource& pairs, Binder& binder) {
   try {
     return runs::make_simulation(input.board, input.tables, pairs, runs::run_mode(input), binder);
@@ -40,7 +40,8 @@ std::uint64_t least_frame_cycles(const runs::RunInput& input) {
   return cycles;
 }
 
-// Runs to the last frame, or until an interrupted run has ended.
+// Simulates all frames. After an interrupt, simulates only until the frames that the core has begun are
+// finished.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
   runs::ProgressLine progress;
@@ -52,7 +53,8 @@ void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verific
       progress.erase();
       if (!simulation.finished()) {
         process::say("note",
-                     "interrupted: what the core has begun is finished first; another Ctrl-C ends at once, "
+                     "interrupted: frames that the core has begun are finished first; another Ctrl-C ends "
+                     "immediately, "
                      "without results");
       }
       continue;

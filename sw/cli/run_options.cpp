@@ -29,10 +29,10 @@ void RunOptions::add_to(CLI::App& command) {
                  "number of pairs (default 1; with --sequence and --video as many as there are pairs)");
   source_.add_to(
       command, "--source", fmt::format("{}", fmt::join(kSources, "|")),
-      "Where pictures come from: cameras of a whole computer, or they appear in their buffers in no "
-      "time (default camera)");
+      "camera (the default): cameras of a whole computer; preloaded: pictures appear in their buffers in no "
+      "time");
   fidelity_.add_to(command, "--fidelity", fmt::format("{}", fmt::join(kFidelities, "|")),
-                   "How the simulation works, not what comes out, which is the same to the bit and to the "
+                   "How the simulation works; the results are the same to the bit and to the "
                    "cycle: fast (the default), "
                    "or cycle by cycle, every access a transaction");
   add_flag(command, "--timing-only", timing_only,
@@ -60,7 +60,7 @@ void RunOptions::add_to(CLI::App& command) {
 void RunOptions::check_usage() {
   process::Problems problems;
   trace_.report(problems);
-  problems.check();  // now, because nothing else is to be said of such a run
+  problems.check();  // now, because no other fault of such a run matters
   board.check_given(problems);
   pictures.check_given(problems, timing_only);
   const bool is_complete = problems.empty();

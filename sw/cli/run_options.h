@@ -15,7 +15,7 @@ class App;
 
 namespace stereotlm::cli {
 
-// The options of `run`.
+// Parses and checks the options of `run`.
 class RunOptions {
  public:
   // Adds the options to the command, before parsing.

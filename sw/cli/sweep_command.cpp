@@ -32,7 +32,7 @@ namespace stereotlm::cli {
 namespace {
 
 constexpr std::chrono::seconds kBetweenCounts{2};
-// How long to wait for a process that locks a database of which only the readability is checked.
+// Timeout for a locked database, if the database is only opened to check that it can be read.
 constexpr std::chrono::seconds kBriefTimeout{5};
 
 constexpr const char* kSweepFooter =
@@ -75,8 +75,8 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
   }
 }
 
-// The calibration of all points, if they have one. Gives the plan its tables. Throws Refused if no point can
-// have them.
+// Loads the calibration that --calibration or the plan names, and gives its tables to the plan. Returns
+// nullopt if neither names one. Throws Refused if the calibration cannot be loaded or fits no point.
 std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& options,
                                                      explore::Plan& plan) {
   const bool is_option = !options.calibration.text.empty();
@@ -106,7 +106,8 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The most frequent reasons of points with this status, and the numbers of these points.
+// The lines with the most frequent reasons of points with this status, and the number of points for each
+// reason.
 std::string reasons(explore::Database& store, const std::string& status) {
   constexpr int kMost = 3;
   std::string text;
@@ -134,7 +135,8 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   return kInterrupted;
 }
 
-// The end of an error message: finished points are kept. Empty if the database cannot be read.
+// The end of an error message, which states that finished points are kept. Empty if the database cannot be
+// read.
 std::string kept_text(const std::string& store, const std::string& advice) {
   try {
     explore::Database(store, explore::Database::Access::kRead, kBriefTimeout)
@@ -145,7 +147,8 @@ std::string kept_text(const std::string& store, const std::string& advice) {
   }
 }
 
-// The file of --progress, if that is given.
+// Writes the counts of the sweep to the file of --progress: show() at most once in kBetweenCounts, write()
+// always. Does nothing if `path` is empty.
 class ProgressFile {
  public:
   explicit ProgressFile(const std::string& path) : path_(path) {
@@ -194,7 +197,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
     };
     if (std::filesystem::file_size(options.sweep.store) > 0) open_store();
     file.write({});
-    open_store();  // makes a new store once nothing else is wrong
+    open_store();  // creates a new store only after all other checks
   } catch (const explore::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::system_error& error) {

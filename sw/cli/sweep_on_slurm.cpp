@@ -19,7 +19,7 @@
 namespace stereotlm::cli {
 namespace {
 
-// The sweep with copies of the files that its tasks need.
+// The sweep for Slurm, with the contents of all files that its tasks need.
 explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
                               const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;

@@ -9,8 +9,9 @@
 
 namespace stereotlm::cli {
 
-// Runs a sweep as jobs of Slurm, and waits for them; shows the progress. Returns early if interrupted, after
-// it has cancelled the jobs. Throws Refused, and std::runtime_error.
+// Submits a sweep as jobs of Slurm, shows their progress, waits until they have ended, and returns the counts
+// of the sweep. If interrupted, cancels the jobs and returns early. Throws Refused if the jobs cannot be
+// submitted, and std::runtime_error if the sweep fails later.
 explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
                                     const std::optional<runs::CalibrationInput>& calibration);
 

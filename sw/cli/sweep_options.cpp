@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "sw/files/whole_file.h"
-#include "sw/process/program.h"
+#include "sw/process/installation.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -41,7 +41,7 @@ bool is_counts_file(const std::string& path) {
   }
 }
 
-// Checks one option of --sbatch. The options that the launcher itself gives sbatch are refused.
+// Checks the value of one --sbatch. Reports options that the launcher itself passes to sbatch.
 void check_sbatch(const std::string& option, process::Problems& problems) {
   const std::vector<std::string> own = {"array", "dependency", "error", "job-name", "output", "wait", "wrap"};
   const std::string name = option.substr(0, option.find('='));
@@ -150,7 +150,7 @@ void SweepCommandOptions::check_launcher(process::Problems& problems) {
   }
 }
 
-// --progress replaces the file, so that it must not be a file of the user.
+// --progress replaces its file, which must therefore not be another file of the user.
 void SweepCommandOptions::check_progress(process::Problems& problems) const {
   for (const auto& [file, name] : {std::pair{&out_, "--out"}, {&plan, "PLAN"}, {&known_, "--known"}}) {
     if (file->text.empty() || !is_same_file(progress.text, file->text)) continue;

@@ -14,16 +14,16 @@ class App;
 
 namespace stereotlm::cli {
 
-// The options of `sweep`.
+// Parses and checks the options of `sweep`.
 class SweepCommandOptions {
  public:
-  // Adds them to the command, before it is parsed.
+  // Adds the options to the command, before parsing.
   void add_to(CLI::App& command);
 
-  // Runs in the callback of the command. Throws Refused with everything that is wrong.
+  // To be called in the command's callback: throws Refused if options are wrong.
   void check_usage();
 
-  // As they were typed.
+  // The values of these options, as typed.
   Typed plan;
   Typed shard;
   Typed board;

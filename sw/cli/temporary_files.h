@@ -8,8 +8,8 @@
 
 namespace stereotlm::cli {
 
-// Creates a folder for temporary files before a command has any effect. Reports the problem and returns null if it
-// cannot be created.
+// Creates a folder for temporary files. If that fails, reports the problem and returns null. To be called
+// before the command has any effect.
 inline std::unique_ptr<files::TemporaryFolder> temporary_folder(process::Problems& problems) {
   try {
     return std::make_unique<files::TemporaryFolder>();

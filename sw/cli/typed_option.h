@@ -20,8 +20,9 @@ class Option;
 
 namespace stereotlm::cli {
 
-// An option with its text as typed. The parser writes to the object, so it must not be moved between add_to() and
-// the end of parsing.
+// An option of the command line whose value is kept as typed, so that the command can check it and quote it
+// in messages. The parser writes to the object, so it must not be moved between add_to() and the end of
+// parsing.
 template <typename Text>
 struct TypedOption {
   Text text;
@@ -29,7 +30,7 @@ struct TypedOption {
   // Adds the option to the command, before parsing. A name without dashes is a positional argument.
   void add_to(CLI::App& command, const std::string& name, const std::string& value,
               const std::string& meaning);
-  // For a list: its number of values; -1: any number.
+  // For a list: sets the least and the most number of values. most = -1: no limit.
   void takes(int least, int most);
   // For a list: the option takes one value and may be repeated.
   void takes_one_at_a_time();
@@ -43,7 +44,7 @@ struct TypedOption {
 using Typed = TypedOption<std::string>;
 using TypedList = TypedOption<std::vector<std::string>>;
 
-// The number that the whole text represents; nullopt if it is none.
+// The number that the text represents; nullopt if the text is not exactly one number of this type.
 template <typename Number>
 std::optional<Number> number_of(std::string_view text) {
   Number number = 0;
@@ -52,7 +53,7 @@ std::optional<Number> number_of(std::string_view text) {
   return number;
 }
 
-// Whether the text is one of the values. Reports it if not.
+// Returns whether `text`, the value of the option `name`, is one of `values`. If not, reports a problem.
 inline bool is_one_of(const std::vector<std::string>& values, const std::string& name,
                       const std::string& text, process::Problems& problems) {
   if (std::find(values.begin(), values.end(), text) != values.end()) return true;

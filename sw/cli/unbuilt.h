@@ -12,8 +12,8 @@ class Option;
 
 namespace stereotlm::cli {
 
-// Options and commands of contract section 5 that this version does not have. They get a message of their own
-// instead of one about an unknown option.
+// An option of contract section 5 that this version does not implement. The parser accepts it, so that the
+// command can refuse it with kNotInThisVersion instead of as an unknown option.
 class UnbuiltOption {
  public:
   explicit UnbuiltOption(std::string name) : name_(std::move(name)) {}
@@ -33,8 +33,9 @@ class UnbuiltOption {
 
 inline constexpr const char* kNotInThisVersion = "not in this version";
 
-// "calibrate, explain, .."
+// The names of the commands of contract section 5 that this version does not implement, separated by commas.
 std::string unbuilt_commands();
+// Adds these commands to the program, hidden from its help. Each throws Refused with kNotInThisVersion.
 void add_unbuilt_commands(CLI::App& program);
 bool is_unbuilt(const CLI::App& command);
 

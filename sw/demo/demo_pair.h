@@ -9,20 +9,23 @@ inline constexpr int kHeight = 480;
 // Grey levels per disparity of DemoPair::truth. The full-size truth has one; at half size disparities halve.
 inline constexpr int kTruthScale = 2;
 
+// A stereo pair with ground truth, in the size of the board fpl2003.
 struct DemoPair {
   kernels::GrayImage left;
   kernels::GrayImage right;
   kernels::GrayImage truth;  // grey / kTruthScale = disparity, 0 = unknown
 };
 
-// Scales a full-size pair and its truth (grey = disparity, 0 = unknown) to half size and crops all three to the
-// same central kWidth x kHeight, which does not change disparities. A pixel of a picture is the mean of 2x2
-// pixels (halves up). A pixel of the truth is the top left one of them: a mean over an edge would be no depth.
-// Throws std::invalid_argument if the sizes differ or are below 2 * kWidth x 2 * kHeight.
+// Scales a full-size pair and its truth (grey = disparity, 0 = unknown) to half size and crops all three to
+// the same central kWidth x kHeight, which does not change disparities. A pixel of a picture is the mean of
+// 2x2 pixels (halves up). A pixel of the truth is the top left one of them, because the mean over an edge is
+// the depth of neither side. Throws std::invalid_argument if the sizes differ or are below 2 * kWidth x 2 *
+// kHeight.
 DemoPair make_demo_pair(const kernels::GrayImage& left, const kernels::GrayImage& right,
                         const kernels::GrayImage& truth);
 
-// The smallest number of candidates 0, 1, .. that holds every known disparity of the truth, rounded up.
+// The number of candidate disparities (0, 1, ..) that a board needs to find every known disparity of the
+// truth, rounded up.
 int disparities_needed(const kernels::GrayImage& truth);
 
 }  // namespace stereotlm::demo

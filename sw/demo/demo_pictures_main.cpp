@@ -109,7 +109,8 @@ void montage(const std::vector<std::string>& arguments) {
   write_file(arguments[0], media::encode_side_by_side_png(panels));
 }
 
-// Colours depths: near is red, as for large disparities. The nearest and the farthest hundredth are clamped.
+// Colours depths: near is red, as for large disparities. The nearest and the farthest hundredth of the depths
+// are clamped.
 media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
   std::vector<std::uint16_t> known;

@@ -15,18 +15,18 @@ namespace bridge_map = pci::bridge;
 namespace capture_map = capture::registers;
 namespace core_map = fpga::registers;
 
-constexpr int kToBoard = 0;  // DMA channels
+constexpr int kToBoard = 0;  // numbers of the DMA channels
 constexpr int kToHost = 1;
 constexpr std::uint64_t kDescriptorBytes = 16;
 constexpr std::uint64_t kChainBytes = 16 * kDescriptorBytes;  // bytes of one channel's chain
-constexpr std::uint64_t kDataStart = 4096;                    // after both chains
+constexpr std::uint64_t kDataStart = 4096;                    // address of the tables, after both chains
 
 std::uint64_t table_bytes(const DriverConfig& config) {
   return static_cast<std::uint64_t>(config.width) * static_cast<std::uint64_t>(config.height) * 4;
 }
 std::uint64_t picture_bytes(const DriverConfig& config) { return table_bytes(config) / 4; }
 
-// The areas in host memory: chains, tables, ring, results.
+// Host memory holds, in this order: the chains of both DMA channels, the tables, the ring, the results.
 std::uint64_t ring_start(const DriverConfig& config) { return kDataStart + 2 * table_bytes(config); }
 std::uint64_t results_start(const DriverConfig& config) {
   const std::uint64_t pairs = config.capture_to_host ? static_cast<std::uint64_t>(config.host_frames) : 0;
@@ -183,7 +183,7 @@ void StereoDriver::start_core() {
   const bool starts = frames_.idle() && frame < config_.frames && frame < pairs &&
                       frame < read_backs_.ended + config_.buffers.disparities.size();
   if (starts) {
-    ++frames_.begun;  // before the first access: during that access start_no_more() may be called
+    ++frames_.begun;  // before the first access, in which start_no_more() may be called
     const auto input = static_cast<std::size_t>(frame % config_.buffers.left_images.size());
     core(core_map::kLeftImageBase, config_.buffers.left_images[input]);
     core(core_map::kRightImageBase, config_.buffers.right_images[input]);

@@ -10,10 +10,11 @@
 #include "models/host/program.h"
 #include "platform/device_map.h"
 
-// The program on the host (contract section 3). It uses host::HostBus only: it runs on the model's CPU, and could
-// run on a real machine.
+// The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
+// model and could run on a real machine.
 namespace stereotlm::driver {
 
+// The configuration of a StereoDriver.
 struct DriverConfig {
   int width = 0;   // pixels
   int height = 0;  // pixels
@@ -38,20 +39,21 @@ struct DeliveredFrame {
   const std::uint8_t* disparity = nullptr;  // width * height pixels, valid during the call
 };
 
+// Receives the results of a StereoDriver.
 class FrameListener {
  public:
   virtual ~FrameListener() = default;
   virtual void frame_delivered(const DeliveredFrame& frame) = 0;
 };
 
-// Uploads the tables, then schedules captures, frames and read-backs. It arms a capture when its buffer is free,
-// starts the core when a pair and an output buffer are ready, and reads results back by DMA. Each stage counts
-// the frames that it has begun and ended. A buffer is free when the next stage has ended the frame in it.
-// README.md lists every access.
+// Uploads the tables, then schedules captures, frames and read-backs. It arms a capture when its buffer is
+// free, starts the core when a pair and an output buffer are ready, and reads results back by DMA. Each stage
+// counts the frames that it has begun and ended. A buffer is free when the next stage has ended the frame in
+// it. README.md lists every access.
 //
-// With capture_to_host captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
-// board. run() returns after the last of `frames` deliveries. Throws std::runtime_error if the hardware reports
-// an error, and what HostBus throws.
+// With capture_to_host, captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
+// board. run() returns after the last of `frames` deliveries. run() throws std::runtime_error if the hardware
+// reports an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
   // Entries of the tables, row by row (contract 1.1); empty for a side without table. `listener` outlives the
@@ -62,21 +64,23 @@ class StereoDriver : public host::Program {
 
   void run(host::HostBus& bus) override;
 
-  // The next three may be called while run() waits. The number of starts of the core:
+  // frames_started(), start_no_more() and under_way() may be called while run() waits.
+  //
+  // The number of times that the core was started.
   std::uint64_t frames_started() const { return frames_.begun; }
-  // Starts the core no more. run() returns when the frames that it has begun are delivered.
+  // The driver starts no more frames. run() returns when the frames that the core has begun are delivered.
   void start_no_more() { config_.frames = frames_.begun; }
-  // The operations that run() waits for: "capture 4, core with frame 2".
+  // The operations for which run() waits, as text: "capture 4, core with frame 2".
   std::string under_way() const;
 
  private:
-  // The progress of one stage.
+  // The progress of one stage: numbers of frames or pairs.
   struct Stage {
     std::uint64_t begun = 0;
     std::uint64_t ended = 0;
     bool idle() const { return begun == ended; }
   };
-  // One piece of a DMA.
+  // One contiguous piece of a DMA transfer.
   struct Piece {
     std::uint64_t host = 0;   // address in host memory, bytes
     std::uint32_t board = 0;  // first word on the board
@@ -115,7 +119,7 @@ class StereoDriver : public host::Program {
   Stage frames_;  // frames of the core
   Stage read_backs_;
   bool uploading_ = false;
-  std::array<bool, 2> side_done_{};           // of the running capture
+  std::array<bool, 2> side_done_{};           // [left, right]: the side of the running capture is complete
   std::vector<std::uint64_t> camera_frames_;  // camera frame of each finished capture
   bool core_to_acknowledge_ = false;
 };

@@ -5,7 +5,8 @@
 
 namespace stereotlm::files {
 
-// The missing parents that were created for a folder, until it is certain that they stay.
+// Creates a folder with its missing parents, and removes them again unless keep() is called. Used by
+// OutputFolder.
 class CreatedFolders {
  public:
   CreatedFolders() = default;
@@ -15,8 +16,9 @@ class CreatedFolders {
 
   // Creates `dir`, an absolute path, and its missing parents. Throws std::filesystem::filesystem_error.
   void create(const std::filesystem::path& dir);
+  // The created folders stay.
   void keep() { created_.clear(); }
-  // Removes the created folders that are empty. The user has put something into the others: they stay.
+  // Removes the created folders that are empty. A folder into which the user has put something stays.
   void remove() noexcept;
 
  private:

@@ -26,7 +26,7 @@ std::optional<std::string> problem_of(const fs::path& dir, const std::vector<std
     if (!is_there(dir / name)) continue;
     if (!is_file(dir / name)) return fmt::format("holds '{}', which is no file", name);
     if (!is_ours) {
-      return fmt::format("holds '{}' but no {}: only what an earlier one has written is replaced", name,
+      return fmt::format("holds '{}' but no {}: only files of an earlier result are replaced", name,
                          document);
     }
   }
@@ -56,7 +56,7 @@ void DocumentFolder::commit(const std::map<std::string, std::string>& contents) 
   for (const std::string& name : names_) {
     if (contents.count(name) == 0) throw std::invalid_argument(fmt::format("file = '{}': missing", name));
   }
-  if (contents.size() != names_.size()) throw std::invalid_argument("files: there are some of other names");
+  if (contents.size() != names_.size()) throw std::invalid_argument("files: some have other names");
   if (const auto problem = folder_.problem()) folder_.refuse(*problem);
   for (const auto& [name, bytes] : contents) folder_.add(name, bytes);
   folder_.commit();

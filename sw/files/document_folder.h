@@ -9,17 +9,18 @@
 
 namespace stereotlm::files {
 
-// A folder that gets a document and its files. All else in it stays. An OutputFolder whose mark is the
-// document.
+// Writes a document and its files into a folder, whose other content stays. Used by the command `paper`.
+// Implemented by an OutputFolder whose mark is the document.
 class DocumentFolder {
  public:
-  // Throws as OutputFolder does, if something of such a name is no file, and if one of the files exists without
-  // the document: then it belongs to somebody else.
+  // Throws as OutputFolder does. Also throws std::runtime_error if an entry with one of these names is no
+  // file, or if one of the files exists without the document, because such a file was written by somebody
+  // else.
   DocumentFolder(const std::filesystem::path& dir, const std::string& document,
                  const std::vector<std::string>& files);
 
-  // `contents` has the document and every file, else throws std::invalid_argument. Throws std::runtime_error
-  // if they cannot be stored.
+  // `contents`: bytes by name. Throws std::invalid_argument if these are not exactly the document and all
+  // files, and std::runtime_error if they cannot be stored.
   void commit(const std::map<std::string, std::string>& contents);
 
  private:

@@ -5,9 +5,10 @@
 
 namespace stereotlm::files {
 
-// JSON in the form of the result files: keys in insertion order, two spaces of indent, a container without
-// containers on one line, numbers as the shortest decimals that read back equal, a newline at the end. Throws
-// std::invalid_argument for a number that is not finite and for a string that is not UTF-8.
+// The text of a JSON document in the form of the result files: keys in insertion order, two spaces of indent,
+// a container without containers on one line, numbers as the shortest decimals that read back equal, a
+// newline at the end. Throws std::invalid_argument for a number that is not finite and for a string that is
+// not UTF-8.
 std::string json_text(const nlohmann::ordered_json& document);
 
 }  // namespace stereotlm::files

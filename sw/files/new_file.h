@@ -5,8 +5,8 @@
 
 namespace stereotlm::files {
 
-// A new file that is written piece by piece. All functions throw std::system_error with the cause as code if a
-// byte cannot be stored. The caller then removes the file.
+// A new file that is written piece by piece. All functions throw std::system_error with the cause as code if
+// a byte cannot be stored. The caller then removes the file.
 class NewFile {
  public:
   // Throws also if the file exists.

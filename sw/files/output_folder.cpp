@@ -24,6 +24,7 @@ constexpr const char* kNew = "new";
 constexpr const char* kNames = "names";  // lists the new files during a commit
 constexpr const char* kProbe = "probe";
 
+// Whether the open file is the one at `path`.
 bool is_same(int file, const fs::path& path) {
   struct stat opened = {};
   struct stat there = {};
@@ -64,7 +65,7 @@ void OutputFolder::lock() {
   }
 }
 
-// False if another run has ended and removed the folder aside in the meantime.
+// Returns false if another run has removed the folder of unfinished files before it was locked: try again.
 bool OutputFolder::try_lock() {
   if (is_there(aside()) && !is_folder(aside()))
     refuse(fmt::format("holds '{}', which is no folder", content_.aside));
@@ -85,7 +86,7 @@ void OutputFolder::check_aside() {
   was_left_ = !left.empty();
   owns_aside_ = !was_left_;
   const auto refuse_foreign = [this](const fs::path& found) {
-    refuse(fmt::format("holds '{}': no killed run has left that there", (content_.aside / found).string()));
+    refuse(fmt::format("holds '{}', which no killed run has left there", (content_.aside / found).string()));
   };
   for (const fs::path& name : left) {
     if ((name == kProbe || name == kNames) && is_file(aside() / name)) continue;
@@ -118,12 +119,12 @@ void OutputFolder::add(const std::string& name, std::string_view bytes) {
 
 void OutputFolder::commit() {
   if (committed_ || !is_file(made() / content_.mark))
-    throw std::logic_error(fmt::format("committed once, with {}", content_.mark));
+    throw std::logic_error(fmt::format("commit() may be called once, after {} is added", content_.mark));
   try {
     move_into_place();
   } catch (const std::system_error& error) {
     try {
-      // Otherwise the next run would take the commit for complete.
+      // If the new mark stayed in place, the next run would take the commit for complete.
       if (!is_there(made() / content_.mark)) fs::rename(dir_ / content_.mark, made() / content_.mark);
       put_back();
     } catch (const std::exception& /*again*/) {
@@ -136,7 +137,8 @@ void OutputFolder::commit() {
 }
 
 // put_back() relies on the order of the moves. The earlier mark is moved away last: while it is in place, all
-// other files in place are earlier ones. The new mark is moved in last: once it is in place, all files are new.
+// other files in place are earlier ones. The new mark is moved in last: once it is in place, all files are
+// new.
 void OutputFolder::move_into_place() const {
   std::vector<fs::path> replaced;
   for (const fs::path& name : entries(dir_)) {
@@ -161,8 +163,8 @@ void OutputFolder::move_into_place() const {
   sync_folder(dir_);
 }
 
-// The files that an unfinished commit, possibly of another run, moves into place. Empty if that commit was
-// undone and its remains were being removed.
+// The names of the files that an unfinished commit, possibly of another run, was moving into place. Empty if
+// the commit was already undone and the run was killed while it removed its files.
 std::vector<fs::path> OutputFolder::moved_names() const {
   std::vector<fs::path> names;
   if (!is_file(aside() / kNames)) return names;

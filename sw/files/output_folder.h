@@ -13,35 +13,36 @@ namespace stereotlm::files {
 
 // The folder in DIR that holds unfinished files.
 inline constexpr const char* kAsideFolder = ".partial";
-// Its subfolder for the replaced files during a commit.
+// The subfolder of kAsideFolder that holds the replaced files during a commit.
 inline constexpr const char* kEarlierFolder = "earlier";
 
-// The files that a command writes into a folder, DIR.
+// Describes the files that a command writes into a folder, DIR.
 struct OutputContent {
   std::string called;  // name of DIR in messages: "result folder"
   std::string mark;    // the file that is moved into place last: if it exists, all files are complete
-  // The path below DIR of something in `entry` that the command did not write ("thesis.tex", "frames/note").
-  // `entry` is in DIR, or was written aside to be moved there.
+  // Returns the path below DIR of a file in `entry` that the command did not write ("thesis.tex",
+  // "frames/note"); nullopt if there is none. `entry` is in DIR, or in the folder of unfinished files.
   std::function<std::optional<std::string>(const std::filesystem::path& entry)> foreign;
-  // Why DIR must not be written to. `was_left`: a killed run has left files there.
+  // Returns the reason why DIR must not be written to; nullopt if there is none. `was_left`: a killed run has
+  // left unfinished files in DIR.
   std::function<std::optional<std::string>(const std::filesystem::path& dir, bool was_left)> problem;
   // Whether a commit removes an entry of DIR. Not set: it removes all entries that are not foreign.
   std::function<bool(const std::filesystem::path& entry)> replaced = nullptr;
-  std::string aside = kAsideFolder;
+  std::string aside = kAsideFolder;  // name of the folder of unfinished files
 };
 
-// A folder whose files are replaced all together by commit(). Before, it is unchanged.
+// The output folder of a command. commit() replaces its files all together; until then they are unchanged.
 //
 // New files are written to DIR/.partial (inside DIR, so that DIR may be a mount point). commit() moves them
-// into place. If an earlier run was killed, the constructor first puts back the files that it had moved, and
-// removes those that it left. DIR/.partial is locked: a second run is refused.
+// into place. If an earlier run was killed, the constructor undoes its unfinished commit and removes its new
+// files. While the object exists, DIR/.partial is locked, so that a second run is refused.
 class OutputFolder {
  public:
-  // Creates DIR and its missing parents and checks that DIR is writable. Changes nothing and throws
-  // std::runtime_error if DIR is not writable, another run uses it, DIR/.partial holds foreign files, or
+  // Creates DIR and its missing parents and checks that DIR is writable. Throws std::runtime_error, and
+  // changes nothing, if DIR is not writable, another run uses it, DIR/.partial holds foreign files, or
   // OutputContent reports a problem with DIR.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
-  // Without commit(): removes everything that it created. An earlier result is unchanged.
+  // Without commit(): removes everything that this object has created. An earlier result is unchanged.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -57,7 +58,7 @@ class OutputFolder {
   // before. If it fails, restores all files and throws std::runtime_error.
   void commit();
 
-  // Throws std::runtime_error with the folder's name.
+  // Throws std::runtime_error: the name of the folder and `found`.
   [[noreturn]] void refuse(const std::string& found) const;
 
  private:

@@ -33,17 +33,20 @@ void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
   if (chmod(made.c_str(), mode) != 0) fail(errno, made);
 }
 
-// ".rows.csv.writing-" and 16 hexadecimal digits: a name that nobody else uses.
+// The hidden file for "rows.csv" is ".rows.csv.writing-" and this number of random hexadecimal digits.
 constexpr std::size_t kDigits = 16;
+
+// The name of the hidden file without its digits.
 std::string beginning(const fs::path& path) {
-  constexpr std::size_t kMostBytes =
-      200;  // limit for the part from the file's name: file systems limit names to 255 bytes
+  // Limit for the part from the file's name: file systems limit names to 255 bytes.
+  constexpr std::size_t kMostBytes = 200;
   return fmt::format(".{}.writing-", path.filename().string().substr(0, kMostBytes));
 }
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-// A file without a lock is not being written. On a file system without locks the file stays.
+// Removes a hidden file if no process has locked it, and hence none is writing it. On a file system without
+// locks the file stays.
 void remove_if_left(const fs::path& aside) {
   const int file = open(aside.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return;
@@ -80,7 +83,8 @@ ReplacedFile::ReplacedFile(const fs::path& path) : path_(linked_file(path)) {
   }
 }
 
-// False if the name is taken, or another process has removed the file before it was locked.
+// Creates and locks the hidden file. Returns false if its name is taken, or if another process has removed
+// the file before it was locked.
 bool ReplacedFile::make() {
   std::random_device random;
   aside_ = folder_of(path_) / fmt::format("{}{:08x}{:08x}", beginning(path_), random(), random());

@@ -12,14 +12,16 @@ namespace stereotlm::files {
 // std::system_error.
 std::filesystem::path linked_file(const std::filesystem::path& path);
 
-// Renames `made`, a complete new file, to `file` in the same folder. If `file` exists, `made` gets its mode and
-// owner first. Only root may change the owner: for other users the owner stays. If the group cannot be changed
-// either, it gets the permissions of all other users. Throws std::system_error.
+// Renames `made`, a complete new file, to `file` in the same folder. If `file` exists, `made` first gets its
+// mode, owner and group. Only root may change the owner; for other users, the new file keeps the owner of
+// `made`. If the group cannot be changed either, the group gets the permissions of all other users. Throws
+// std::system_error.
 void take_place(const std::filesystem::path& made, const std::filesystem::path& file);
 
-// A file that commit() replaces as a whole, see take_place(). Before, it is unchanged. If the path is a symbolic
-// link, the file that it leads to is replaced and the link stays. The new content goes to a file in the same
-// folder whose name begins with the file's own. All functions throw std::system_error with the cause as code.
+// Replaces a file as a whole. The new content is first written to a hidden file in the same folder; commit()
+// puts that file in place with take_place(). Until then the earlier file is unchanged. If the path is a
+// symbolic link, the file to which the link leads is replaced, and the link stays. All functions throw
+// std::system_error with the cause as code.
 class ReplacedFile {
  public:
   // Throws also if the file exists and is no regular file.
@@ -41,7 +43,7 @@ class ReplacedFile {
   int lock_ = -1;  // descriptor of the file aside, which is locked while this process writes it
 };
 
-// Removes files that killed processes have written aside for the file `path`.
+// Removes the hidden files that killed processes have left beside the file `path`.
 void remove_left_aside(const std::filesystem::path& path) noexcept;
 
 }  // namespace stereotlm::files

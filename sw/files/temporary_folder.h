@@ -5,8 +5,8 @@
 
 namespace stereotlm::files {
 
-// The folder for temporary files: the value of the first of TMPDIR, TMP, TEMP and TEMPDIR that is set, else
-// /tmp.
+// Where temporary files go: the first of the environment variables TMPDIR, TMP, TEMP and TEMPDIR that is set,
+// and its value; if none is set, TMPDIR and /tmp.
 struct TemporaryPlace {
   std::string variable;
   std::string folder;

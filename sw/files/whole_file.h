@@ -8,8 +8,8 @@
 
 namespace stereotlm::files {
 
-// Writes a new file and makes it durable. Throws std::system_error with the cause as code if the file exists or
-// a byte cannot be stored. The caller then removes the file.
+// Writes a new file and makes it durable. Throws std::system_error with the cause as code if the file exists
+// or a byte cannot be stored. The caller then removes the file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 // Reads the whole content. Throws std::runtime_error with path and cause if it is no readable regular file. A

@@ -4,8 +4,8 @@
 
 namespace stereotlm::media {
 
-// Captures what is written to the process's standard error: through OpenCV, decoders report problems only there.
-// No other thread may write to standard error while an object exists.
+// Captures what the process writes to standard error, because the decoders of OpenCV report some problems
+// nowhere else. No other thread may write to standard error while an object exists.
 class CapturedStderr {
  public:
   CapturedStderr();

@@ -9,8 +9,8 @@
 
 namespace stereotlm::media {
 
-// Encodes images to the bytes of a file. In a disparity image kernels::kInvalidDisparity marks invalid pixels.
-// Equal images give equal bytes. All throw std::invalid_argument for an empty image.
+// Encodes images to the bytes of a file. In a disparity image kernels::kInvalidDisparity marks invalid
+// pixels. Equal images give equal bytes. All throw std::invalid_argument for an empty image.
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
 
@@ -24,8 +24,8 @@ std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& d
 // Portable float map: one channel, little endian (scale -1.0), rows bottom to top, invalid = +infinity.
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity);
 
-// For display: the truth rounded to whole disparities (halves up). Invalid where the truth is unknown or outside
-// 0 .. disparities-1.
+// For display: the truth rounded to whole disparities (halves up). Invalid where the truth is unknown or
+// outside 0 .. disparities-1.
 kernels::GrayImage nearest_disparity(const Truth& truth, int disparities);
 
 }  // namespace stereotlm::media

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sw/media/media_file.h"
+#include "sw/media/media_errors.h"
 #include "sw/media/picture_file.h"
 
 namespace stereotlm::media {
@@ -32,7 +32,7 @@ Truth load_truth(const std::string& path, double scale) {
     throw std::invalid_argument("truth scale = " + std::to_string(scale) + ": must be positive and finite");
   }
   const cv::Mat picture = read_picture(path);
-  if (picture.channels() != 1) refuse(path, "8-bit colour", "ground truth must be 8-bit grey");
+  if (picture.channels() != 1) throw_media_error(path, "8-bit colour", "ground truth must be 8-bit grey");
   return {to_gray_image(picture), scale};
 }
 

@@ -7,16 +7,18 @@
 
 namespace stereotlm::media {
 
-// Both functions accept the formats of kPictureFormats. The format is detected from the content, not the name. A
-// picture is decoded as stored: an EXIF orientation is not applied. Each throws one std::runtime_error
-// `'path': what was found: rule` for
+// load_gray() and load_truth() accept the formats of kPictureFormats. The format is detected from the
+// content, not the name. A picture is decoded as stored: an EXIF orientation is not applied. Each throws one
+// std::runtime_error `'path': what was found: rule` for
 // - a file that is missing, not regular, empty, truncated, damaged or no picture;
 // - a picture larger than the largest image of a board, which is found from its header without decoding;
 // - alpha, transparency, 16-bit and float pixels;
 // - grey of fewer than 8 bits (PNG of 1, 2, 4 bits; PNM with a maximum other than 255): OpenCV stretches its
 //   levels in some formats only.
-// They print nothing: standard error is captured during the call, so no other thread may write there.
+// The functions print nothing: standard error is captured during the call, so no other thread may write
+// there.
 
+// The result of load_gray().
 struct LoadedGray {
   kernels::GrayImage image;
   bool converted_from_colour = false;

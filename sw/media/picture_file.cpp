@@ -17,7 +17,7 @@
 
 #include "models/fpga/core_config.h"
 #include "sw/media/captured_stderr.h"
-#include "sw/media/media_file.h"
+#include "sw/media/media_errors.h"
 #include "sw/media/picture_header.h"
 
 namespace stereotlm::media {
@@ -27,7 +27,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr const char* kRule = "a picture must be 8-bit grey or 8-bit colour, without alpha";
 
-// Limit for the file of the largest picture of a board: pixels as text, or colour with much metadata.
+// The largest file that is read: enough for the largest picture of a board with its pixels as text, or in
+// colour with much metadata.
 constexpr std::uintmax_t kMostBytes = 16 * fpga::kWidthRule.max * fpga::kHeightRule.max;
 
 Bytes read_bytes(const std::string& path) {
@@ -35,19 +36,20 @@ Bytes read_bytes(const std::string& path) {
   check_regular_file(path, kFileRule);
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) refuse(path, error.message(), kFileRule);
+  if (error) throw_media_error(path, error.message(), kFileRule);
   if (size > kMostBytes)
-    refuse(path, fmt::format("{} bytes", size), fmt::format("a picture must have {} at most", kMostBytes));
+    throw_media_error(path, fmt::format("{} bytes", size),
+                      fmt::format("a picture must have {} at most", kMostBytes));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) refuse(path, std::strerror(errno), kFileRule);
+  if (!file) throw_media_error(path, std::strerror(errno), kFileRule);
   Bytes bytes;
   std::uint8_t buffer[1 << 16];
   std::size_t count = 0;
   while ((count = std::fread(buffer, 1, sizeof buffer, file.get())) > 0) {
     bytes.insert(bytes.end(), buffer, buffer + count);
   }
-  if (std::ferror(file.get()) != 0) refuse(path, std::strerror(errno), kFileRule);
-  if (bytes.empty()) refuse(path, "an empty file", kRule);
+  if (std::ferror(file.get()) != 0) throw_media_error(path, std::strerror(errno), kFileRule);
+  if (bytes.empty()) throw_media_error(path, "an empty file", kRule);
   return bytes;
 }
 
@@ -57,11 +59,11 @@ bool starts_with(const Bytes& bytes, const std::string& text) {
 
 struct JpegSegments {
   int scans = 0;
-  bool is_complete = false;  // it has an end-of-image marker
+  bool is_complete = false;  // the file has an end-of-image marker
 };
 
-// OpenCV 4.6 silently fills the missing part of a truncated sequential JPEG. It reports truncation of every other
-// format when it decodes from memory.
+// Counts the scans of a JPEG and finds its end. OpenCV 4.6 silently fills the missing part of a truncated
+// sequential JPEG; it reports the truncation of every other format when it decodes from memory.
 JpegSegments jpeg_segments(const Bytes& bytes) {
   JpegSegments found;
   std::size_t at = 2;  // after the start-of-image marker
@@ -95,29 +97,29 @@ bool png_has_chunk(const Bytes& bytes, const char* type) {
   return false;
 }
 
-// Limit for the scans of a progressive JPEG. Encoders make about a dozen. Each costs a pass over all pixels, even
-// if it is empty.
+// Limit for the scans of a progressive JPEG. Encoders make about a dozen. Decoding a scan takes a pass over
+// all pixels, even if the scan is empty.
 constexpr int kMostScans = 100;
 
 // Checks the size before decoding: OpenCV allocates whatever size a header states.
 void check_size(const std::string& path, const std::optional<PictureSize>& size) {
-  if (!size) refuse(path, "truncated or damaged in its header", "a picture must be complete");
+  if (!size) throw_media_error(path, "truncated or damaged in its header", "a picture must be complete");
   const auto width = static_cast<std::uint64_t>(fpga::kWidthRule.max);
   const auto height = static_cast<std::uint64_t>(fpga::kHeightRule.max);
   if (size->width <= width && size->height <= height) return;
-  refuse(path, fmt::format("{}x{} pixels", size->width, size->height),
-         fmt::format("a board's images are {}x{} at most", width, height));
+  throw_media_error(path, fmt::format("{}x{} pixels", size->width, size->height),
+                    fmt::format("a board's images are {}x{} at most", width, height));
 }
 
-// Properties that OpenCV changes silently: it stretches levels, drops transparency, and reads some greys as
-// black.
+// Refuses files that OpenCV would not decode as stored: without notice it stretches levels, drops
+// transparency, and reads some greys as black.
 void check_stored_form(const std::string& path, const Bytes& bytes) {
   constexpr std::size_t kPngDepth = 24;
   constexpr std::size_t kPngColourType = 25;
   if (starts_with(bytes, "\x89PNG") && bytes.size() > kPngColourType) {
-    if (png_has_chunk(bytes, "tRNS")) refuse(path, "a PNG with transparency (tRNS)", kRule);
+    if (png_has_chunk(bytes, "tRNS")) throw_media_error(path, "a PNG with transparency (tRNS)", kRule);
     if (bytes[kPngColourType] == 0 && bytes[kPngDepth] < 8) {
-      refuse(path, fmt::format("{}-bit grey", bytes[kPngDepth]), kRule);
+      throw_media_error(path, fmt::format("{}-bit grey", bytes[kPngDepth]), kRule);
     }
   }
   constexpr std::size_t kRasDepth = 15;
@@ -125,14 +127,15 @@ void check_stored_form(const std::string& path, const Bytes& bytes) {
   if (starts_with(bytes, "\x59\xA6\x6A\x95") && bytes.size() > kRasMapLength + 4 && bytes[kRasDepth] == 8 &&
       std::all_of(&bytes[kRasMapLength], &bytes[kRasMapLength + 4],
                   [](std::uint8_t byte) { return byte == 0; })) {
-    refuse(path, "a Sun raster without colour map", "OpenCV 4.6 reads it as black");
+    throw_media_error(path, "a Sun raster without colour map", "OpenCV 4.6 reads it as black");
   }
   const bool is_pnm = bytes.size() > 2 && bytes[0] == 'P' && std::isspace(bytes[2]) != 0;
-  if (is_pnm && (bytes[1] == '1' || bytes[1] == '4')) refuse(path, "1-bit black and white", kRule);
+  if (is_pnm && (bytes[1] == '1' || bytes[1] == '4')) throw_media_error(path, "1-bit black and white", kRule);
   if (is_pnm && bytes[1] >= '2' && bytes[1] <= '7') {
     const auto maximum = bytes[1] == '7' ? pam_number(bytes, "MAXVAL") : pnm_number(bytes, 2);
     if (maximum && *maximum != 255) {
-      refuse(path, fmt::format("a maximum level of {}", *maximum), "a PGM, PPM or PAM must state 255");
+      throw_media_error(path, fmt::format("a maximum level of {}", *maximum),
+                        "a PGM, PPM or PAM must state 255");
     }
   }
 }
@@ -154,13 +157,14 @@ cv::Mat read_picture(const std::string& path) {
   const Bytes bytes = read_bytes(path);
   const std::optional<PictureHeader> header = read_header(bytes);
   if (!header) {
-    refuse(path, "not a picture in a format that is read",
-           fmt::format("a picture must be {}", kPictureFormats));
+    throw_media_error(path, "not a picture in a format that is read",
+                      fmt::format("a picture must be {}", kPictureFormats));
   }
   check_size(path, header->size);
   const JpegSegments jpeg = header->is_jpeg ? jpeg_segments(bytes) : JpegSegments{1, true};
   if (jpeg.scans > kMostScans) {
-    refuse(path, fmt::format("{} scans", jpeg.scans), fmt::format("a JPEG must have {} at most", kMostScans));
+    throw_media_error(path, fmt::format("{} scans", jpeg.scans),
+                      fmt::format("a JPEG must have {} at most", kMostScans));
   }
   cv::Mat picture;
   std::string complaint;
@@ -174,14 +178,14 @@ cv::Mat read_picture(const std::string& path) {
     complaint = captured.text();
   }
   if (picture.empty() || !jpeg.is_complete) {
-    refuse(path, "truncated or damaged", "a picture must be complete");
+    throw_media_error(path, "truncated or damaged", "a picture must be complete");
   }
   // libjpeg only warns: it fills damaged scan data with grey and continues.
   if (header->is_jpeg && complaint.find("Corrupt JPEG data") != std::string::npos) {
-    refuse(path, "a damaged JPEG", "a picture must be complete");
+    throw_media_error(path, "a damaged JPEG", "a picture must be complete");
   }
   if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3)) {
-    refuse(path, description(picture), kRule);
+    throw_media_error(path, description(picture), kRule);
   }
   check_stored_form(path, bytes);
   return picture;

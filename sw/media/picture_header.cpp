@@ -55,7 +55,8 @@ Size png_size(const Bytes& bytes) {
   return holds(bytes, 12, "IHDR") ? view.size(view.number(16, 4), view.number(20, 4)) : std::nullopt;
 }
 
-// The size is in the frame header: SOF0 to SOF15, without three markers of other kinds.
+// The size is in the frame header. Its marker is one of SOF0 to SOF15, 0xFFC0 to 0xFFCF, three of which are
+// markers of other segments.
 Size jpeg_size(const Bytes& bytes) {
   View view(bytes, View::Order::kBig);
   for (std::size_t at = 2; view.whole();) {
@@ -88,15 +89,15 @@ Size sun_raster_size(const Bytes& bytes) {
   return view.size(view.number(4, 4), view.number(8, 4));
 }
 
-// The size of the first page. A decoder allocates whole tiles, or strips of many rows.
+// The size of the first page, or of one of its tiles or strips if that is larger, because a decoder allocates
+// whole tiles and strips.
 Size tiff_size(const Bytes& bytes) {
   View view(bytes, bytes[0] == 'M' ? View::Order::kBig : View::Order::kLittle);
   PictureSize size;
   std::size_t entry = view.offset(4) + 2;
   for (std::uint64_t left = view.number(entry - 2, 2); left > 0 && view.whole(); --left, entry += 12) {
     constexpr std::uint64_t kShort = 3;
-    constexpr std::uint64_t kOneStrip =
-        0x7FFFFFFF;  // rows per strip from here on mean: all rows in one strip
+    constexpr std::uint64_t kOneStrip = 0x7FFFFFFF;  // as many rows per strip, or more: there is one strip
     const std::uint64_t value = view.number(entry + 8, view.number(entry + 2, 2) == kShort ? 2 : 4);
     switch (view.number(entry, 2)) {
       case 256:  // ImageWidth
@@ -127,7 +128,8 @@ Size webp_size(const Bytes& bytes) {
   return view.size(view.number(26, 2) & 0x3FFFU, view.number(28, 2) & 0x3FFFU);
 }
 
-// The size is in the first segment of the code stream, SIZ: end and origin of the grid.
+// The size is in the first segment of the code stream, SIZ, which has the end and the origin of the image in
+// its grid.
 Size jpeg_2000_size(const Bytes& bytes) {
   constexpr std::string_view kBegin = "\xFF\x4F\xFF\x51";
   const auto same = [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); };

@@ -23,7 +23,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   std::uint64_t next() { return mixed(state_ += kStep); }
-  // 0 .. count-1
+  // A number from 0 to count-1.
   std::uint64_t below(std::uint64_t count) { return next() % count; }
 
  private:
@@ -36,13 +36,14 @@ int noise(std::uint64_t texture, int column, int row, unsigned bits) {
   return static_cast<int>(mixed(texture + position * kStep) >> (64 - bits));
 }
 
-// Fine noise on patches of 4 x 4 pixels: 24..213, never flat.
+// The grey level of a texture, 24..214: the sum of noise by pixel and noise by patch of 4 x 4 pixels, so that
+// no area is flat.
 std::uint8_t texel(std::uint64_t texture, int column, int row) {
   return static_cast<std::uint8_t>(24 + noise(texture, column, row, 7) +
                                    noise(~texture, column / 4, row / 4, 6));
 }
 
-// A length from one to three eighths of the side.
+// A random length from one to three eighths of the side.
 int size_within(int side, Random& random) {
   const int part = side / 8 + static_cast<int>(random.below(static_cast<std::uint64_t>(side) / 4 + 1));
   return std::max(1, part);
@@ -109,7 +110,8 @@ void SyntheticScene::draw_background(Frame& frame) const {
   }
 }
 
-// Draws far boxes first: a box hides all that was drawn before it, in both pictures.
+// Draws a box over everything that was drawn before, in both pictures. The boxes are therefore drawn in the
+// order of their distance, farthest first.
 void SyntheticScene::draw(const Box& box, std::uint64_t number, Frame& frame) const {
   const int first_column = box.column.at(number);
   const int first_row = box.row.at(number);

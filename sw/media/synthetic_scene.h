@@ -7,25 +7,26 @@
 
 namespace stereotlm::media {
 
-// A moving scene with known disparities: a far wall, a floor that rises towards the viewer, and boxes at several
-// depths that move from frame to frame and bounce at the border of the left picture. All surfaces have a noise
-// texture. Two ideal cameras without noise see them: a point at column x of the left picture is at column x - d
-// of the right one, unless something nearer hides it.
+// A moving scene with known disparities: a far wall, a floor that rises towards the viewer, and boxes at
+// several depths that move from frame to frame and bounce at the border of the left picture. All surfaces
+// have a noise texture. Two ideal cameras without noise see them: a point at column x of the left picture is
+// at column x - d of the right one, unless something nearer hides it.
 //
 // Uses integer arithmetic and SplitMix64, so that the pictures are equal on every machine. Frames can be
 // requested in any order, without limit.
 class SyntheticScene {
  public:
-  // A scene for a board with images of this size. Its disparities are 1 .. disparities-1, at most a quarter of
-  // the width; all are 0 if disparities = 1. Throws std::invalid_argument if the arguments break the rules of a
-  // board.
+  // A scene for a board with images of this size. Its disparities are 1 .. disparities-1, at most a quarter
+  // of the width; all are 0 if disparities = 1. Throws std::invalid_argument if the arguments break the rules
+  // of a board.
   SyntheticScene(std::uint64_t seed, int width, int height, int disparities);
 
+  // The pictures of both cameras, and their ground truth.
   struct Frame {
     kernels::GrayImage left;
     kernels::GrayImage right;
-    kernels::GrayImage
-        disparity;  // referenced to the left picture, also for pixels that the right camera cannot see
+    // Referenced to the left picture. Pixels that the right camera cannot see have their disparities too.
+    kernels::GrayImage disparity;
   };
   // Costs about 15 ms at 640x480.
   Frame frame(std::uint64_t number) const;

@@ -13,15 +13,15 @@
 
 #include "models/fpga/core_config.h"
 #include "sw/media/captured_stderr.h"
-#include "sw/media/media_file.h"
+#include "sw/media/media_errors.h"
 
 namespace stereotlm::media {
 namespace {
 
 using kernels::GrayImage;
 
-// Only containers that hold the video itself: a playlist would open files that the user has not named. FFmpeg
-// drops a packet that it knows to be truncated.
+// Options for FFmpeg. It opens only containers that hold the video itself, because a playlist would open
+// files that the user has not named. It drops packets that it knows to be truncated.
 constexpr const char* kOptions =
     "format_whitelist;avi,matroska,webm,mov,mp4,mpeg,mpegts,ogg,asf,flv,yuv4mpegpipe|fflags;discardcorrupt";
 constexpr const char* kRule =
@@ -31,8 +31,8 @@ constexpr const char* kRule =
 constexpr std::int64_t kMostWidth = 2 * fpga::kWidthRule.max;
 constexpr std::int64_t kMostHeight = 2 * fpga::kHeightRule.max;
 
-// A frame may be larger than the file's header states. So the memory of FFmpeg is limited to the largest pair at
-// four channels of 16 bits; a frame that needs more cannot be decoded.
+// Limits the memory of FFmpeg to the largest pair at four channels of 16 bits, because a frame may be larger
+// than the file's header states. A frame that needs more memory cannot be decoded.
 void limit_memory() {
   constexpr std::size_t kMostBytes = 8 * 2 * fpga::kWidthRule.max * fpga::kHeightRule.max;
   using Limit = void(std::size_t);
@@ -57,7 +57,8 @@ class FfmpegVideo : public Video {
     limit_memory();
     if (!open()) {
       const std::string complaint = captured.text();
-      refuse(path_, complaint.empty() ? "no video" : "'" + first_complaint(complaint) + "'", kRule);
+      throw_media_error(path_, complaint.empty() ? "no video" : "'" + first_complaint(complaint) + "'",
+                        kRule);
     }
     check_header(check);
     const double stated = capture_.get(cv::CAP_PROP_FRAME_COUNT);
@@ -65,9 +66,10 @@ class FfmpegVideo : public Video {
     count();
     const std::string complaint = captured.text();
     if (!complaint.empty()) {
-      refuse(path_, fmt::format("'{}'", first_complaint(complaint)), "a video must decode without errors");
+      throw_media_error(path_, fmt::format("'{}'", first_complaint(complaint)),
+                        "a video must decode without errors");
     }
-    if (frames_ == 0) refuse(path_, "no frame can be decoded", kRule);
+    if (frames_ == 0) throw_media_error(path_, "no frame can be decoded", kRule);
     check(size_.width, size_.height);
   }
 
@@ -82,8 +84,8 @@ class FfmpegVideo : public Video {
     while (is_there && next_ <= index) is_there = next_++ < index ? capture_.grab() : capture_.read(picture_);
     if (!is_there || picture_.size() != size_) {
       capture_.release();
-      refuse(path_, fmt::format("frame {} cannot be decoded any more", index),
-             "a video must not change during a run");
+      throw_media_error(path_, fmt::format("frame {} cannot be decoded any more", index),
+                        "a video must not change during a run");
     }
     convert();
     return image_;
@@ -106,8 +108,8 @@ class FfmpegVideo : public Video {
     const auto width = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
     const auto height = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
     if (width > kMostWidth || height > kMostHeight) {
-      refuse(path_, fmt::format("{}x{} pixels", width, height),
-             fmt::format("two of a board's images are {}x{} at most", kMostWidth, kMostHeight));
+      throw_media_error(path_, fmt::format("{}x{} pixels", width, height),
+                        fmt::format("two of a board's images are {}x{} at most", kMostWidth, kMostHeight));
     }
     check(width, height);
   }

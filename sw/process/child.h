@@ -9,9 +9,9 @@
 
 namespace stereotlm::process {
 
-// A child process that does one piece of work and sends messages about it. A process can elaborate SystemC
-// only once; a child that is forked from a process in which everything is loaded starts a run without loading
-// a program.
+// A child process that does one piece of work and sends messages about it. Simulations run in such processes,
+// because a process can elaborate SystemC only once. A fork starts faster than a program, because all
+// libraries are already loaded.
 class Child {
  public:
   using Tell = std::function<void(const std::string& message)>;
@@ -21,9 +21,9 @@ class Child {
   explicit Child(const std::function<void(const Tell& tell)>& work);
 
   // Waits until next() would return without waiting, a signal has been caught, or the time is over. Returns
-  // whether next() would return without waiting.
+  // true in the first case.
   bool has_news(std::chrono::milliseconds wait);
-  // Waits for the next message. Returns nothing once the work is done. If the child fails, throws
+  // Waits for the next message. Returns nullopt once the work is done. If the child fails, throws
   // std::runtime_error with the text of the exception that `work` threw, std::bad_alloc if it threw that, or
   // EndedBySignal if a signal ended the child.
   std::optional<std::string> next();

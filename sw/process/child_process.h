@@ -10,7 +10,7 @@
 
 namespace stereotlm::process {
 
-// A signal ended the process that did a piece of work.
+// Thrown if a signal has ended a child process.
 class EndedBySignal : public std::runtime_error {
  public:
   EndedBySignal(const std::string& text, int signal) : std::runtime_error(text), signal_(signal) {}
@@ -46,7 +46,7 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// A process that is forked from this one and ends with it.
+// A child process, forked from this process. It is killed when this process ends.
 class ChildProcess {
  public:
   // Forks. The child has a copy of everything but the threads; it shares open files and their positions with

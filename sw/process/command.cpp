@@ -40,7 +40,7 @@ class OutputFile {
   int descriptor_;
 };
 
-// The open files and the attributes that the process starts with.
+// The open files and the attributes with which a program starts.
 class SpawnSetup {
  public:
   SpawnSetup(int out, int errors) {
@@ -50,7 +50,7 @@ class SpawnSetup {
     posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
     posix_spawnattr_init(&attributes_);
     posix_spawnattr_setpgroup(&attributes_, 0);
-    sigset_t ignored_here;  // by default these signals end a program
+    sigset_t ignored_here;  // ignored in this process; reset to their default, which ends the program
     sigemptyset(&ignored_here);
     sigaddset(&ignored_here, SIGPIPE);
     sigaddset(&ignored_here, SIGXFSZ);

@@ -6,7 +6,7 @@
 
 namespace stereotlm::process {
 
-// The program was not found.
+// Thrown if the program was not found.
 class CommandMissing : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,10 +19,10 @@ struct CommandEnd {
   std::string errors;
 };
 
-// Runs the program words[0], which is looked for in PATH, with these words and without a shell, and waits
-// until it ends. Its standard input is empty. It has the environment of this process without the variables
-// that begin with one of `hidden`. Ctrl-C in a terminal does not reach it. Throws CommandMissing and
-// std::system_error.
+// Runs the program words[0], which is searched in PATH, with the other words as arguments and without a
+// shell, and waits until it has ended. Its standard input is empty. Its environment is that of this process
+// without the variables whose names begin with one of `hidden`. Ctrl-C in a terminal does not reach the
+// program. Throws CommandMissing and std::system_error.
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden = {});
 
 }  // namespace stereotlm::process

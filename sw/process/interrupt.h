@@ -6,6 +6,7 @@ namespace stereotlm::process {
 // second one ends it. A signal that the caller has set to be ignored stays ignored.
 void catch_interrupts();
 
+// Whether such a signal has been recorded.
 bool interrupted();
 
 }  // namespace stereotlm::process

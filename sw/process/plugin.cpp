@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/fpga/core_config.h"
-#include "sw/process/program.h"
+#include "sw/process/installation.h"
 
 namespace stereotlm::process {
 namespace {

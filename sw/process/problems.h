@@ -10,7 +10,7 @@
 
 namespace stereotlm::process {
 
-// A command is refused before it has done anything (exit status 2). Holds the lines for standard error.
+// Thrown to refuse a command before it has done anything (exit status 2). Holds the lines for standard error.
 class Refused : public std::exception {
  public:
   explicit Refused(std::vector<std::string> lines) : lines_(std::move(lines)) {}

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/process/program.h"
+#include "sw/process/installation.h"
 
 namespace stereotlm::process {
 namespace {

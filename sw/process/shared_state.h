@@ -6,7 +6,7 @@
 
 namespace stereotlm::process {
 
-// Memory that the processes of a sweep share: it is the same on both sides of fork().
+// State that the processes of a sweep share, in memory that stays common after fork().
 class SharedState {
  public:
   SharedState();  // throws std::system_error
@@ -14,11 +14,12 @@ class SharedState {
   SharedState(const SharedState&) = delete;
   SharedState& operator=(const SharedState&) = delete;
 
-  // Once it is true, no process begins another point.
+  // Set to true to keep every process from beginning another point.
   std::atomic<bool>& stop() const { return page_->stop; }
 
-  // A lock that one process holds at a time. The others wait; if the holder dies, the next process gets the
-  // lock. (SQLite's own wait polls every few milliseconds.)
+  // Holds a lock from its construction to its destruction. The constructor waits while another process holds
+  // the lock; if that process dies, the lock is free. Used for writes to the database, because SQLite's own
+  // wait polls every few milliseconds.
   class Turn {
    public:
     explicit Turn(const SharedState& state);

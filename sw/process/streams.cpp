@@ -26,7 +26,7 @@ void say(const std::string& kind, const std::string& text) {
 }
 
 void prepare_streams() {
-  // Opened for the wrong direction, so that using the stream still fails.
+  // /dev/null is opened for the opposite direction, so that using the stream still fails.
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
     static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));

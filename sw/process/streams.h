@@ -12,9 +12,9 @@ void print(std::string_view text);
 // Writes one line to standard error: "stereotlm: KIND: text".
 void say(const std::string& kind, const std::string& text);
 
-// Opens descriptors 0, 1 and 2 where the caller has closed them, so that no other file gets one of them.
-// After it, a write that fails because of a closed pipe or of the limit on file sizes returns an error
-// instead of ending the process.
+// Opens descriptors 0, 1 and 2 where the caller has closed them, so that no other file gets one of them. From
+// then on, a write to a closed pipe or beyond the limit on file sizes returns an error instead of ending the
+// process.
 void prepare_streams();
 
 }  // namespace stereotlm::process

@@ -13,16 +13,16 @@
 namespace stereotlm::report {
 namespace {
 
-// The column of a left pixel in the right picture; outside 0..width-1 if it lies outside the picture.
+// The column at which the right picture shows a left pixel; outside 0..width-1 if it does not show the pixel.
 double right_column(int x, int grey, double scale) { return std::floor(x - grey / scale + 0.5); }
 
-// For each pixel of a row: whether its truth is known and the right camera sees it too. Truths are compared as
-// grey levels, which are integers.
+// For each pixel of a row: whether its truth is known and the right camera sees it too. Truths are compared
+// as grey levels, which are integers.
 std::vector<bool> known_and_visible(const media::Truth& truth, int y) {
   const int width = truth.grey.width;
   const auto inside = [width](double column) { return column >= 0 && column < width; };
-  std::vector<int> nearest_grey(static_cast<std::size_t>(width),
-                                0);  // per right column: the largest truth that lands there
+  // By right column: the largest truth of the left pixels that it shows.
+  std::vector<int> nearest_grey(static_cast<std::size_t>(width), 0);
   for (int x = 0; x < width; ++x) {
     const int grey = truth.grey.at(x, y);
     const double column = right_column(x, grey, truth.scale);

@@ -7,15 +7,18 @@
 
 namespace stereotlm::report {
 
-// Percentages, 0..100, as the end of contract section 6 defines them. nullopt: the denominator is 0.
+// The accuracy of disparities, as the end of contract section 6 defines it, in percent, 0..100. Only pixels
+// count whose truth is known and which the right camera sees too. A pixel with a valid disparity is answered.
+// nullopt: the denominator is 0.
 struct Accuracy {
-  std::optional<double> bad_1_percent;     // answered pixels that are wrong by more than 1 disparity
-  std::optional<double> bad_2_percent;     // answered pixels that are wrong by more than 2
-  std::optional<double> answered_percent;  // known pixels, not occluded, that are answered
+  std::optional<double>
+      bad_1_percent;  // share of the answered pixels that are wrong by more than 1 disparity
+  std::optional<double> bad_2_percent;     // share of the answered pixels that are wrong by more than 2
+  std::optional<double> answered_percent;  // share of the pixels that are answered: the density
 };
 
-// `disparity`: referenced to the left picture; a pixel of kernels::kInvalidDisparity is not answered. Throws
-// std::invalid_argument if the sizes differ.
+// `disparity`: referenced to the left picture; kernels::kInvalidDisparity marks pixels without a valid
+// disparity. Throws std::invalid_argument if the sizes differ.
 Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth);
 
 }  // namespace stereotlm::report

@@ -8,6 +8,7 @@
 
 namespace stereotlm::report {
 
+// The clocks of a board, by which the table converts cycles to rates.
 struct ClocksMhz {
   double fpga = 40;
   double pci = 33.333;
@@ -18,8 +19,8 @@ struct ClocksMhz {
 // - Frames per second and their bounds.
 // - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).
 // - The largest row of blame.
-// - For a computer: each PCI master's traffic, its share of the peak of one word per clock and its mean wait for
-//   the bus; the use of both buses; dropped camera frames by reason; the latency.
+// - For a computer: each PCI master's traffic, its share of the peak of one word per clock and its mean wait
+//   for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - The accuracy, if given.
 // Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names.
 std::string console_table(const platform::Statistics& statistics, const ClocksMhz& clocks_mhz,

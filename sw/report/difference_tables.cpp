@@ -27,7 +27,7 @@ std::string text_of(const Value* value) {
 
 std::string signed_text(std::int64_t value) { return value == 0 ? "0" : fmt::format("{:+}", value); }
 
-// nullopt if a value is no number or missing in one run.
+// B - A as text; empty if a value is no number or is missing in one run.
 std::string difference_text(const Value* a, const Value* b) {
   if (a == nullptr || b == nullptr) return "";
   const auto number = [](const Value& value) {
@@ -46,7 +46,7 @@ struct Differing {
   const Value* b;
 };
 
-// Values in the order of A; values that only B has follow.
+// The values that differ, in the order of A; values that only B has follow.
 std::vector<Differing> differing(const Values& a, const Values& b) {
   const auto find = [](const Values& values, const std::string& path) -> const Value* {
     const auto found = std::find_if(values.begin(), values.end(),

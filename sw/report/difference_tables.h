@@ -11,21 +11,22 @@
 
 namespace stereotlm::report {
 
-// The tables that `diff` prints for two runs, A and B. A table shows only what differs; without differences it is
-// an empty string. Differences are B - A. Text is ASCII except names and values.
+// The tables that `diff` prints for two runs, A and B. A table shows only what differs; without differences
+// it is an empty string. Differences are B - A. Text is ASCII except names and values.
 
 // Values with their paths. A value that one run does not have is "-" there.
 using Values = std::vector<platform::BoardValue>;
 
-// The settings of the runs, at most kMostSettings. A value too long for its column has lines of its own.
+// The table of settings. It shows at most kMostSettings. A value too long for its column has lines of its
+// own.
 inline constexpr std::size_t kMostSettings = 30;
 std::string settings_table(const std::string& head, const Values& a, const Values& b);
 
-// Figures of the runs. Numbers have their difference beside them.
+// The table of figures. Beside two numbers it shows their difference.
 std::string figures_table(const std::string& head, const Values& a, const Values& b);
 
-// The cycles of frames with the same number in both runs. Frames with the same cycles share a line. Shows the
-// kMostLines largest differences, and the sum of the others.
+// The table of cycles of frames with the same number in both runs. Frames with the same cycles share a line.
+// It shows the kMostLines largest differences, and the sum of the others.
 inline constexpr std::size_t kMostLines = 10;
 std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
                          const std::vector<std::uint64_t>& cycles_b);
@@ -34,10 +35,10 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
 // (RowComparison::ranges(), at most kMostLines).
 std::string rows_table(const RowComparison& rows);
 
-// Sorted by difference, largest first.
+// The rows of blame, the largest difference first.
 std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b);
 
-// One line, even if no frame was compared.
+// The pixels that differ, in one line, which is not empty even if no frame was compared.
 std::string pixels_line(const PixelComparison& pixels);
 
 }  // namespace stereotlm::report

@@ -15,9 +15,9 @@ class PixelComparison {
 
   std::uint64_t frames() const { return frames_; }  // frames compared
   std::uint64_t frames_that_differ() const { return frames_that_differ_; }
-  std::uint64_t pixels() const { return pixels_; }  // pixels that differ
+  std::uint64_t pixels() const { return pixels_; }  // pixels that differ, over all frames
 
-  // The first pixel that differs: of the first frame, in the topmost row, leftmost.
+  // The first pixel that differs: the leftmost in the topmost row of the first frame with differences.
   struct First {
     std::uint64_t camera_frame = 0;
     int column = 0;

@@ -10,20 +10,21 @@
 
 namespace stereotlm::report {
 
-// The cycles and stalls of each row alone: from the completion of the row above, or from the start of the frame,
-// to its own completion.
+// The cycles and stalls of each row alone: from the completion of the row above, or from the start of the
+// frame, to its own completion.
 fpga::RowProfile rows_alone(const fpga::RowProfile& profile);
 
-// Compares the rows of results of two runs, A and B: the cycles and stalls that each row alone takes more in B.
+// Compares the rows of results of two runs, A and B: how many more cycles and stalls each row alone takes in
+// B.
 class RowComparison {
  public:
-  // Adds the next frame of both runs. Throws std::invalid_argument if the numbers of rows differ, or differ from
-  // earlier frames.
+  // Adds the next frame of both runs. Throws std::invalid_argument if the numbers of rows differ, or differ
+  // from earlier frames.
   void add(const fpga::RowProfile& a, const fpga::RowProfile& b);
 
   std::uint64_t frames() const { return frames_; }
 
-  // The first row that is complete at different cycles of its frame.
+  // The first row that the two runs complete in different cycles of the frame, and these cycles.
   struct Parting {
     std::uint64_t frame = 0;
     std::size_t row = 0;
@@ -39,18 +40,20 @@ class RowComparison {
   };
   const std::optional<OtherStalls>& other_stalls() const { return other_stalls_; }
 
-  // Adjacent rows. Figures are sums over the frames, B - A.
+  // A range of adjacent rows. Figures are sums over the frames, B - A.
   struct Range {
     std::size_t first_row = 0;
     std::size_t last_row = 0;
     std::int64_t cycles = 0;                                  // sum over the rows
-    std::int64_t least = 0;                                   // least cycles of one row
-    std::int64_t most = 0;                                    // most cycles of one row
+    std::int64_t least = 0;                                   // the least cycles of a single row
+    std::int64_t most = 0;                                    // the most cycles of a single row
     std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // sums over the rows
   };
-  // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same difference in
-  // cycles and stalls; if these are too many ranges, in cycles only; if still too many, ranges have equal
-  // heights. A range without any difference in its sums is left out, so that the others sum up to the whole.
+  // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same differences
+  // in cycles and in stalls. If that gives too many ranges, the rows of a range have only the same difference
+  // in cycles. If there are still too many, all ranges have the same height. A range whose rows do not differ
+  // in cycles, and whose sums do not differ in stalls, is left out; the others add up to the whole
+  // difference.
   std::vector<Range> ranges(std::size_t most_ranges) const;
 
  private:

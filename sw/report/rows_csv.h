@@ -10,14 +10,14 @@
 
 namespace stereotlm::report {
 
-// A CSV file of the rows of results of two runs, A and B: one line per frame and row with the row's own cycles
-// and stalls in both runs. commit() replaces the file as a whole (files::ReplacedFile). All functions throw
-// std::runtime_error with the file's name if it cannot be written.
+// Writes a CSV file with the rows of results of two runs, A and B: one line per frame and row with the row's
+// own cycles and stalls in both runs. commit() replaces the file as a whole (files::ReplacedFile). All
+// functions throw std::runtime_error with the file's name if it cannot be written.
 class RowsCsv {
  public:
   explicit RowsCsv(const std::filesystem::path& path);
 
-  // Adds the next frame of both runs, which has equally many rows in both.
+  // Adds the next frame of both runs. `a` and `b` have the same number of rows.
   void add(const fpga::RowProfile& a, const fpga::RowProfile& b);
   void commit();
 

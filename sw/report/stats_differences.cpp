@@ -9,7 +9,7 @@
 namespace stereotlm::report {
 namespace {
 
-// Every value with its path. Paths sort as in the document as long as lists are shorter than 10.
+// Every value by its path. Paths are sorted as text: entry 10 of a list comes before entry 2.
 std::map<std::string, std::string> values_of(const std::string& text) {
   std::map<std::string, std::string> values;
   try {

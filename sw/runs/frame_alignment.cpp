@@ -33,7 +33,8 @@ FrameAlignment::FrameAlignment(const RecordedRun& a, const RecordedRun& b, const
 
 bool FrameAlignment::run() {
   bool goes_on = read(a_) && read(b_);
-  // Takes frames in the order of the camera frames: neither run has then passed a frame the other still needs.
+  // Advances the run with the lower camera frame, or both runs if these are equal, so that neither run passes
+  // a frame that the other one still needs.
   while (goes_on && (a_.ahead || b_.ahead)) {
     const bool takes_a = a_.ahead && (!b_.ahead || a_.ahead->number <= b_.ahead->number);
     const bool takes_b = b_.ahead && (!a_.ahead || b_.ahead->number <= a_.ahead->number);
@@ -46,7 +47,7 @@ bool FrameAlignment::run() {
   return goes_on;
 }
 
-// Polls for interrupts while it waits.
+// Reads the next frame of a run. Polls for interrupts while it waits, and returns false after one.
 bool FrameAlignment::read(Side& side) {
   do {
     if (process::interrupted()) return false;

@@ -15,7 +15,8 @@
 
 namespace stereotlm::runs {
 
-// Why the rows or pixels of two runs, A and B, cannot be compared; empty if they can.
+// The reasons why the rows and the pixels of two runs, A and B, cannot be compared. A reason is empty if they
+// can.
 struct DiffLimits {
   DiffLimits(const RecordedRun& a, const RecordedRun& b);
 
@@ -23,26 +24,27 @@ struct DiffLimits {
   std::string pixels;
 };
 
-// Repeats two recorded runs side by side and compares them: the rows of equal frames of the core, and the
-// disparities of equal camera frames.
+// Repeats two recorded runs side by side and compares them: the rows of frames with the same number in the
+// core, and the disparities of frames that show the same camera frame.
 class FrameAlignment {
  public:
-  // Starts both runs. All arguments outlive the object; `csv` may be null.
+  // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null.
   FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, report::RowsCsv* csv);
 
-  // Runs until both have ended. Returns false at the first interrupt. Throws what Rerun::next() throws.
+  // Returns true when both runs have ended, and false at the first interrupt. Throws what Rerun::next()
+  // throws.
   bool run();
 
   const report::RowComparison& rows() const { return rows_; }
   const report::PixelComparison& pixels() const { return pixels_; }
 
  private:
-  // One of the two runs, with its next frame.
+  // One of the two runs, and the frames of it that are still to be compared.
   struct Side {
     explicit Side(const RecordedRun& run) : rerun(run) {}
 
     Rerun rerun;
-    std::optional<Rerun::Frame> ahead;
+    std::optional<Rerun::Frame> ahead;  // next frame of the run; nullopt after the last
     std::deque<fpga::RowProfile> rows;  // rows of frames that the other run has not reached
   };
 

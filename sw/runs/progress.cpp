@@ -33,7 +33,7 @@ std::string progress_text(const RunState& state, double seconds) {
   const auto done = static_cast<double>(state.frames_done);
   const double frame_cycles = state.frames_done > 0 ? static_cast<double>(state.cycles_of_done) / done
                                                     : static_cast<double>(state.least_frame_cycles);
-  // The running frame may be longer than earlier ones.
+  // Limited, because the running frame may be longer than earlier ones.
   const double part =
       std::min(0.999, static_cast<double>(state.cycles - state.cycles_of_done) / frame_cycles);
   const double position = state.frames_done == state.frames ? frames : done + part;

@@ -9,7 +9,8 @@
 
 namespace stereotlm::runs {
 
-// The progress of a run. A running frame counts in proportion to its simulated cycles.
+// The figures from which the progress of a run is computed. A running frame counts in proportion to its
+// simulated cycles.
 struct RunState {
   std::uint64_t frames = 0;  // frames of the whole run
   std::uint64_t frames_done = 0;
@@ -18,17 +19,17 @@ struct RunState {
   std::uint64_t least_frame_cycles = 1;  // assumed length of a frame until one has finished
 };
 
-// "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
+// For a run: "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
 
-// "3/10 points   30.0 %   2.0 points/s   0:04 left", of a sweep. `before`: points that were done when the
-// time began.
+// For a sweep: "3/10 points   30.0 %   2.0 points/s   0:04 left". `before`: points that were done before
+// `seconds` began.
 std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds);
 
-// "0:08", "1:02:03", "years"
+// A time for a progress line: "0:08", "1:02:03", or "years" for more than 30 years.
 std::string time_text(double seconds);
 
-// "verifying: 1/5 frames": the progress of the comparison with the other run.
+// For the comparison of --verify: "verifying: 1/5 frames".
 std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames);
 
 // A progress line on standard error, if that is a terminal. The destructor erases it.
@@ -41,7 +42,7 @@ class ProgressLine {
 
   // Redraws the line, at most a few times a second.
   void show(const RunState& state);
-  // `line` gets the seconds since construction.
+  // The same, with the text that `line` returns for the seconds since construction.
   void show(const std::function<std::string(double seconds)>& line);
   // Erases the line until the next show().
   void erase();

@@ -54,7 +54,7 @@ void check_input(const RecordedFile& input) {
                                        input.file.path, sha256, input.file.sha256));
 }
 
-// Throws std::runtime_error for figures that must not be compared.
+// Throws std::runtime_error if the text of stats.json is damaged, or if it lists something as failed.
 void check_figures(const std::string& text) {
   nlohmann::ordered_json document;
   try {
@@ -89,7 +89,7 @@ PictureSource pictures_of(const RecordedOptions& options) {
   return pictures;
 }
 
-// Throws std::runtime_error if the folder has new pairs.
+// Throws std::runtime_error if the folder has another number of pairs than the run used.
 void check_sequence(const InputFolder& found, const InputFolder& recorded) {
   if (found.files.size() == recorded.files.size()) return;
   throw std::runtime_error(fmt::format("'{}': {} pairs: must be those of the run, {}", found.path,

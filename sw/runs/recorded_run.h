@@ -20,15 +20,16 @@ struct RecordedRun {
   std::string stats_json;
 };
 
-// Reads config.yaml, run.json and stats.json of the folder and checks that every input exists with its SHA-256.
-// Reports all problems and returns nullopt if there are any.
+// Reads config.yaml, run.json and stats.json of the folder and checks that every input file still exists with
+// the recorded SHA-256. Reports all problems and returns nullopt if there are any.
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems);
 
-// "A 'results/demo/a'"
+// The name of a run in messages: "A 'results/demo/a'".
 std::string name_of(const RecordedRun& run);
 
-// The input to repeat the run, with its pictures opened. Reports problems; the result is not usable then.
+// Loads the input to repeat the run, and opens its pictures. Reports problems; if there are any, the result
+// must not be used.
 RunInput open_again(const RecordedRun& run, process::Problems& problems);
 
 }  // namespace stereotlm::runs

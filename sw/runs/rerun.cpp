@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/binder.h"
-#include "sw/process/program.h"
+#include "sw/process/installation.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
@@ -20,7 +20,8 @@ namespace {
 constexpr char kFrame = 'f';
 constexpr char kFigures = 's';
 
-// Message of a frame from child to parent: kind, number, rows, pixels. Both are the same program.
+// put() and take() write and read the message in which the child sends a frame to the parent: kind, number,
+// rows, pixels. Values are copied as bytes, because both processes run the same program.
 template <typename Value>
 void put(std::string& message, const Value& value) {
   message.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -103,11 +104,12 @@ std::optional<Rerun::Frame> Rerun::next() {
 void Rerun::check_figures(const std::string& stats_json) const {
   if (stats_json == run_.stats_json) return;
   const auto differences = report::stats_differences(run_.stats_json, stats_json, "recorded", "again");
-  std::string text = differences.empty() ? "its stats.json is not as run has written it"
-                                         : "run again it has other figures: " + differences.front();
+  std::string text = differences.empty() ? "its stats.json is not as `run` writes it"
+                                         : "repeated, it has other figures: " + differences.front();
   if (differences.size() > 1) text += fmt::format(", and {} more", differences.size() - 1);
   if (run_.options.program_version != process::kVersion) {
-    text += fmt::format("; it is of version {}, this is {}", run_.options.program_version, process::kVersion);
+    text += fmt::format("; it was written by version {}, this is {}", run_.options.program_version,
+                        process::kVersion);
   }
   throw std::runtime_error(text);
 }

@@ -13,20 +13,21 @@
 
 namespace stereotlm::runs {
 
-// Repeats a recorded run in a child process and records the rows of its frames. Always at fidelity fast: the
-// figures do not depend on the fidelity.
+// Repeats a recorded run in a child process and records the rows of its frames. The repetition is always at
+// fidelity fast, because the figures do not depend on the fidelity.
 class Rerun {
  public:
   // Starts the child. `run` outlives the object.
   explicit Rerun(const RecordedRun& run);
 
+  // A finished frame of the repeated run.
   struct Frame {
     std::uint64_t number = 0;  // number of the camera frame
     fpga::RowProfile rows;
     kernels::GrayImage disparity;  // empty without pixels
   };
-  // Waits until next() has a frame, for at most this time or until a signal is caught. Returns whether it
-  // has.
+  // Waits until next() would return without waiting, a signal has been caught, or the time is over. Returns
+  // true in the first case.
   bool has_news(std::chrono::milliseconds wait) { return child_->has_news(wait); }
   // Waits for the next frame; nullopt after the last. Throws std::runtime_error if the run fails, or if its
   // figures differ from the recorded ones.

@@ -24,7 +24,7 @@ bool is_file_name(const std::string& name) {
   return std::find(kFileNames.begin(), kFileNames.end(), name) != kFileNames.end();
 }
 
-// NNNNNN.png; from frame 1,000,000 on with more digits.
+// Whether the name is that of a frame: NNNNNN.png; from frame 1,000,000 on with more digits.
 bool is_frame_name(const std::string& name) {
   const std::size_t dot = name.find('.');
   return dot != std::string::npos && dot >= 6 && name.substr(dot) == ".png" &&

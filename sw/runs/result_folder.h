@@ -14,7 +14,8 @@ namespace stereotlm::runs {
 // The file name of a frame's disparities in a result folder: "frames/000000.png".
 std::string frame_file_name(std::uint64_t frame);
 
-// The folder of `run --out`. It holds one result and nothing else. An OutputFolder whose mark is run.json.
+// Writes the folder of `run --out`, which holds one result and nothing else. Implemented by an OutputFolder
+// whose mark is run.json.
 class ResultFolder {
  public:
   // Throws as OutputFolder does, and if DIR is neither empty nor a folder that holds run.json and only files
@@ -22,13 +23,13 @@ class ResultFolder {
   explicit ResultFolder(const std::filesystem::path& dir);
 
   // Adds a file that `run` writes ("stats.json", "frames/000000.png"), each name once. Throws
-  // std::invalid_argument for another name, and std::runtime_error if it cannot be stored (disk full). The
-  // object can then only be destroyed.
+  // std::invalid_argument for another name, and std::runtime_error if the file cannot be stored (disk full).
+  // The object can then only be destroyed.
   void add(const std::string& name, std::string_view bytes);
   void add(const std::string& name, const std::vector<std::uint8_t>& bytes);
 
-  // Replaces the earlier result by the added files. Throws std::logic_error without run.json among them. If it
-  // fails, restores the earlier result and throws std::runtime_error.
+  // Replaces the earlier result by the added files. Throws std::logic_error if run.json is not among them. If
+  // the replacement fails, restores the earlier result and throws std::runtime_error.
   void commit();
 
  private:

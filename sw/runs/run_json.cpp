@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The name in the form that run.json can hold.
+// Returns the name. Throws std::runtime_error if run.json cannot hold it, because it is not UTF-8.
 std::string named(const char* option, const std::string& name) {
   try {
     static_cast<void>(files::json_text(name));

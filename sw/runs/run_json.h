@@ -7,6 +7,7 @@
 
 namespace stereotlm::runs {
 
+// A file that a run has read.
 struct InputFile {
   std::string path;    // absolute, UTF-8
   std::string sha256;  // SHA-256 of its content, 64 hexadecimal digits
@@ -18,13 +19,14 @@ struct InputCalibration {
   InputFile right_lut;
 };
 
+// The folder of --sequence.
 struct InputFolder {
   std::string path;              // absolute, UTF-8
-  std::vector<InputFile> files;  // paths are names in the folder
+  std::vector<InputFile> files;  // `path` of each: its name in the folder
 };
 
-// The options of a `run` except the board, which config.yaml holds in full. A run with both gives the same
-// bytes again.
+// The options of a `run`, as run.json records them, without the board, which config.yaml holds in full. A
+// `run` with the recorded options and board writes the same bytes again.
 struct RecordedOptions {
   std::string program_version;
   std::string source;    // "preloaded"

@@ -56,13 +56,13 @@ RecordedOptions read_options(const Json& document) {
   return options;
 }
 
-// Counts from 1.
+// The number, from 1, of the first line in which the texts differ.
 std::ptrdiff_t first_other_line(const std::string& text, const std::string& other) {
   const auto end = std::mismatch(text.begin(), text.end(), other.begin(), other.end()).first;
   return std::count(text.begin(), end, '\n') + 1;
 }
 
-// Refuses options that could be written but cannot be those of a run.
+// Throws std::runtime_error for options that run_json() would write but no run can have.
 void check(const RecordedOptions& options) {
   const auto require = [](bool holds, const std::string& rule) {
     if (!holds) throw std::runtime_error(rule);

@@ -6,8 +6,8 @@
 
 namespace stereotlm::runs {
 
-// Reads the options of a run from the text of its run.json. Throws std::runtime_error, without the file's name,
-// if run_json() does not write exactly this text.
+// Reads the options of a run from the text of its run.json. Throws std::runtime_error if run_json() would not
+// write exactly this text for the options; the message does not name the file.
 RecordedOptions parse_run_json(const std::string& text);
 
 }  // namespace stereotlm::runs

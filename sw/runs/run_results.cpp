@@ -37,14 +37,14 @@ void write_files(RunInput& input, platform::Statistics statistics, const Result&
   if (!input.timing_only) add_pictures(input, last, folder);
   folder.add("stats.json", report::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
-  // An interrupted run equals a complete run of the frames that it finished.
+  // An interrupted run is recorded as a complete run of the frames that it has finished.
   input.described.frames = statistics.frames;
   folder.add("run.json", run_json(input.described));
   folder.commit();
 }
 
-// The truth of a synthetic scene holds without calibration. Its accuracy is only printed: stats.json has the
-// accuracy against --truth.
+// The accuracy to print. Without --truth, it is that against the truth of a synthetic scene, which holds only
+// without calibration. stats.json has only the accuracy against --truth.
 std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Result& last,
                                                  const std::optional<report::Accuracy>& accuracy) {
   if (accuracy || !input.pairs || input.calibration || input.timing_only) return accuracy;

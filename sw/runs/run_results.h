@@ -10,22 +10,22 @@
 
 namespace stereotlm::runs {
 
-// With --save-frames: stores the disparities of this frame for deliver(). Throws std::runtime_error if they
-// cannot be written.
+// With --save-frames: adds the disparities of this frame to the result folder, which deliver() commits.
+// Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// For a run that ended after `frames_done` frames: drops --truth, and prints a note, if the last frame does not
-// show the pair that the truth belongs to.
+// For a run that ended after `frames_done` frames: drops --truth, and prints a note, if the last frame does
+// not show the pair that the truth belongs to.
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done);
 
-// For a run whose comparison was interrupted: drops --verify and prints a note. Otherwise the result would claim
-// a comparison that did not take place.
+// For a run whose comparison was interrupted: drops --verify and prints a note. Otherwise the result would
+// claim a comparison that did not take place.
 void leave_out_verify(RunInput& input);
 
-// Writes the result files and prints the table. `last`: the result of the last frame. `differences`: those that
-// --verify found. Identities that do not hold and differences are printed and listed as `failed`. Returns
-// whether there are none. Throws std::runtime_error if the files cannot be written; an earlier result is then
-// unchanged.
+// Writes the result files and prints the table. `last`: the result of the last frame. `differences`: those
+// that --verify found. Prints the differences and the identities that do not hold, and lists them as `failed`
+// in stats.json. Returns true if there are none. Throws std::runtime_error if the files cannot be written; an
+// earlier result is then unchanged.
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
              const std::vector<std::string>& differences = {});
 

@@ -22,7 +22,7 @@ constexpr std::chrono::milliseconds kPollInterval{100};
 
 struct Interrupted {};
 
-// One line for the result of a frame; short, because the lines of all frames are kept.
+// The result of a frame as one line; short, because the lines of all frames are kept.
 std::string line_of(const Result& result, bool with_pixels) {
   std::string line = fmt::format("camera frame {}, done at {} ps", result.number, result.time_ps);
   if (with_pixels) {
@@ -33,7 +33,7 @@ std::string line_of(const Result& result, bool with_pixels) {
   return line;
 }
 
-// The text of stats.json without the name of the fidelity.
+// The text of stats.json, with the same name of the fidelity for both runs.
 std::string stats_text(platform::Statistics statistics) {
   statistics.fidelity = "both";
   return report::stats_json(statistics, std::nullopt);
@@ -74,7 +74,8 @@ Verification::Verification(const RunInput& input, const PictureSource& pictures)
 
 void Verification::add(const Result& result) { results_.push_back(line_of(result, !input_.timing_only)); }
 
-// Polls for interrupts while it waits.
+// The next message of the other run; nullopt after the last. Polls for interrupts while it waits, and throws
+// Interrupted after one.
 std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
   do {
     if (process::interrupted()) throw Interrupted();

@@ -18,13 +18,14 @@ namespace stereotlm::runs {
 // `--verify`: repeats a run at the other fidelity in a child process and compares the two.
 class Verification {
  public:
-  // Starts the other run. To be called before this process elaborates its own. The child opens the pictures
-  // itself. `input` and `pictures` outlive the object.
+  // Starts the other run. To be called before this process elaborates its own simulation. The child opens the
+  // pictures itself. `input` and `pictures` outlive the object.
   Verification(const RunInput& input, const PictureSource& pictures);
 
   // Adds the next result of this process's run.
   void add(const Result& result);
 
+  // The result of the comparison.
   struct Outcome {
     bool interrupted = false;         // nothing was compared
     std::vector<std::string> failed;  // differences, or the failure of the other run; empty if all is equal

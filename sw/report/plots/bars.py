@@ -1,4 +1,4 @@
-"""Figures with a row for each point: which points, and how they are named."""
+"""Selects and names the points of figures that have a row for each point."""
 
 import textwrap
 
@@ -11,7 +11,10 @@ NAME_CHARACTERS = 44
 
 
 class Rows:
-    """The points of a figure, from its top, with their names. Of many: those that stall most, or some of all rates."""
+    """The points of a figure, from its top, with their names.
+
+    Of more than MOST points: those with the most stalls (most_stalled), or a selection over all frame rates.
+    """
 
     def __init__(self, points, most_stalled=False):
         stalls = [cycles / frames for cycles, frames in zip(points.stall_cycles(), points.frames())]
@@ -53,7 +56,7 @@ class Rows:
         return edges
 
     def left(self):
-        """Inches that the names need."""
+        """The width of the names in inches."""
         longest = max(len(line) for name in self.names for line in name.split("\n"))
         return 0.2 + min(longest, 46) * 0.062
 
@@ -65,7 +68,7 @@ class Rows:
 
 
 def used_ports(points, places):
-    """Ports that do something in one of these points."""
+    """The ports that are granted or stall in one of these points."""
     points.need_numbers([f"ports.{port}.{count}" for port in PORTS for count in ("grants", "stall_cycles")])
     return [port for port in PORTS
             if any(points.column(f"ports.{port}.{count}")[place]

@@ -1,4 +1,4 @@
-"""The command line of the scripts: options, what is refused, the folder of results.
+"""What the plot scripts share: their command line, its checks, and the folder that gets the figures.
 
 Exit status: 0 done; 2 refused before anything was drawn; 1 failed after that; 130 interrupted.
 """
@@ -13,7 +13,7 @@ import sys
 
 from points import MOST_NAMED, Points, Unusable
 
-# plot_all.py speaks as the program does.
+# plot_all.py is run by `stereotlm plot`, so its messages begin with the name of that program.
 NAME = "stereotlm" if os.path.basename(sys.argv[0]) == "plot_all.py" else os.path.basename(sys.argv[0])
 
 
@@ -22,9 +22,9 @@ def tell(kind, text):
 
 
 def on_interrupt(clean_up):
-    """Ends the process there and then: an exception could be lost in somebody's callback.
+    """From now on SIGINT and SIGTERM end the process immediately, after clean_up(); None: they are ignored.
 
-    clean_up(): what is to be done before; None: no interrupt from now on. A signal that the caller has ignored stays so.
+    An exception instead could be lost in a callback of matplotlib. Signals that are ignored already stay so.
     """
 
     def leave(*_):
@@ -38,19 +38,19 @@ def on_interrupt(clean_up):
 
 
 on_interrupt(lambda: None)
-os.environ.pop("MPLBACKEND", None)  # for figures on a screen; matplotlib fails if it does not know the name
+os.environ.pop("MPLBACKEND", None)  # selects a display; matplotlib fails if it does not know the name
 try:
     import matplotlib  # noqa: F401
 except ImportError as error:
     tell("error", f"needs matplotlib, which ./setup installs: {error}")
     sys.exit(2)
-except Exception as error:  # whatever a matplotlibrc of the user makes of it
+except Exception as error:  # of any kind, such as one that a user's matplotlibrc causes
     tell("error", f"matplotlib cannot be loaded: {error}")
     sys.exit(2)
 
 FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]
 ENDINGS = [".png", ".svg", ".csv"]
-ASIDE = ".partial"  # in it NEW, and while they are replaced EARLIER
+ASIDE = ".partial"  # holds NEW, and during commit() EARLIER
 NEW, EARLIER = "new", "earlier"
 RULE = "must be empty or hold only files that plot writes"
 
@@ -62,7 +62,7 @@ class Refused(Exception):
 
 
 class Folder:
-    """The folder of --out: an earlier result or nothing until commit(), the new one after it."""
+    """The folder of --out. commit() replaces an earlier result by the new one; until then it is unchanged."""
 
     def __init__(self, path):
         self.path = path
@@ -71,7 +71,7 @@ class Folder:
         self.created = []
 
     def problem(self):
-        """Why it cannot be used; empty if nothing is wrong that can be seen without writing."""
+        """Why the folder cannot be used. Empty if no problem is found without writing to the folder."""
         if not os.path.lexists(self.path):
             return ""
         try:
@@ -85,7 +85,7 @@ class Folder:
         return f"holds '{foreign}': {RULE}" if foreign else ""
 
     def _foreign_aside(self):
-        """The first entry of its own folder that no killed process has left there."""
+        """The first entry of ASIDE that no killed process can have left there; None if there is none."""
         if not is_folder(self.aside):
             return ASIDE
         for name in sorted(os.listdir(self.aside)):
@@ -98,7 +98,7 @@ class Folder:
         return None
 
     def start(self):
-        """Creates what is missing and proves that it can be written to: OSError."""
+        """Creates the folder and its missing parents. Raises OSError if it cannot be written to."""
         missing = os.path.abspath(self.path)
         absent = []
         while not os.path.lexists(missing):
@@ -113,7 +113,10 @@ class Folder:
         os.mkdir(self.new)
 
     def commit(self, files, replaced):
-        """files: {name: bytes}; replaced: names of earlier files that go. OSError: all is as it was."""
+        """Replaces the earlier result. If that fails, restores it and raises OSError.
+
+        files: {name: bytes}; replaced: names of earlier files to remove, if they exist.
+        """
         for name, data in files.items():
             with open(os.path.join(self.new, name), "wb") as file:
                 file.write(data)
@@ -135,7 +138,7 @@ class Folder:
         self.created = []
 
     def discard(self):
-        """Without commit(): removes what start() made."""
+        """Removes what start() has created, unless commit() was called."""
         shutil.rmtree(self.aside, ignore_errors=True)
         for path in self.created:
             try:
@@ -154,14 +157,14 @@ def is_folder(path):
 
 
 def move(name, source, target, moved):
-    """moved: gets the paths, to undo it."""
+    """Moves a file from folder `source` to folder `target`. Adds both paths to `moved`, to undo the move."""
     paths = [os.path.join(folder, name) for folder in (source, target)]
     os.rename(*paths)
     moved.append(paths)
 
 
 def foreign_entry(folder, ignored=None):
-    """The first entry that plot does not write."""
+    """The first entry of the folder that plot does not write; None if there is none."""
     for name in sorted(os.listdir(folder)):
         figure, ending = os.path.splitext(name)
         if name != ignored and not (figure in FIGURES and ending in ENDINGS and is_file(os.path.join(folder, name))):
@@ -189,9 +192,9 @@ def parse(arguments, description, has_pareto):
 
 
 def prepare(options, check):
-    """The points and the folder; Refused for all that is wrong with them."""
+    """Returns the points and the folder. Raises Refused with all problems."""
     problems = []
-    points = None  # or what can be told of them
+    points = None  # stays None if the database cannot be read
     if options.database is None:
         problems.append("DB: missing: a database of stereotlm sweep")
     else:
@@ -219,7 +222,7 @@ def start(folder):
 
 
 def draw_all(points, options, figures):
-    """The files of all figures that apply, a line about each, and what their font has no characters for."""
+    """Returns the files of all figures that apply, a line about each figure, and the texts that the font lacks."""
     files = {}
     said = []
     boxed = set()
@@ -245,7 +248,7 @@ def run(description, figures, arguments, check):
         files, said, boxed = draw_all(points, options, figures)
         if not files:
             raise Refused([" ".join(line.split()) for line in said])
-        on_interrupt(None)  # all or nothing
+        on_interrupt(None)  # the commit is not interrupted
         folder.commit(files, [name + ending for name in figures for ending in ENDINGS])
     except BaseException:
         folder.discard()
@@ -269,16 +272,20 @@ def say(lines):
     sys.stdout.reconfigure(errors="surrogateescape")  # names of files are bytes
     try:
         print("\n".join(lines), flush=True)
-    except BrokenPipeError:  # whoever reads it has seen enough
+    except BrokenPipeError:  # the reader has closed its end: no error
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         raise OSError(f"standard output cannot be written to: {error.strerror}") from None
 
 
 def main(description, figures, check=None):
-    """figures: {name: draw(points, options) -> Drawing, or Unusable}, in the order in which they are drawn.
+    """Runs a plot script and ends the process with its exit status if it fails.
 
-    check(points, options): what is wrong with --pareto, points: None if they cannot be read; None: it is no option here.
+    description: for --help.
+    figures: {name: draw}, in the order of drawing. draw(points, options) returns a Drawing, or raises Unusable if
+    the figure does not apply.
+    check: None if the script has no option --pareto. Otherwise check(points, options) returns the problems of its
+    value; points is None if the database cannot be read.
     """
     try:
         run(description, figures, sys.argv[1:], check)

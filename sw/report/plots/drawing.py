@@ -1,4 +1,4 @@
-"""What all figures share: size, fonts, axes, the legend below them; their bytes depend on the data alone."""
+"""What all figures share: size, fonts, axes, legend. The bytes of a figure depend only on the data."""
 
 import csv
 import io
@@ -20,17 +20,17 @@ DPI = 200
 LINE = 0.146  # inches: a line of the legend
 NOTE_LINE = 0.14
 NOTE_CHARACTERS = 132
-CHARACTER, HANDLE = 0.071, 0.6  # inches: of the legend
+CHARACTER, HANDLE = 0.071, 0.6  # inches: widths in the legend
 INK = "#222222"
 QUIET = "#666666"
-# Marks of points that cannot be built, or whose results are not whole.
+# Marks of points that do not fit the FPGA, or whose pictures are not complete.
 MARK = {"color": "#000000", "linestyle": "", "zorder": 3.5}
 TOO_LARGE = {**MARK, "marker": "x", "markersize": 4.5, "label": "more area than the FPGA has"}
 LOSES_PIXELS = {**MARK, "marker": "+", "markersize": 6.5, "label": "loses pixels"}
 
 FONT = "DejaVu Sans"
 
-# A bound is wide and pale behind what is measured, so that it is seen where both are equal.
+# A bound is a wide pale line behind the simulated figures, so that it is visible where both are equal.
 BOUND_WIDTH = 5.5
 
 SETTINGS = {
@@ -65,7 +65,7 @@ MEANINGS = {
 
 
 def title(column):
-    """A column as the label of an axis, with its unit."""
+    """The label of an axis that shows this column, with the unit."""
     if column in MEANINGS:
         return MEANINGS[column]
     if column.startswith("latency_ms."):
@@ -75,19 +75,19 @@ def title(column):
 
 
 def bound_of(column):
-    """The column that bounds this one from above; None if none does."""
+    """The column with the upper bound of this column; None if there is none."""
     return {"frames_per_second.core": "bound.core", "frames_per_second.steady": "bound.system",
             "frames_per_second.system": "bound.system"}.get(column)
 
 
 class Drawing:
-    """A figure that is drawn: its pictures, its table and what to say about it."""
+    """A figure that is drawn: its files, and what the command prints about it."""
 
     def __init__(self, sheet, header, rows, said):
-        """header, rows: of the table; said: how many points it shows. boxed: see Sheet.boxed()."""
+        """header, rows: the table; said: text about the figure, such as the number of its points."""
         self.files = {".png": sheet.png(), ".svg": sheet.svg(), ".csv": table(header, rows)}
         self.said = said
-        self.boxed = sheet.boxed()
+        self.boxed = sheet.boxed()  # see there
 
 
 def table(header, rows):
@@ -99,10 +99,13 @@ def table(header, rows):
 
 
 class Sheet:
-    """Panels with sizes in inches, the legend and notes below them."""
+    """The page of a figure: panels with sizes in inches, and below them the legend, a list and notes.
+
+    legend(), list_entry() and note() must be called before rows() or columns(), which create the panels.
+    """
 
     def __init__(self):
-        matplotlib.rcdefaults()  # whatever the user has set for other figures
+        matplotlib.rcdefaults()  # so that settings of the user have no effect
         matplotlib.rcParams.update(SETTINGS)
         self.figure = Figure()
         FigureCanvasAgg(self.figure)
@@ -112,7 +115,7 @@ class Sheet:
         self._notes = []
 
     def legend(self, handles):
-        """A group of the legend. handles: (artist, text) each."""
+        """Adds a group to the legend. handles: (artist, text) of each entry."""
         if handles:
             self._legends.append(handles)
 
@@ -121,11 +124,11 @@ class Sheet:
             self._notes += textwrap.wrap(text, NOTE_CHARACTERS)
 
     def list_entry(self, number, text):
-        """Between the legend and the notes."""
+        """Adds an entry to the list between the legend and the notes."""
         self._list += textwrap.wrap(f"{number}  {text}", NOTE_CHARACTERS, subsequent_indent=" " * 6)
 
     def rows(self, heights, left=0.75, gap=0.15, bottom=0.5):
-        """Panels above each other, which share their x axis."""
+        """Creates and returns panels above each other, from the top, which share their x axis."""
         inside = sum(heights) + gap * (len(heights) - 1)
         total = self._begin(inside, 0.12, bottom)
         at = total - 0.12
@@ -140,7 +143,7 @@ class Sheet:
         return self.panels
 
     def columns(self, count, height, left, top=0.3, gap=0.1, bottom=0.5, right=0.15):
-        """Panels side by side, which share their y axis."""
+        """Creates and returns panels side by side, from the left, which share their y axis."""
         total = self._begin(height, top, bottom)
         width = (WIDTH - left - right - gap * (count - 1)) / count
         for number in range(count):
@@ -154,13 +157,13 @@ class Sheet:
         return self.panels
 
     def below(self, text):
-        """The name of the x axis of all columns."""
+        """Writes the name of the x axis of all columns below them."""
         boxes = [axes.get_position() for axes in self.panels]
         self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, boxes[0].y0 - 0.38 / self.figure.get_size_inches()[1], text,
                          ha="center", va="center", fontsize=9.5)
 
     def _begin(self, inside, top, bottom):
-        """Takes the legend and notes, which have to be given before; the height of the whole."""
+        """Draws legend, list and notes, and sets the size of the figure. Returns its height in inches."""
         columns = [legend_columns([text for _, text in group]) for group in self._legends]
         lines = [-(-len(group) // count) for group, count in zip(self._legends, columns)]
         legend = sum(lines) * LINE + (0.06 if lines else 0)
@@ -196,7 +199,7 @@ class Sheet:
         return out.getvalue()
 
     def boxed(self):
-        """Parts of its texts that the font has no characters for: a PNG has boxes there."""
+        """The parts of its texts for which the font has no characters. A PNG shows boxes for them."""
         known = font_manager.get_font(font_manager.findfont(FONT)).get_charmap()
         texts = {text.get_text() for text in self.figure.findobj(Text)}
         unknown = re.escape("".join({each for text in texts for each in text if ord(each) not in known} - {"\n"}))
@@ -204,7 +207,7 @@ class Sheet:
 
 
 def legend_columns(texts):
-    """As many as have room, and no more than fill them."""
+    """The number of columns of the legend: as many as have room, and none that would be empty."""
     room = int(WIDTH / (max(map(len, texts)) * CHARACTER + HANDLE))
     lines = -(-len(texts) // max(1, room))
     return -(-len(texts) // lines)
@@ -219,7 +222,7 @@ def mark_handle(mark):
 
 
 def ticks_at(axis, values):
-    """Ticks where the points are, as long as they have room."""
+    """Sets the ticks of the axis to the values of the points, if there is room for that."""
     if len(values) <= 14:
         axis.set_major_locator(FixedLocator(values))
         axis.set_minor_locator(NullLocator())
@@ -228,12 +231,15 @@ def ticks_at(axis, values):
 
 
 def pale(color):
-    """The color of a bound."""
+    """The color of the bound of a line with this color."""
     return tuple(0.3 * part + 0.7 for part in to_rgb(color))
 
 
 def scale(axes, which, label, values, *remarks):
-    """From zero, or logarithmic where zero would hide the differences; and the label, which says so."""
+    """Sets scale and label of an axis. The scale is logarithmic if the values differ much, else it begins at zero.
+
+    which: "x" or "y". remarks: added to the label in brackets.
+    """
     values = [value for value in values if value is not None]
     if values and min(values) > 0 and max(values) > 6 * min(values):
         axis = getattr(axes, which + "axis")

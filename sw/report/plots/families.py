@@ -1,15 +1,16 @@
-"""Which points make a line, and how the lines of a figure are told apart: by color, marker and dashes."""
+"""Groups points to lines, and chooses color, marker and dashes of each line, by which it is distinguished."""
 
 import itertools
 
 from points import natural, text_of
 
 MOST_LINES = 28
-MOST_SINGLE = 6  # so many lines have a color each; more are told apart key by key
+MOST_SINGLE = 6  # up to so many lines have a color each; of more, the color stands for one key
 MOST_MARKERS = 4
-NOTHING_TO_SEE = 0.01  # of the value: less is not seen in a figure
+NOTHING_TO_SEE = 0.01  # share of the value: a smaller change is not visible in a figure
 
-# Okabe and Ito's, which the color-blind can tell apart, without the yellow that white paper swallows.
+# The palette of Okabe and Ito, which the color-blind can distinguish, without yellow, which is hardly visible
+# on white.
 COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 GRAY = "#808080"
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
@@ -23,7 +24,7 @@ class Look:
 
 
 class Family:
-    """One combination of values of the keys that vary: its points, by their places in Points."""
+    """The points with one combination of values of Families.keys. places: indices of the points in Points."""
 
     def __init__(self, values, places):
         self.values, self.places, self.look = values, places, Look()
@@ -32,13 +33,16 @@ class Family:
 class Families:
     """The points of a figure over column `x`, one family for each combination of the other keys that vary.
 
-    keys: that vary; all: the families; told: the keys that the looks tell apart; legend: groups of (text, Look);
-    as_points: there are more combinations of these than lines can be told apart, and all look the same;
-    note: about what is not told apart.
+    keys: the other keys that vary.
+    all: the families.
+    told: the keys whose values the looks of the lines distinguish.
+    legend: groups of (text, Look).
+    as_points: more combinations of `told` than lines that can be distinguished: all families look the same.
+    note: text about what is not distinguished.
     """
 
     def __init__(self, points, places, x, x_keys, columns):
-        """x_keys: the keys that the x axis stands for; columns: those that are drawn."""
+        """x_keys: the keys that the x axis stands for; columns: the columns that are drawn."""
         values = {key: points.column(key) for key in points.varied if key not in x_keys}
         self.keys = [key for key, column in values.items() if len({column[place] for place in places}) > 1]
         found = {}
@@ -59,7 +63,7 @@ class Families:
         return tuple(value for key, value in zip(self.keys, family.values) if key in self.told)
 
     def _drop_what_cannot_be_seen(self, points, xs, columns):
-        """Finds the keys that change so little that their lines lie on each other."""
+        """Removes the keys from `told` that change the drawn columns so little that lines coincide."""
         drawn = [self._drawn(points, family, xs, columns) for family in self.all]
         self.told = list(self.keys)
         effect = 0
@@ -83,7 +87,7 @@ class Families:
 
     @staticmethod
     def _drawn(points, family, xs, columns):
-        """The greatest value of each column at each x."""
+        """The greatest value of a family by (column, x)."""
         greatest = {}
         for column in columns:
             values = points.column(column)
@@ -94,7 +98,7 @@ class Families:
         return greatest
 
     def _greatest_change(self, drawn):
-        """Between families that look the same, as a part of the greater value."""
+        """The greatest difference between families that look the same, as a share of the greater value."""
         together = {}
         for family, values in zip(self.all, drawn):
             together.setdefault(self._told(family), []).append(values)
@@ -107,7 +111,7 @@ class Families:
         return greatest
 
     def _looks(self, combinations):
-        """A look for each combination of the keys that are told apart, and the legend; None if there are too many."""
+        """({combination: Look}, legend); (None, []) if there are too many combinations of values of `told`."""
         if len(combinations) == 1:
             return {combinations[0]: Look()}, []
         if len(combinations) > MOST_LINES:
@@ -131,7 +135,7 @@ class Families:
         return sorted({family.values[at] for family in self.all}, key=natural)
 
     def _looks_by(self, key, combinations):
-        """One key by color, the others by marker and dashes."""
+        """The same, with the key `key` shown by color, and the others by marker and dashes."""
         at = self.told.index(key)
         values = sorted({(each[at],) for each in combinations}, key=order)
         colors = colors_of(values)
@@ -159,7 +163,7 @@ def without(values, at):
 
 
 def named(keys, combinations):
-    """"key = value, .." of each; long values are shortened as long as that tells them apart."""
+    """"key = value, .." of each combination. Long values are shortened, unless this makes texts equal."""
     def texts(shorten):
         return [", ".join(f"{key} = {shorten(text_of(value))}" for key, value in zip(keys, each))
                 for each in combinations]
@@ -173,14 +177,14 @@ def shortened(text):
 
 
 def colors_of(combinations):
-    """One for each; shades in order where they are of one number. None if there are too many."""
+    """A color for each combination; shades if these are four or more numbers. None if there are too many."""
     if len(combinations) > 3 and all(len(each) == 1 and isinstance(each[0], (int, float)) for each in combinations):
         return shades(len(combinations)) if len(combinations) <= 12 else None
     return COLORS[: len(combinations)] if len(combinations) <= len(COLORS) else None
 
 
 def shades(count):
-    """From dark to light, as viridis has them, without its end that is too light for white paper."""
+    """Colors of viridis from dark to light, without its light end, which is hardly visible on white."""
     from matplotlib import colormaps, colors
 
     return [colors.to_hex(colormaps["viridis"](0.9 * number / (count - 1))) for number in range(count)]

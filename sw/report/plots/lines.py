@@ -10,10 +10,12 @@ MORE_HEIGHT = 2.1
 
 
 class Panel:
-    """One column over x, its bound behind it, and `beside` it another measured one, thin and dotted.
+    """One column over x, with its bound behind it.
 
-    limit: of the column, a line if it is near, with its meaning; listed: further columns for the table; partial: some
-    points have no such figure.
+    beside: another column, drawn thin and dotted; None: no other.
+    limit: (value, text) of a line that is drawn if the column comes near to the value; None: no line.
+    listed: further columns for the table.
+    partial: some points have no value in this column.
     """
 
     def __init__(self, column, height, beside=None, limit=None, listed=(), partial=False):
@@ -30,7 +32,7 @@ class Panel:
 
 
 def rate_panels(points):
-    """The core's frame rate, and that of the whole computer if the database has any."""
+    """Panels with the frame rate of the core and, if the database has it, that of the whole computer."""
     panels = [Panel("frames_per_second.core", RATE_HEIGHT)]
     if any(value is not None for value in points.column("frames_per_second.steady")):
         panels.append(Panel("frames_per_second.steady", RATE_HEIGHT, beside="frames_per_second.system",
@@ -39,9 +41,11 @@ def rate_panels(points):
 
 
 def draw(points, x, x_keys, panels, best=False):
-    """x: a column; x_keys: the keys behind it; best: points of a family share x, and its line goes through the best.
+    """Draws a figure with a line for each family of points.
 
-    Who loses pixels is not the best.
+    x: the column of the x axis; x_keys: the keys on which it depends.
+    best: several points of a family have the same x, and its line goes through the best of them. A point that
+    loses pixels is not the best.
     """
     xs = points.column(x)
     places = points.places_with(x)
@@ -77,7 +81,7 @@ def draw(points, x, x_keys, panels, best=False):
 
 
 def handles(families, panels, best):
-    """What the looks of all families mean."""
+    """The entries of the legend that apply to all families."""
     entries = []
     color = GRAY if families.legend else families.all[0].look.color
     if families.as_points:
@@ -96,7 +100,7 @@ def handles(families, panels, best):
 
 
 def above_note(points, places, panels):
-    """A rate between the first and the last of few frames may be above the bound, which is of many."""
+    """A note if rates exceed their bounds, which hold for long runs and not for few frames; otherwise empty."""
     for panel in panels:
         if panel.bound == "bound.system":
             values, bounds = points.column(panel.column), points.column(panel.bound)
@@ -123,7 +127,10 @@ def draw_limit(axes, panel, values):
 
 
 class FamilyDrawing:
-    """One family in one panel. not_best: places through which the line of the best does not go; None: it is of all."""
+    """Draws one family in one panel.
+
+    not_best: the line goes through the best point at each x, except these places; None: through all points.
+    """
 
     def __init__(self, points, family, xs, panel, as_points, not_best):
         self.values = points.column(panel.column)
@@ -166,7 +173,7 @@ class FamilyDrawing:
                    markeredgewidth=4, zorder=1.5)
 
     def _line_places(self, values, places):
-        """One of these places for each x: the only one, or the one with the greatest value."""
+        """For each x, from the least: the one of these places with the greatest value."""
         greatest = {}
         for place in places:
             x = self.xs[place]

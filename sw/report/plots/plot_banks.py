@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Frames per second against the number of banks that the allocation uses.
 
-Every allocation is a dot. A line goes through the best of them for each number of banks; there is one for each
-combination of the keys that vary beside the allocation.
+Every allocation is a dot. A line goes through the best allocation for each number of banks. There is a line
+for each combination of the other keys that vary.
 """
 
 import sys

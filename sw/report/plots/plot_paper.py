@@ -55,7 +55,7 @@ def model_line(axes, xs, ys, color=MODEL, **look):
 
 
 def table1(folder):
-    """Frames per second over the window, and the deviation below."""
+    """Draws frames per second over the window and, below, the deviation from the paper."""
     rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
     xs = [int(row["window"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["tolerance_percent"])
@@ -91,7 +91,7 @@ def table1(folder):
 
 
 def table2(folder):
-    """Slices over the disparities, printed with what rounding leaves open, and the error below."""
+    """Draws slices over the disparities and, below, the error. Bars: what rounding in the paper leaves open."""
     rows = sorted(read(folder, "table2"), key=lambda row: int(row["disparities"]))
     xs = [int(row["disparities"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["size_tolerance_points"])
@@ -121,7 +121,7 @@ def table2(folder):
 
 
 def banks(folder):
-    """The best frame rate over the number of banks: what every allocation has shown, and the runs of the computer."""
+    """Draws frame rates over the number of banks: the best of the core, and those of runs of the computer."""
     rows = read(folder, "banks")
     printed = {row["claim"]: float(row["paper"]) for row in read(folder, "claims")}
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]

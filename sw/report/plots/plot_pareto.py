@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Any two columns against each other, and the Pareto front: the points than which none is better in both."""
+"""Any two columns against each other, and their Pareto front: the points that no other point dominates."""
 
 import re
 import sys
@@ -18,7 +18,7 @@ FRONT, OTHER = COLORS[1], "#9AA5AE"
 
 
 def parse(text):
-    """[(column, sense), (column, sense)]; None if it is not two of these."""
+    """The value of --pareto as [(column, sense), (column, sense)]; None if it does not have this form."""
     found = [re.fullmatch(r"(.+):(min|max)", part) for part in text.split(",")]
     if len(found) != 2 or not all(found) or found[0][1] == found[1][1]:
         return None
@@ -26,7 +26,7 @@ def parse(text):
 
 
 def check(points, options):
-    """What is wrong with --pareto."""
+    """The problems of --pareto. points: None if they cannot be read."""
     if options.pareto is None:
         return []
     axes = parse(options.pareto)
@@ -37,7 +37,10 @@ def check(points, options):
 
 
 def front_of(xs, ys, senses):
-    """Places of the points that no other is better than in one and as good as in the other, from the best x on."""
+    """Indices of the points of the Pareto front, from the best x on.
+
+    A point is on the front if no other point is better in one coordinate and at least as good in the other.
+    """
     signs = [1 if sense == "min" else -1 for sense in senses]
     order = sorted(range(len(xs)), key=lambda place: (signs[0] * xs[place], signs[1] * ys[place]))
     front = []
@@ -108,14 +111,14 @@ def draw(points, options):
 
 
 def pairs_with_only(these, places, xs, ys):
-    """Where there are points, and no others than these."""
+    """The pairs (x, y) at which all points are among `these`. places, xs, ys: of all drawn points."""
     these, pairs = set(these), list(zip(xs, ys))
     others = {pair for place, pair in zip(places, pairs) if place not in these}
     return [pair for pair in dict.fromkeys(pairs) if pair not in others]
 
 
 def draw_front(axes, corners, xs, ys, axes_of):
-    """The line around what the front dominates, and the number of each point."""
+    """Draws the line that bounds the region dominated by the front, and numbers the points of the front."""
     worse = [max if sense == "min" else min for _, sense in axes_of]
     line = [(corners[0][0], worse[1](ys)), corners[0]]
     for before, after in zip(corners, corners[1:]):
@@ -123,7 +126,7 @@ def draw_front(axes, corners, xs, ys, axes_of):
     line.append((worse[0](xs), corners[-1][1]))
     axes.plot(*zip(*line), "-", color=FRONT, linewidth=1.2, zorder=2.5)
     axes.plot(*zip(*corners), "o", color=FRONT, markeredgecolor="white", markeredgewidth=0.6, zorder=3)
-    # Where there are no points.
+    # The numbers stand on the side of the front that has no points.
     side, align = (-1, "right") if axes_of[0][1] == "min" else (1, "left")
     rise, seat = (1, "bottom") if axes_of[1][1] == "max" else (-1, "top")
     for number, corner in enumerate(corners[:MOST_NAMED], 1):
@@ -132,7 +135,7 @@ def draw_front(axes, corners, xs, ys, axes_of):
 
 
 def name(points, places):
-    """The values of the keys that vary, of the points at one place."""
+    """The name of a corner of the front: the values of the keys that vary. places: its points."""
     short = short_names(points.varied)
     same = [key for key in points.varied if len({points.column(key)[place] for place in places}) == 1]
     text = ", ".join(f"{short[key]}={text_of(points.column(key)[places[0]])}" for key in same)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The stall cycles of each port in a frame, point by point, by the port that is to blame, or turnaround."""
+"""The stall cycles of each port in a frame, point by point, by cause: the port that was granted, or turnaround."""
 
 import sys
 

@@ -10,7 +10,7 @@ import command
 from drawing import Drawing, Sheet
 from points import counted, natural
 
-TEXT_CHANGES = 55  # percent: above it white is easier to read than black
+TEXT_CHANGES = 55  # percent; above it white text is easier to read than black
 
 
 def draw(points, _):

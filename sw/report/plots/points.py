@@ -1,7 +1,7 @@
-"""Reads the database of stereotlm sweep: `points`, a column for each key and each figure of stats.json, `keys`, which
-names those that are keys, and `blame`.
+"""Reads the database of stereotlm sweep.
 
-Anything that cannot be drawn is said with its reason: Unusable.
+Its table `points` has a column for each key and each figure of stats.json. The table `keys` names the columns
+that are keys. The table `blame` has the stalls. Unusable is raised if something cannot be drawn.
 """
 
 import difflib
@@ -13,23 +13,23 @@ import urllib.parse
 APPLICATION_ID = 0x53544C4D
 LAYOUT = 2
 
-# What is neither a key of the board or the run nor a figure.
+# Columns of `points` that are neither keys nor figures.
 ADMINISTRATION = {"hash", "status", "reason", "version", "config"}
 
-MOST_NAMED = 12  # values in an error
+MOST_NAMED = 12  # names or values in a message
 
-# Of our own: distinct banks that the allocation names.
+# An additional column: the number of distinct banks that the allocation names.
 BANKS_USED = "banks_used"
 
 PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
 TURNAROUND = "turnaround"
 LOST_PIXELS = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
-LARGEST = 1e100  # greater numbers overflow when their axis is laid out
+LARGEST = 1e100  # matplotlib overflows with an axis for greater numbers
 NUMBER = f"must be a number from {-LARGEST:g} to {LARGEST:g}"
 
 
 class Unusable(Exception):
-    """Lines that say, each, why the command cannot be done; nothing has been done yet."""
+    """The figure or the command cannot be made. lines: the reasons."""
 
     def __init__(self, *lines):
         super().__init__("; ".join(lines))
@@ -37,12 +37,12 @@ class Unusable(Exception):
 
 
 def natural(value):
-    """A key to sort values by: numbers by size and in front, texts with the numbers in them by size, none last."""
+    """The sort key of a value: numbers first, then texts (numbers in them compare by size), None last."""
     if value is None:
         return (2, [])
     if isinstance(value, (int, float)):
         return (0, value)
-    parts = re.split(r"(\d+)", str(value))  # every other one is a number
+    parts = re.split(r"(\d+)", str(value))  # those at odd places are numbers
     return (1, [(int(part), "") if place % 2 else (-1, part) for place, part in enumerate(parts)])
 
 
@@ -67,13 +67,13 @@ def quoted(name):
 
 
 def banks_of(allocated):
-    """The names in the value of one allocation key: "[bank0, bank1]", "bank6" or "none"."""
+    """The set of banks in the value of one allocation key: "[bank0, bank1]", "bank6" or "none"."""
     names = re.findall(r"[^\[\], ]+", str(allocated or ""))
     return {name for name in names if name != "none"}
 
 
 def nearest(word, words):
-    """The nearest of `words` in quotation of an error: a part of the name is enough."""
+    """Up to three of `words` that are similar to `word`, in full or from one of their dots on."""
     parts = {}
     for each in words:
         for start in range(each.count(".") + 1):
@@ -83,11 +83,16 @@ def nearest(word, words):
 
 
 class Points:
-    """The points of a database that have figures, in the order of their hashes; all of one state of the database.
+    """The points of a database that have figures, in the order of their hashes.
 
-    path: as given; total: rows of table points; left_out: {reason in words: rows}; names: of all columns;
-    keys: those of them that are keys of the board or the run; hashes: of the points here; varied: the keys that differ
-    between them.
+    All are read in one transaction. A point is identified by its place, the index in this order.
+    path: as given.
+    total: the number of rows of the table points.
+    left_out: {reason: number of rows that are not among these points}.
+    names: the names of all columns.
+    keys: the names of the columns that are keys of the board or the run.
+    hashes: the hashes of these points.
+    varied: the keys that differ between these points.
     """
 
     def __init__(self, path):
@@ -118,7 +123,7 @@ class Points:
         try:
             address = urllib.parse.quote(os.fsencode(os.path.abspath(self.path)))
             database = sqlite3.connect(f"file:{address}?mode=ro", uri=True, isolation_level=None, timeout=60)
-            database.execute("BEGIN")  # a sweep may be writing
+            database.execute("BEGIN")  # one state of the database, even if a sweep is writing
             application = database.execute("PRAGMA application_id").fetchone()[0]
             layout = database.execute("PRAGMA user_version").fetchone()[0]
         except sqlite3.DatabaseError as error:
@@ -137,7 +142,10 @@ class Points:
             raise Unusable(f"{self.path}: {error}") from None
 
     def keep(self, only):
-        """Leaves out points without these values, "KEY=VALUE" each. What is wrong; if anything, all are kept."""
+        """Leaves out points that do not have all these values, each given as "KEY=VALUE".
+
+        Returns the problems; if there are any, all points are kept.
+        """
         problems = []
         condition, values = self._condition, []
         for text in only:
@@ -164,7 +172,7 @@ class Points:
         return problems
 
     def column(self, name):
-        """The values of a column, or of BANKS_USED, point by point; None where a point has none."""
+        """The values of a column or of BANKS_USED by place; None for a point without value."""
         if name not in self._columns:
             if name == BANKS_USED:
                 allocated = [self.column(key) for key in self.names if key.startswith("allocation.")]
@@ -178,7 +186,7 @@ class Points:
         return self._columns[name]
 
     def blame(self, place):
-        """The stalls of one point: (port, bank, by, cycles) each."""
+        """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, or turnaround."""
         rows = self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
                           self.hashes[place])
         for port, bank, by, cycles in rows:
@@ -187,13 +195,13 @@ class Points:
         return rows
 
     def stall_cycles(self):
-        """Of every point, over all ports."""
+        """The stall cycles of all ports together, by place."""
         columns = [f"ports.{port}.stall_cycles" for port in PORTS]
         self.need_numbers(columns)
         return [sum(each) for each in zip(*map(self.column, columns))]
 
     def too_large(self):
-        """Places of the points that take more of something than the FPGA has."""
+        """Places of the points that need more of some resource than the FPGA has."""
         columns = [name for name in self.names if re.fullmatch(r"area\.\w+_percent", name)]
         for name in columns:
             self.need_numbers([name], self.places_with(name))
@@ -220,11 +228,11 @@ class Points:
             raise Unusable(f"all points have {name} = {text_of(self.column(name)[0])}")
 
     def places_with(self, name):
-        """Places of the points that have a value of this column."""
+        """Places of the points that have a value in this column."""
         return [place for place, value in enumerate(self.column(name)) if value is not None]
 
     def number_problem(self, name):
-        """Why a column cannot be drawn as numbers, where there are any; empty if it can."""
+        """Why the values of a column, as far as present, cannot be drawn as numbers; empty if they can."""
         known = [*self.names, BANKS_USED]
         if name not in known:
             return unknown("column", name, [each for each in known if each not in ADMINISTRATION])
@@ -234,7 +242,7 @@ class Points:
         return next(filter(None, (self._value_problem(name, place) for place in places)), "")
 
     def need_numbers(self, names, places=None):
-        """Unusable unless these columns are numbers in the points at these places, by default in all."""
+        """Raises Unusable unless these columns have numbers at these places, by default at all."""
         for name in names:
             for place in range(len(self.hashes)) if places is None else places:
                 problem = self._value_problem(name, place)
@@ -246,7 +254,7 @@ class Points:
         return "" if is_number(value) else f"point {self.hashes[place]}: {name} = {text_of(value)}: {NUMBER}"
 
     def frames(self):
-        """Of every point; Unusable if a point has none."""
+        """The frames of the runs by place. Raises Unusable if a run has none."""
         self.need_numbers(["frames"])
         for place, frames in enumerate(self.column("frames")):
             if frames < 1:
@@ -257,7 +265,10 @@ class Points:
         return ", ".join(f"{count} {reason}" for reason, count in self.left_out.items() if count)
 
     def note(self, shown, more=None):
-        """For below a figure: how many points it shows, and why not the others. more: {reason: points} of its own."""
+        """The note below a figure: how many points it shows, and why others are left out.
+
+        more: {reason: number of points}, for reasons of this figure.
+        """
         reasons = {**self.left_out, **(more or {})}
         missing = len(self.hashes) - shown - sum((more or {}).values())
         if missing:
@@ -269,13 +280,13 @@ class Points:
         return f"{text}; not shown: {others}." if others else f"{text}."
 
     def why_left_out(self):
-        """The commonest reasons of points without figures: (status, reason, points)."""
+        """The most frequent reasons of points without figures, as rows (status, reason, number of points)."""
         return self._rows("SELECT status, reason, count(*) FROM points WHERE status <> 'ok' GROUP BY status, reason "
                           "ORDER BY 3 DESC, 1, 2 LIMIT 3")
 
     def _varied(self):
         counts = []
-        for start in range(0, len(self.keys), 400):  # fewer than SQLite allows in a row
+        for start in range(0, len(self.keys), 400):  # SQLite limits the columns of a result
             asked = ", ".join(f"count(DISTINCT {name}), count({name})"
                               for name in map(quoted, self.keys[start : start + 400]))
             counts += self._rows(f"SELECT {asked} FROM points WHERE {self._condition}", *self._values)[0]
@@ -285,7 +296,7 @@ class Points:
         return self._without_frames(self._one_for_all_banks(varied))
 
     def _without_frames(self, varied):
-        """Frames of a run that follow from the lists of the allocation tell nothing more."""
+        """Removes run.frames from `varied` if its value follows from the allocation."""
         lists = [self.column(key) for key in varied if key.startswith("allocation.")]
         frames = self.column("run.frames")
         if "run.frames" in varied and len(set(zip(*lists))) == len(set(zip(*lists, frames))):
@@ -293,7 +304,7 @@ class Points:
         return varied
 
     def _one_for_all_banks(self, varied):
-        """Keys of the banks that are the same for all banks in each point, such as those of ssram.default, are one."""
+        """Replaces a key that all banks have, with equal values in each point, by one key for all banks."""
         banks = [name for name in self.names if name.startswith("ssram.banks.")]
         for ending in sorted({name.rsplit(".", 1)[1] for name in banks}):
             ours = [name for name in banks if name.endswith("." + ending)]
@@ -312,7 +323,7 @@ def unknown(kind, name, known):
 
 
 def short_names(keys):
-    """{key: the shortest end of its dotted path that no other has}."""
+    """{key: the shortest end of its dotted path that no other key has}."""
     names = {}
     for key in keys:
         parts = key.split(".")

@@ -15,10 +15,10 @@ std::vector<std::uint32_t> entries_of(const std::optional<kernels::Rectification
   return table ? table->entries : std::vector<std::uint32_t>{};
 }
 
-// A time without progress that is longer than any wait: for the next frame of the cameras while another one
-// ends, and for the bus while the traffic generator holds it.
+// If nothing progresses for this simulated time, the simulation has stalled. The time exceeds every regular
+// wait: for the next camera frame, and for the bus while the traffic generator holds it.
 double stall_timeout_seconds(const platform::BoardConfig& board) {
-  constexpr double kRest = 0.1;  // enough for clocks of 1 MHz
+  constexpr double kRest = 0.1;  // seconds; enough for clocks of 1 MHz
   constexpr double kTurns = 4;
   double turn = 1 / board.cameras.frame_rate_hz;
   if (board.pci.load) turn += board.pci.load->access_us / 1e6 + board.pci.load->burst_words / 1e6;
@@ -42,7 +42,8 @@ const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, st
   return simulation_.captured_pair(number, begin_ps).*side_;
 }
 
-// Both cameras take the same frames: the first one loads the pair, which is used until the next frame.
+// Both cameras capture the same frames. The camera that begins a frame first loads its pair, and the other
+// one uses that pair too.
 const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, std::uint64_t begin_ps) {
   if (begins_ps_.emplace(number, begin_ps).second) pair_ = &load_pair(number);
   return *pair_;
@@ -56,7 +57,7 @@ void CameraSimulation::end_early() {
 platform::Statistics CameraSimulation::statistics() const {
   if (deliveries_.empty() || counters_.board.frames != deliveries_.size()) {
     throw std::logic_error(
-        fmt::format("figures of {} frames asked for, while the core is busy", deliveries_.size()));
+        fmt::format("statistics of {} frames requested while the core is busy", deliveries_.size()));
   }
   return platform::collect_statistics(board_, tables_, computer_, counters_, deliveries_);
 }
@@ -76,7 +77,7 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   add_result({frame.camera_frame, std::move(disparity)});
 }
 
-// A measure of progress towards a result. The traffic generator does not count.
+// A measure of progress towards a result. The words of the traffic generator do not count.
 std::uint64_t CameraSimulation::work_done() {
   computer_.board.core.catch_up();
   std::uint64_t work = computer_.board.core.control().work();
@@ -94,10 +95,10 @@ void CameraSimulation::check_progress() {
   }
   const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
   if (idle < stall_timeout_seconds_) return;
-  throw std::runtime_error(fmt::format(
-      "nothing has gone on for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
-      "for: {}; {}",
-      idle, frames_done(), frames(), driver_.under_way(), computer_.board.core.waits()));
+  throw std::runtime_error(
+      fmt::format("no progress for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
+                  "for: {}; {}",
+                  idle, frames_done(), frames(), driver_.under_way(), computer_.board.core.waits()));
 }
 
 }  // namespace stereotlm::runs

@@ -17,8 +17,8 @@ namespace stereotlm::runs {
 // that ends early still finishes and delivers the frames that the core has begun.
 class CameraSimulation : public Simulation, private driver::FrameListener {
  public:
-  // The arguments, except `frames`, outlive the simulation; `binder` binds its sockets. Throws std::exception if
-  // the computer cannot be built.
+  // The referenced arguments outlive the simulation; `binder` binds its sockets. Throws std::exception if the
+  // computer cannot be built.
   CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                    fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
@@ -26,9 +26,8 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void end_early() override;
   platform::Statistics statistics() const override;
   const platform::Computer& computer() const { return computer_; }
-  std::uint64_t frames_started() const {
-    return driver_.frames_started();
-  }  // frames that the core has started
+  // The number of frames that the core has started.
+  std::uint64_t frames_started() const { return driver_.frames_started(); }
 
  private:
   // The scene in front of one camera.
@@ -56,10 +55,10 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   driver::StereoDriver driver_;
   platform::Computer computer_;
   const host::StereoPair* pair_ = nullptr;  // pair of the last captured frame
-  std::map<std::uint64_t, std::uint64_t>
-      begins_ps_;  // start of each captured camera frame that is not delivered yet
+  // Start time of each captured camera frame that is not delivered yet, by its number.
+  std::map<std::uint64_t, std::uint64_t> begins_ps_;
   std::vector<platform::Delivery> deliveries_;
-  platform::ComputerCounters counters_;  // counters at the last delivery with an idle core
+  platform::ComputerCounters counters_;  // counters at the last delivery at which the core was idle
   double stall_timeout_seconds_;
   std::uint64_t last_work_ = 0;
   sc_core::sc_time last_work_at_;

@@ -12,14 +12,15 @@
 
 namespace stereotlm::runs {
 
-// Options of a simulation beside board, tables and pictures.
+// The options of a simulation, without board, tables and pictures.
 struct RunMode {
   bool camera = true;  // true: the whole computer; false: the board alone (preloaded)
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
   std::uint64_t frames = 1;
 };
 
-// The arguments, except `mode`, outlive the simulation. Throws std::exception if it cannot be built.
+// Creates a CameraSimulation or a PreloadedSimulation. The arguments, except `mode`, outlive it. Throws
+// std::exception if it cannot be built.
 std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
                                             const platform::Tables& tables, host::FrameSource& pairs,
                                             const RunMode& mode, Binder& binder);

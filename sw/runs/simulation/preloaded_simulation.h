@@ -10,12 +10,12 @@
 
 namespace stereotlm::runs {
 
-// `--source preloaded`: the board alone with an ideal host. Frame f shows pair f. A run that ends early drops the
-// running frame.
+// `--source preloaded`: the board alone with an ideal host. Frame f shows pair f. A run that ends early drops
+// the running frame.
 class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
  public:
-  // The arguments, except `frames`, outlive the simulation; `binder` binds its sockets. Throws std::exception if
-  // the board cannot be built.
+  // The referenced arguments outlive the simulation; `binder` binds its sockets. Throws std::exception if the
+  // board cannot be built.
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                       host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);

@@ -36,8 +36,8 @@ Json document_of(const platform::Statistics& statistics) {
   return report::stats_document(statistics, std::nullopt);
 }
 
-// Simulates the whole computer in a process that does nothing else; nothing is destroyed at its end. nullopt if
-// the run was given up.
+// Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never
+// destroyed. Returns nullopt if the simulation was given up.
 std::optional<Json> simulate_computer(const explore::Point& point, const platform::Tables& tables,
                                       const PointSimulator::Hopeless& hopeless) {
   const platform::BoardConfig& board = *point.board;

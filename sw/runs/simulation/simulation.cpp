@@ -12,8 +12,8 @@
 namespace stereotlm::runs {
 namespace {
 
-// FPGA cycles of one advance(): some ms of wall time, and at fast the time for the pixels of a frame that begins
-// meanwhile.
+// FPGA cycles that one advance() simulates. They take some ms of wall time; at fidelity fast, the pixels of a
+// frame that begins in these cycles take additional time.
 constexpr double kSliceCycles = 40'000;
 constexpr double kFastSliceCycles = 2'000'000;
 
@@ -36,7 +36,7 @@ std::vector<Result> Simulation::advance() {
   }
   if (!finished() && !sc_core::sc_pending_activity()) {
     throw std::runtime_error(
-        fmt::format("the simulation has ended after {} frames: nothing is left that could finish the next",
+        fmt::format("the simulation has ended after {} frames: no event is left that could finish the next",
                     frames_done()));
   }
   if (!finished()) check_progress();

@@ -17,6 +17,7 @@ class StereoCore;
 
 namespace stereotlm::runs {
 
+// The result of a frame.
 struct Result {
   std::uint64_t number = 0;  // number of the camera frame; it shows pair `number` modulo the number of pairs
   kernels::GrayImage disparity;
@@ -31,30 +32,31 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Simulates for some ms of wall time (at fast, as long as the pixels of a frame take) and returns the new
-  // results in order. Throws sc_core::sc_report if a model reports an error, what the source throws, and
-  // std::runtime_error if no event is left or nothing proceeds before the last frame is finished.
+  // Simulates for some ms of wall time and returns the new results in order. At fidelity fast, a call may
+  // also compute the pixels of a whole frame. Throws sc_core::sc_report if a model reports an error, the
+  // exception of the source if it cannot load a pair, and std::runtime_error if the simulation runs out of
+  // events or stalls before the last frame is finished.
   std::vector<Result> advance();
 
-  // Ends the run as soon as its results equal those of a complete run with fewer frames: the finished frames,
-  // and running frames that have already changed the counters.
+  // Reduces the frames of the run to those that are finished and those that have already changed the
+  // counters, so that the results equal those of a complete run with fewer frames.
   virtual void end_early() = 0;
 
   std::uint64_t frames() const { return frames_; }  // frames of the whole run
   std::uint64_t frames_done() const { return frames_done_; }
   bool finished() const { return frames_done_ == frames_; }
-  // FPGA cycles from time 0 until now, and until the last result.
+  // FPGA cycles from time 0: cycles() until now, cycles_of_done() until the last result.
   std::uint64_t cycles() const;
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }
 
-  // Records, from the next frame of the core on, when each row of results is complete.
+  // Starts recording row profiles, with the next frame of the core.
   void record_rows();
-  // The rows of frames that the core has finished since the last call, in the order of the results. In a
-  // computer the results are delivered later.
+  // The row profiles of the frames that the core has finished since the last call, in the order of the
+  // results. A whole computer delivers these results later.
   std::vector<fpga::RowProfile> take_rows();
 
-  // The figures of the finished frames. No frame may be running that end_early() would finish; a computer needs
-  // at least one finished frame.
+  // The figures of the finished frames. May be called only if no frame is running that end_early() would let
+  // finish, and for a whole computer only after the first result.
   virtual platform::Statistics statistics() const = 0;
   const Result& last() const { return last_; }
 
@@ -64,11 +66,12 @@ class Simulation {
              fpga::Fidelity fidelity);
 
   void set_frames(std::uint64_t frames) { frames_ = frames; }
-  // Called within a SystemC process; an exception of the source ends that process.
+  // Loads a pair, within a SystemC process. An exception of the source ends that process, and advance()
+  // throws it.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
   virtual fpga::StereoCore& core() = 0;
-  // Throws std::runtime_error if nothing has proceeded for too long.
+  // Called by advance(). Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 
  private:

@@ -17,18 +17,18 @@ struct Calibration;
 
 namespace stereotlm::runs {
 
-// The file of --calibration and the tables beside it.
+// A calibration that a command has loaded: the file of --calibration and the tables beside it.
 struct CalibrationInput {
   std::shared_ptr<const calib::Calibration> calibration;  // never null
   platform::Tables tables;
-  InputCalibration described;
-  std::vector<NamedFile> files;
+  InputCalibration described;    // for run.json
+  std::vector<NamedFile> files;  // the files that were read
 };
 
-// Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there are
-// any: a damaged file, another size than the board's pictures, tables other than those it was written with, a
-// side without table. `board`: null if unknown, which is reported elsewhere. `named`: the option that gave the
-// path.
+// Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there
+// are any: a damaged file, a size other than that of the board's pictures, tables that were not written with
+// the calibration, a side without table on the board. `board`: null if unknown; the fit is then not checked.
+// `named`: the option that gave the path, for messages.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
                                                  const std::string& named = "--calibration");

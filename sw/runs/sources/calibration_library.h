@@ -11,7 +11,8 @@
 
 namespace stereotlm::runs {
 
-// The functions of calib that need OpenCV and cairo. They are in a library that is loaded at its first use.
+// The functions of calib that need OpenCV and cairo. They are in a library that is loaded by the first call
+// of calibration_functions().
 struct CalibrationFunctions {
   // calibrate.h, calibration_yaml.h, matched_rows.h
   calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);
@@ -35,7 +36,7 @@ struct CalibrationFunctions {
   std::string (*grid_sheet_svg)(const calib::GridShape& shape);
 };
 
-// Throws std::runtime_error if the library cannot be loaded. It is installed with the program.
+// Throws std::runtime_error if the library, which is installed with the program, cannot be loaded.
 const CalibrationFunctions& calibration_functions();
 
 }  // namespace stereotlm::runs

@@ -11,10 +11,11 @@
 
 namespace stereotlm::runs {
 
-// The functions of sw/media that the program uses. They are in two libraries that are loaded at their first use:
-// loading OpenCV takes 90 ms, and its part for videos another 50 ms.
+// The functions of sw/media that the program uses. They are in two libraries, each loaded by the first call
+// of one of the functions at the end of this file: loading OpenCV takes 90 ms, and its part for videos
+// another 50 ms.
 
-// load.h, encode.h
+// Functions of load.h and encode.h.
 struct MediaFunctions {
   media::LoadedGray (*load_gray)(const std::string& path);
   media::Truth (*load_truth)(const std::string& path, double scale);
@@ -25,12 +26,12 @@ struct MediaFunctions {
   std::vector<std::uint8_t> (*encode_pfm)(const kernels::GrayImage& disparity);
 };
 
-// video.h
+// Functions of video.h.
 struct VideoFunctions {
   std::unique_ptr<media::Video> (*open_video)(const std::string& path, const media::VideoSizeCheck& check);
 };
 
-// Throw std::runtime_error if the library cannot be loaded. It is installed with the program.
+// Each throws std::runtime_error if its library, which is installed with the program, cannot be loaded.
 const MediaFunctions& media_functions();
 const VideoFunctions& video_functions();
 

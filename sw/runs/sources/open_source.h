@@ -20,6 +20,7 @@ struct NamedFile {
   std::string text() const { return option + " '" + path + "'"; }
 };
 
+// The result of open_source().
 struct OpenedSource {
   std::unique_ptr<PairSource> pairs;  // null if it cannot be used
   std::vector<NamedFile> files;       // files that were named or found, usable or not
@@ -27,8 +28,7 @@ struct OpenedSource {
 };
 
 // Opens the source of pictures and checks all its pictures. Reports problems. Fills the fields of `described`
-// that concern the pictures. `board`: null if unknown, which is reported elsewhere; sizes are not checked
-// then.
+// that concern the pictures. `board`: null if unknown; the sizes of the pictures are then not checked.
 OpenedSource open_source(const PictureSource& options, const platform::BoardConfig* board,
                          RecordedOptions& described, process::Problems& problems);
 

@@ -12,8 +12,8 @@
 
 namespace stereotlm::runs {
 
-// The pairs of a run: frame f shows pair f mod length(). Pairs are loaded at their use, and a few of them are
-// kept, so that memory does not grow with the length.
+// Supplies the pairs of a run: frame f shows pair f mod length(). A pair is loaded when it is requested. Only
+// the kHeld pairs that were requested last are kept, so that memory does not grow with the length.
 class PairSource : public host::FrameSource {
  public:
   static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
@@ -26,7 +26,8 @@ class PairSource : public host::FrameSource {
   static constexpr std::size_t kHeld = 4;
   const host::StereoPair& pair(std::uint64_t frame) final;
 
-  // The truth of that pair, if known; it holds without calibration.
+  // The truth of the pair that a frame shows; nullopt if unknown. It holds only for a run without
+  // calibration.
   virtual std::optional<media::Truth> truth(std::uint64_t /*frame*/) const { return std::nullopt; }
 
  protected:
@@ -34,6 +35,7 @@ class PairSource : public host::FrameSource {
   PairSource(std::string option, std::uint64_t length) : option_(std::move(option)), length_(length) {}
 
  private:
+  // Loads pair `index`, 0 .. length()-1.
   virtual host::StereoPair load(std::uint64_t index) = 0;
 
   struct Held {

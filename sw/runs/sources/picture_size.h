@@ -9,7 +9,8 @@
 
 namespace stereotlm::runs {
 
-// The problem of a picture of this size, to follow its name in a message; nullopt if it fits the board.
+// The problem of a picture with this size, as the text that follows its name in a message. nullopt if the
+// size fits the board.
 inline std::optional<std::string> size_problem(int width, int height, const platform::BoardConfig& board) {
   if (width == board.image.width && height == board.image.height) return std::nullopt;
   return fmt::format(": {}x{} pixels: must be as large as the board's images, {}x{}", width, height,

@@ -12,7 +12,7 @@ enum class VideoLayout : std::uint8_t { kTwo, kSideBySide, kTopBottom };
 
 // Names of the layouts on the command line, in the order of VideoLayout.
 const std::vector<std::string>& video_layout_names();
-// Nothing for an unknown name.
+// nullopt for an unknown name.
 std::optional<VideoLayout> video_layout_of(const std::string& name);
 
 // The source of a run's pictures as the user names it. At most one member is set.

@@ -23,7 +23,7 @@ constexpr const char* kRight = "right_";
 constexpr const char* kSuffix = ".png";
 constexpr std::size_t kMostKeptBytes = 128'000'000;
 
-// The parts of the names that stand for `*`, for names with this prefix, sorted.
+// For the names of the form `beginning*.png`: the parts that stand for `*`, sorted.
 std::vector<std::string> stems(const std::vector<std::string>& names, const std::string& beginning) {
   const std::string suffix = kSuffix;
   std::vector<std::string> result;
@@ -47,7 +47,7 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-// Throws for the entries of `stems` that are not in `others`.
+// Throws std::runtime_error if a picture has no partner: if an entry of `stems` is not in `others`.
 void check_partners(const fs::path& folder, const char* beginning, const std::vector<std::string>& stems,
                     const char* other_beginning, const std::vector<std::string>& others) {
   std::vector<std::string> alone;

@@ -9,20 +9,19 @@
 
 namespace stereotlm::runs {
 
-// The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their names.
-// Other files in the folder are ignored. The first pictures are kept in memory, up to 128 MB. The others are
-// decoded again at each use.
+// The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their
+// names. Other files in the folder are ignored. The first pictures are kept in memory, up to 128 MB. The
+// others are decoded again at each use.
 class SequencePairs : public PairSource {
  public:
-  // Reads every picture once. Throws std::runtime_error, without the option's name, if the folder cannot be
-  // read, holds no pair or a picture without partner, or holds a picture that cannot be read or has another
-  // size than the board's images. `board`: null if unknown.
+  // Reads every picture once. Throws std::runtime_error if the folder cannot be read, holds no pair or a
+  // picture without partner, or holds a picture that cannot be read or has another size than the board's
+  // images; the message does not name the option. `board`: null if unknown; sizes are then not checked.
   SequencePairs(const std::string& folder, const platform::BoardConfig* board);
 
   const InputFolder& input() const { return contents_.input; }  // for run.json
-  std::uint64_t pictures_converted() const {
-    return contents_.converted;
-  }  // pictures converted from colour to grey
+  // The number of pictures that were converted from colour to grey.
+  std::uint64_t pictures_converted() const { return contents_.converted; }
 
  private:
   struct Contents {

@@ -31,7 +31,7 @@ void check_size(const std::string& file, int video_width, int video_height,
                   width, height));
 }
 
-// The part of `image` of this size whose top left pixel is at (column, row).
+// The part of `image` that has this size and its top left pixel at (column, row).
 GrayImage part_of(const GrayImage& image, int column, int row, int width, int height) {
   GrayImage part(width, height);
   for (int y = 0; y < height; ++y) {

@@ -14,9 +14,9 @@ namespace stereotlm::runs {
 // The pairs of `--video F [F2] --video-layout L`.
 class VideoPairs : public PairSource {
  public:
-  // Decodes each video once. Throws std::runtime_error, without the option's name, if a video cannot be decoded,
-  // if its frames have another size than the layout needs, or if two videos differ in their number of frames.
-  // `board`: null if unknown; the pairs are then not usable.
+  // Decodes each video once. Throws std::runtime_error if a video cannot be decoded, if its frames have
+  // another size than the layout needs, or if two videos differ in their number of frames; the message does
+  // not name the option. `board`: null if unknown; sizes are then not checked, and no pair may be requested.
   VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board);
 
   // Notes for standard error: videos with fewer frames than their headers state.

@@ -188,7 +188,7 @@ class Run(CalibrateTest):
         board = sets("matcher.disparities=16", "matcher.window=3")
         process = run("run", "fpl2003", *PRELOADED, "--synthetic", "1", *board, "--calibration", self.rig)
         self.assertNotIn("accuracy", self.succeeds(process))  # the scene is not one of this rig
-        need = "was made for 80 disparities: of this board's 16 the nearest things need more"
+        need = "was made for 80 disparities: the nearest objects exceed the 16 of this board"
         self.assertIn(need, process.stderr)
 
 
@@ -317,7 +317,7 @@ class RefusedPlaces(CalibrateTest):
         self.file("new.partial/thesis.txt", "precious")
         self.new.symlink_to("new.yaml")
         with self.unchanged(self.folder / "new.partial"):
-            self.refused(self.calibrate(), "holds 'new.partial/thesis.txt': no killed run has left that")
+            self.refused(self.calibrate(), "holds 'new.partial/thesis.txt', which no killed run has left")
 
     def test_pictures_that_a_made_up_rig_would_replace_stay(self):
         self.file("new_pictures/left_00.png", "mine")

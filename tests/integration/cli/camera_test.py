@@ -77,7 +77,7 @@ class Truth(CameraTest):
         self.camera("--truth", self.left)
         self.assertIn("accuracy", self.stats())
         self.assertEqual(list(self.stats()["frames_per_second"]), ["core", "system"])  # one frame: no steady
-        rule = "goes with one pair if it comes from cameras, which drop frames: of 3 pairs nobody knows"
+        rule = "cameras drop frames: which of 3 pairs the last frame shows is not known before the run"
         process = run(*self.arguments("--sequence", self.sequence(3), "--truth", self.left))
         self.refused_in_one_line(process, f"--truth: {rule}")
 

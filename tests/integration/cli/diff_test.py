@@ -319,7 +319,7 @@ class Folders(DiffTest):
         self.all_refused((["diff", self.a, folder], text) for folder, text in rows)
 
     def test_other_figures_fail(self):
-        other = f"B '{self.b}': run again it has other figures: "
+        other = f"B '{self.b}': repeated, it has other figures: "
         process = self.diff("stats.json", '"frames": 1', '"frames": 2')
         self.fails(process, f"{other}/frames: recorded 2, again 1\n")
         process = self.diff("stats.json", '"cycles": ', '"cycles": 1')
@@ -331,11 +331,11 @@ class Folders(DiffTest):
         said = self.succeeds(self.diff("run.json", f'"version": "{version}"', '"version": "0.0.9"'))
         self.assertIn("no figure and no row differs", said)
         process = self.diff("stats.json", '"frames": 1', '"frames": 2')
-        self.fails(process, f"again 1; it is of version 0.0.9, this is {version}\n")
+        self.fails(process, f"again 1; it was written by version 0.0.9, this is {version}\n")
 
     def test_files_that_run_has_not_written_so_are_refused(self):
         self.fails(self.diff("stats.json", '"schema": 1', '"schema":  1'),
-                   f"B '{self.b}': its stats.json is not as run has written it\n")
+                   f"B '{self.b}': its stats.json is not as `run` writes it\n")
         process = self.diff("stats.json", '"schema":  1,', '"schema": 1, "failed": ["1 = 2"],')
         rule = 'failed = ["1 = 2"]: must be a run in which nothing failed'
         self.refused_in_one_line(process, f"'{self.b}/stats.json': {rule}")

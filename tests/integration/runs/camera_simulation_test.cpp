@@ -157,7 +157,7 @@ TEST_F(CameraSimulationTest, ReportsWhoWaitsForWhatWhenNothingProceeds) {
   build(100);
   EXPECT_THAT(
       message_of_running(),
-      AllOf(HasSubstr("nothing has gone on for 0.10"),
+      AllOf(HasSubstr("no progress for 0.10"),
             HasSubstr("s of simulated time; delivered: 0 of 100 frames; the driver waits for: capture 0; the "
                       "core runs no frame")));
 }

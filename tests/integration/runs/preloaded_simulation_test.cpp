@@ -99,7 +99,7 @@ TEST_F(PreloadedSimulationTest, ReportsARunThatStopsBeforeTheLastFrame) {
   const test::ExpectedReport expected("/stereotlm/ideal_host");
   pairs.set_right_size(28, 24);
   EXPECT_EQ(message_of_advancing(),
-            "the simulation has ended after 7 frames: nothing is left that could finish the next");
+            "the simulation has ended after 7 frames: no event is left that could finish the next");
 }
 
 TEST_F(PreloadedSimulationTest, RefusesABoardWithProblems) {

@@ -38,7 +38,7 @@ TEST_F(DocumentFolderTest, WritesAndReplacesItsFilesAndLeavesOthers) {
 TEST_F(DocumentFolderTest, RefusesAFileThatAnotherProgramHasWritten) {
   test::write_file(out_ / "a.csv", "mine");
   EXPECT_THAT(refusal(),
-              HasSubstr("out': holds 'a.csv' but no doc.md: only what an earlier one has written"));
+              HasSubstr("out': holds 'a.csv' but no doc.md: only files of an earlier result are replaced"));
   EXPECT_EQ(test::read_file(out_ / "a.csv"), "mine");
 }
 

@@ -1,4 +1,4 @@
-#include "sw/process/program.h"
+#include "sw/process/installation.h"
 
 namespace stereotlm::process {
 

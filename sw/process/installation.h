@@ -5,7 +5,7 @@
 
 namespace stereotlm::process {
 
-inline constexpr const char* kVersion = STEREOTLM_VERSION;  // of the project, set by CMake
+inline constexpr const char* kVersion = STEREOTLM_VERSION;  // version of the project, set by CMake
 
 // The path of a file that is installed with the program. `from_program`: its path relative to the folder of
 // the program.
