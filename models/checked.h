@@ -5,8 +5,8 @@
 
 namespace stereotlm {
 
-// Returns the configuration of a block. Throws std::invalid_argument with the block's name and the first
-// problem if problems(config) finds any.
+// Returns `config`, the configuration of the block `name`. Throws std::invalid_argument with the name and the
+// first problem if problems(config) finds any.
 template <class Config>
 const Config& checked(const std::string& name, const Config& config) {
   if (const auto found = problems(config); !found.empty())

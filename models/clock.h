@@ -22,14 +22,14 @@ class Clock {
     }
   }
 
-  // Time of an edge, in ps.
+  // Time of edge number `edge`, in ps.
   std::uint64_t edge_ps(std::uint64_t edge) const { return period_.times(edge); }
-  // The first edge at or after a time in ps.
+  // Number of the first edge at or after a time in ps.
   std::uint64_t edge_at_or_after(std::uint64_t time_ps) const {
     const double edges = static_cast<double>(time_ps) * edges_per_ps_;
     auto edge = static_cast<std::uint64_t>(edges);
-    // Rounding moves an edge by at most half a ps. Farther than twice that, plus the error of `edges`, from
-    // an edge, the estimate is certain.
+    // Rounding moves an edge by at most half a ps. The estimate is therefore certain if it lies farther from
+    // an edge than 1 ps plus the error of `edges`.
     const double past_edge = edges - static_cast<double>(edge);
     const double doubt = edges_per_ps_ + edges * 0x1p-50;
     if (past_edge > doubt && past_edge < 1 - doubt) return edge + 1;

@@ -4,10 +4,10 @@
 
 namespace stereotlm {
 
-// A level-sensitive interrupt line (INTA#), as its receiver sees it. The level follows the sender's
-// registers at once: a register access that changes it takes effect before any receiver can poll the line.
-// An sc_signal would show the old level for one more delta cycle. To drive a signal from the line, use a
-// method process that is sensitive to changed_event().
+// A level-sensitive interrupt line (INTA#), as its receiver sees it. The level follows the sender's registers
+// immediately: a register access that changes it takes effect before any receiver can poll the line. An
+// sc_signal would show the old level for one more delta cycle. To drive a signal from the line, use a method
+// process that is sensitive to changed_event().
 class InterruptIf : public virtual sc_core::sc_interface {
  public:
   virtual bool is_asserted() const = 0;

@@ -15,7 +15,7 @@ Wide power_of_ten(int exponent) {
 
 }  // namespace
 
-// The text of `value` is "d.ddde-dd", with at most 17 digits.
+// std::to_chars() writes `value` as "d.ddde-dd", with at most 17 digits.
 DecimalNumber decimal_of(double value) {
   std::array<char, 32> text{};
   const char* end =

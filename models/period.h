@@ -8,27 +8,28 @@ namespace stereotlm {
 
 __extension__ typedef unsigned __int128 Wide;
 
-// The exact value numerator / denominator of a decimal number.
+// A decimal number as an exact fraction.
 struct DecimalNumber {
   Wide numerator = 0;
   Wide denominator = 1;
 };
 
-// The decimal number that was parsed as `value`: the shortest one that parses to the same double. For
-// 0.001 <= value <= 1000 its numerator is below 10^17 and its denominator at most 10^19.
+// Returns the decimal number from which `value` was parsed, taken to be the shortest one that parses to the
+// same double. If 0.001 <= value <= 1000, its numerator is below 10^17 and its denominator at most 10^19.
 DecimalNumber decimal_of(double value);
 
-// A period of a rational number of ps. Each multiple is rounded once, halves up, from its exact value, so
-// that nothing drifts.
+// A period whose length in ps is a rational number. Each multiple is rounded once, halves up, from its exact
+// value, so that rounding errors do not add up.
 class Period {
  public:
   // A period of numerator / denominator ps. Both are below 2^127.
   Period(Wide numerator, Wide denominator);
 
+  // The time of `count` periods, in ps.
   std::uint64_t times(std::uint64_t count) const {
     if (rest_ == 0) return whole_ * count;
     if (const auto time = rounded_if_certain(static_cast<double>(count) * approximate_)) return *time;
-    // A division of 128 bits takes several times as long as one of 64.
+    // A division of 128-bit numbers takes several times as long as one of 64-bit numbers.
     const std::uint64_t doubled_rest =
         count <= narrow_counts_
             ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)

@@ -5,13 +5,13 @@
 
 namespace stereotlm {
 
-// Checks an access to a bank of 32-bit registers at the byte addresses 0, 4, .. below `end`. TLM_OK_RESPONSE,
-// or the response to the first rule that the access breaks:
+// Checks an access to 32-bit registers at the byte addresses 0, 4, .. below `end`. Returns TLM_OK_RESPONSE,
+// or the response for the first rule that the access breaks:
 //
 // | rule                                                 | response otherwise             |
 // |------------------------------------------------------|--------------------------------|
 // | it reads or writes                                   | TLM_COMMAND_ERROR_RESPONSE     |
-// | its length is 4 bytes, its streaming width not below | TLM_BURST_ERROR_RESPONSE       |
+// | its length is 4, its streaming width at least 4      | TLM_BURST_ERROR_RESPONSE       |
 // | it has no byte enables                               | TLM_BYTE_ENABLE_ERROR_RESPONSE |
 // | its address is that of a register                    | TLM_ADDRESS_ERROR_RESPONSE     |
 inline tlm::tlm_response_status check_register_access(const tlm::tlm_generic_payload& access,

@@ -5,10 +5,10 @@
 
 namespace stereotlm {
 
-// The whole number nearest to `value`, halves up, if it is certain in spite of the error of `value`. None if
-// `value` lies too near to a half or is too large: the caller then computes it exactly, which costs several
-// times as much. `value` is not negative, and comes from a few operations with a relative error of 2^-53
-// each.
+// Returns the whole number nearest to `value`, halves up, if the rounding errors in `value` cannot change it.
+// Returns nothing if `value` lies too near to a half or is too large: the caller must then compute the number
+// exactly, which takes several times as long. `value` must not be negative, and must be the result of a few
+// operations with a relative error of 2^-53 each.
 inline std::optional<std::uint64_t> rounded_if_certain(double value) {
   constexpr double kRelativeError = 0x1p-50;
   constexpr double kLargest = 0x1p48;

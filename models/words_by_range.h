@@ -9,16 +9,18 @@
 
 namespace stereotlm {
 
-// The byte addresses of a buffer.
+// A range of byte addresses, such as those of a buffer.
 struct AddressRange {
   std::uint64_t first = 0;
-  std::uint64_t end = 0;  // the first byte behind the range
+  std::uint64_t end = 0;  // address of the first byte behind the range
 
   bool contains(std::uint64_t address) const { return first <= address && address < end; }
   bool overlaps(const AddressRange& other) const { return first < other.end && other.first < end; }
 };
 
-// Counts 32-bit words by the range in which they begin. The ranges do not overlap. Plain C++.
+// Counts 32-bit words, separately for each of several address ranges that do not overlap. A word belongs to
+// the range in which its first byte lies. LocalBus and PciBridge count the words written to each buffer with
+// it. Plain C++.
 class WordsByRange {
  public:
   explicit WordsByRange(std::vector<AddressRange> ranges)
@@ -34,7 +36,7 @@ class WordsByRange {
       address += 4 * here;
     }
   }
-  // Words of each range, in the order of the ranges, then the words outside all ranges.
+  // [range]: the words counted in it. The last element counts the words outside all ranges.
   const std::vector<std::uint64_t>& words() const { return words_; }
   std::uint64_t total() const { return std::accumulate(words_.begin(), words_.end(), std::uint64_t{0}); }
 
@@ -44,7 +46,8 @@ class WordsByRange {
     while (range < ranges_.size() && !ranges_[range].contains(address)) ++range;
     return range;
   }
-  // `address` belongs to latest_. The first address behind it that does not; kNone: there is none.
+  // Returns the first address behind `address` that is in another range; kNone if there is none. `address`
+  // must be in the range latest_.
   std::uint64_t border_behind(std::uint64_t address) const {
     if (latest_ < ranges_.size()) return ranges_[latest_].end;
     std::uint64_t border = kNone;
@@ -53,7 +56,7 @@ class WordsByRange {
     }
     return border;
   }
-  // Consecutive words from `address` on that begin before `end`.
+  // The number of consecutive words from `address` on that begin before `end`.
   static std::uint64_t words_until(std::uint64_t end, std::uint64_t address) {
     return (end - address - 1) / 4 + 1;
   }
@@ -62,7 +65,7 @@ class WordsByRange {
 
   std::vector<AddressRange> ranges_;
   std::vector<std::uint64_t> words_;
-  std::size_t latest_;  // range of the last word counted, which the next word mostly shares
+  std::size_t latest_;  // index of the range of the last word counted, in which the next word mostly is too
 };
 
 }  // namespace stereotlm

@@ -38,7 +38,7 @@ struct Core {
   bool columns_of_pixels;  // the matcher takes a whole column per cycle, not one pixel
   int column_sum_bits;
   int window_sum_bits;
-  int disparity_bits;  // of 0..D-1
+  int disparity_bits;  // bits of a disparity, 0..D-1
 };
 
 using Items = std::vector<Item>;
@@ -48,8 +48,9 @@ void add(const char* name, std::int64_t count, const Resources& all, Items& item
 }
 
 // Contract section 2, "Lane": a slot waits as a table entry, then as a pixel, in queues of `lane_fifo_slots`
-// places. Only the left valid bit proceeds, to the check. Paper section 3.2: an entry names a source pixel.
-// Its address is row * W + column, and it is one of four in a word.
+// places. Of the valid bits only the left one is passed on, to the left-right check. Paper section 3.2: an
+// entry names a source pixel. The address of that pixel is row * W + column, and the pixel is one of four in
+// a word.
 void add_lanes(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   const int tables = core.tables();
@@ -66,10 +67,10 @@ void add_lanes(const Core& core, Items& items) {
   add("pixel queues", 2, queues, items);
 }
 
-// Paper section 2.4, contract 1.2. Beside the new pixel the filter reads the pixels of the m - 1 columns
-// before it in the same row; a column of slots has n rows. For each column of the image the line memories
-// hold the partial sums of the rows above, and a valid bit for each row that the middle of the window lies
-// above the newest n rows.
+// Paper section 2.4, contract 1.2. m is the size of the kernel. Beside the new pixel the filter reads the
+// pixels of the m - 1 columns before it in the same row; a column of slots has n rows. For each column of the
+// image the line memories hold the partial sums of the rows above. They also hold as many valid bits as there
+// are rows from the middle of the window down to the newest n rows.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
@@ -87,8 +88,8 @@ void add_filter(const Core& core, Items& items) {
   add("filter line memories", 2, lines, items);
 }
 
-// Contract section 2, `line_buffer`: the n - 1 filtered rows above the newest row, and the left valid bits
-// from the newest row to the middle of the window.
+// Contract section 2, `line_buffer`: the row buffers hold the n - 1 filtered rows above the newest row, and
+// the left valid bits from the newest row up to the middle of the window.
 void add_row_buffers(const Core& core, Items& items) {
   if (!core.columns_of_pixels) return;
   Resources rows;
@@ -99,7 +100,7 @@ void add_row_buffers(const Core& core, Items& items) {
   add("row buffers", 2, rows, items);
 }
 
-// Adders of `count` pixel differences in one cycle, in pairs.
+// A tree of adders that sums `count` pixel differences in one cycle.
 Resources sum_of_differences(int count) {
   if (count == 1) return {};
   const int half = count / 2;
@@ -108,8 +109,9 @@ Resources sum_of_differences(int count) {
 
 // Paper figures 6 and 8. Left pixels go to all column modules. Right pixels go from module to module, one
 // column later in each. A column module adds up n absolute differences of two pixels, one a cycle. A window
-// module adds its output and subtracts its output of n columns before. A mark for each candidate says whether
-// its window lies inside the images (contract 1.3); with each column one more does.
+// module adds the output of its column module, and subtracts the output of n columns before. Each candidate
+// has a flip-flop that marks whether its window lies inside both images (contract 1.3). With each column of a
+// row, the window of one candidate more does.
 void add_modules(const Core& core, Items& items) {
   const int n = core.config.window;
   const int disparities = core.config.disparities;
@@ -128,14 +130,14 @@ void add_modules(const Core& core, Items& items) {
   add("candidate marks", disparities, disparities * registers(1), items);
 }
 
-// One step of either unit: compares two sums and selects one of them with its disparity, if both candidates
-// are valid.
+// One step of select-min unit A or B: compares two sums, and selects one of them with its disparity, if both
+// candidates are valid.
 Resources select_min(int sum_bits, int disparity_bits) {
   return comparator(sum_bits) + Resources{1} + selector(sum_bits) + selector(disparity_bits);
 }
 
-// Paper section 3.3, figure 6: a chain. Module d keeps its own sum, or what module d-1 held a column ago with
-// a disparity of at most d-1. Module 0 only holds its own sum.
+// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of its own sum and the sum that module d-1
+// held a column ago, whose disparity is at most d-1. Module 0 only holds its own sum.
 void add_select_min_chain(const Core& core, Items& items) {
   const int sum_bits = core.window_sum_bits;
   Resources chain = registers(sum_bits + kValidBit);
@@ -147,8 +149,8 @@ void add_select_min_chain(const Core& core, Items& items) {
 }
 
 // Paper section 3.3: a tree of D-1 comparators, registered at every level. The result of a comparison is the
-// highest bit of the pair's disparity; the lower bits are selected. A sum without a partner at its level
-// waits in registers.
+// highest bit of the pair's disparity; the lower bits are those of the smaller sum. A sum without a partner
+// at its level waits in registers.
 void add_select_min_tree(const Core& core, Items& items) {
   const int sum_bits = core.window_sum_bits;
   Resources tree;
@@ -165,11 +167,11 @@ void add_select_min_tree(const Core& core, Items& items) {
 }
 
 // Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. A block RAM holds the
-// last D right-based disparities, and is read at the place that the left-based disparity names. The
+// last D right-based disparities, and is read at the place to which the left-based disparity points. The
 // comparison takes an absolute difference, LUTs that compare it with the tolerance (4 bits in the first LUT,
 // 3 more in each further one), and a LUT that joins the result with both valid bits. The valid bit of the
-// left pixel itself waits until its column is the middle of the window. Without a check only the delays
-// remain.
+// left pixel itself waits until its column is the middle of the window. Without a check only the delays and
+// the selector remain.
 void add_left_right_check(const Core& core, Items& items) {
   const int bits = core.disparity_bits;
   Resources check = shift_register(core.config.disparities - 1, bits + kValidBit);

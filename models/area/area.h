@@ -8,36 +8,38 @@
 #include "models/area/parts.h"
 #include "models/fpga/core_config.h"
 
-// The FPGA resources of the stereo core, counted part by part. The paper's figures 5, 6 and 8 and sections 1
-// and 2 of the contract give the adders, comparators, shift registers and memories. The 8 bits of a pixel,
-// the window and the disparities give their widths. One constant, how well LUTs fill slices, is fitted to the
-// paper's Table 2 (sw/paper/area_fit.h).
+// Estimates the FPGA resources that the stereo core takes, part by part. The paper's figures 5, 6 and 8 and
+// sections 1 and 2 of the contract give the adders, comparators, shift registers and memories. Their widths
+// follow from the 8 bits of a pixel, the window and the number of disparities. Only one constant, the number
+// of slices per LUT, is fitted to the paper's Table 2 (sw/paper/area_fit.h).
 //
 // The count includes all parts that pixels, table entries, sums and disparities pass through. It leaves out
 // the parts that control them: counters, the addresses of tables and results, the repetition of edge pixels,
-// arbiters and the multiplexers of the banks, registers, the local bus. None of these grows with the
-// disparities.
+// arbiters and the multiplexers of the banks, registers, the local bus. None of these grows with the number
+// of disparities.
 namespace stereotlm::area {
 
-// Parts of the same kind.
+// All parts of one kind, such as the column modules.
 struct Item {
   std::string name;
   std::int64_t count = 0;
   Resources all;  // of all `count` parts
 
-  // Places of one LUT and the flip-flop behind it. Within an item flip-flops use the places of LUTs first.
+  // The number of places that the parts take. A place holds a LUT and a flip-flop, which need not belong to
+  // each other.
   std::int64_t lut_equivalents() const;
 };
 
-// The parts of the core with this configuration, in the order of the data; parts that it does not need are
-// absent. Throws std::invalid_argument if the configuration has problems.
+// The parts of the core with this configuration, in the order in which data passes through them. Parts that
+// the configuration does not need are absent. Throws std::invalid_argument if the configuration has problems.
 std::vector<Item> items(const fpga::CoreConfig& config);
 
-// Slices per LUT-equivalent; 0.5 would be two in every slice. A least-squares fit to the three rows of Table
-// 2.
+// Slices per LUT-equivalent, from a least-squares fit to the three rows of Table 2. With 0.5 every slice
+// would hold two.
 inline constexpr double kSlicesPerLutEquivalent = 0.6218;
 
-// The sum of items. Percentages are shares of the device; above 100 the core does not fit.
+// The resources of all items together. Percentages are shares of the device: the core does not fit if one of
+// them is above 100.
 struct Area {
   std::int64_t lut_equivalents = 0;
   std::int64_t slices = 0;  // rounded up

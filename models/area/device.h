@@ -18,7 +18,7 @@ struct Device {
 // The devices that a board may name.
 inline constexpr std::array<Device, 1> kDevices = {{{"xc2v6000", 33'792, 144, 144}}};
 
-// The device of this name, or null.
+// Returns the device of this name, or null.
 inline const Device* find_device(std::string_view name) {
   for (const Device& device : kDevices) {
     if (device.name == name) return &device;

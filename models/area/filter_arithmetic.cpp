@@ -27,7 +27,7 @@ Range weighted(std::int64_t weight, std::int64_t most) {
 
 Range sum(const Range& a, const Range& b) { return {a.low + b.low, a.high + b.high}; }
 
-// `weight` is not 0, and may be negative.
+// `weight` must not be 0. It may be negative.
 int trailing_zeros(int weight) {
   int zeros = 0;
   for (; weight % 2 == 0; weight /= 2) ++zeros;
@@ -39,7 +39,7 @@ bool is_power_of_two(int weight) { return bits_of(std::abs(weight)) == trailing_
 // A pair of pixels with equal weight, or a single pixel.
 struct Term {
   int weight;
-  std::int64_t most;  // of the pixel or the pair
+  std::int64_t most;  // largest value of the pixel, or of the sum of the pair
 };
 
 std::vector<Term> terms_of(const Row& row, bool in_pairs) {
@@ -56,8 +56,8 @@ struct RowSum {
   Range range;
 };
 
-// Adds terms one by one, outermost first. A multiple of 2^z does not change the z lowest bits of the other
-// addend, which need no adder.
+// Returns the adders and multipliers of a row. The terms are added one by one, outermost first. A multiple of
+// 2^z does not change the z lowest bits of the other addend, which need no adder.
 RowSum row_sum(const std::vector<Term>& terms) {
   RowSum result;
   int zeros = 0;  // lowest bits that are 0 in the sum so far
@@ -72,9 +72,9 @@ RowSum row_sum(const std::vector<Term>& terms) {
   return result;
 }
 
-// Clamps sums in this range to 8 bits. The 7 lowest bits stay. The bits above them must be equal: the first
-// LUT compares 4 of them, each further LUT 2 more. If they differ, each of the 8 bits takes the value of the
-// nearer end of the range.
+// The resources that clamp a sum of this range to 8 bits. The 7 lowest bits are kept if all bits above them
+// are equal. The first LUT compares 4 of those bits, each further LUT 2 more. If they differ, one LUT for
+// each of the 8 bits replaces the value by 0 or 255.
 Resources clamp(const Range& range, int shift) {
   const int bits = bits_of(Range{range.low >> shift, range.high >> shift});
   if (bits <= kPixelBits) return {};

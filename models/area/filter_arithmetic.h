@@ -5,8 +5,9 @@
 
 namespace stereotlm::area {
 
-// The arithmetic of the filter for one pixel a cycle (contract 1.2, paper section 2.4). It receives the rows
-// of a column one after the other, top first:
+// The resources of a filter that takes one pixel a cycle (contract 1.2, paper section 2.4). m is the size of
+// the kernel, h its half width. The rows of a column arrive one after the other, top first. The parts of the
+// filter:
 //   pairs    in a kernel whose rows are symmetric, two pixels of equal weight are added first
 //   rows     the m pixels of the new row, weighted for each row of the kernel; equal rows are shared. A
 //            weight that is no power of two is a multiplier of the device
@@ -17,10 +18,10 @@ namespace stereotlm::area {
 // Line memories keep the sums of the chain instead of 2h rows of pixels.
 struct FilterArithmetic {
   Resources resources;  // including the registers of the chain
-  int chain_bits = 0;   // in these registers
+  int chain_bits = 0;   // bits of those registers
 };
 
-// The kernel must have no problems.
+// `kernel` must have no problems.
 FilterArithmetic filter_arithmetic(const kernels::FilterKernel& kernel);
 
 }  // namespace stereotlm::area

@@ -7,7 +7,7 @@ namespace stereotlm::area {
 
 struct Resources {
   std::int64_t luts = 0;        // 4-input look-up tables
-  std::int64_t flip_flops = 0;  // each shares the place of the LUT before it, if it has one
+  std::int64_t flip_flops = 0;  // each shares the place of the LUT in front of it, if there is one
   std::int64_t block_rams = 0;  // of 18 kbit, dual port
   std::int64_t multipliers = 0;
 
@@ -24,23 +24,24 @@ struct Range {
 
 // The fewest bits that hold 0..largest; 0 bits for 0.
 int bits_of(std::int64_t largest);
-// The fewest bits that hold a range. Without positive values they hold the magnitude, and the circuit
-// subtracts it.
+// The fewest bits that hold every value of a range. If no value is positive, the bits hold the magnitude,
+// which the circuit subtracts.
 int bits_of(Range range);
 
-// One LUT on the carry chain for each bit of the result. A subtracter takes the same.
+// An adder or a subtracter: one LUT on the carry chain for each bit of the result.
 Resources adder(int bits);
-// Whether one number is less than another: the borrow of their difference, which takes one LUT more.
+// Tests whether one number is less than another, by the borrow of their difference: one LUT more than a
+// subtracter.
 Resources comparator(int bits);
 // Selects one of two numbers: one LUT a bit.
 Resources selector(int bits);
 // |a - b|: the difference with its borrow, and one LUT a bit that negates it.
 Resources absolute_difference(int bits);
-// A number held for one clock enable.
+// Holds a number until the next clock enable: one flip-flop a bit.
 Resources registers(int bits);
-// A number delayed by `length` clock enables, or a queue of so many places. A length of 1 takes a flip-flop a
-// bit, others take SRL16s of 16 places. The multiplexers of the slices (MUXF5 to MUXF8) join the SRL16s of a
-// queue.
+// Delays a number by `length` clock enables, or queues up to `length` numbers. A length of 1 takes one
+// flip-flop a bit. Longer ones take one SRL16 a bit for every 16 places. The multiplexers of the slices
+// (MUXF5 to MUXF8) join the SRL16s of a queue.
 Resources shift_register(int length, int bits);
 // A memory with a write port and a read port: block RAMs side by side, each 512 x 36, or deeper and narrower
 // (1K x 18, 2K x 9, 4K x 4, 8K x 2, 16K x 1) so that no multiplexer is needed.

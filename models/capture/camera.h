@@ -13,21 +13,21 @@ namespace stereotlm::capture {
 class CameraSource {
  public:
   virtual ~CameraSource() = default;
-  // The picture of camera frame `number`, which began at `begin_ps`. It has the camera's size and stays valid
-  // until the next call. Called only for taken frames, in their order.
+  // Returns the picture of camera frame `number`, which began at `begin_ps`. It has the camera's size and
+  // stays valid until the next call. Called only for taken frames, in their order.
   virtual const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) = 0;
 };
 
-// The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it
-// is triggered. A taken frame is sent line by line, with blanking. Cost: one event per frame, and one per
-// line of a taken frame.
+// The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it is
+// triggered. A frame that the capture board takes is sent line by line, with blanking. Cost: one event per
+// frame, and one per line of a taken frame.
 //
-// A trigger is accepted from the last pixel of a frame on, and begins the next frame at once. The camera
-// ignores and counts a trigger that comes earlier, one that comes while another trigger is pending, and
-// every trigger if it runs freely.
+// A trigger is accepted from the last pixel of a frame on, and begins the next frame immediately. The camera
+// ignores and counts a trigger that comes earlier, one that comes while another trigger is pending, and every
+// trigger if it runs freely.
 //
-// SC_REPORT_ERROR (type /stereotlm/camera): a picture of another size; TakeFrame for a frame that is not the
-// running one or has been taken already.
+// SC_REPORT_ERROR (type /stereotlm/camera) reports: a picture of another size; TakeFrame for a frame that is
+// not the running one or has been taken already.
 class Camera : public sc_core::sc_module {
  public:
   struct Stats {

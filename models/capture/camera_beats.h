@@ -8,7 +8,7 @@
 // Messages between a camera and its capture board.
 namespace stereotlm::capture {
 
-// A frame begins now. The camera sends its lines only if the receiver answers with TakeFrame before the
+// A frame begins now. The camera sends its lines only if the receiver sends TakeFrame before the
 // frame's first word is complete.
 struct VideoFrame {
   std::uint64_t number = 0;  // 0 for the camera's first frame

@@ -9,7 +9,8 @@ namespace stereotlm::capture {
 CameraTiming::CameraTiming(const CameraConfig& config)
     : CameraTiming(config, decimal_of(checked("camera", config).frame_rate_hz)) {}
 
-// 525/480 line times per row are 35/32. With a frame rate of 17 digits all numbers stay below 2^127.
+// A frame has 525/480 = 35/32 line times per row. With a frame rate of 17 digits all numbers stay below
+// 2^127.
 CameraTiming::CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz)
     : width_(config.width),
       height_(config.height),
@@ -25,8 +26,8 @@ int CameraTiming::pixels_by(int row, std::uint64_t since_begin_ps) const {
   constexpr double kPixelsPerStep = 1.0 / kPixelSteps;
   const double arrived = (steps - row_steps) * kPixelsPerStep + 1;
   int pixels = static_cast<int>(std::clamp(arrived, 0.0, static_cast<double>(width_)));
-  // Rounding moves an arrival by at most half a ps. Farther than twice that, plus the error of `steps`, from
-  // an arrival, the estimate is certain.
+  // Rounding moves an arrival by at most half a ps. The estimate is therefore certain if it lies farther from
+  // an arrival than 1 ps plus the error of `steps`.
   const double doubt = (steps_per_ps_ + steps * 0x1p-49) * kPixelsPerStep;
   const double past_pixel = arrived - pixels;
   if (past_pixel > doubt && past_pixel < 1 - doubt) return pixels;

@@ -8,11 +8,11 @@
 namespace stereotlm::capture {
 
 // The times at which frames begin and pixels arrive, in ps (contract section 3, "Cameras"). A frame lasts
-// 1/frame_rate_hz and has 525/480 * height line times. The pixels of a line fill the first 52.15/63.56 of
-// its line time: pixel i of width W arrives i/W of that part after the line's beginning. The rest of each
-// line, and the lines behind the last row, are blank. Each time is rounded once, halves up, from its exact
-// value, so that nothing drifts. The frame rate is the decimal number as written, not the binary number
-// nearest to it.
+// 1/frame_rate_hz and has 525/480 * height line times. The pixels of a line fill the first 52.15/63.56 of its
+// line time: pixel i of width W arrives i/W of that part after the line's beginning. The rest of each line,
+// and the lines behind the last row, are blank. Each time is rounded once, halves up, from its exact value,
+// so that rounding errors do not add up. The frame rate is the decimal number as written, not the binary
+// number nearest to it.
 class CameraTiming {
  public:
   // Throws std::invalid_argument if the configuration has problems.
@@ -30,21 +30,21 @@ class CameraTiming {
   }
   std::uint64_t row_ps(int row) const { return pixel_ps(0, row); }
   std::uint64_t last_pixel_ps() const { return pixel_ps(width_ - 1, height_ - 1); }
-  // Number of pixels of a row that have arrived by a time, from the beginning of the frame. A pixel that
-  // arrives at that time counts.
+  // Returns how many pixels of a row have arrived when `since_begin_ps` have passed since the beginning of
+  // the frame. A pixel that arrives at that very time counts.
   int pixels_by(int row, std::uint64_t since_begin_ps) const;
 
  private:
   CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz);
 
-  // Times are counted in steps: the largest time that divides both a line time and the distance of two
-  // pixels. 52.15/63.56 = 745/908.
+  // Times are counted in steps. A step is the largest time that divides both a line time and the time between
+  // two pixels. 52.15/63.56 = 745/908.
   static constexpr std::uint64_t kPixelSteps = 745;  // steps between two pixels
   static constexpr std::uint64_t kLineSteps = 908;   // steps of a line time, for each pixel of the width
 
   int width_;
   int height_;
-  std::uint64_t row_steps_;
+  std::uint64_t row_steps_;  // steps of a line time
   Period frame_;
   Period step_;
   double steps_per_ps_;  // approximate

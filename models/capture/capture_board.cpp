@@ -49,8 +49,6 @@ void CaptureBoard::access_registers(tlm::tlm_generic_payload& access, sc_core::s
   if (!access.is_response_ok()) ++stats_.refused_accesses;
 }
 
-// The beginning of a frame.
-
 void CaptureBoard::take_frame(const VideoFrame& frame) {
   frame_ = frame;
   readiness_.reset();
@@ -106,8 +104,6 @@ void CaptureBoard::start() {
   takes_out->push({frame_->number});
 }
 
-// The running capture.
-
 void CaptureBoard::take_line(const VideoLine& line) {
   if (!register_file_.capturing() || line.row != static_cast<int>(lines_.size())) {
     report(*this, "line " + std::to_string(line.row) + " came: no capture expects it");
@@ -117,8 +113,8 @@ void CaptureBoard::take_line(const VideoLine& line) {
   proceed();
 }
 
-// If the bus is idle, requests it for the time at which the FIFO needs it, or finishes the capture at the
-// time at which the FIFO has finished.
+// Unless the board has requested the bus or runs a burst: requests the bus for the time at which the FIFO
+// needs it, or finishes the capture when the FIFO has finished.
 void CaptureBoard::proceed() {
   if (bus_state_ != BusState::kIdle) return;
   const std::uint64_t now = Clock::now_ps();
@@ -181,12 +177,12 @@ bool CaptureBoard::fits(const pci::BurstResult& result) const {
   return result.words == 0;
 }
 
-// The words transferred by now leave the FIFO, each at the end of its data clock.
+// Removes the words transferred by now from the FIFO, each at the end of its data clock.
 void CaptureBoard::leave(CaptureFifo& fifo, const pci::BurstResult& transferred) const {
   const Clock& clock = pci->clock();
   fifo.leave(Clock::now_ps(), static_cast<int>(transferred.words),
              [&transferred, &clock](std::uint64_t time_ps) {
-               // One word leaves at each edge behind first_data_clock.
+               // One word leaves at each clock edge after the beginning of first_data_clock.
                const std::uint64_t edges = clock.edge_at_or_after(time_ps + 1) - 1;
                if (edges <= transferred.first_data_clock) return 0;
                return static_cast<int>(

@@ -22,23 +22,23 @@ struct Capture {
 // status, and drives the interrupt.
 class CaptureRegisterFile : public InterruptIf {
  public:
-  // Carries out an access and sets its response status. A refused access has no effect; its errors are those
-  // of fpga/register_file.h. Arming counts at the time of the access, `delay` from now. Returns whether the
-  // access triggers the cameras.
+  // Carries out an access and sets its response status. A refused access has no effect; fpga/register_file.h
+  // lists what is refused. Arming takes effect at the time of the access, `delay` from now. Returns whether
+  // the access triggers the cameras.
   bool access(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
   // Debug transport, which only reads.
   unsigned debug(tlm::tlm_generic_payload& access) const;
 
-  // Whether a capture is armed, and was so at this time.
+  // Whether a capture is armed, and was armed at `time_ps` already.
   bool armed_at(std::uint64_t time_ps) const { return armed_ && armed_ps_ <= time_ps; }
   bool capturing() const { return capturing_; }
-  // The armed capture starts. Returns its buffer address.
+  // Starts the armed capture, and returns its buffer address.
   std::uint32_t start();
-  // The bus has not taken some words of the running capture.
+  // To be called when words of the running capture are lost, because the bus did not take them.
   void lose_words();
-  // The running capture is done.
+  // Ends the running capture.
   void finish(const Capture& capture);
-  // None before the first capture is done.
+  // The last capture that has ended; none before the first one ends.
   const std::optional<Capture>& last_capture() const { return last_capture_; }
 
   bool is_asserted() const override { return done_ || words_lost_; }

@@ -15,7 +15,7 @@
 // | 0x10    | kFrameNumberHigh | read   | bits 63..32                                                       |
 // | 0x14    | kDroppedPixels   | read   | pixels of that capture that a full FIFO dropped                   |
 // | 0x18    | kLostWords       | read   | words of that capture that the bus did not take: no target        |
-// |         |                  |        | answered, or it answered with an error                            |
+// |         |                  |        | responded, or one responded with an error                         |
 //
 // Arming copies the buffer address. The capture starts at the next beginning of a frame at which both boards
 // of a pair are armed and neither has a capture running. A board that is armed at that very time takes part.

@@ -67,7 +67,7 @@ std::vector<std::uint64_t> AccessPattern::valid_in_rows() const {
   return valid;
 }
 
-// The strips before this one have been counted.
+// To be called for the strips in their order, because it adds to the counts of the strips before.
 void AccessPattern::find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows) {
   std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
   std::fill_n(changes, words_, std::uint64_t{0});
@@ -103,7 +103,7 @@ void AccessPattern::find_strips_with_changes() {
   }
 }
 
-// Whether the first column of a strip makes the accesses of the last column of the strip before.
+// Whether the first column of a strip makes the same accesses as the last column of the strip before.
 bool AccessPattern::strip_begins_alike(int strip) const {
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row + strip + k;

@@ -30,8 +30,8 @@ using kernels::PixelColumn;
 struct WindowSums {
   const std::int32_t* sums = nullptr;  // padded lanes, valid during the push
   int lanes = 0;
-  int candidates = 0;       // the first so many lanes have windows inside both images
-  bool left_valid = false;  // the table entry of the left pixel in the middle of the window is valid
+  int candidates = 0;       // lanes 0..candidates-1 have windows inside both images
+  bool left_valid = false;  // valid bit of the left pixel in the middle of the window
 };
 
 // Unit A's result for a right pixel.

@@ -12,11 +12,12 @@ namespace stereotlm::fpga {
 // them: bits 31..26 bank, 25..0 first word. The buffers of a list are used in turn, frame by frame.
 struct BufferBases {
   std::vector<std::uint32_t> left_images;
-  std::vector<std::uint32_t> right_images;  // as many
+  std::vector<std::uint32_t> right_images;  // as many as left_images
   std::vector<std::uint32_t> disparities;
   std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table
   std::optional<std::uint32_t> right_lut;
 
+  // The base registers of frame number `frame`.
   FrameBases of_frame(std::uint64_t frame) const {
     const auto in_turn = [frame](const std::vector<std::uint32_t>& list) {
       return list[frame % list.size()];

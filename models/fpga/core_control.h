@@ -18,12 +18,12 @@ namespace stereotlm::fpga {
 // for a port that writes, or that the core does not have.
 using FrameLatencies = std::array<int, kCorePortCount>;
 
-// [side]: whether the table entry is valid that the LUT port has read in a cycle; false if it has read none.
+// [side]: whether the LUT port has read a valid table entry in a cycle.
 using EntriesRead = std::array<bool, 2>;
 
-// The timing of the whole core (contract section 2): what every port requests in a cycle, and what follows
-// from the grants. Plain C++ without data and without SystemC: the core's process and run_core() step the
-// same object.
+// Decides the timing of the whole core (contract section 2): what every port requests in a cycle, and what
+// follows from the grants. Plain C++ without data and without SystemC, used by StereoCore and by
+// platform::run_core().
 //
 // A cycle is decide(), then the arbitration of the ports that request, then commit().
 class CoreControl {
@@ -50,37 +50,38 @@ class CoreControl {
 
   void start_frame(const FrameLatencies& latencies);
   Decision decide() const;
-  // Returns true if the matcher has completed a group of four columns, counted from result_delay_columns % 4
-  // on.
+  // Carries out the decision with these grants. Returns true if the matcher has completed a group of four
+  // columns. Groups are counted from column result_delay_columns % 4 on.
   bool commit(const Decision& decision, memory::PortMask granted, const EntriesRead& entries_valid);
 
   // Counts cycles of the host port, which commit() does not count.
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
     host_cycles().add(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
   }
-  // Corrects cycles that are counted as idle, now or later in the frame: the host requested an uncontended
-  // bank in them.
+  // Counts cycles in which the host requested an uncontended bank. The frame counts them as idle too, now or
+  // later, which is corrected here.
   void host_was_busy(bool granted, std::uint64_t cycles) {
     host_cycles().subtract(Intent::kIdle, false, cycles);
     host_cycles().add(Intent::kRequest, granted, cycles);
   }
-  // Corrects `cycles` cycles of this frame in which the pixel port of a side is counted as granted: it passed
-  // a slot. `marks`: see LaneControl::correct_marks().
+  // Recounts `cycles` cycles of this frame in which the pixel port of a side was counted as granted, but
+  // passed a slot. `marks`: see LaneControl::correct_marks().
   void correct_passes(Side side, std::uint64_t cycles, std::uint64_t marks);
 
   // After a group of four columns: the state that determines the next cycles, together with the arbiters'
   // state and the slots not yet taken.
   struct State {
     std::array<LaneControl::State, 2> lanes{};  // [side]
-    std::uint64_t rest = 0;
+    std::uint64_t rest = 0;                     // state of the matcher, and above it that of the result queue
 
     friend bool operator==(const State& a, const State& b) { return a.lanes == b.lanes && a.rest == b.rest; }
   };
   State state() const {
     return {{lane(Side::kLeft).state(), lane(Side::kRight).state()}, match_.state() | result_.state() << 8U};
   }
-  // Skips cycles in which the matcher consumes `columns` columns, at most uniform_columns(), and `words`
-  // words of results are written; lanes and result queue end in this state.
+  // Skips the cycles in which the matcher consumes `columns` columns and `words` words of results are
+  // written. Afterwards the lanes and the result queue are in `state`. `columns` is at most
+  // MatchControl::uniform_columns().
   void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;
@@ -93,13 +94,14 @@ class CoreControl {
   const ResultControl& result() const { return result_; }
   const LaneControl& lane(Side side) const { return lanes_[index_of(side)]; }
   const FrameGeometry& geometry() const { return geometry_; }
-  // The last word of the frame has been written.
+  // Whether the last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
-  // A lower bound of the cycle in which the last write of the frame is granted. `cycle` is the next to run.
+  // A lower bound of the cycle in which the last write of the frame is granted. `cycle` is the next cycle to
+  // run.
   std::uint64_t earliest_last_write(std::uint64_t cycle) const;
-  // Counts over all frames, of the cycles from the start of each frame to its last write.
+  // The cycles of a port, from the start of each frame to its last write, over all frames.
   const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }
-  // Slots consumed and words written, over all frames: grows as long as frames proceed.
+  // Slots consumed plus words written, over all frames. The sum grows as long as frames make progress.
   std::uint64_t work() const { return lane(Side::kLeft).consumed() + port_cycles(kResultPort).granted(); }
 
  private:

@@ -27,8 +27,9 @@
 
 namespace stereotlm::fpga {
 
-// The stages of the core and the streams between them (paper figures 5 and 6). Memory is reached through the
-// crossbar's sockets. The stages are children of the module that holds this object.
+// Holds the stages of the core, and binds the streams between them (paper figures 5 and 6). The stages reach
+// memory through the crossbar's sockets. They are children of the module that holds this object, which is
+// StereoCore.
 class CoreDatapath {
  public:
   // The stages of one side, up to the matcher.
@@ -44,16 +45,18 @@ class CoreDatapath {
   // `binder` binds the stages to the crossbar, which outlives this object.
   CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder);
 
-  // Starts a frame on these buffers. Their banks exist.
+  // Starts a frame on these buffers, whose banks must exist.
   void start_frame(const FrameBases& bases);
-  // Moves the data of one cycle, which is `at` from now. `control` is in the state in which it decided.
+  // Moves the data of one cycle, which begins `at` from now. `control` must be in the state in which it
+  // decided, before commit().
   EntriesRead move(const CoreControl& control, const CoreControl::Decision& decision,
                    memory::PortMask granted, const sc_core::sc_time& at);
-  // Accesses of all frames that memory has refused.
+  // The number of accesses that memory has refused, over all frames.
   std::uint64_t errors() const;
 
-  // The memory of the frame's buffers, by direct access.
+  // Requests direct access to the frame's buffers.
   DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers);
+  // The disparity buffer of the frame; null if memory does not grant direct access.
   std::uint8_t* direct_disparities() { return result_writer_.buffer(geometry_.result_words); }
   // Adds what the stages count in a frame whose data they did not move.
   void count(const FrameCounts& frame);

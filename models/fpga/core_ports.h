@@ -21,7 +21,7 @@ enum class PortStage : std::uint8_t { kLutReader, kPixelReader, kResultWriter, k
 struct CorePort {
   const char* name;  // in board files, results and messages
   PortStage stage;
-  Side side;                      // of a reader; without meaning for the other stages
+  Side side;                      // of a reader; without meaning for other stages
   const char* buffer;             // name of the buffer
   std::uint64_t base_register;    // register_map.h: bank and first word of the buffer
   std::uint64_t bytes_per_pixel;  // of the buffer

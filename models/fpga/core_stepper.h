@@ -9,22 +9,22 @@
 
 namespace stereotlm::fpga {
 
-// One cycle of the core: the control decides, the arbiters grant, the caller moves the data, and the control
-// commits what follows from the grants. Plain C++, no SystemC.
+// Steps the core by one cycle: the control decides, the arbiters grant, the caller moves the data, and the
+// control commits what follows from the grants. Plain C++, no SystemC.
 class CoreStepper {
  public:
   // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
   CoreStepper(const CoreConfig& config, memory::Arbitration& arbitration)
       : control_(config), rows_(control_.geometry()), arbitration_(arbitration) {}
 
-  // The ports are routed before.
+  // The ports must be routed before.
   void start_frame(const FrameLatencies& latencies) {
     control_.start_frame(latencies);
     rows_.start_frame(control_);
   }
 
-  // Runs `cycle`, in which the host requests or not. `move` moves the data of the cycle: it is called as
-  // move(decision, granted) and returns EntriesRead. Returns the ports granted.
+  // Runs `cycle`. `host_requests`: whether the host port requests in it. `move` moves the data of the cycle:
+  // it is called as move(decision, granted) and returns EntriesRead. Returns the ports granted.
   template <class Move>
   memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
     using memory::PortMask;

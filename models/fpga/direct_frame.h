@@ -14,14 +14,16 @@
 
 namespace stereotlm::fpga {
 
-// The data of a frame that is worked on at once: read from memory when the frame starts, and written back
-// with its last write. Plain C++; where memory grants direct access is the caller's business.
+// The data of a frame that works directly on memory: tables and pictures are read when the frame starts, and
+// disparities are written back with its last write. Plain C++; the caller requests direct access to memory.
 class DirectFrame {
  public:
   using Buffers =
-      std::array<AddressRange, kCorePortCount>;  // [port that accesses it]; empty if there is none
+      std::array<AddressRange,
+                 kCorePortCount>;  // [port]: the buffer that the port accesses; empty if there is none
 
-  // Memory of the buffers, in which words are in the host's byte order. Null: no direct access is granted.
+  // Direct access to the buffers, in which words are in the byte order of the simulating machine. Null
+  // pointers: no direct access is granted.
   struct Table {
     const std::uint32_t* entries = nullptr;
     bool may_have_changed = true;  // since the last frame
@@ -32,28 +34,30 @@ class DirectFrame {
     std::uint8_t* disparities = nullptr;
   };
 
-  // `has_pixels`: disparities are computed. Throws std::invalid_argument if the configuration has problems.
+  // `has_pixels`: whether disparities are computed. Throws std::invalid_argument if the configuration has
+  // problems.
   DirectFrame(const CoreConfig& config, bool has_pixels);
 
-  // A frame starts on these buffers.
+  // To be called when a frame starts: sets its buffers.
   void set_buffers(const FrameBases& bases);
   const Buffers& buffers() const { return buffers_; }
   // Whether the buffer of the disparities overlaps no other buffer.
   bool disparities_are_apart() const;
-  // Reads tables and pictures, and computes the disparities. False if that cannot be done: direct access is
-  // not granted, or an entry of a table points outside the image.
+  // Reads tables and pictures, and computes the disparities. Returns false if that cannot be done: direct
+  // access is not granted, or an entry of a table points outside the image.
   bool read(const Memory& memory);
 
-  // The port whose buffer makes an access of others a hazard while the frame runs: the access would observe
-  // when the frame reads or writes its data. Nothing if the access is no hazard.
+  // Checks an access of another master to `words` while the frame runs. It is a hazard if it would observe
+  // when the frame reads or writes its data. Returns the port whose buffer it accesses if it is a hazard,
+  // else nothing.
   std::optional<memory::Port> hazard_with(const AddressRange& words, bool write) const;
 
   // The accesses of the frame's slots.
   const AccessPatterns& patterns() const { return patterns_; }
   bool has_pixels() const { return pipeline_ != nullptr; }
-  // Writes the disparities of the frame.
+  // Writes the disparities of the frame to this buffer.
   void write(std::uint8_t* disparities) const;
-  // Pixels of the frame that have a disparity; nothing if none are computed.
+  // The number of pixels of the frame that have a disparity; nothing if no disparities are computed.
   std::optional<std::uint64_t> answered() const;
 
  private:

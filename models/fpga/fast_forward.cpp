@@ -75,7 +75,7 @@ std::uint64_t FastForward::uniform_slots(Side side) const {
   return entries_.uniform_until(side) * static_cast<std::uint64_t>(control().geometry().slots_per_column);
 }
 
-// How far the core can run before a run of uniform columns ends, or a row of results is complete.
+// Returns how far the core can run before a run of uniform columns ends, or a row of results is complete.
 Progress FastForward::room(std::uint64_t cycle, std::uint64_t end) const {
   const bool drains = control().match().draining();
   // A port decides by the slot after the last one taken: that slot must be in the run too.
@@ -86,8 +86,8 @@ Progress FastForward::room(std::uint64_t cycle, std::uint64_t end) const {
           stepper_.rows().next_words() - control().result().words_written() - 1};
 }
 
-// Whether a whole group fits. (A walk that ends with the last uniform column ends at a group whose state is
-// not the core's: nothing may be recorded there.)
+// Whether a whole group fits into `room`. If not, no group may be recorded: after a walk up to the last
+// uniform column, the state of the cached group differs from that of the core.
 bool FastForward::holds_group(const Progress& room) const {
   const std::uint64_t slots = control().match().draining()
                                   ? 0
@@ -100,8 +100,9 @@ void FastForward::begin_group(TransitionCache::Group& group, std::uint64_t cycle
   stepper_.arbitration().begin_recording();
 }
 
-// Records the transition. It may have crossed the end of its run of slots: then has_uniform_slots() clears
-// the cache at once. If the slots or the matcher's phase have ended, its state does not recur in this frame.
+// Records the transition of the group that has just been stepped. If the group has crossed the end of its run
+// of slots, has_uniform_slots() clears the cache immediately afterwards. If the slots have ended, or
+// MatchControl::state() has changed, the state before the group does not recur in this frame.
 void FastForward::end_group(std::uint64_t cycle) {
   TransitionCache::Group& group = *stepped_->group;
   group.progress = progress(cycle);
@@ -112,7 +113,7 @@ void FastForward::end_group(std::uint64_t cycle) {
   stepped_.reset();
 }
 
-// The distance from some fixed cycle before or in the frame.
+// The progress up to `cycle`. Its beginning is arbitrary: only differences have a meaning.
 Progress FastForward::progress(std::uint64_t cycle) const {
   return {cycle, control().match().columns(), control().lane(Side::kLeft).taken(),
           control().lane(Side::kRight).taken(), control().result().words_written()};

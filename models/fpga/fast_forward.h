@@ -5,28 +5,28 @@
 #include <cstdint>
 #include <optional>
 
+#include "models/fpga/assumed_validity.h"
 #include "models/fpga/core_stepper.h"
-#include "models/fpga/entry_validity.h"
 #include "models/fpga/transition_cache.h"
 
 namespace stereotlm::fpga {
 
-// Runs many cycles of a frame at once, without data. A transition of the core that is in the TransitionCache
-// is skipped; others are stepped and recorded. While rows are recorded, the cycles around the end of each row
-// are stepped.
+// Runs many cycles of a frame in one step, without data; used by FrameRun. A transition of the core that is
+// in the TransitionCache is skipped; others are stepped and recorded. While rows are recorded, the cycles
+// around the end of each row are stepped.
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
   FastForward(CoreStepper& stepper, std::size_t most_groups)
       : stepper_(stepper), entries_(stepper), known_(most_groups) {}
 
-  // A frame with these accesses starts, which is fast-forwarded. The ports are routed, and the stepper has
-  // started the frame. The patterns outlive the frame.
+  // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
+  // and the stepper has started it. The patterns must outlive the frame.
   void start_direct_frame(const AccessPatterns& patterns) {
     entries_.start_direct_frame(patterns);
     forget();
   }
-  // A frame starts that the owner steps.
+  // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame() {
     entries_.start_stepped_frame();
     forget();
@@ -35,14 +35,14 @@ class FastForward {
   // Corrects the counts that are provisional until then.
   void settle();
 
-  // Runs one cycle, in which the host requests or not. Returns the ports granted.
+  // Runs one cycle. `host_requests`: whether the host port requests in it. Returns the ports granted.
   memory::PortMask step(std::uint64_t cycle, bool host_requests);
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
 
  private:
-  // The group that is being stepped; it is recorded at its end.
+  // The group that is being stepped, to be recorded at its end.
   struct Stepped {
     TransitionCache::Group* group;
     Progress begin;
@@ -64,10 +64,10 @@ class FastForward {
   const CoreControl& control() const { return stepper_.control(); }
 
   CoreStepper& stepper_;
-  EntryValidity entries_;
+  AssumedValidity entries_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
-  // [side]: slots of the frame before which the cached transitions hold; 0: the cache is empty.
+  // [side]: the cached transitions hold for the slots of the frame before this one. 0: the cache is empty.
   std::array<std::uint64_t, 2> uniform_to_{};
 };
 

@@ -4,10 +4,10 @@
 
 namespace stereotlm::fpga {
 
-// How the core works on a frame. Results and times are the same at all of them.
+// How the core simulates a frame. Results and times are the same at every fidelity.
 enum class Fidelity : std::uint8_t {
   kCycle,   // cycle by cycle, every access a transaction
-  kFast,    // its data at once, by direct access; its cycles ahead (FastForward)
+  kFast,    // data in one step, by direct access; cycles fast-forwarded (FastForward)
   kTiming,  // as kFast, but without pictures and disparities; a frame that is stepped has both
 };
 

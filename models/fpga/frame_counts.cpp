@@ -36,7 +36,8 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
     accesses[pixel_port(side)] = lanes[index].image.reads;
   }
   filter.pixels = geometry.slots + geometry.drain_cycles;
-  // The first columns are among them, which the filter does not filter yet; their windows stay in the array.
+  // This includes the first columns, for which the filter has no output yet; their windows do not leave the
+  // array.
   filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column);
   rows.columns = filter.columns;
   sums.columns = filter.columns;

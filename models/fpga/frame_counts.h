@@ -22,12 +22,13 @@
 
 namespace stereotlm::fpga {
 
-// What the stages count in one frame, for a frame whose data they did not move. The slots issued, the words
-// packed and the words written are those that the control has come to, so that an audit can compare them with
-// the geometry. The rest follows from the geometry, the accesses of the slots, and the answers.
+// Computes what the stages would have counted in a frame that worked directly on memory, whose data they did
+// not move. The slots issued and the words packed and written are taken from the control, so that an audit
+// can compare them with the geometry. All other counts follow from the geometry, the accesses of the slots
+// and the number of disparities.
 struct FrameCounts {
-  // `run` has run the frame up to its last write. `answered`: pixels that have a disparity; nothing if no
-  // disparities were computed.
+  // `run` has run the frame up to its last write. `answered`: the number of pixels that have a disparity;
+  // nothing if no disparities were computed.
   FrameCounts(const CoreConfig& config, const AccessPatterns& patterns, const FrameRun& run,
               std::optional<std::uint64_t> answered);
 
@@ -45,7 +46,7 @@ struct FrameCounts {
   std::optional<LrCheck::Stats> check;  // nothing if no disparities were computed
   ResultPacker::Stats packed;
   ResultWriter::Stats result;
-  std::array<std::uint64_t, kCorePortCount> accesses{};  // [port], of the banks
+  std::array<std::uint64_t, kCorePortCount> accesses{};  // [port]: accesses to the banks
 };
 
 }  // namespace stereotlm::fpga

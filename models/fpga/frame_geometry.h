@@ -37,10 +37,10 @@ struct FrameGeometry {
   int lead_strips;       // strips before the first row of results can begin
   int strips;
   int first_row;      // of the first strip; may lie above the image. Each strip begins one row further down
-  int drain_columns;  // C_d
+  int drain_columns;  // C_d of the contract
   std::uint64_t slots;
   std::uint64_t drain_cycles;
-  std::uint64_t result_delay_columns;  // C: the result of pixel i leaves with column i + C
+  std::uint64_t result_delay_columns;  // C of the contract: the result of pixel i leaves with column i + C
   std::uint64_t result_words;
 
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
@@ -95,7 +95,7 @@ class SlotCursor {
   int strip_row_ = 0;  // row of the first slot of each column of the strip
   int column_ = 0;
   int k_ = 0;               // slot within the column
-  std::uint64_t left_ = 0;  // slots
+  std::uint64_t left_ = 0;  // slots from this one to the end
 };
 
 }  // namespace stereotlm::fpga

@@ -13,10 +13,10 @@
 
 namespace stereotlm::fpga {
 
-// The frames of a core, one after another, in cycles of its clock: the routes of the ports to the banks, the
-// cycles of a frame, and its progress. Plain C++, for StereoCore and for platform::run_core().
+// Runs the frames of a core one after another, in cycles of its clock: routes the ports to the banks, runs
+// the cycles of a frame, and watches its progress. Plain C++, used by StereoCore and by platform::run_core().
 //
-// A frame runs up to its last write. Then it finishes, and ends pipeline_latency_cycles later.
+// A frame runs up to its last write. Then it is finishing, and ends pipeline_latency_cycles later.
 class FrameRun {
  public:
   // `arbitration` outlives this object. `most_groups`: cap of the transition cache. Throws
@@ -25,32 +25,33 @@ class FrameRun {
            memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
            std::size_t most_groups = TransitionCache::kMost);
 
+  // Whether the bank in the value of a base register exists.
   bool has_bank(std::uint32_t base) const { return registers::bank_of(base) < latencies_.size(); }
   int read_latency_cycles(std::size_t bank) const { return latencies_[bank]; }
 
-  // Starts a frame in `cycle`, or in cycle() if that is later. The banks of the bases exist. The caller steps
-  // the frame, and moves the data of each cycle.
+  // Starts a frame in `cycle`, or in cycle() if that is later. The banks of the bases must exist. The caller
+  // calls step() with `move` for each cycle.
   void start_stepped(std::uint64_t cycle, const FrameBases& bases);
-  // The same for a frame whose data is not moved in its cycles. It runs ahead with these accesses. The
-  // patterns outlive the frame.
+  // Starts a frame that works directly on memory. The caller calls run_ahead(), or step() without `move`.
+  // `patterns`: the accesses of the slots; they must outlive the frame.
   void start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns);
 
-  // Runs cycle(), in which the host requests or not. `move` is that of CoreStepper::step().
+  // Runs cycle() of a stepped frame. `host_requests` and `move`: see CoreStepper::step().
   template <class Move>
   memory::PortMask step(bool host_requests, const Move& move) {
     return stepper_.step(cycle_++, host_requests, move);
   }
-  // The same for a direct frame.
+  // Runs cycle() of a direct frame.
   memory::PortMask step(bool host_requests) { return fast_forward_.step(cycle_++, host_requests); }
   // Runs the cycles of a direct frame up to `end`, `end` not included, or until the frame is done.
   void run_ahead(std::uint64_t end) { cycle_ = fast_forward_.run_ahead(cycle_, end); }
-  // To be called while no frame runs: `cycle` is the next to run.
+  // Makes `cycle` the next cycle to run. To be called only while no frame runs.
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
   // To be called before the route of the host changes.
   void host_route_changes() { fast_forward_.settle(); }
-  // To be called when control().frame_done().
+  // To be called when control().frame_done() becomes true.
   void finish();
-  // To be called at done_cycle().
+  // To be called in done_cycle().
   void end();
 
   bool is_running() const { return state_ == State::kRunning; }
@@ -67,13 +68,14 @@ class FrameRun {
   std::uint64_t writes() const { return all_writes() - writes_before_; }
   // See StallWatchdog.
   std::uint64_t stalled_cycles() { return watchdog_.stalled_cycles(cycle_, control().work()); }
-  // The frame that runs, and what its ports wait for.
+  // Text for messages: the frame that runs, and what its ports wait for.
   std::string waits(bool host_requests) const;
 
-  // frame_cycles of every frame that has ended: from its first cycle to its end.
+  // The number of cycles of every frame that has ended, from its first cycle to its end (`frame_cycles` in
+  // results).
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
-  // From the next frame on, records when each row of results is complete. take_rows() returns the frames
-  // that have ended since its last call; the caller takes them regularly, or they fill memory.
+  // From the next frame on, records when each row of results is complete. take_rows() returns the rows of the
+  // frames that have ended since its last call. It must be called regularly, because the rows fill memory.
   void record_rows() { stepper_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
 

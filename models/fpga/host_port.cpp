@@ -6,7 +6,7 @@ namespace stereotlm::fpga {
 namespace {
 
 constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
-// Most cycles in which one serve_contended() serves.
+// The largest number of cycles that one call of serve_contended() runs, after running ahead.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
 std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
@@ -58,7 +58,7 @@ void HostPort::serve_contended() {
   }
 }
 
-void HostPort::serve_at_once() {
+void HostPort::serve_new_burst() {
   if (is_only_master_ && !is_contended()) serve_uncontended();
 }
 
@@ -68,7 +68,8 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
   const std::size_t bank = *burst_.bank;
   count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
   served_bank_ = bank;
-  // The first cycle that is not decided: a word that was refused up to the end of a frame requests from here.
+  // The first cycle that is not decided. A word that was refused up to the end of a frame requests again in
+  // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
   if (is_moved_ && !arbitration.needs_turnaround(bank) && bus_.is_in_step_with(clock_)) serve_in_step(cycle);

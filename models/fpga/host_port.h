@@ -25,18 +25,19 @@ class HostPort {
   HostPort(LocalBus& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
       : bus_(bus), crossbar_(crossbar), frames_(frames), clock_(clock) {}
 
-  // Only the local bus can start frames: then no frame starts within a burst. Default: others can too.
+  // Sets whether only the local bus can start frames. If so, no frame starts within a burst. Default: false.
   void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
 
-  // A burst begins, or has ended; see LocalBus::route_out.
+  // To be called when a burst begins or has ended; see LocalBus::route_out.
   void route(const HostRoute& route);
   const HostRoute& burst() const { return burst_; }
-  // The words of the burst that are not granted yet.
+  // The addresses of the words of the burst that are not granted yet.
   AddressRange words_left() const { return {burst_.end - 4 * bus_.words_left(), burst_.end}; }
 
-  // The burst takes part in the arbitration of its bank from now on.
+  // Lets the burst take part in the arbitration of its bank from now on.
   void join();
-  // The waiting word has been granted in `cycle`, which is `at` from now. True if the burst is answered.
+  // Transfers the waiting word, which has been granted in `cycle`. The cycle begins `at` from now. Returns
+  // true if the burst has ended.
   bool access(std::uint64_t cycle, const sc_core::sc_time& at);
 
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
@@ -50,11 +51,11 @@ class HostPort {
   // end of the finishing frame, which must be ended first. Returns nothing if no word waits any more.
   std::optional<std::uint64_t> serve_uncontended();
   // Serves an uncontended burst that has just begun, if no frame can start within it.
-  void serve_at_once();
+  void serve_new_burst();
 
   // Counts the words that were served before the frame's cycle(), as words in the frame.
   void count_words_in_frame() { count_served(frames_.cycle(), true); }
-  // Counts all other words that were served, as words outside a frame.
+  // Counts all words that were served and are not counted yet, as words outside a frame.
   void count_words_outside() { count_served(UINT64_MAX, false); }
 
  private:

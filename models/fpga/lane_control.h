@@ -8,7 +8,7 @@
 
 namespace stereotlm::fpga {
 
-// Read latencies that a lane can hold, in cycles.
+// The read latencies that a lane supports, in cycles.
 inline constexpr kernels::IntegerRule kLaneLatencyRule{1, 2};
 
 static_assert(
@@ -20,9 +20,9 @@ static_assert(
     }(),
     "a lane cannot hold the read latency of a kind of bank");
 
-// One lane of the core, from the sequence of slots to the matcher: what its ports request in each cycle, and
-// what follows from the grants. Plain C++. It is the only description of the lane's timing, at every
-// fidelity.
+// Decides the timing of one lane of the core, from the sequence of slots to the matcher: what its ports
+// request in each cycle, and what follows from the grants. Plain C++. It is the only description of the
+// lane's timing, used at every fidelity.
 //
 // A cycle is decide() and ready(), then the arbitration, then commit().
 class LaneControl {
@@ -62,13 +62,13 @@ class LaneControl {
   // Whether the matcher can consume a slot of this lane.
   bool ready() const { return arrived_pixels_ > consumed_; }
 
-  // `lut_granted`, `pixel_granted`: the request was granted. `entry_valid`: of the table entry that the LUT
-  // port has just read; without effect if it has read none. `consumes`: the matcher consumes a slot in this
-  // cycle.
+  // `lut_granted`, `pixel_granted`: whether the request of the port was granted. `entry_valid`: whether the
+  // table entry that the LUT port has just read is valid; without effect if it has read none. `consumes`:
+  // whether the matcher consumes a slot in this cycle.
   void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid, bool consumes) {
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
     const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
-    // What enters in cycle c is seen from cycle c + latency on.
+    // What is read in cycle c can be used from cycle c + latency on.
     const std::uint64_t taken_before = taken_;
     const std::uint64_t handled_before = handled_;
     if (takes) {
@@ -83,20 +83,21 @@ class LaneControl {
     arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
   }
 
-  // Corrects whether the slots need an access that are taken and not handled: bit i of `marks` is that of
-  // slot handled() + i.
+  // Corrects, for each slot that is taken but not handled, whether it needs an access: bit i of `marks` is
+  // for slot handled() + i.
   void correct_marks(std::uint64_t marks) { marks_ = from_handled_on(marks); }
 
   // The state that determines the lane's next cycles, together with the slots that it has not taken yet.
   struct State {
     std::uint64_t counts = 0;
-    std::uint64_t marks = 0;  // of the slots taken and not handled, oldest lowest
+    std::uint64_t marks = 0;  // bit i: slot handled() + i, which has been taken, needs an access
 
     friend bool operator==(const State& a, const State& b) {
       return a.counts == b.counts && a.marks == b.marks;
     }
   };
-  // After a cycle in which the matcher has consumed: the lane then holds fewer than kMostSlots slots.
+  // To be called after a cycle in which the matcher has consumed: the lane then holds fewer than kMostSlots
+  // slots.
   State state() const {
     const std::uint64_t place = handled_ % kMostSlots;
     const std::uint64_t waiting = taken_ - handled_;
@@ -107,7 +108,7 @@ class LaneControl {
                 std::uint64_t{arrived_entries_ != 0} << 33U,
             rotated & kept};
   }
-  // Skips cycles in which the matcher consumes `slots` slots; they end in this state.
+  // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards.
   void skip_to(const State& state, std::uint64_t slots) {
     static_assert(kMostSlots <= 0xff);
     const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state.counts >> bit & 0xffU); };
@@ -121,18 +122,18 @@ class LaneControl {
     next_slot_.advance(taken_ - taken_before);
   }
 
-  // Slots of the frame that the lane has taken, and those that the pixel port has handled.
+  // The number of slots of the frame that the lane has taken, and the number that the pixel port has handled.
   std::uint64_t taken() const { return taken_; }
   std::uint64_t handled() const { return handled_; }
   // The slot that the lane takes next.
   const SlotCursor& next_slot() const { return next_slot_; }
-  // Slots that the matcher has consumed, over all frames.
+  // The number of slots that the matcher has consumed, over all frames.
   std::uint64_t consumed() const { return consumed_before_frame_ + consumed_; }
 
  private:
   static constexpr std::uint64_t kMostSlots = kLaneFifoRule.max;
 
-  // Rotates marks whose bit 0 belongs to the slot that the pixel port handles next to their places in marks_.
+  // Rotates marks to their places in marks_. Bit 0 of `marks` belongs to slot handled().
   std::uint64_t from_handled_on(std::uint64_t marks) const {
     const std::uint64_t place = handled_ % kMostSlots;
     return place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
@@ -161,7 +162,7 @@ class LaneControl {
   std::uint64_t consumed_ = 0;
   std::uint64_t arrived_entries_ = 0;  // slots taken whose entry the pixel port can use
   std::uint64_t arrived_pixels_ = 0;   // slots handled whose pixel the matcher can consume
-  std::uint64_t marks_ = 0;            // [slot % kMostSlots] of slots taken and not handled: needs an access
+  std::uint64_t marks_ = 0;  // bit slot % kMostSlots: the slot is taken, not handled, and needs an access
   std::uint64_t consumed_before_frame_ = 0;
 };
 

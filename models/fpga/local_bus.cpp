@@ -92,7 +92,7 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
   const std::uint64_t first = access.get_address();
   route_out->push(
       {memory::bank_of_address(first), access.is_write(), first, first + access.get_data_length()});
-  // All words may have been granted in the push.
+  // The receiver of the push may have granted all words.
   if (words_left_ != 0) request_event_.notify(Clock::to_time(request_ps_ - now));
 }
 

@@ -18,13 +18,13 @@ namespace stereotlm::fpga {
 
 struct LocalBusConfig {
   double clock_mhz = 40;                   // of the local bus, 1..1000
-  std::vector<AddressRange> buffers = {};  // on the local bus: words written are counted for each
+  std::vector<AddressRange> buffers = {};  // on the local bus; words written are counted for each
 };
 
 // Byte addresses on the local bus: the banks as on the crossbar, then the registers of register_map.h.
 inline constexpr std::uint64_t kLocalRegisters = std::uint64_t{1} << 34U;
 
-// The words of a burst to a bank; after the last word of a burst there is no bank.
+// The route of a burst to a bank: its bank, direction and words. Without `bank`: the burst has ended.
 struct HostRoute {
   std::optional<std::size_t> bank;
   bool write = false;
@@ -41,10 +41,10 @@ struct HostRoute {
 // - A word whose clock ends at t requests its bank from the first cycle of the FPGA that begins at or after
 //   t. The next word's clock is the first that begins at or after the cycle of the grant.
 // - Words read are on the bus once they are usable.
-// - BEGIN_RESP is at the end of the idle clock after the last word: the bus is free. The next BEGIN_REQ comes
-//   after END_RESP (or TLM_COMPLETED).
+// - BEGIN_RESP stands for the end of the idle clock after the last word, when the bus is free. The next
+//   BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
 //
-// | refused at once                                                                   | response           |
+// | refused at BEGIN_REQ                                                              | response           |
 // |-----------------------------------------------------------------------------------|--------------------|
 // | an address that is no multiple of 4, or of no bank or register                    | address error      |
 // | a length that is no multiple of 4, a streaming width below it, a burst beyond the | burst error        |
@@ -52,11 +52,12 @@ struct HostRoute {
 // | byte enables                                                                      | byte enable error  |
 // | neither read nor write                                                            | command error      |
 //
-// If a bank or register refuses a word, its response is the response of the burst; the other words are
-// transferred. Debug transport and DMI reach banks and registers at once; b_transport is refused.
+// If a bank or register refuses a word, the burst has the response of the first such word; the other words
+// are transferred. Debug transport reaches banks and registers without a burst, and DMI reaches banks.
+// b_transport is refused.
 //
-// There is no process for the banks: the core's process grants the words. Registers are accessed at the end
-// of the word's clock.
+// The words of the banks need no process here: the core's process grants them. Registers are accessed at the
+// end of the word's clock.
 class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {
@@ -72,7 +73,7 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   tlm::tlm_target_socket<32> bus{"bus"};
   tlm_utils::simple_initiator_socket<LocalBus> memory{"memory"};
   tlm_utils::simple_initiator_socket<LocalBus> registers{"registers"};
-  // Before the first word of a burst to a bank, and after its last word.
+  // Pushes a route before the first word of a burst to a bank, and after its last word.
   StreamOut<HostRoute> route_out{"route_out"};
 
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
@@ -81,22 +82,23 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   // Whether a word waits for a bank, and the time from which it requests.
   bool word_waits() const { return words_left_ != 0; }
   std::uint64_t request_ps() const { return request_ps_; }
-  // Whether it requests in the cycle that begins at `edge_ps`.
+  // Whether a word requests in the cycle that begins at `edge_ps`.
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
   // Transfers the waiting word. It is granted in the cycle that is `at` from now and begins at `grant_ps`. A
   // word that is read is usable at `usable_ps`.
   void access(const sc_core::sc_time& at, std::uint64_t grant_ps, std::uint64_t usable_ps);
   std::size_t words_left() const { return words_left_; }
-  // Instead of access(), in two steps. Moves the data of all waiting words to or from `words` at once.
+  // An alternative to access(): moves the data of all words_left() to or from `words`, without granting them.
+  // count_granted() grants them.
   void move_words(unsigned char* words);
-  // Grants the next `words` words of them, the last one in the cycle that begins at `grant_ps`. If they are
-  // read, that one is usable at `usable_ps`.
+  // Grants the next `words` words that were moved, the last of them in the cycle that begins at `grant_ps`.
+  // If it is read, it is usable at `usable_ps`.
   void count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
   // Notified when the first word of a burst begins to request.
   const sc_core::sc_event& request_event() const { return request_event_; }
-  // Counts up to now.
+  // Counts up to the current time.
   Stats stats() const;
   // Words written to the banks: those granted, and those of the burst that are not granted yet.
   const WordsByRange& words_granted() const { return words_granted_; }
@@ -124,12 +126,12 @@ class LocalBus : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
   std::size_t banks_;
   memory::WordAccess memory_access_{memory};
   memory::WordAccess register_access_{registers};
-  tlm::tlm_generic_payload* burst_ = nullptr;  // until END_RESP
+  tlm::tlm_generic_payload* burst_ = nullptr;  // the burst under way, until END_RESP
   bool responding_ = false;                    // between BEGIN_RESP and END_RESP
   std::size_t next_word_ = 0;
-  std::size_t words_left_ = 0;       // of a burst to a bank
-  std::uint64_t address_clock_ = 0;  // number of the clock, of the last burst
-  std::uint64_t idle_clock_ = 0;     // number of the clock, of the last burst; kUnknown until its last grant
+  std::size_t words_left_ = 0;       // words of a burst to a bank that are not granted
+  std::uint64_t address_clock_ = 0;  // number of the last burst's address clock
+  std::uint64_t idle_clock_ = 0;     // number of its idle clock; kUnknown until its last grant
   std::uint64_t request_ps_ = 0;     // end of the waiting word's clock
   tlm::tlm_response_status status_ = tlm::TLM_OK_RESPONSE;
   sc_core::sc_event request_event_{"request"};

@@ -8,8 +8,8 @@ namespace stereotlm::fpga {
 LrCheck::LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)
     : sc_module(name), columns_before_frame_(0), check_(config.disparities, config.lr_tolerance) {
   const FrameGeometry geometry(config);
-  // A result leaves result_delay_columns behind its column. Part of that is the delay of the filter and the
-  // window, which lie before this stage.
+  // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
+  // before this stage, cause a part of that delay.
   columns_before_frame_ =
       geometry.result_delay_columns - static_cast<std::uint64_t>(geometry.filter_half + geometry.radius);
 }

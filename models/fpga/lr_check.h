@@ -16,8 +16,8 @@ namespace stereotlm::fpga {
 class LrCheck : public sc_core::sc_module {
  public:
   struct Stats {
-    std::uint64_t answered = 0;
-    std::uint64_t invalid = 0;  // no match, inconsistent, or no table entry
+    std::uint64_t answered = 0;  // pixels that keep their disparity
+    std::uint64_t invalid = 0;   // no match, inconsistent, or no table entry
   };
 
   StreamOut<Disparity> disparities_out{"disparities_out"};

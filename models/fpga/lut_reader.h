@@ -20,7 +20,7 @@ class LutReader : public sc_core::sc_module {
     std::uint64_t reads = 0;
     std::uint64_t invalid_entries = 0;  // of the entries read
     std::uint64_t empty_slots = 0;
-    std::uint64_t errors = 0;  // refused accesses; such an entry is not valid
+    std::uint64_t errors = 0;  // refused accesses; the entry then counts as not valid
   };
 
   tlm_utils::simple_initiator_socket<LutReader> port{"port"};
@@ -37,7 +37,7 @@ class LutReader : public sc_core::sc_module {
 
   // `table_address`: byte address on the port.
   void start_frame(std::uint64_t table_address) { table_address_ = table_address; }
-  // The table of width * height entries, if memory grants direct access; else null. For use at once.
+  // The table of width * height entries, for immediate use only; null if memory does not grant direct access.
   const std::uint32_t* table(int height);
   // Adds the counts of a frame whose table was read directly.
   void count(const Stats& frame);

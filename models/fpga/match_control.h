@@ -20,10 +20,12 @@ class MatchControl {
   }
   // After the last slot the matcher consumes the columns of the drain, which need no slots.
   bool draining() const { return slots_left_ == 0; }
+  // Whether the matcher consumes in this cycle.
   bool decide(bool slots_ready, bool result_queue_has_room) const {
     return result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready);
   }
-  // Consumes in one cycle. True if this completes four columns, counted from column result_delay_columns % 4.
+  // Consumes a slot, or a cycle of the drain. Returns true if this completes a group of four columns. Groups
+  // are counted from column result_delay_columns % 4 on.
   bool consume() {
     --(draining() ? drain_left_ : slots_left_);
     if (++k_ < geometry_.slots_per_column) return false;
@@ -31,20 +33,22 @@ class MatchControl {
     ++columns_;
     return (columns_ - geometry_.result_delay_columns) % 4 == 0;
   }
-  // After consume() was true: whether the four columns complete a word of results. The column just consumed
-  // is number columns_ - 1, so columns_ - result_delay_columns results have left.
+  // Whether the group of four columns completes a word of results. To be called when consume() has returned
+  // true. The column just consumed is number columns_ - 1, so columns_ - result_delay_columns results have
+  // left.
   bool word_leaves() const { return columns_ > geometry_.result_delay_columns; }
 
-  // Between two columns: the matcher's part of the state that determines the next cycles.
+  // The matcher's part of the state that determines the next cycles. To be called between two columns.
   std::uint64_t state() const {
     return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U;
   }
   std::uint64_t columns() const { return columns_; }
-  // Words of results that have left in this frame.
+  // The number of words of results that have left in this frame.
   std::uint64_t words() const {
     return columns_ > geometry_.result_delay_columns ? (columns_ - geometry_.result_delay_columns) / 4 : 0;
   }
-  // Between two columns: the number of columns up to the next change of state(), the last of them included.
+  // The number of columns up to and including the one after which state() changes. To be called between two
+  // columns.
   std::uint64_t uniform_columns() const {
     const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
     const std::uint64_t left = (draining() ? drain_left_ : slots_left_) / slots_per_column;
@@ -57,15 +61,15 @@ class MatchControl {
         columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
     columns_ += columns;
   }
-  // Cycles of the frame in which the matcher has still to consume.
+  // The number of cycles of the frame in which the matcher has still to consume.
   std::uint64_t cycles_left() const { return slots_left_ + drain_left_; }
 
  private:
   FrameGeometry geometry_;
   std::uint64_t slots_left_ = 0;
   std::uint64_t drain_left_ = 0;
-  int k_ = 0;
-  std::uint64_t columns_ = 0;  // consumed columns
+  int k_ = 0;                  // slots of the current column that have been consumed
+  std::uint64_t columns_ = 0;  // columns consumed
 };
 
 }  // namespace stereotlm::fpga

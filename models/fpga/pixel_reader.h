@@ -14,14 +14,15 @@
 namespace stereotlm::fpga {
 
 // Reads the source pixel of each slot of one side, at most one a cycle, in order, and holds it until the
-// matcher consumes it. With a table, entries come from the LUT reader and wait for handle(). Without a table,
-// slots come from the sequencer and are read at once. The control decides when.
+// matcher consumes it. With a table, an entry from the LUT reader waits until handle() is called. Without a
+// table, the pixel of a slot from the sequencer is read as soon as the slot arrives. CoreControl decides in
+// which cycle a pixel is read, and in which cycle release() is called.
 class PixelReader : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t reads = 0;
     std::uint64_t passed_slots = 0;  // slots without access: empty, or without valid entry
-    std::uint64_t errors = 0;        // refused accesses; such a pixel is 0
+    std::uint64_t errors = 0;        // refused accesses; the pixel is then 0
   };
 
   tlm_utils::simple_initiator_socket<PixelReader> port{"port"};
@@ -42,7 +43,7 @@ class PixelReader : public sc_core::sc_module {
   void start_frame(std::uint64_t image_address);
   // Reads or passes the oldest waiting entry, in the cycle that is `at` from now.
   void handle(const sc_core::sc_time& at);
-  // The matcher consumes the oldest pixel.
+  // Passes on the oldest pixel, which the matcher consumes.
   void release() {
     if (pixels_released_ == pixels_stored_) {
       SC_REPORT_ERROR("/stereotlm/pixel_reader", "release: no pixel waits");
@@ -50,9 +51,9 @@ class PixelReader : public sc_core::sc_module {
     }
     pixels_out->push(pixels_[pixels_released_++ % kRing]);
   }
-  // A cycle of the drain: passes on a pixel that no result depends on.
+  // Passes on a pixel that no result depends on. To be called in each cycle of the drain.
   void release_blank() { pixels_out->push(MaskedPixel{}); }
-  // The image of width * height pixels, if memory grants direct access; else null. For use at once.
+  // The image of width * height pixels, for immediate use only; null if memory does not grant direct access.
   const std::uint8_t* image(int height);
   // Adds the counts of a frame whose image was read directly.
   void count(const Stats& frame);
@@ -69,7 +70,7 @@ class PixelReader : public sc_core::sc_module {
   memory::WordAccess access_{port};
   std::array<TableEntry, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};
-  // Numbers since the start of the frame.
+  // Numbers of entries and pixels since the start of the frame.
   std::size_t entries_stored_ = 0;
   std::size_t entries_handled_ = 0;
   std::size_t pixels_stored_ = 0;

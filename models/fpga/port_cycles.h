@@ -10,7 +10,7 @@ namespace stereotlm::fpga {
 // What a port does in a cycle, decided from the state at its beginning (contract section 2, "Port states").
 enum class Intent : std::uint8_t { kRequest, kPass, kIdle, kBlocked, kStarved };
 
-// Cycles of a port by what it did in them. A request ends as granted or stalled.
+// Counts the cycles of a port by what it did in them. A cycle with a request counts as granted or as stalled.
 class PortCycles {
  public:
   void add(Intent intent, bool granted, std::uint64_t cycles = 1) {
@@ -24,6 +24,7 @@ class PortCycles {
   void subtract(Intent intent, bool granted, std::uint64_t cycles) {
     cycles_[kind_of(intent, granted)] -= cycles;
   }
+  // The cycles added since the copy `before` was made.
   PortCycles since(const PortCycles& before) const {
     PortCycles since = *this;
     for (std::size_t kind = 0; kind < cycles_.size(); ++kind) since.cycles_[kind] -= before.cycles_[kind];
@@ -45,7 +46,7 @@ class PortCycles {
   }
   std::uint64_t of(Intent intent) const { return cycles_[static_cast<std::size_t>(intent)]; }
 
-  std::array<std::uint64_t, 6> cycles_{};  // [intent], requests only while not granted; [kGranted]
+  std::array<std::uint64_t, 6> cycles_{};  // [intent], where kRequest has only stalled cycles; [kGranted]
 };
 
 }  // namespace stereotlm::fpga

@@ -104,10 +104,10 @@ void RegisterFile::refuse_start() {
   error_ = true;
 }
 
-void RegisterFile::finish_frame(std::uint64_t frame_cycles, bool access_error) {
+void RegisterFile::finish_frame(std::uint64_t frame_cycles, bool error) {
   busy_ = false;
   done_ = true;
-  error_ = error_ || access_error;
+  error_ = error_ || error;
   frame_cycles_ = frame_cycles;
   done_changed_.notify(sc_core::SC_ZERO_TIME);
 }

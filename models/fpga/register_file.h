@@ -13,10 +13,10 @@
 
 namespace stereotlm::fpga {
 
-// A start strobe, with the base registers as they stood then.
+// A start strobe, with the values of the base registers at its time.
 struct FrameStart {
   FrameBases bases{};
-  sc_core::sc_time delay{};  // of the strobe, from now
+  sc_core::sc_time delay{};  // time of the strobe, from now
 };
 
 // The register file of register_map.h: start strobe, status, frame base addresses, done interrupt. An access
@@ -45,10 +45,11 @@ class RegisterFile : public sc_core::sc_module {
 
   explicit RegisterFile(const sc_core::sc_module_name& name);
 
-  // Called by the receiver of start_out: it refuses the strobe.
+  // To be called by the receiver of start_out to refuse the strobe.
   void refuse_start();
-  // The frame has ended; `access_error`: memory refused one of its accesses.
-  void finish_frame(std::uint64_t frame_cycles, bool access_error);
+  // To be called when the frame has ended. `error`: memory refused an access, or the result may differ from
+  // that at Fidelity::kCycle.
+  void finish_frame(std::uint64_t frame_cycles, bool error);
   const Stats& stats() const { return stats_; }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace stereotlm::fpga {
 
-// The queue of result words and the port that writes them.
+// Decides the timing of the queue of result words, and of the port that writes them.
 class ResultControl {
  public:
   ResultControl(const FrameGeometry& geometry, int fifo_words)
@@ -34,17 +34,17 @@ class ResultControl {
   std::uint64_t state() const {
     return static_cast<std::uint64_t>(queued_) | std::uint64_t{written_ != 0} << 8U;
   }
-  // Skips cycles in which `words` words are written; they end in this state.
+  // Skips the cycles in which `words` words are written. The queue is in `state` afterwards.
   void skip_to(std::uint64_t state, std::uint64_t words) {
     static_assert(kResultFifoRule.max <= 0xff);
     queued_ = static_cast<int>(state & 0xffU);
     written_ += words;
   }
 
-  // Words of the frame.
+  // Numbers of words of the frame.
   std::uint64_t words_written() const { return written_; }
   std::uint64_t words_left() const { return words_per_frame_ - written_; }
-  // The most words queued at one time, over all frames.
+  // The largest number of words queued at one time, over all frames.
   int most_queued() const { return most_queued_; }
 
  private:

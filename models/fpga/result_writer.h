@@ -13,13 +13,13 @@
 
 namespace stereotlm::fpga {
 
-// The result queue, and the port that writes its words to the disparity buffer, one after another. The
-// control decides when.
+// The result queue, and the port that writes its words to the disparity buffer, one after another.
+// CoreControl decides in which cycle a word is written.
 class ResultWriter : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t writes = 0;
-    std::uint64_t most_queued_words = 0;  // at one time
+    std::uint64_t most_queued_words = 0;  // largest number at one time
     std::uint64_t errors = 0;             // refused accesses; their words are lost
   };
 
@@ -38,7 +38,8 @@ class ResultWriter : public sc_core::sc_module {
   void start_frame(std::uint64_t disparity_address);
   // Writes the oldest word, in the cycle that is `at` from now.
   void write(const sc_core::sc_time& at);
-  // The disparity buffer of `words` words, if memory grants direct access; else null. For use at once.
+  // The disparity buffer of `words` words, for immediate use only; null if memory does not grant direct
+  // access. To be called before the first write() of a frame.
   std::uint8_t* buffer(std::uint64_t words);
   // Adds the counts of a frame that was written directly.
   void count(const Stats& frame);

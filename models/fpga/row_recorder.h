@@ -19,9 +19,11 @@ class RowRecorder {
   bool is_on() const { return is_on_; }
 
   void start_frame(const CoreControl& control);
-  // Words of the frame with which the next row is complete. While the recorder is off: more than there are.
+  // The number of words written in the frame with which the next row is complete. While the recorder is off,
+  // this number is never reached.
   std::uint64_t next_words() const { return next_words_; }
-  // These words are complete with `cycle`, in which `control` was stepped.
+  // To be called after `cycle` if next_words() words have been written. `control` has been stepped in that
+  // cycle.
   void note(std::uint64_t cycle, const CoreControl& control);
 
   // The complete rows of the frame that was started last, in `first_cycle`.
@@ -35,9 +37,9 @@ class RowRecorder {
   std::uint64_t row_words_;
   bool is_on_ = false;
   std::uint64_t next_words_ = kNever;
-  Stalls stalls_before_{};  // of the ports, before the frame
+  Stalls stalls_before_{};  // [port]: stalls before the frame
   std::size_t rows_complete_ = 0;
-  RowProfile rows_;  // cycles: of the clock
+  RowProfile rows_;  // `cycles` here counts from cycle 0 of the clock
 };
 
 }  // namespace stereotlm::fpga

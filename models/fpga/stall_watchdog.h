@@ -14,24 +14,24 @@ class StallWatchdog {
  public:
   explicit StallWatchdog(std::uint64_t timeout_cycles) : timeout_cycles_(timeout_cycles) {}
 
-  // A frame starts in `cycle`. `work`: CoreControl::work().
+  // To be called when a frame starts in `cycle`. `work`: CoreControl::work().
   void start_frame(std::uint64_t cycle, std::uint64_t work) {
     work_ = work;
     work_cycle_ = cycle;
   }
   // To be called regularly while a frame runs; a stall is found in the first call that is late enough.
-  // Returns the cycles without progress if they have reached the timeout, else 0. After a timeout they are
-  // counted anew.
+  // Returns the number of cycles without progress if it has reached the timeout, else 0. After a timeout it
+  // is counted anew.
   std::uint64_t stalled_cycles(std::uint64_t cycle, std::uint64_t work);
 
  private:
   std::uint64_t timeout_cycles_;
-  std::uint64_t work_ = 0;        // found by the last call
-  std::uint64_t work_cycle_ = 0;  // of the call that found progress
+  std::uint64_t work_ = 0;        // `work` of the last call
+  std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
 };
 
-// What each port does in the next cycle of a frame; of one that requests a bank, to which port it has lost
-// that bank most often.
+// Text for messages: what each port does in the next cycle of a frame. For a port that requests a bank it
+// adds to which port it has lost arbitration for that bank most often.
 std::string waits_of_ports(const CoreControl& control, const memory::Arbitration& arbitration,
                            bool host_requests);
 

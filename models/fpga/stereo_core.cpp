@@ -8,9 +8,10 @@ namespace {
 
 using memory::PortMask;
 
-// Most cycles between two returns to the kernel, while the process steps. Each return checks for a stall.
+// The largest number of cycles between two returns to the kernel while the process steps. After each return
+// the process checks for a stall.
 constexpr std::uint64_t kMostSteppedCycles = 8192;
-// The same while the process fast-forwards.
+// The largest number of cycles between two returns to the kernel while the process fast-forwards.
 constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 
 std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
@@ -55,8 +56,6 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
   SC_THREAD(run);
 }
 
-// Frames.
-
 void StereoCore::start_frame(const FrameStart& start) {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
     if (!has_port(config_.core, port) || frames_.has_bank(start.bases[port])) continue;
@@ -80,7 +79,7 @@ void StereoCore::start_frame(const FrameStart& start) {
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// Reads the data of the frame. False if the frame cannot work directly on memory.
+// Reads the data of the frame. Returns false if the frame cannot work directly on memory.
 bool StereoCore::works_directly(const FrameBases& bases) {
   direct_frame_.set_buffers(bases);
   const HostRoute& burst = host_port_.burst();
@@ -126,7 +125,7 @@ void StereoCore::route_host(const HostRoute& route) {
     if (const auto port = direct_frame_.hazard_with(host_port_.words_left(), route.write))
       report_hazard(route, *port);
   }
-  host_port_.serve_at_once();
+  host_port_.serve_new_burst();
 }
 
 // A burst of the local bus is a hazard: it accesses the buffer of this port.
@@ -139,14 +138,12 @@ void StereoCore::report_hazard(const HostRoute& burst, memory::Port port) {
        ", where the running frame has its " + kPorts[port].buffer + ": needs fidelity cycle");
 }
 
-// The running frame may differ from that at Fidelity::kCycle. Where reports are not thrown, it ends with the
-// error flag.
+// Reports that the result of the running frame may differ from that at Fidelity::kCycle. If the report is not
+// thrown, the frame ends with the error flag.
 void StereoCore::fail(const std::string& text) {
   failed_ = true;
   SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + text).c_str());
 }
-
-// The process.
 
 void StereoCore::run() {
   for (;;) {
@@ -244,11 +241,11 @@ void StereoCore::run_cycles() {
     const std::uint64_t offset = edge > now ? edge - now : 0;
     at = offset == offset_before + period_ps ? at + period : Clock::to_time(offset);
     offset_before = offset;
-    if (step(edge, at)) horizon = horizon_ps();  // the answer may have made other events pending
+    if (step(edge, at)) horizon = horizon_ps();  // the end of the burst may have made other events pending
   }
 }
 
-// Runs the next cycle. True if a burst of the local bus has been answered in it.
+// Runs the next cycle. Returns true if a burst of the local bus has ended in it.
 bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const std::uint64_t cycle = frames_.cycle();
   const bool host_requests = local_bus_.requests(edge_ps);

@@ -26,12 +26,13 @@ struct StereoCoreConfig {
   memory::CrossbarConfig memory = {core_arbiter(), {}};
   LocalBusConfig local_bus;
   Fidelity fidelity = Fidelity::kCycle;
-  std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U;  // of a frame that makes no progress
+  std::uint64_t stall_timeout_cycles = std::uint64_t{1}
+                                       << 26U;  // cycles without progress after which a frame stalls
 };
 
 // The whole FPGA (paper figures 5 and 6): the stages, the crossbar in front of the SSRAM banks, the local
 // bus, the register file, and the one clocked process that steps them. Stages exchange data through streams,
-// reach memory through the crossbar's sockets, and move when CoreControl says so.
+// reach memory through the crossbar's sockets, and move data when CoreControl decides so.
 //
 // At Fidelity::kCycle the process runs ahead of the kernel, up to the next pending event and by at most 8192
 // cycles (also past the end of an sc_start()); every access carries its own time. The process sleeps while no
@@ -54,7 +55,7 @@ struct StereoCoreConfig {
 // cycles late at Fidelity::kCycle, at most 2^22 at the others.
 class StereoCore : public sc_core::sc_module {
  public:
-  // register_map.h, without the local bus and its time; may stay unbound.
+  // The registers of register_map.h, accessed without the local bus and without its time; may stay unbound.
   tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1, sc_core::SC_ZERO_OR_MORE_BOUND> registers{
       "registers"};
   tlm::tlm_target_socket<32> local_bus{"local_bus"};        // local_bus.h: the banks and the registers
@@ -62,7 +63,7 @@ class StereoCore : public sc_core::sc_module {
   sc_core::sc_out<bool> done{"done"};                       // interrupt
 
   // `binder` binds the stages to the crossbar. Throws std::invalid_argument if the configuration has
-  // problems, the banks have another clock than the core, or the arbiters other ports.
+  // problems, if the banks have another clock than the core, or if the arbiters do not have all ports.
   StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
 
   Fidelity fidelity() const { return config_.fidelity; }
@@ -78,10 +79,10 @@ class StereoCore : public sc_core::sc_module {
   // See FrameRun.
   void record_rows() { frames_.record_rows(); }
   std::vector<RowProfile> take_rows() { return frames_.take_rows(); }
-  // What the ports wait for.
+  // Text for messages: what the ports wait for.
   std::string waits() const { return frames_.waits(local_bus_.word_waits()); }
-  // Brings control() up to the present, for observers of a running frame. Provisional until a burst contends
-  // for a bank of the frame, or the frame ends:
+  // Advances control() to the present, for observers of a running frame. Two counts are provisional until a
+  // burst contends for a bank of the frame, or the frame ends:
   // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and waits() shows it
   //   as a request.
   // - Words of a burst for an uncontended bank count as idle cycles of the host port.
@@ -121,9 +122,9 @@ class StereoCore : public sc_core::sc_module {
   StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};
 
   bool is_direct_ = false;           // the frame that was started last works directly on memory
-  bool failed_ = false;              // its result may differ from that at Fidelity::kCycle
-  std::uint64_t errors_before_ = 0;  // refused accesses before it
-  std::uint64_t next_check_ps_ = 0;  // it cannot have ended before
+  bool failed_ = false;              // the result of that frame may differ from that at Fidelity::kCycle
+  std::uint64_t errors_before_ = 0;  // refused accesses before that frame
+  std::uint64_t next_check_ps_ = 0;  // that frame cannot have ended before this time
   std::uint64_t stepped_frames_ = 0;
   sc_core::sc_event start_event_{"start_event"};
 };

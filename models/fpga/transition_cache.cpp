@@ -55,8 +55,9 @@ void TransitionCache::follow(Group& group, std::uint64_t times) {
   group.times += times;
 }
 
-// Cycle detection after Brent (1980): the marked group moves forward after 1, 2, 4, .. steps, so that a cycle
-// of any length is found. When the walk returns to the mark, it repeats the cycle as often as there is room.
+// Loops are found as by Brent (1980): the mark moves to the current group after 1, 2, 4, .. steps, so that a
+// loop of any length is found. When the walk returns to the marked group, it repeats the loop as often as
+// there is room.
 TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progress& progress,
                                               CoreControl& control, memory::Arbitration& arbitration) {
   Group* group = &first;

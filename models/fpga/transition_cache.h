@@ -10,7 +10,7 @@
 
 namespace stereotlm::fpga {
 
-// A distance in a frame: how far the core comes in some cycles, or how far it may go.
+// The progress of the core over some cycles of a frame, or a limit for that progress.
 struct Progress {
   std::uint64_t cycles = 0;
   std::uint64_t columns = 0;      // consumed by the matcher
@@ -22,16 +22,17 @@ struct Progress {
     return cycles <= room.cycles && columns <= room.columns && left_slots <= room.left_slots &&
            right_slots <= room.right_slots && words <= room.words;
   }
-  // How many times this distance fits into `room`; `cycles` is not 0.
+  // How many times this progress fits into the limit `room`. `cycles` must not be 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other, std::uint64_t times = 1);
   void subtract(const Progress& other, std::uint64_t times = 1);
 };
 
-// Memo of state transitions, one per group of four columns of the matcher. The state of the control objects
-// and the arbiters before a group determines the group's cycles, counts and next state, as long as the slots
-// to come make the same accesses. A transition is recorded when its group is stepped; after that it is
-// skipped. The caller clears the memo where the accesses of the slots or the routes of the ports change.
+// Memo of state transitions for FastForward, one per group of four columns of the matcher. The state of the
+// control objects and the arbiters before a group determines the group's cycles, counts and next state, as
+// long as the slots to come make the same accesses. A transition is recorded when its group is stepped; after
+// that it is skipped. The caller clears the memo where the accesses of the slots or the routes of the ports
+// change.
 class TransitionCache {
  public:
   // Cap: a frame that never repeats would otherwise fill memory.
@@ -47,25 +48,26 @@ class TransitionCache {
   };
   struct Group {
     const State* begin = nullptr;
-    Group* next = nullptr;  // null until the transition is recorded
+    Group* next = nullptr;  // group that follows; null until the transition is recorded
     Progress progress;
     CoreControl::Counts counts{};
     memory::Arbitration::Decided decided;
-    std::uint64_t times = 0;  // times that walk() has followed it, not counted yet
+    std::uint64_t times = 0;  // how often walk() has followed the transition, not counted yet
   };
 
   explicit TransitionCache(std::size_t most = kMost) : most_(most) {}
   TransitionCache(const TransitionCache&) = delete;  // groups point to each other
   TransitionCache& operator=(const TransitionCache&) = delete;
 
-  // The group that begins in a state, new if there is none. References stay valid until clear().
+  // Returns the group that begins in a state, which is added if there is none. References stay valid until
+  // clear().
   Group& at(const State& state);
   void clear() { groups_.clear(); }
   bool is_full() const { return groups_.size() >= most_; }
 
-  // Follows the recorded transitions from a group as far as there is room; a cycle of transitions is repeated
-  // in one step. Adds the distance to `progress`, and the counts to `control` and `arbitration`. Returns the
-  // group that comes next: the caller sets control and arbitration to its state.
+  // Follows the recorded transitions from a group as far as there is room. A loop of transitions is repeated
+  // in one step. Adds the progress made to `progress`, and the counts to `control` and `arbitration`. Returns
+  // the group that comes next. The caller must set `control` and `arbitration` to its state.
   Group& walk(Group& first, Progress room, Progress& progress, CoreControl& control,
               memory::Arbitration& arbitration);
 

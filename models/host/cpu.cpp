@@ -11,7 +11,7 @@ namespace stereotlm::host {
 namespace {
 
 constexpr char kReport[] = "/stereotlm/cpu";
-constexpr int kStackBytes = 1 << 20;  // stack of the program, which does not know that it runs in a coroutine
+constexpr int kStackBytes = 1 << 20;  // large, because the program is not written to run in a coroutine
 
 std::string hex(std::uint64_t value) {
   char text[24];

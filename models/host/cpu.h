@@ -22,11 +22,11 @@ struct CpuConfig {
 
 // The host's processor, which runs one program (contract section 3, "Software"). The program itself takes no
 // time. Each of its register accesses is a transaction of one word, and takes the time of that transaction.
-// The program reaches host memory by DMI, which the memory must not revoke. It is interrupted while at least
-// one interrupt input is asserted (the shared INTA#).
+// The program reaches host memory by DMI, which the memory must not revoke. An interrupt is pending while at
+// least one interrupt input is asserted (the shared INTA#).
 //
-// If an access is answered with an error, the program receives a BusError. An exception that leaves the
-// program ends it and is reported with SC_REPORT_ERROR (type /stereotlm/cpu).
+// If an access has an error response, BusError is thrown in the program. If an exception leaves the program,
+// the program ends, and the exception is reported with SC_REPORT_ERROR (type /stereotlm/cpu).
 class Cpu : public sc_core::sc_module, private HostBus {
  public:
   tlm_utils::simple_initiator_socket<Cpu> bus{"bus"};

@@ -11,15 +11,16 @@ struct StereoPair {
   kernels::GrayImage right;
 };
 
-// Supplies the pictures.
+// Supplies the input pictures of a simulation, frame by frame.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  // The input pair of frame number `frame`. It has the configured size and stays valid until the next call.
+  // Returns the input pair of frame number `frame`. It has the configured size and stays valid until the next
+  // call.
   virtual const StereoPair& pair(std::uint64_t frame) = 0;
 };
 
-// Receives the results.
+// Receives the disparity images from IdealHost, frame by frame.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;

@@ -12,14 +12,14 @@
 namespace stereotlm::host {
 
 // The bridge between a processor and the PCI bus. It turns each access into bursts at the same addresses.
-// b_transport waits for the time of the access, and returns when the last word has been transferred. The
-// bridge repeats a retried burst and continues a cut one until all words have been transferred. Accesses of
-// several processes are served in the order in which they arrive.
+// b_transport waits during the access, and returns when the last word has been transferred. The bridge
+// repeats a retried burst and continues a cut one until all words have been transferred. Accesses of several
+// processes are served in the order in which they arrive.
 //
 // | access                                                         | response                       |
 // |----------------------------------------------------------------|--------------------------------|
-// | no target answers (master abort)                               | TLM_ADDRESS_ERROR_RESPONSE     |
-// | the target answers with an error                               | TLM_GENERIC_ERROR_RESPONSE     |
+// | no target responds (master abort)                              | TLM_ADDRESS_ERROR_RESPONSE     |
+// | the target responds with an error                              | TLM_GENERIC_ERROR_RESPONSE     |
 // | refused without a burst:                                       |                                |
 // | an address that is not a multiple of 4                         | TLM_ADDRESS_ERROR_RESPONSE     |
 // | a length of 0 or not a multiple of 4, a smaller stream width   | TLM_BURST_ERROR_RESPONSE       |
@@ -40,7 +40,7 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
-  // Processes take numbered turns. A mutex could be taken again and again by a process that never pauses.
+  // Processes take numbered turns. A mutex could be taken again and again by one process that never pauses.
   std::uint64_t arrived_ = 0;  // accesses that have taken a turn
   std::uint64_t served_ = 0;   // turns that have ended
   sc_core::sc_event next_turn_{"next_turn"};

@@ -11,9 +11,9 @@ namespace stereotlm::host {
 
 inline constexpr kernels::IntegerRule kHostMemoryRule{4, std::int64_t{1} << 31, 4};
 
-// The memory of the host, for any number of initiators. An access has any whole number of 32-bit words, with
-// or without byte enables. It takes no time, since the bus in front of the memory accounts for it, and
-// b_transport never waits. Refused accesses have no effect:
+// The memory of the host, for any number of initiators. An access transfers any whole number of 32-bit words,
+// with or without byte enables. b_transport adds no delay, because the bus in front of the memory models the
+// time, and never waits. Refused accesses have no effect:
 //
 // | access                                                       | response                       |
 // |--------------------------------------------------------------|--------------------------------|
@@ -22,9 +22,9 @@ inline constexpr kernels::IntegerRule kHostMemoryRule{4, std::int64_t{1} << 31, 
 // | byte enables of length 0                                     | TLM_BYTE_ENABLE_ERROR_RESPONSE |
 // | neither read nor write                                       | TLM_COMMAND_ERROR_RESPONSE     |
 //
-// nb_transport_fw completes at once, with the same effect. Debug transport takes any length. DMI grants the
-// whole memory, for reads and writes, and is never revoked. The memory holds zeros at first; pages that were
-// never touched occupy no memory of the simulating machine.
+// nb_transport_fw has the same effect and returns TLM_COMPLETED. Debug transport takes any length. DMI grants
+// the whole memory, for reads and writes, and is never revoked. The memory holds zeros at first; pages that
+// were never touched occupy no memory of the simulating machine.
 class HostMemory : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> {
  public:
   struct Stats {

@@ -140,7 +140,7 @@ std::uint32_t IdealHost::read_status() {
 }
 
 void IdealHost::preload(std::uint32_t base, const void* bytes, std::size_t size) {
-  // debug() only reads the data of a write.
+  // debug() does not change the data of a write.
   debug(tlm::TLM_WRITE_COMMAND, base, const_cast<unsigned char*>(static_cast<const unsigned char*>(bytes)),
         size);
 }

@@ -22,12 +22,13 @@ struct IdealHostConfig {
   fpga::BufferBases buffers;
 };
 
-// A host without a computer around it (contract section 2, `preloaded`). The tables are in their banks
-// before cycle 0. Pictures enter and results leave their buffers in zero time, and each frame starts when
-// the last one ends. The host drives the core's registers and reaches the memory by debug transport.
+// Runs frames on a core without a modelled computer (contract section 2, `preloaded`). The tables are in
+// their banks before cycle 0. Pictures enter and results leave their buffers in zero time, and each frame
+// starts when the last one ends. The host drives the core's registers and reaches the memory by debug
+// transport.
 //
-// SC_REPORT_ERROR (type /stereotlm/ideal_host): a picture of the wrong size, a register or memory that
-// refuses an access, a core that does not start or that reports an error. The host then stops, and
+// SC_REPORT_ERROR (type /stereotlm/ideal_host) reports: a picture of the wrong size, a register or memory
+// that refuses an access, a core that does not start or that reports an error. The host then stops, and
 // finished() stays false.
 class IdealHost : public sc_core::sc_module {
  public:
@@ -36,8 +37,8 @@ class IdealHost : public sc_core::sc_module {
   sc_core::sc_in<bool> done{"done"};
 
   // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Throws
-  // std::invalid_argument if a list of buffers is empty, or a side has only one of a table and a buffer for
-  // it.
+  // std::invalid_argument if a list of buffers is empty, or a side has a table without a buffer or a buffer
+  // without a table.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
@@ -49,12 +50,12 @@ class IdealHost : public sc_core::sc_module {
   void run();
   void load_tables();
   bool load_pictures(std::uint32_t left, std::uint32_t right);
-  // False: an error has been reported, and the host stops.
+  // start_frame() and end_frame() return false if an error has been reported; the host then stops.
   bool start_frame();
   bool end_frame();
   void write_register(std::uint64_t address, std::uint32_t value);
   std::uint32_t read_status();
-  // Move a whole buffer. They report an error if the memory refuses a part of it.
+  // These move a whole buffer, and report an error if the memory refuses a part of it.
   void preload(std::uint32_t base, const void* bytes, std::size_t size);
   void read_back(std::uint32_t base, void* bytes, std::size_t size);
   void debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size);

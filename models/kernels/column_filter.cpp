@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kColumnsBetweenMoves = 64;
 static_assert(kMostRows % kFilterBlock == 0);
 
-// Copies at least `count` values, in whole blocks, for which both sides have room.
+// Copies at least `count` values, in whole blocks. Both arrays must have room for these.
 void copy_blocks(const float* from, int count, float* to) {
   for (int e = 0; e < count; e += kFilterBlock) std::memcpy(to + e, from + e, kFilterBlock * sizeof(float));
 }
@@ -101,8 +101,8 @@ void ColumnFilter::finish_column() {
 // Rows outside the image take the values of its first or last row.
 void ColumnFilter::repeat_edges() {
   if (first_row_ <= 0) std::fill_n(entered_ - 2 * half_, 2 * half_ - first_row_, entered_[-first_row_]);
-  // k of the last row of the image; negative if it entered with an earlier strip. Once it has left the
-  // column, the oldest row of the column holds its value.
+  // `last` is the k of the last row of the image; it is negative if that row entered with an earlier strip.
+  // Once that row has left the column, the oldest row of the column holds its value.
   const int last = std::max(height_ - 1 - first_row_, -2 * half_);
   if (last < rows_per_column_ - 1) {
     std::fill_n(entered_ + last + 1, rows_per_column_ - 1 - last, entered_[last]);
@@ -125,8 +125,8 @@ void ColumnFilter::leave() {
   }
 }
 
-// The columns centre - h .. centre + h of the image, one stride apart. Columns beyond the edges repeat the
-// edge.
+// Returns the columns centre - h .. centre + h of the image, one stride apart. Columns beyond the edges
+// repeat the edge.
 const float* ColumnFilter::columns_around(int centre, std::size_t centre_position) {
   if (centre >= half_ && centre + half_ < width_) {
     return column_at(centre_position - static_cast<std::size_t>(half_));

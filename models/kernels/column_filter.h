@@ -17,7 +17,7 @@ struct MaskedPixel {
   bool valid = false;
 };
 
-// The most rows of a column.
+// The largest number of rows of a column.
 inline constexpr int kMostRows = 32;
 
 // The rows of one column on their way to the matcher, top first.
@@ -26,11 +26,12 @@ struct PixelColumn {
   std::uint32_t valid = 0;  // bit k: whether row k is valid
 };
 
-// The filter of contract 1.2 as the hardware runs it. Pixels enter column by column: columns 0..width-1 of a
-// strip, then those of the next strip, one row further down. A column has `rows_per_column` new rows: n for
-// the column fetch, 1 for line buffers. The 2h rows above them come from line memories. With column u leave
-// the pixels of column u - h, h rows further up. Edge pixels repeat, and pixels of rows outside the image are
-// ignored. Without a kernel a column leaves as it enters.
+// Filters the pixels of a frame (contract 1.2) in the order in which the hardware fetches them; used by
+// fpga::LogFilter. Pixels enter column by column: columns 0..width-1 of a strip, then those of the next
+// strip, one row further down. A column has `rows_per_column` new rows: n for the column fetch, 1 for line
+// buffers. The 2h rows above the new ones come from line memories (h: half width of the kernel). When column
+// u enters, the filtered pixels of column u - h leave, h rows further up. Edge pixels repeat, and pixels of
+// rows outside the image are ignored. Without a kernel a column leaves as it enters.
 class ColumnFilter {
  public:
   // Throws std::invalid_argument if the kernel has problems, the image has no pixels, or `rows_per_column` is
@@ -56,7 +57,7 @@ class ColumnFilter {
     finish_column();
     return true;
   }
-  // Valid until the next push().
+  // The last column that has left; valid until the next push().
   const PixelColumn& output() const { return output_; }
 
  private:
@@ -74,7 +75,7 @@ class ColumnFilter {
   int rows_per_column_;
   std::optional<FilterKernel> kernel_;
   int half_ = 0;
-  bool wide_ = false;           // a sum may leave 24 bits, in which a float is exact
+  bool wide_ = false;           // a sum may exceed 24 bits, up to which a float is exact
   std::vector<float> weights_;  // column by column
 
   // Line memories: 2h rows per image column, padded to whole blocks, and the valid bits of these rows (bit e:
@@ -92,9 +93,9 @@ class ColumnFilter {
   std::uint64_t column_count_ = 0;  // columns completed since the start of the frame
 
   int column_ = 0;            // image column of the pixel that entered last
-  int k_ = 0;                 // rows of that column that have entered
+  int k_ = 0;                 // number of rows of that column that have entered
   int first_row_ = 0;         // image row at k = 0
-  float* entered_ = nullptr;  // where these rows are stored; null without kernel
+  float* entered_ = nullptr;  // where the rows of that column are stored; null without kernel
   std::uint64_t entered_valid_ = 0;
   PixelColumn output_;
 };

@@ -11,32 +11,32 @@ namespace {
 
 // Longer vectors gain nothing here, and no vector may be longer than the padding of the arrays.
 constexpr int kColumnBytes = kBytes < kLaneAlignment ? kBytes : kLaneAlignment;
-constexpr int kHalves = kColumnBytes / 2;
-constexpr int kWords = kColumnBytes / 4;
+constexpr int kInt16s = kColumnBytes / 2;  // 16-bit values in a vector
+constexpr int kInt32s = kColumnBytes / 4;  // 32-bit values in a vector
 
-using Bytes = std::uint8_t __attribute__((vector_size(kHalves)));
-using WordBytes = std::uint8_t __attribute__((vector_size(kWords)));
-using Halves = std::int16_t __attribute__((vector_size(2 * kHalves)));
-using WordHalves = std::int16_t __attribute__((vector_size(2 * kWords)));
-using Words = std::int32_t __attribute__((vector_size(4 * kWords)));
-using Floats = float __attribute__((vector_size(4 * kWords)));
+using HalfBytes = std::uint8_t __attribute__((vector_size(kInt16s)));
+using QuarterBytes = std::uint8_t __attribute__((vector_size(kInt32s)));
+using Int16s = std::int16_t __attribute__((vector_size(2 * kInt16s)));
+using HalfInt16s = std::int16_t __attribute__((vector_size(2 * kInt32s)));
+using Int32s = std::int32_t __attribute__((vector_size(4 * kInt32s)));
+using Floats = float __attribute__((vector_size(4 * kInt32s)));
 
-Words words(int value) { return Words{} + value; }
+Int32s int32s(int value) { return Int32s{} + value; }
 
 // GCC's own conversion to longer vectors takes four instructions instead of one.
-Halves widened(Bytes bytes) {
+Int16s widened(HalfBytes bytes) {
 #if defined(__AVX2__)
-  return reinterpret_cast<Halves>(_mm256_cvtepu8_epi16(reinterpret_cast<__m128i>(bytes)));
+  return reinterpret_cast<Int16s>(_mm256_cvtepu8_epi16(reinterpret_cast<__m128i>(bytes)));
 #else
-  return __builtin_convertvector(bytes, Halves);
+  return __builtin_convertvector(bytes, Int16s);
 #endif
 }
 
-Words widened(WordHalves halves) {
+Int32s widened(HalfInt16s values) {
 #if defined(__AVX2__)
-  return reinterpret_cast<Words>(_mm256_cvtepi16_epi32(reinterpret_cast<__m128i>(halves)));
+  return reinterpret_cast<Int32s>(_mm256_cvtepi16_epi32(reinterpret_cast<__m128i>(values)));
 #else
-  return __builtin_convertvector(halves, Words);
+  return __builtin_convertvector(values, Int32s);
 #endif
 }
 
@@ -44,19 +44,19 @@ Words widened(WordHalves halves) {
 
 void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
                   std::int16_t* leaving, std::int32_t* windows) {
-  for (int d = 0; d < lanes; d += kHalves) {
-    Halves sums{};
+  for (int d = 0; d < lanes; d += kInt16s) {
+    Int16s sums{};
     for (int row = 0; row < rows; ++row) {
-      const auto right = widened(load<Bytes>(histories[row] + d));
-      const Halves difference = right - left[row];
+      const auto right = widened(load<HalfBytes>(histories[row] + d));
+      const Int16s difference = right - left[row];
       sums += difference < 0 ? -difference : difference;
     }
-    const Halves change = sums - load<Halves>(leaving + d);
+    const Int16s change = sums - load<Int16s>(leaving + d);
     store(sums, leaving + d);
-    for (int part = 0; part < kHalves; part += kWords) {
+    for (int part = 0; part < kInt16s; part += kInt32s) {
       std::int32_t* const window = windows + d + part;
-      const auto halves = load<WordHalves>(reinterpret_cast<const std::int16_t*>(&change) + part);
-      store(load<Words>(window) + widened(halves), window);
+      const auto changes = load<HalfInt16s>(reinterpret_cast<const std::int16_t*>(&change) + part);
+      store(load<Int32s>(window) + widened(changes), window);
     }
   }
 }
@@ -65,24 +65,24 @@ namespace {
 
 constexpr std::int32_t kNoKey = 0x7FFFFFFF;
 
-// 0, 1, 2, ..
-Words first_lanes() {
-  Words lanes{};
-  for (int lane = 0; lane < kWords; ++lane) lanes[lane] = lane;
+// Returns the vector 0, 1, 2, ..
+Int32s first_lanes() {
+  Int32s lanes{};
+  for (int lane = 0; lane < kInt32s; ++lane) lanes[lane] = lane;
   return lanes;
 }
 
-// The keys of the given lanes.
-Words keys_at(const std::int32_t* sums, Words lanes, Words candidates) {
-  const Words keys = load<Words>(sums) << 8 | lanes;
-  return lanes < candidates ? keys : words(kNoKey);
+// Returns the keys of these lanes: kNoKey from lane `candidates` on.
+Int32s keys_at(const std::int32_t* sums, Int32s lanes, Int32s candidates) {
+  const Int32s keys = load<Int32s>(sums) << 8 | lanes;
+  return lanes < candidates ? keys : int32s(kNoKey);
 }
 
-std::int32_t smallest_lane(Words words) {
+std::int32_t smallest_lane(Int32s lanes) {
   using Block = std::int32_t __attribute__((vector_size(16)));
-  auto block = load<Block>(&words);
-  for (int more = 4; more < kWords; more += 4)
-    block = smaller(block, load<Block>(reinterpret_cast<const std::int32_t*>(&words) + more));
+  auto block = load<Block>(&lanes);
+  for (int more = 4; more < kInt32s; more += 4)
+    block = smaller(block, load<Block>(reinterpret_cast<const std::int32_t*>(&lanes) + more));
   block = smaller(block, __builtin_shufflevector(block, block, 2, 3, 0, 1));
   block = smaller(block, __builtin_shufflevector(block, block, 1, 0, 3, 2));
   return block[0];
@@ -92,32 +92,32 @@ std::int32_t smallest_lane(Words words) {
 
 void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,
                 std::int32_t* next) {
-  Words numbers = first_lanes();
-  for (int d = 0; d < lanes; d += kWords) {
-    store(smaller(load<Words>(held + d - 1), keys_at(sums + d, numbers, words(candidates))), next + d);
-    numbers += kWords;
+  Int32s numbers = first_lanes();
+  for (int d = 0; d < lanes; d += kInt32s) {
+    store(smaller(load<Int32s>(held + d - 1), keys_at(sums + d, numbers, int32s(candidates))), next + d);
+    numbers += kInt32s;
   }
 }
 
 std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes) {
-  Words numbers = first_lanes();
-  Words best = words(kNoKey);
-  for (int d = 0; d < lanes; d += kWords) {
-    best = smaller(best, keys_at(sums + d, numbers, words(candidates)));
-    numbers += kWords;
+  Int32s numbers = first_lanes();
+  Int32s best = int32s(kNoKey);
+  for (int d = 0; d < lanes; d += kInt32s) {
+    best = smaller(best, keys_at(sums + d, numbers, int32s(candidates)));
+    numbers += kInt32s;
   }
   return smallest_lane(best);
 }
 
 namespace {
 
-// The usual sizes are compiled for themselves: kSize is 0 for any other.
+// Compiled separately for each usual size of the kernel. kSize is 0 for all other sizes.
 template <int kSize>
 void filter_column_of(const float* columns, std::ptrdiff_t stride, const float* weights, int any_size,
                       int rows, int shift, std::uint8_t* out) {
   const int size = kSize != 0 ? kSize : any_size;
-  for (int k = 0; k < rows; k += kWords) {
-    // Four sums, because one alone would wait for itself.
+  for (int k = 0; k < rows; k += kInt32s) {
+    // Four independent sums, because each addition to one sum waits for the one before.
     Floats even{};
     Floats odd{};
     Floats even_before{};
@@ -137,9 +137,9 @@ void filter_column_of(const float* columns, std::ptrdiff_t stride, const float* 
       even_before = even_now;
       odd_before = odd_now;
     }
-    const auto sum = __builtin_convertvector((even + even_before) + (odd + odd_before), Words);
-    const Words level = larger(smaller((sum >> shift) + 128, words(255)), words(0));
-    store(__builtin_convertvector(level, WordBytes), out + k);
+    const auto sum = __builtin_convertvector((even + even_before) + (odd + odd_before), Int32s);
+    const Int32s level = larger(smaller((sum >> shift) + 128, int32s(255)), int32s(0));
+    store(__builtin_convertvector(level, QuarterBytes), out + k);
   }
 }
 

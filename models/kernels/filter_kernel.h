@@ -12,13 +12,14 @@ inline constexpr IntegerRule kKernelSizeRule{3, 31, 2};
 inline constexpr IntegerRule kKernelEntryRule{-32768, 32767};
 inline constexpr IntegerRule kShiftRule{0, 31};
 
-// An integer convolution kernel of contract 1.2: F = clamp(128 + floor(S / 2^shift), 0, 255), S the
-// correlation of the kernel with the image, coordinates clamped to the image.
+// An integer convolution kernel of contract 1.2. The filtered image is clamp(128 + floor(S / 2^shift), 0,
+// 255), where S is the correlation of the kernel with the image, whose coordinates are clamped to the image.
 struct FilterKernel {
-  int size = 0;              // m: rows and columns, kKernelSizeRule
-  std::vector<int> weights;  // size * size, rows from j = -h (top), in each i = -h (left)
-                             // first; each kKernelEntryRule, sum 0
-  int shift = 0;             // kShiftRule
+  int size = 0;  // m: rows and columns, kKernelSizeRule
+  // size * size weights, row by row from the top, each row from the left. Each weight keeps kKernelEntryRule,
+  // and their sum is 0.
+  std::vector<int> weights;
+  int shift = 0;  // kShiftRule
 
   int half() const { return (size - 1) / 2; }  // h
   int weight(int column, int row) const {      // 0..size-1 each, from the top left

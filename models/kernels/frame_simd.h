@@ -4,13 +4,13 @@
 
 namespace stereotlm::kernels {
 
-// The longest vector of all instruction sets. Positions, counts and offsets in this file are in lanes of 16
-// bits, unless their comment names another unit.
+// Length of the longest vector of any instruction set, in lanes and in bytes. A lane has 16 bits. Positions,
+// counts and offsets in this file are in lanes, unless their comment names another unit.
 inline constexpr int kMostFrameLanes = 32;
 inline constexpr int kMostFrameVectorBytes = 2 * kMostFrameLanes;
 
 // Filter taps as pairs of neighbouring columns: weights[row * pairs + p] holds the weight of column 2p in the
-// lower half and that of column 2p + 1 in the upper half. A weight that does not exist is 0.
+// lower 16 bits and that of column 2p + 1 in the upper 16 bits. A weight that does not exist is 0.
 struct FilterTaps {
   int rows = 0;
   int pairs = 0;
@@ -18,8 +18,9 @@ struct FilterTaps {
   const std::int32_t* weights = nullptr;
 };
 
-// How an image is matched: each lane of a vector has its own segment of columns in its own band of rows.
-// Position p of a lane lies p columns right of the first column of its segment.
+// How ImageMatcher divides an image among the lanes of a vector. The image is cut into bands of rows, and
+// each band into segments of columns; each lane matches one segment of one band. Position p of a lane lies p
+// columns right of the first column of its segment.
 struct MatchPlan {
   int window = 0;
   int disparities = 0;
@@ -28,27 +29,29 @@ struct MatchPlan {
   int first_outside = 0;    // from this position on the left window of some lane is outside the image
 };
 
-// The largest window whose sums leave two bits of 16 for the disparity: 7 * 7 * 255 * 4 fits into 16 bits, 9
-// * 9 * 255 * 4 does not. Sums alone fit up to 15 * 15 * 255.
+// The largest window for which a sum and two bits of the disparity fit into 16 bits: 7 * 7 * 255 * 4 fits, 9
+// * 9 * 255 * 4 does not.
 inline constexpr int kLastNarrowWindow = 7;
 
-// Arrays of vectors, one per position, at multiples of kMostFrameVectorBytes.
+// Arrays with one vector per position, aligned to kMostFrameVectorBytes.
 struct MatchMemory {
-  // The pixel that enters the window in the lower byte, the pixel that leaves it in the upper byte.
+  // In each lane the pixel that enters the window is the lower byte, the pixel that leaves the window the
+  // upper byte.
   const std::int16_t* right_pixels = nullptr;  // [columns + window - 1]
   const std::int16_t* left_pixels = nullptr;   // [columns + window + disparities - 2]
-  // [columns + disparities]: the largest value where the left window is outside the image, else the smallest.
+  // [columns + disparities]: the largest 16-bit value if the left window is outside the image, else the
+  // smallest.
   const std::int16_t* outside = nullptr;
-  // [1]: the largest value in the first lane of each band, else the smallest.
+  // [1]: the largest 16-bit value in the first lane of each band, else the smallest.
   const std::int16_t* band_begins = nullptr;
   std::int16_t* column_sums = nullptr;  // [disparities * (columns + window)], zeros before the first row
-  std::int16_t* right_best = nullptr;   // [2 * columns]
-  std::int16_t* left_best = nullptr;    // [2 * (columns + disparities)]
+  std::int16_t* right_best = nullptr;   // [2 * columns]: best keys of right windows, then their disparities
+  std::int16_t* left_best = nullptr;    // [2 * (columns + disparities)]: those of left windows
 };
 
 // The loops over whole images, for one instruction set.
 struct FrameSimd {
-  int lanes;  // of a vector
+  int lanes;  // lanes of a vector
 
   // out[i] = source pixel of table[i], 0 where the entry is not valid.
   void (*rectify)(const std::uint8_t* source, const std::uint32_t* table, int count, int width,
@@ -63,12 +66,11 @@ struct FrameSimd {
   // out[i] = entering[i] + 256 * leaving[i].
   void (*pair_pixels)(const std::uint8_t* entering, const std::uint8_t* leaving, int width,
                       std::int16_t* out);
-  // Vector i receives from[lane][i] in each lane, for i < count. Reads and writes up to the next multiple of
-  // 8.
+  // Stores `count` vectors: lane l of vector i is from[l][i]. Reads and writes up to the next multiple of 8.
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
-  // The reverse, to bytes.
+  // The reverse of to_lanes(), with bytes as output.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
-  // Moves all column sums one row down, while the first windows are not complete.
+  // Moves all column sums one row down. To be called for the rows before the first windows are complete.
   void (*add_row)(const MatchPlan& plan, const MatchMemory& memory);
   // Moves one row down and stores the disparities of the row of windows in right_best and left_best, one per
   // lane and position.

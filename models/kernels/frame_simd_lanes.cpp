@@ -10,7 +10,7 @@ void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int 
 
 namespace {
 
-// Blocks of 8 x 8 lanes of 16 bits, with each instruction set.
+// Images are transposed in blocks of 8 x 8 lanes, with any instruction set.
 constexpr std::ptrdiff_t kBlock = 8;
 using Block8 = std::uint8_t __attribute__((vector_size(8)));
 using Block16 = std::int16_t __attribute__((vector_size(16)));

@@ -5,34 +5,35 @@
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 
-// kScale * (lower byte - upper byte) of each lane.
+// Returns kScale * (lower byte - upper byte) of each lane.
 template <int kScale>
-Halves difference_of_bytes(Bytes bytes) {
+Int16s difference_of_bytes(Bytes bytes) {
 #if defined(__AVX512BW__)
-  const Halves weights = halves((kScale & 0xFF) - kScale * 256);
-  return reinterpret_cast<Halves>(
+  const Int16s weights = int16s((kScale & 0xFF) - kScale * 256);
+  return reinterpret_cast<Int16s>(
       _mm512_maddubs_epi16(reinterpret_cast<__m512i>(bytes), reinterpret_cast<__m512i>(weights)));
 #elif defined(__AVX2__)
-  const Halves weights = halves((kScale & 0xFF) - kScale * 256);
-  return reinterpret_cast<Halves>(
+  const Int16s weights = int16s((kScale & 0xFF) - kScale * 256);
+  return reinterpret_cast<Int16s>(
       _mm256_maddubs_epi16(reinterpret_cast<__m256i>(bytes), reinterpret_cast<__m256i>(weights)));
 #else
-  const auto lanes = reinterpret_cast<Halves>(bytes);
+  const auto lanes = reinterpret_cast<Int16s>(bytes);
   return ((lanes & 0xFF) - (lanes >> 8 & 0xFF)) * static_cast<std::int16_t>(kScale);
 #endif
 }
 
-// kScale times the change of a column sum: the difference |right - left| that enters less the one that
-// leaves.
+// Returns kScale times the change of a column sum: the difference |right - left| that enters, minus the one
+// that leaves.
 template <int kScale>
-Halves change(Halves right, Halves left) {
+Int16s change(Int16s right, Int16s left) {
   const auto a = reinterpret_cast<Bytes>(right);
   const auto b = reinterpret_cast<Bytes>(left);
   return difference_of_bytes<kScale>(larger(a, b) - smaller(a, b));
 }
 
-// Column sums of kCount neighbouring disparities, side by side, at one position after the other. The pointers
-// advance, and nothing else points to this object: the compiler then knows that no store changes them.
+// The column sums of kCount neighbouring disparities, which lie side by side for each position. next()
+// advances the pointers to the next position. Nothing points to this object, so that the compiler knows that
+// no store changes its pointers.
 template <int kScale, int kCount>
 struct ColumnSums {
   const std::int16_t* right;
@@ -40,9 +41,9 @@ struct ColumnSums {
   std::int16_t* sums;
 
   // Adds the change at this position to the sum of the j-th disparity, and returns the new sum.
-  Halves add(Halves right_pixels, std::ptrdiff_t j) const {
+  Int16s add(Int16s right_pixels, std::ptrdiff_t j) const {
     std::int16_t* place = sums + j * kLanes;
-    const Halves sum = load<Halves>(place) + change<kScale>(right_pixels, load<Halves>(left + j * kLanes));
+    const Int16s sum = load<Int16s>(place) + change<kScale>(right_pixels, load<Int16s>(left + j * kLanes));
     store(sum, place);
     return sum;
   }
@@ -63,8 +64,8 @@ struct Group {
   const std::int16_t* outside;
   Best* right_best;
   Best* left_best;
-  std::ptrdiff_t window_begin;  // from the sums that enter the window to the sums that leave it
-  int first;                    // disparity of the group
+  std::ptrdiff_t window_begin;  // offset from the sums that enter the window to those that leave it
+  int first;                    // first disparity of the group
   Key keys[kCount];
   Key passing[kCount];  // best keys of left windows that larger disparities of the group have yet to reach
 
@@ -83,7 +84,7 @@ struct Group {
 
   void enter_first(int count) {
     for (std::ptrdiff_t u = 0; u < count; ++u) {
-      const auto right = load<Halves>(columns.right);
+      const auto right = load<Int16s>(columns.right);
       for (std::ptrdiff_t j = 0; j < kCount; ++j) Keys::add(keys[j], columns.add(right, j));
       columns.next();
     }
@@ -92,9 +93,9 @@ struct Group {
   template <bool kRightBased, bool kSomeOutside>
   void match(int count) {
     for (std::ptrdiff_t s = 0; s < count; ++s) {
-      const auto right = load<Halves>(columns.right);
+      const auto right = load<Int16s>(columns.right);
       for (std::ptrdiff_t j = 0; j < kCount; ++j) {
-        const auto leaving = load<Halves>(columns.sums + window_begin + j * kLanes);
+        const auto leaving = load<Int16s>(columns.sums + window_begin + j * kLanes);
         Keys::add(keys[j], columns.add(right, j) - leaving);
       }
       columns.next();
@@ -102,7 +103,7 @@ struct Group {
         auto least = keys[0];
         for (std::ptrdiff_t j = 0; j < kCount; ++j) {
           auto key = keys[j];
-          if (kSomeOutside) key = Keys::most(key, load<Halves>(outside + j * kLanes));
+          if (kSomeOutside) key = Keys::most(key, load<Int16s>(outside + j * kLanes));
           least = j == 0 ? key : Keys::least(least, key);
         }
         *right_best = Keys::better(*right_best, least, first);
@@ -140,7 +141,7 @@ void add_group(const MatchPlan& plan, const MatchMemory& memory, int first, std:
   ColumnSums<kScale, kCount> columns{memory.right_pixels, memory.left_pixels + first * kLanes, column_sums};
   const int positions = plan.columns + plan.window - 1;
   for (std::ptrdiff_t u = 0; u < positions; ++u) {
-    const auto right = load<Halves>(columns.right);
+    const auto right = load<Int16s>(columns.right);
     for (std::ptrdiff_t j = 0; j < kCount; ++j) columns.add(right, j);
     columns.next();
   }
@@ -197,7 +198,7 @@ struct MatchGroup {
 
 template <class Keys>
 void store_disparities(const typename Keys::Best* best, int count, std::int16_t* out) {
-  // Works in place: `out` is the beginning of the keys, which are longer.
+  // Works in place: `out` points to the keys, which are longer than the disparities.
   for (std::ptrdiff_t p = 0; p < count; ++p) store(Keys::disparity(best[p]), out + p * kLanes);
 }
 
@@ -210,7 +211,7 @@ void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   for (std::ptrdiff_t p = 0; p < left_positions; ++p) left[p] = Keys::best_of_none();
   visit_groups<Keys>(plan, memory, MatchGroup<Keys>{plan, memory});
   // Left windows beyond the end of a segment belong to the next segment, where their disparities are smaller.
-  const auto band_begins = load<Halves>(memory.band_begins);
+  const auto band_begins = load<Int16s>(memory.band_begins);
   for (std::ptrdiff_t p = left_positions - 1; p >= plan.columns; --p) {
     auto& own = left[p - plan.columns];
     own = Keys::better(own, Keys::load_moved(left + p, band_begins));

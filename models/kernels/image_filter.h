@@ -11,7 +11,7 @@
 
 namespace stereotlm::kernels {
 
-// The filter of contract 1.2 on whole images.
+// Filters whole images with a kernel (contract 1.2); used by filter_image() and StereoPipeline.
 class ImageFilter {
  public:
   // Bytes behind the last pixel that run() may write.
@@ -28,9 +28,9 @@ class ImageFilter {
  private:
   // Kernel rows with the same weights: their pixels are added up before they are weighted.
   struct EqualRows {
-    std::vector<int> rows;  // offsets from the centre
+    std::vector<int> rows;  // offsets of these kernel rows from the centre
     std::vector<int> weights;
-    VectorArray sums;  // of these pixels, with `half` more columns on each side of the image
+    VectorArray sums;  // sums of the image rows at these offsets, with half_ more columns on each side
   };
 
   void add_rows(EqualRows& equal, const std::uint8_t* image, int row);
@@ -41,10 +41,10 @@ class ImageFilter {
   int half_;
   const FrameSimd& simd_;
   std::vector<EqualRows> equal_rows_;
-  std::vector<const std::int16_t*> sums_;
+  std::vector<const std::int16_t*> sums_;  // EqualRows::sums of all equal_rows_
   std::vector<std::int32_t> pair_weights_;
   FilterTaps taps_;
-  bool wide_ = false;  // a sum may leave 32 bits
+  bool wide_ = false;  // a sum may exceed 32 bits
 };
 
 }  // namespace stereotlm::kernels

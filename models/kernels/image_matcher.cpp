@@ -13,7 +13,7 @@ namespace {
 constexpr std::int16_t kSmallest = std::numeric_limits<std::int16_t>::min();
 constexpr std::int16_t kLargest = std::numeric_limits<std::int16_t>::max();
 
-// Column sums are read and written once a row, and should fit into a core's second-level cache.
+// Column sums are read and written once a row, and should fit into the second-level cache.
 constexpr double kMostColumnSumBytes = 400e3;
 
 constexpr int divided_up(int value, int divisor) { return (value + divisor - 1) / divisor; }
@@ -58,12 +58,13 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
     band_begins_.data()[lane] = lane % segments_ == 0 ? kLargest : kSmallest;
   column_sums_ = VectorArray(static_cast<std::size_t>(plan_.disparities) *
                              static_cast<std::size_t>(plan_.columns + window) * lanes);
-  memory_ = {right_.lanes.data(), left_.lanes.data(), outside_.data(),  band_begins_.data(),
-             column_sums_.data(), right_.best.data(), left_.best.data()};
+  memory_ = {right_.pixel_vectors.data(), left_.pixel_vectors.data(), outside_.data(),  band_begins_.data(),
+             column_sums_.data(),         right_.best.data(),         left_.best.data()};
 }
 
-// Neighbouring segments share window - 1 columns, and neighbouring bands share as many rows. What they share
-// is computed twice, at about half the work of a window. More segments need fewer column sums.
+// Chooses the number of bands that needs the least work. Neighbouring segments share window - 1 columns, and
+// neighbouring bands as many rows. Shared columns and rows are computed twice, each time with about half the
+// work of others. More segments need fewer column sums.
 void ImageMatcher::choose_bands() {
   const double shared = plan_.window - 1;
   double least = std::numeric_limits<double>::max();
@@ -88,7 +89,7 @@ void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
   side.positions = positions;
   side.rows = VectorArray(rows);
   side.out.resize(rows);
-  side.lanes = VectorArray(static_cast<std::size_t>(rounded_up(positions, 8)) * lanes);
+  side.pixel_vectors = VectorArray(static_cast<std::size_t>(rounded_up(positions, 8)) * lanes);
   side.best = VectorArray(2 * static_cast<std::size_t>(best_positions) * lanes);
 }
 
@@ -109,7 +110,7 @@ void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
     for (int segment = 0; segment < segments_; ++segment)
       lanes[lane++] = pairs + std::ptrdiff_t{segment} * plan_.columns;
   }
-  simd_.to_lanes(lanes.data(), side.positions, side.lanes.data());
+  simd_.to_lanes(lanes.data(), side.positions, side.pixel_vectors.data());
 }
 
 void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {

@@ -9,7 +9,9 @@
 
 namespace stereotlm::kernels {
 
-// Matches whole images (contract 1.3).
+// Matches whole rectified image pairs (contract 1.3) with SIMD; used by match() and StereoPipeline. The image
+// is cut into bands of rows, and each band into segments of columns; each lane of a vector matches one
+// segment of one band (MatchPlan).
 class ImageMatcher {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
@@ -18,15 +20,15 @@ class ImageMatcher {
   ImageMatcher(const ImageMatcher&) = delete;
   ImageMatcher& operator=(const ImageMatcher&) = delete;
 
-  // All width * height pixels, row-major. Without `right_based` right_disparity is not written.
+  // All arrays have width * height pixels, row-major. Without `right_based`, right_disparity is not written.
   void run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
            std::uint8_t* right_disparity);
 
  private:
   struct Side {
-    VectorArray rows;   // per band: one row, each pixel paired with the pixel that leaves the window
-    VectorArray lanes;  // the same, as one vector per position
-    VectorArray best;   // per position: the best keys, then the disparities
+    VectorArray rows;           // per band: one row, each pixel paired with the pixel that leaves the window
+    VectorArray pixel_vectors;  // these pairs of pixels, as one vector per position
+    VectorArray best;           // per position: the best keys, then the disparities
     std::vector<std::uint8_t> out;  // per band: one row of disparities
     int positions = 0;
   };
@@ -41,18 +43,18 @@ class ImageMatcher {
   int radius_;
   const FrameSimd& simd_;
   MatchPlan plan_;
-  int bands_ = 1;     // each of band_rows_ rows of windows
-  int segments_ = 1;  // lanes of a band, each of plan_.columns columns of windows
+  int bands_ = 1;     // number of bands, each of band_rows_ rows of windows
+  int segments_ = 1;  // segments of a band, each of plan_.columns columns of windows
   int band_rows_ = 0;
   int windows_across_ = 0;
   int windows_down_ = 0;
-  std::size_t row_stride_ = 0;  // of Side::rows and Side::out
+  std::size_t row_stride_ = 0;  // from one band to the next in Side::rows and Side::out
   Side left_;
   Side right_;
   VectorArray outside_;
   VectorArray band_begins_;
   VectorArray column_sums_;
-  std::vector<std::uint8_t> no_row_;  // the black row that leaves the first windows
+  std::vector<std::uint8_t> no_row_;  // a row of zeros that stands for the rows above the image
   MatchMemory memory_;
 };
 

@@ -17,7 +17,7 @@ struct IntegerRule {
     return value >= min && value <= max && (value - min) % step == 0;
   }
 
-  // "4..2048, a multiple of 4"
+  // Such as "4..2048, a multiple of 4".
   std::string text() const {
     std::string out = std::to_string(min) + ".." + std::to_string(max);
     if (step == 2 && min % 2 != 0) out += ", odd";
@@ -25,10 +25,11 @@ struct IntegerRule {
     return out;
   }
 
-  // "window = 4: must be 3..31, odd"
+  // Such as "window = 4: must be 3..31, odd".
   std::string problem(const std::string& field, std::int64_t value) const {
     return field + " = " + std::to_string(value) + ": must be " + text();
   }
+  // Adds the problem, if there is one.
   void check(const std::string& field, std::int64_t value, std::vector<std::string>& problems) const {
     if (!allows(value)) problems.push_back(problem(field, value));
   }

@@ -13,7 +13,7 @@ constexpr int padded_lanes(int disparities) {
   return (disparities + kLanePadding - 1) / kLanePadding * kLanePadding;
 }
 
-// An aligned array of at least `lanes` values, at first zeros.
+// An array for ColumnSimd with at least `lanes` values, aligned and padded, at first zeros.
 template <class Value>
 class LaneArray {
  public:

@@ -2,7 +2,7 @@
 
 #include "models/kernels/integer_rule.h"
 
-// The ranges of contract section 1.
+// The allowed values of the parameters of contract section 1.
 namespace stereotlm::kernels {
 
 inline constexpr IntegerRule kWindowRule{3, 31, 2};

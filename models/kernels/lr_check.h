@@ -10,8 +10,8 @@
 
 namespace stereotlm::kernels {
 
-// Contract 1.4: whether the left-based disparity of a left pixel survives, given the right-based disparity of
-// the right pixel that it points to. Without a tolerance (`off`) every valid disparity survives.
+// Returns whether (contract 1.4) the left-based disparity of a left pixel survives, given the right-based
+// disparity of the right pixel that it points to. Without a tolerance (`off`) every valid disparity survives.
 inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_based,
                                   std::optional<int> tolerance) {
   if (left_based == kInvalidDisparity) return false;
@@ -19,8 +19,9 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
   return right_based != kInvalidDisparity && std::abs(int{left_based} - int{right_based}) <= *tolerance;
 }
 
-// The check behind the select-min units, column by column. Unit A is disparities-1 columns behind unit B. The
-// left-based results wait for that long, so that both results belong to the same column.
+// The left-right check behind the select-min units, column by column; used by fpga::LrCheck. The results of
+// unit A come disparities-1 columns after those of unit B. The left-based results wait for that long, so that
+// both results belong to the same column.
 class LrCheck {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule and kLrToleranceRule.
@@ -31,9 +32,10 @@ class LrCheck {
 
   void start_frame() { time_ = 0; }
 
-  // One column: unit B's disparity of the left pixel of this column, whether that pixel's own table entry is
-  // valid, and unit A's disparity of the right pixel disparities-1 columns back. Returns the checked
-  // disparity of the left pixel disparities-1 columns back, kInvalidDisparity if it fails.
+  // Steps one column. `left_based`: unit B's disparity of the left pixel of this column. `left_valid`:
+  // whether that pixel's own table entry is valid. `right_based`: unit A's disparity of the right pixel
+  // disparities-1 columns back. Returns the disparity of the left pixel disparities-1 columns back, or
+  // kInvalidDisparity if it fails the check.
   std::uint8_t step(std::uint8_t left_based, bool left_valid, std::uint8_t right_based) {
     left_[time_ % kRing] = left_valid ? left_based : kInvalidDisparity;
     right_[time_ % kRing] = right_based;

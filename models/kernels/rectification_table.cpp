@@ -49,7 +49,7 @@ bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int w
 
 namespace {
 
-// Works row by row, so that the second pass over a row finds it in the cache.
+// Works row by row, so that entries_point_inside() finds the row in the cache.
 bool is_valid(const RectificationTable& table) {
   const auto width = static_cast<std::size_t>(table.width);
   std::uint32_t bits = 0;

@@ -9,8 +9,8 @@
 
 namespace stereotlm::kernels {
 
-// One 32-bit entry per rectified pixel (contract 1.1): bit 31 valid, bits 26..16 source row, bits 10..0
-// source column, all other bits 0.
+// A table has one 32-bit entry per rectified pixel (contract 1.1): bit 31 valid, bits 26..16 source row, bits
+// 10..0 source column, all other bits 0.
 inline constexpr std::uint32_t kEntryValid = 0x8000'0000U;
 inline constexpr std::uint32_t kEntryUnusedBits = 0x7800'F800U;
 
@@ -29,7 +29,7 @@ struct RectificationTable {
   std::vector<std::uint32_t> entries;
 };
 
-// Every pixel is its own source, as on a board without calibration.
+// Returns a table in which every pixel is its own source, as on a board without calibration.
 RectificationTable identity_table(int width, int height);
 
 // Whether all valid entries point inside an image of that size.
@@ -41,8 +41,8 @@ std::vector<std::string> problems(const RectificationTable& table);
 // Throws std::invalid_argument if the table has problems or is not of the image's size.
 void require_usable(const RectificationTable& table, const GrayImage& image);
 
-// P(u, v) of contract 1.1: the source pixel, or 0 where the entry is not valid. Throws std::invalid_argument
-// if the sizes differ or the table has problems.
+// Returns the rectified image (P of contract 1.1): source pixels, and 0 where the entry is not valid. Throws
+// std::invalid_argument if the sizes differ or the table has problems.
 GrayImage rectify(const GrayImage& source, const RectificationTable& table);
 
 }  // namespace stereotlm::kernels

@@ -36,7 +36,8 @@ void SadColumns::push_column(const std::uint8_t* left, const std::uint8_t* right
   const std::ptrdiff_t stride = kColumnsBetweenMoves + lanes_;
   std::uint8_t* history = right_histories_.data();
   if (position_ == 0) {
-    // A history grows downwards, newest pixel first. At the bottom its live part moves to the top.
+    // A history grows downwards, newest pixel first. At the bottom, the part that is still needed moves to
+    // the top.
     for (int row = 0; row < window_; ++row, history += stride) {
       std::copy_n(history, lanes_, history + kColumnsBetweenMoves);
     }

@@ -16,19 +16,20 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
   return column - radius + 1 < disparities ? column - radius + 1 : disparities;
 }
 
-// The array of column and window modules (paper section 3.4, figures 6 and 8). Column module d accumulates
+// The array of column and window modules (paper section 3.4, figures 6 and 8); used by fpga::SadArray. Column
+// module d accumulates
 // |right pixel d columns ago - left pixel| over the n rows of a column; window module d adds the finished
-// column sum and subtracts the one n columns ago, so that it holds the SAD of candidate d for the window that
-// ends at this column.
+// column sum and subtracts the column sum of n columns ago, so that it holds the SAD of candidate d for the
+// window that ends at this column.
 class SadColumns {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
   SadColumns(int window, int disparities, const Simd& simd = best_simd());
 
   void start_frame();
-  // The next column of both sides: n pixels each, top first.
+  // Enters the next column of each side: n pixels, top first.
   void push_column(const std::uint8_t* left, const std::uint8_t* right);
-  // SAD of candidates 0..disparities-1 for the last column, padded to lanes() values.
+  // The SADs of candidates 0..disparities-1 for the last column, padded to lanes() values.
   const std::int32_t* window_sums() const { return window_sums_.data(); }
   int lanes() const { return lanes_; }
 

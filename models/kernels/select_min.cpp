@@ -11,6 +11,7 @@ namespace {
 // A key holds the sum in its upper bits and the disparity in the lowest 8: the smallest key is the smallest
 // sum, and among equal sums the smallest disparity. 31 * 31 * 255 needs 18 bits.
 constexpr std::int32_t kNoCandidate = std::numeric_limits<std::int32_t>::max();
+// Number of values before that of module 0, which reads the last of them as the value of module -1.
 constexpr int kBefore = kLanePadding;
 
 constexpr std::uint8_t disparity_of(std::int32_t key) {

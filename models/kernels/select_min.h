@@ -15,8 +15,8 @@ std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, in
 
 // Select-min unit A: a chain of `disparities` compare-and-shift modules. In each column module d compares the
 // sum that module d-1 held a column ago with the sum of candidate d, and keeps the smaller; of equal sums it
-// keeps the former. The minimum that leaves the chain belongs to the right pixel disparities-1 columns back:
-// right-based matching.
+// keeps that of module d-1. The minimum that leaves the chain belongs to the right pixel disparities-1
+// columns back: right-based matching.
 class SelectMinChain {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule.
@@ -31,8 +31,8 @@ class SelectMinChain {
   const ColumnSimd& simd_;
   int disparities_;
   int lanes_;
-  LaneArray<std::int32_t> held_;  // [kBefore + d]: what module d holds; no candidates before that
-  LaneArray<std::int32_t> next_;
+  LaneArray<std::int32_t> held_;  // [kBefore + d]: key that module d holds; before module 0, no candidate
+  LaneArray<std::int32_t> next_;  // written by step(), then swapped with held_
 };
 
 }  // namespace stereotlm::kernels

@@ -5,7 +5,7 @@
 #include "models/kernels/column_simd.h"
 #include "models/kernels/frame_simd.h"
 
-// The functions of one instruction set; FrameSimd and ColumnSimd say what they do.
+// The functions of one instruction set, which FrameSimd and ColumnSimd describe.
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
 void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, int width, std::uint8_t* out);

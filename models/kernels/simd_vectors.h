@@ -1,8 +1,9 @@
 #pragma once
 
-// Vectors of the compiler, for the files that are compiled once per instruction set. STEREOTLM_SIMD names the
-// namespace of all that these files define. They use no function of the standard library: of an inline
-// function the linker keeps one copy, which could be one that older machines cannot run.
+// Vectors, as an extension of the compiler, for the files that are compiled once per instruction set.
+// STEREOTLM_SIMD is the namespace of everything that these files define. They use no function of the standard
+// library: the linker keeps only one copy of an inline function, which could be one that older machines
+// cannot run.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
-// The longest vector of the instruction set.
+// Bytes of the longest vector of the instruction set.
 #if defined(__AVX512BW__)
 constexpr int kBytes = 64;
 #elif defined(__AVX2__)

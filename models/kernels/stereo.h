@@ -11,9 +11,11 @@
 
 namespace stereotlm::kernels {
 
-// The arithmetic of contract section 1 on whole images, without memories and time, one image at a time.
-// StereoPipeline does the same for many frames. Disparity images hold kInvalidDisparity where there is no
-// disparity.
+// The functions of this file do the arithmetic of contract section 1 on single pairs of whole images, without
+// memories and time. StereoPipeline does the same for many frames. Disparity images hold kInvalidDisparity
+// where there is no disparity.
+
+// The parameters of that arithmetic.
 struct StereoConfig {
   int window = 7;        // n: kWindowRule
   int disparities = 80;  // D: kDisparitiesRule
@@ -24,20 +26,21 @@ struct StereoConfig {
 // Every broken rule as `field = value: rule`.
 std::vector<std::string> problems(const StereoConfig& config);
 
-// F of contract 1.2. Throws std::invalid_argument if the kernel has problems or the image is empty.
+// Returns the filtered image (F of contract 1.2). Throws std::invalid_argument if the kernel has problems or
+// the image is empty.
 GrayImage filter_image(const GrayImage& image, const FilterKernel& kernel);
 
 struct Matches {
   GrayImage right_based;  // dR
   GrayImage left_based;   // dL
 };
-// Contract 1.3 on two filtered images. Throws std::invalid_argument if they differ in size, or the window or
-// the number of disparities breaks its rule.
+// Matches two filtered images (contract 1.3). Throws std::invalid_argument if they differ in size, or the
+// window or the number of disparities breaks its rule.
 Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities);
 
-// Rectifies, filters, matches and checks. A null table means that this side has none. Throws
-// std::invalid_argument if the images or tables differ in size, the images are to be filtered but empty, or
-// the configuration or a table has problems.
+// Rectifies, filters, matches and checks. A null table means that its side has none. Throws
+// std::invalid_argument if the images or tables differ in size, if the images are empty but are to be
+// filtered, or if the configuration or a table has problems.
 GrayImage disparity_image(const GrayImage& left, const GrayImage& right, const RectificationTable* left_table,
                           const RectificationTable* right_table, const StereoConfig& config);
 

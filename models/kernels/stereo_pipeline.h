@@ -11,16 +11,16 @@
 
 namespace stereotlm::kernels {
 
-// The arithmetic of contract section 1 on whole images, frame after frame: rectify, filter, match, check. The
-// constructor allocates all memory.
+// Computes the disparity images of many frames (contract section 1): rectifies, filters, matches and checks
+// whole images. Used by disparity_image() and fpga::DirectFrame. The constructor allocates all memory.
 class StereoPipeline {
  public:
-  // Throws std::invalid_argument if the configuration has problems, or the images are to be filtered but
-  // empty. `simd`: one of simd_sets().
+  // Throws std::invalid_argument if the configuration has problems, or if the images are empty but are to be
+  // filtered. `simd`: one of simd_sets().
   StereoPipeline(int width, int height, const StereoConfig& config, const Simd& simd = best_simd());
 
-  // Images hold width * height pixels, tables as many entries, row-major. A null table means that this side
-  // has none. The caller has checked that valid entries lie inside the image.
+  // Images hold width * height pixels, tables as many entries, row-major. A null table means that its side
+  // has none. Valid entries must point inside the image, which is not checked.
   void run(const std::uint8_t* left, const std::uint8_t* right, const std::uint32_t* left_table,
            const std::uint32_t* right_table, std::uint8_t* disparity);
 
@@ -28,7 +28,7 @@ class StereoPipeline {
   struct Side {
     std::vector<std::uint8_t> rectified;
     std::vector<std::uint8_t> filtered;
-    std::vector<std::uint8_t> disparity;  // of the matches that are based on this side
+    std::vector<std::uint8_t> disparity;  // of the matches based on this side
   };
 
   const std::uint8_t* prepare(Side& side, const std::uint8_t* image, const std::uint32_t* table);

@@ -14,7 +14,7 @@ constexpr std::uint8_t pixel_of_word(std::uint32_t word, std::size_t pixel_index
   return static_cast<std::uint8_t>(word >> (8U * static_cast<unsigned>(pixel_index % kPixelsPerWord)));
 }
 
-// The word of kPixelsPerWord pixels.
+// Packs kPixelsPerWord pixels into a word.
 constexpr std::uint32_t word_of_pixels(const std::uint8_t* pixels) {
   return static_cast<std::uint32_t>(pixels[0]) | static_cast<std::uint32_t>(pixels[1]) << 8U |
          static_cast<std::uint32_t>(pixels[2]) << 16U | static_cast<std::uint32_t>(pixels[3]) << 24U;

@@ -3,7 +3,8 @@
 namespace stereotlm::memory {
 namespace {
 
-// A place of the queue in a state: 1 + index of the port, 0 behind the last one. The oldest is lowest.
+// A state holds each place of the queue in kPlaceBits bits: 1 + index of the port, or 0 behind the last port.
+// The oldest request is in the lowest bits.
 constexpr unsigned kPlaceBits = 3;
 constexpr ArbitrationPolicy::State kPlaceMask = (1U << kPlaceBits) - 1;
 static_assert(kMostPorts <= kPlaceMask && kMostPorts * kPlaceBits <= 32);

@@ -6,11 +6,12 @@
 
 namespace stereotlm::memory {
 
-// The request that has waited longest wins, of equal ages the first in the list. The age of a request is the
-// number of consecutive cycles, up to this one, in which its port has requested the bank without a grant.
+// The request with the largest age wins; among equal ages, that of the port that comes first in the priority
+// list. The age of a request is the number of consecutive cycles, up to this one, in which its port has
+// requested the bank without a grant.
 //
 // The state is the queue of the ports that wait: those that requested in the last cycle and were not granted,
-// the oldest first, of equal ages the first in the list. The order alone determines every decision:
+// the oldest first, equal ages in the order of the list. The order alone determines every decision:
 // - The age of each waiting port grows by one in every cycle in which it requests. So the order of two
 //   waiting ports never changes. Equal ages stay equal, and the list always orders them in the same way.
 // - A new request has age 1, that of a waiting port is 2 or more. So new requests join the end of the queue,
@@ -25,6 +26,7 @@ class AgePolicy : public ArbitrationPolicy {
   State next(State state, PortMask requests, PortMask granted) const override;
 
  private:
+  // The ports of `requests`, in the order in which they would win.
   std::vector<Port> oldest_first(State state, PortMask requests) const;
 
   PriorityList list_;

@@ -87,7 +87,8 @@ void Arbitration::count_alone() const {
   retracted_grants_ = {};
 }
 
-// The same when no grant can be retracted any more: the grants also move the states of the policies.
+// To be called when no grant can be retracted any more: counts as count_alone() does, and moves the states of
+// the policies by these grants.
 void Arbitration::settle() {
   count_alone();
   for (std::size_t port = 0; port < kMostPorts; ++port) {
@@ -97,7 +98,7 @@ void Arbitration::settle() {
   alone_grants_ = {};
 }
 
-// The rest of arbitrate(): requests of ports that are not alone on their banks.
+// The part of arbitrate() for requests to shared_banks_.
 PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
   PortMask granted = 0;
   SharedBank* const end = shared_banks_.data() + shared_bank_count_;

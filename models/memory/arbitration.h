@@ -9,24 +9,24 @@
 
 namespace stereotlm::memory {
 
-// The arbitration of all banks (contract section 2): routes each port to a bank, and its requests to the
-// bank's arbiter. Plain C++, no SystemC: the crossbar is built around it.
+// Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
+// requests. Used by Crossbar, and by platform::run_core() without a crossbar. Plain C++, no SystemC.
 class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
 
-  // Routes the port's requests to this bank, in this direction, from the next arbitrate() on. The bank must
-  // exist.
+  // Routes the port to this bank from the next arbitrate() on. `write`: direction of all its requests. The
+  // bank must exist.
   void route(Port port, std::size_t bank, bool write);
-  // The port requests nothing from now on.
+  // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
-  std::size_t bank_of(Port port) const { return routes_[port].bank; }  // of its last route
+  std::size_t bank_of(Port port) const { return routes_[port].bank; }  // bank of its last route
   bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;
 
-  // One cycle: decides these requests, and returns the ports granted. Cycles must increase; those left out
-  // have no request.
+  // Decides the requests of one cycle, and returns the ports granted. `cycle` must increase from call to
+  // call; a cycle that is left out has no request.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     const auto granted = static_cast<PortMask>(requests & alone_);
     ++alone_cycles_[granted];
@@ -34,15 +34,15 @@ class Arbitration {
     return static_cast<PortMask>(granted |
                                  arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
   }
-  // Whether the port is uncontended: its requests are granted at once as long as no route changes.
+  // Whether the port is uncontended: as long as no route changes, each request is granted in its cycle.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
-  // Retracts grants of an uncontended port that were counted provisionally: those cycles held no request. To
-  // be called before a route changes or counting ends, because the remaining grants then move the state of
-  // the bank's policy.
+  // Subtracts grants of an uncontended port that were counted provisionally, for cycles in which the port did
+  // not request. To be called before a route changes or counting ends: at that time the remaining grants move
+  // the state of the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
-  // Decides one request of a port for a bank that no routed port requests, in the given direction. The
-  // outcome is counted later, by count_unrouted().
+  // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the
+  // direction. The outcome is counted only when it is passed to count_unrouted().
   BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
   void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
                       std::uint64_t cycles) {
@@ -53,20 +53,20 @@ class Arbitration {
     return arbiters_[bank].granted_in(outcome) != 0;
   }
 
-  // The state that determines all arbitration from `cycle` on as long as no route changes. One word for each
-  // shared bank; the other words are 0.
+  // The state that determines all arbitration from `cycle` on, as long as no route changes: one word for each
+  // bank with several ports or with turnaround, then zeros.
   using State = std::array<std::uint64_t, kMostPorts>;
   State state(std::uint64_t cycle) const;
-  // The decisions of some cycles. Valid as long as no route changes.
+  // The decisions of several cycles, by outcome. Valid as long as no route changes.
   struct Decided {
     struct Shared {
-      std::size_t bank;  // index of the shared bank
+      std::size_t bank;  // index in shared_banks_
       BankArbiter::Outcome outcome;
-      std::uint64_t cycles;
+      std::uint64_t cycles;  // number of cycles with this outcome
     };
     struct Alone {
-      std::size_t ports;  // mask of the ports granted
-      std::uint64_t cycles;
+      std::size_t ports;     // mask of the uncontended ports granted
+      std::uint64_t cycles;  // number of cycles with exactly these grants
     };
     std::vector<Shared> shared;
     std::vector<Alone> alone;
@@ -74,13 +74,14 @@ class Arbitration {
   // Records decisions until take_recorded(). A change of routes drops the record.
   void begin_recording();
   Decided take_recorded();
-  // Skips `cycles` cycles: the state from `cycle` on is `state`. count_skipped() adds their decisions.
+  // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the
+  // decisions of the skipped cycles.
   void skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles);
   void count_skipped(const Decided& decided, std::uint64_t times);
 
   // The arbiters' statistics count cycles first_cycle .. end_cycle - 1 only, and are complete after
-  // end_counting(). Until then grants of an uncontended port may be retracted. uncounted_accesses() of the
-  // arbiters is always complete. A query of the arbiters changes nothing.
+  // end_counting(). Until then grants of an uncontended port may be retracted.
+  // BankArbiter::uncounted_accesses() is complete at any time. arbiters() may be called at any time.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const std::vector<BankArbiter>& arbiters() const {
@@ -112,11 +113,14 @@ class Arbitration {
   // Uncontended ports: each is alone on a bank without turnaround. They need no arbitration; their grants are
   // added to the counts of the arbiters later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
-  using AloneCycles = std::array<std::uint64_t, std::size_t{1} << kMostPorts>;  // [mask of the ports granted]
+  using AloneCycles =
+      std::array<std::uint64_t, std::size_t{1} << kMostPorts>;  // [mask of the ports granted]: cycles
   mutable AloneCycles alone_cycles_{};
-  mutable AloneCycles alone_before_recording_{};  // only the difference to alone_cycles_ counts
-  mutable std::array<std::uint64_t, kMostPorts> retracted_grants_{};  // of the alone_cycles_
-  mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // since settle(), without those retracted
+  mutable AloneCycles
+      alone_before_recording_{};  // modulo 2^64: its difference to alone_cycles_ is the record
+  mutable std::array<std::uint64_t, kMostPorts>
+      retracted_grants_{};  // [port]: to be subtracted from alone_cycles_
+  mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]: counted since settle()
   std::array<SharedBank, kMostPorts> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;

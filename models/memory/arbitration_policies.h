@@ -11,15 +11,17 @@ namespace stereotlm::memory {
 // A policy that boards can choose.
 struct PolicyEntry {
   const char* name;          // in board files
-  const char* list_meaning;  // what the priority list is to it, as the key list says
-  // After a cycle in which every request is granted the state is 0: a frame leaves nothing to the next.
+  const char* list_meaning;  // meaning of the priority list for this policy, for the list of keys
+  // Whether the state is always 0 after a cycle in which every request was granted: then the arbitration of a
+  // frame does not depend on the frames before it.
   bool forgets;
   std::unique_ptr<const ArbitrationPolicy> (*make)(const PriorityList& list);
 };
 
-// All policies, in the order in which they are listed. To add one, add its line here and its file pair.
+// All policies, in the order in which they are listed. To add a policy, write its file pair and add its line
+// to the table in arbitration_policies.cpp.
 const std::vector<PolicyEntry>& arbitration_policies();
-// Null if there is none of this name.
+// Returns null if there is no policy of this name.
 const PolicyEntry* find_arbitration_policy(const std::string& name);
 
 }  // namespace stereotlm::memory

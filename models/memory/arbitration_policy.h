@@ -6,23 +6,24 @@
 
 namespace stereotlm::memory {
 
-// How the arbiter of a bank picks one of the ports that request it (contract section 2). A policy consists of
-// two pure functions of a small state. BankArbiter holds the state, so that one policy serves any number of
-// cycles and banks, and memoises both functions, so that they need not be fast. The reachable states should
-// be few: the memo and the transition cache of the core hold each of them once.
+// Picks one of the ports that request a bank in a cycle (contract section 2). A policy consists of two pure
+// functions of a small state. BankArbiter holds the state, so that one policy serves any number of cycles and
+// banks, and memoises both functions, so that they need not be fast. The reachable states should be few: the
+// memo and the transition cache of the core hold each of them once.
 //
-// An uncontended port is granted without its arbiter, which learns of the grants later. For this to be exact,
-// a request without competitors must win, and each further grant to the same port must change the state as a
-// cycle without request does.
+// An uncontended port is granted without its arbiter, which receives the number of grants later. For this to
+// be exact, a request without competitors must win, and each further grant to the same port must change the
+// state as a cycle without request does.
 class ArbitrationPolicy {
  public:
   using State = std::uint32_t;  // 0 at the start of the simulation
 
   virtual ~ArbitrationPolicy() = default;
 
-  // The port that wins these requests, at least one.
+  // Returns the port that wins. `requests` has at least one port.
   virtual Port winner(State state, PortMask requests) const = 0;
-  // The state after a cycle. `granted`: the winner; 0 if nobody requested, or the bank was turning round.
+  // Returns the state after a cycle. `granted`: mask of the winner; 0 if no port requested, or the bank was
+  // turning round.
   virtual State next(State state, PortMask requests, PortMask granted) const = 0;
 };
 

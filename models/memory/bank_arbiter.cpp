@@ -15,7 +15,7 @@ static_assert(
       }
       return true;
     }(),
-    "an arbiter grants one access a cycle: a bank with more ports needs one for each");
+    "an arbiter grants one access a cycle: a bank with more ports needs an arbiter for each");
 
 constexpr std::size_t lowest(PortMask mask) { return static_cast<std::size_t>(__builtin_ctz(mask)); }
 
@@ -31,7 +31,7 @@ BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
       row_(&table_.row_of(0)),
       other_direction_cycles_(static_cast<std::uint64_t>(turnaround_cycles) + 1) {}
 
-// Out of line, so that decide() stays small: what it needs is seldom missing.
+// Fills a missing row or decision, then decides. Seldom called, and out of line so that decide() stays small.
 BankArbiter::Outcome BankArbiter::prepare_and_decide(std::uint64_t cycle, PortMask requests,
                                                      PortMask writes) {
   row_ = &row_at(cycle);
@@ -40,7 +40,7 @@ BankArbiter::Outcome BankArbiter::prepare_and_decide(std::uint64_t cycle, PortMa
   return decide(cycle, requests, writes);
 }
 
-// The policy's state after the cycles without request up to `cycle`.
+// The row of the policy's state in `cycle`, after cycles without request since next_cycle_.
 DecisionTable::Row& BankArbiter::row_at(std::uint64_t cycle) const {
   return row_->after_idle_cycles(cycle - next_cycle_);
 }
@@ -49,14 +49,15 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
   if (cycles == 0) return;
   if (counting_) {
     outcomes_[outcome_of(port, lowest(port), write ? 1 : 0)] += cycles;
-    // Wherever the cycles lay: those that remain up to the next call were idle.
+    // All cycles up to the next call that are not counted here were idle. Their order does not matter.
     next_uncounted_cycle_ += cycles;
   } else {
     uncounted_accesses_ += cycles;
   }
 }
 
-// One grant moves the state; further ones are as cycles without request (ArbitrationPolicy).
+// The first grant moves the state. Each further one acts as a cycle without request does (see
+// ArbitrationPolicy).
 void BankArbiter::grant_alone(PortMask port) {
   table_.fill(*row_, port);
   row_ = row_->decisions[port].if_granted;

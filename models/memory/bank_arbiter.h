@@ -9,35 +9,37 @@
 
 namespace stereotlm::memory {
 
-// What one arbiter counted. The blame of a stalled port goes to the port that was granted, or to the
-// turnaround.
+// The statistics of one arbiter. Each stall cycle of a port is blamed on the port that was granted in it, or
+// on the turnaround.
 struct ArbiterStats {
   static constexpr std::size_t kTurnaround = kMostPorts;  // column of `blame`
 
   std::uint64_t reads = 0;              // cycles with a read granted
   std::uint64_t writes = 0;             // cycles with a write granted
-  std::uint64_t turnaround_cycles = 0;  // cycles in which the winner was refused
+  std::uint64_t turnaround_cycles = 0;  // cycles in which no port was granted because of turnaround
   std::uint64_t idle_cycles = 0;        // cycles without request
   std::uint64_t contended_cycles = 0;   // cycles with two or more requests
-  std::array<std::uint64_t, kMostPorts> grants{};
-  std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts> blame{};  // [victim][by]
+  std::array<std::uint64_t, kMostPorts> grants{};  // [port]
+  std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts>
+      blame{};  // [stalled port][port granted, or kTurnaround]: stall cycles
 };
 
-// Decides each cycle which port may access one bank (contract section 2). The policy chooses the winner
+// Decides in each cycle which port may access one bank (contract section 2). The policy chooses the winner
 // first. If the bank is still turning round for the winner's direction, no port is granted. Plain C++, no
-// SystemC: the single description of arbitration, whatever steps it.
+// SystemC: the single description of arbitration, used at every fidelity.
 class BankArbiter {
  public:
-  // What happened in a cycle: the requests, the port that was granted, and the direction. Independent of the
-  // policy.
+  // What happened in one cycle, as a number: the requests, the port that was granted or the turnaround, and
+  // the direction. Does not depend on the policy.
   using Outcome = std::uint16_t;
 
-  // `turnaround_cycles`: 0 for a bank that has none. Throws std::invalid_argument if the configuration has
-  // problems.
+  // `turnaround_cycles`: 0 for a bank without turnaround. Throws std::invalid_argument if the configuration
+  // has problems.
   BankArbiter(const ArbiterConfig& config, int turnaround_cycles);
 
-  // One cycle with at least one request. `writes`: the ports that would write. Cycles must increase; those
-  // left out have no request. The outcomes are to be passed to count() in the order of the cycles.
+  // Decides one cycle with at least one request. `writes`: the ports that would write. `cycle` must increase
+  // from call to call; a cycle that is left out has no request. The caller passes the outcomes to count(), in
+  // the order of the cycles.
   Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
     const bool is_idle_over = cycle == next_cycle_ || row_->after_idle == row_;
     const DecisionTable::Decision& decision = row_->decisions[requests];
@@ -56,7 +58,7 @@ class BankArbiter {
   static PortMask granted_in(Outcome outcome) {
     return static_cast<PortMask>(1U << (outcome >> (kMostPorts + 1)) & (kMasks - 1));
   }
-  // Counts `cycles` cycles from this one on, all with the same outcome.
+  // Counts `cycles` cycles with this outcome, of which `cycle` is the first.
   void count(std::uint64_t cycle, Outcome outcome, std::uint64_t cycles = 1) {
     if (counting_) {
       idle_cycles_ += cycle - next_uncounted_cycle_;
@@ -66,21 +68,22 @@ class BankArbiter {
       uncounted_accesses_ += cycles;
     }
   }
-  // Counts `cycles` cycles since the last call, in each of which this port alone requested and was granted.
-  // For a bank without turnaround.
+  // Counts `cycles` cycles in which this port alone requested and was granted. They lie after the last call.
+  // Only for a bank without turnaround.
   void count_alone(PortMask port, bool write, std::uint64_t cycles);
-  // Moves the policy's state by the grants that were counted so, at least one.
+  // Moves the policy's state by the grants that count_alone() has counted, at least one.
   void grant_alone(PortMask port);
 
-  // The state that determines the decisions from `cycle` on: the policy's in the lower half, then the cycles
-  // until a read and until a write can be granted.
+  // The state that determines the decisions from `cycle` on: the policy's state in the lower 32 bits, then 16
+  // bits each for the cycles until a read and until a write can be granted.
   std::uint64_t state(std::uint64_t cycle) const;
-  // Skips `cycles` cycles: the state from `cycle` on is `state`. count_skipped() counts their outcomes.
+  // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the
+  // outcomes of the skipped cycles.
   void skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles);
   void count_skipped(Outcome outcome, std::uint64_t cycles);
 
-  // Only the cycles from `first_cycle` on, up to but not including `end_cycle`, are counted in stats(); of
-  // the others only the accesses, in uncounted_accesses().
+  // stats() counts only the cycles from `first_cycle` up to `end_cycle`, `end_cycle` not included. In all
+  // other cycles only the accesses are counted, in uncounted_accesses().
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
 
@@ -91,7 +94,7 @@ class BankArbiter {
  private:
   static constexpr std::size_t kMasks = std::size_t{1} << kMostPorts;
 
-  // `by`: index of the port that was granted, or ArbiterStats::kTurnaround.
+  // `by`: index of the port that was granted, or ArbiterStats::kTurnaround. `write`: 1 for a write.
   static constexpr Outcome outcome_of(std::size_t requests, std::size_t by, std::size_t write) {
     return static_cast<Outcome>((by << 1U | write) << kMostPorts | requests);
   }
@@ -99,14 +102,14 @@ class BankArbiter {
   DecisionTable::Row& row_at(std::uint64_t cycle) const;
 
   DecisionTable table_;
-  DecisionTable::Row* row_;  // the policy's state in next_cycle_
-  std::uint64_t next_cycle_ = 0;
-  std::uint64_t other_direction_cycles_;        // from an access to the first in the other direction
-  std::array<std::uint64_t, 2> ready_cycle_{};  // from which a read, a write can be granted
+  DecisionTable::Row* row_;               // row of the policy's state in next_cycle_
+  std::uint64_t next_cycle_ = 0;          // first cycle that is not decided
+  std::uint64_t other_direction_cycles_;  // from an access to the first possible one in the other direction
+  std::array<std::uint64_t, 2> ready_cycle_{};  // first cycle in which [0] a read, [1] a write can be granted
   bool counting_ = false;
   std::uint64_t next_uncounted_cycle_ = 0;  // all counted cycles before it are in the statistics
   std::uint64_t idle_cycles_ = 0;
-  // Counted cycles by outcome: all that stats() reports follows from them.
+  // [outcome]: cycles counted. stats() is computed from this table and idle_cycles_.
   std::array<std::uint64_t, (kMostPorts + 1) * 2 * kMasks> outcomes_{};
   std::uint64_t uncounted_accesses_ = 0;
 };

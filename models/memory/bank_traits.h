@@ -18,7 +18,7 @@ struct BankTraits {
   BankKind kind;
   const char* name;         // in board files
   int read_latency_cycles;  // from the grant of a read to the cycle in which its reader can use the word
-  bool has_turnaround;      // between reads and writes; false: turnaround_cycles is 0
+  bool has_turnaround;      // cycles are lost between reads and writes; if not, turnaround_cycles is 0
   int ports;                // accesses that a bank can serve in a cycle
 };
 

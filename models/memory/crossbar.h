@@ -15,7 +15,7 @@
 
 namespace stereotlm::memory {
 
-// A byte address on the crossbar: the bank above bit 28, and the byte in that bank.
+// A byte address on the crossbar: bits 28 and up are the bank, the lower bits the byte in that bank.
 inline constexpr unsigned kBankAddressBits = 28;
 constexpr std::uint64_t crossbar_address(std::uint64_t bank, std::uint64_t word) {
   return bank << kBankAddressBits | word << 2U;
@@ -24,8 +24,9 @@ constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address 
 
 struct CrossbarConfig {
   ArbiterConfig arbiter;
-  std::vector<SsramBankConfig> banks;  // what the memory controllers know about them; all of one clock
-  // Ports whose masters write by DMI at any time, without changes(). The other masters report their writes.
+  std::vector<SsramBankConfig> banks;  // [bank]; all banks have the same clock
+  // Ports whose masters may write by DMI without reporting it. The masters of the other ports report such
+  // writes with changes().
   PortMask silent_ports = 0;
 };
 
@@ -34,15 +35,15 @@ struct CrossbarConfig {
 // one bank and one direction. The stage behind a granted port makes its access in the same cycle: one word by
 // b_transport, which takes no simulated time and adds the bank's read time to `delay`.
 //
-// An access without a grant, or of another bank or direction than the port's route, is answered
-// TLM_GENERIC_ERROR_RESPONSE, as is every nb_transport. An address of a bank that does not exist is answered
-// TLM_ADDRESS_ERROR_RESPONSE. Both reach no bank; other errors are the bank's. Debug transport and DMI reach
-// every bank without a grant.
+// TLM_GENERIC_ERROR_RESPONSE refuses an access without a grant, an access of another bank or direction than
+// the port's route, and every nb_transport. TLM_ADDRESS_ERROR_RESPONSE refuses an address of a bank that does
+// not exist. Refused accesses reach no bank; other errors are responses of the bank. Debug transport and DMI
+// reach every bank without a grant.
 class Crossbar : public sc_core::sc_module {
  public:
   sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
                                             sc_core::SC_ZERO_OR_MORE_BOUND>>
-      ports;  // [port]; one that nobody uses may stay unbound
+      ports;  // [port]; an unused port may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket_tagged<Crossbar>> banks;  // [bank]
 
   // Throws std::invalid_argument if the configuration has problems.
@@ -50,12 +51,12 @@ class Crossbar : public sc_core::sc_module {
 
   // Routes the port from the next arbitrate() on. The bank must exist.
   void route(Port port, std::size_t bank, bool write);
-  // Directs the accesses of the port to this bank. The port takes no part in the arbitration: its accesses
-  // need a grant().
+  // Directs the accesses of the port to this bank without routing it: the port takes no part in arbitrate(),
+  // and each of its accesses needs a grant().
   void aim(Port port, std::size_t bank, bool write);
   void unroute(Port port) { arbitration_.unroute(port); }
-  std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // of its last route
-  // One cycle: decides these requests, and returns the ports granted.
+  std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // bank of its last route
+  // Decides the requests of one cycle, and returns the ports granted.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     return grant(arbitration_.arbitrate(cycle, requests));
   }
@@ -64,15 +65,15 @@ class Crossbar : public sc_core::sc_module {
   Arbitration& arbitration() { return arbitration_; }
   const Arbitration& arbitration() const { return arbitration_; }
 
-  // Whether the words at byte addresses first .. end - 1 on the crossbar may have changed since the port's
-  // last call. True in the first call, and after a call for other words.
+  // Whether the words at byte addresses first .. end - 1 on the crossbar may have changed since the last call
+  // for this port. True in the first call, and if the last call was for other addresses.
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
-  // Reports that words have been written by direct access.
+  // To be called when these words have been written by direct access.
   void changes(std::uint64_t first, std::uint64_t bytes);
-  // Pointer to these bytes, for one use at once; null if the bank does not grant direct access to all of
-  // them. The caller reports writes with changes(), and accesses with count_direct().
+  // Returns a pointer to these bytes, for immediate use only; null if the bank does not grant direct access
+  // to all of them. The caller reports writes with changes(), and accesses with count_direct().
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
-  // Counts direct accesses.
+  // Adds to direct_accesses().
   void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
 
@@ -101,7 +102,7 @@ class Crossbar : public sc_core::sc_module {
     Crossbar& crossbar_;
     PortMask port_mask_;
     bool write_ = false;
-    std::uint64_t bank_base_ = 0;                            // its first address
+    std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };
   // The words that a port watches with may_have_changed().
@@ -121,10 +122,10 @@ class Crossbar : public sc_core::sc_module {
   std::deque<PortTarget> targets_;
   std::array<Watch, kMostPorts> watches_{};
   PortMask silent_ports_;
-  std::uint64_t open_banks_ = 0;  // bit per bank: a silent port has direct access
+  std::uint64_t open_banks_ = 0;  // bit `bank`: a silent port has direct access to the bank
   std::vector<std::uint64_t> direct_accesses_;
   std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: direct access that is not revoked
-  PortMask granted_ = 0;                                   // in the current cycle and not yet used
+  PortMask granted_ = 0;  // grants of the current cycle that are not yet used
 };
 
 }  // namespace stereotlm::memory

@@ -11,7 +11,7 @@
 
 namespace stereotlm::memory {
 
-// Memo of an arbitration policy: one row for each state that was reached.
+// Memo of an arbitration policy for BankArbiter: one row for each state that was reached.
 class DecisionTable {
  public:
   struct Row;
@@ -27,14 +27,15 @@ class DecisionTable {
     Row* after_idle = nullptr;  // the next state after a cycle without request
     std::array<Decision, std::size_t{1} << kMostPorts> decisions;  // [mask of requests]; see fill()
 
+    // The row after some cycles without request.
     Row& after_idle_cycles(std::uint64_t cycles);
   };
 
   explicit DecisionTable(std::unique_ptr<const ArbitrationPolicy> policy) : policy_(std::move(policy)) {}
 
-  // Adds the row if there is none. Rows are never moved or removed.
+  // Returns the row of a state, which is added if there is none. Rows are never moved or removed.
   Row& row_of(ArbitrationPolicy::State state);
-  // Makes the decision for these requests, at least one, known.
+  // Computes row.decisions[requests] if it is not known. `requests` has at least one port.
   void fill(Row& row, PortMask requests);
 
  private:

@@ -5,8 +5,9 @@
 
 namespace stereotlm::memory {
 
-// Pointer to `bytes` bytes from `address` on in the memory behind a socket (DMI), for one use at once: the
-// target may revoke it later. Null if the target does not grant all of them for this command.
+// Returns a pointer to `bytes` bytes from `address` on in the memory behind a socket (DMI). The pointer is
+// for immediate use only, because the target may revoke it. Null if the target does not grant all these bytes
+// for this command.
 inline unsigned char* direct_memory(tlm::tlm_initiator_socket<32>& socket, tlm::tlm_command command,
                                     std::uint64_t address, std::uint64_t bytes) {
   tlm::tlm_generic_payload access;

@@ -4,7 +4,7 @@
 
 namespace stereotlm::memory {
 
-// The first of the list that requests wins. No state.
+// Of the requesting ports, the one that comes first in the priority list wins. There is no state.
 class FixedPriorityPolicy : public ArbitrationPolicy {
  public:
   explicit FixedPriorityPolicy(const PriorityList& list) : list_(list) {}

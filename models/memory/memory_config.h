@@ -14,12 +14,12 @@ namespace stereotlm::memory {
 inline constexpr kernels::IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
 inline constexpr kernels::IntegerRule kBankCountRule{1, 64};
 
-// A port on the banks, by its index: 0 .. n-1. What the ports are is the business of the module that has them.
+// The index of a port on the banks: 0 .. n-1. The module that owns the ports names them (fpga/core_ports.h).
 using Port = std::size_t;
-// Most ports. The tables of the arbiters grow with 2^kMostPorts.
+// The largest number of ports. The tables of the arbiters grow with 2^kMostPorts.
 inline constexpr std::size_t kMostPorts = 6;
 
-// A set of ports: bit number `port` for each.
+// A set of ports: bit number `port` is 1 if the port is in the set.
 using PortMask = std::uint8_t;
 static_assert(kMostPorts <= 8);
 constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << port); }
@@ -35,11 +35,11 @@ struct SsramBankConfig {
   std::uint32_t words = 524288;  // 32-bit words, kBankWordsRule
   BankKind kind = BankKind::kZbtPipelined;
   int turnaround_cycles = 0;  // kTurnaroundRule if the kind has turnaround, else 0
-  double clock_mhz = 40;      // of the bank's only clock, 1..1000
+  double clock_mhz = 40;      // clock of the bank, 1..1000
 };
 
-// The rule that breaks a bank of this kind with these turnaround cycles: "1..16 for sync_burst"; empty if it
-// keeps its rule.
+// Returns the rule that `turnaround_cycles` breaks for a bank of this kind, such as "1..16 for sync_burst";
+// empty if the value is allowed.
 std::string broken_turnaround_rule(BankKind kind, int turnaround_cycles);
 
 // Every broken rule as `field = value: rule`; empty if the block can be built.

@@ -11,8 +11,8 @@
 
 namespace stereotlm::memory {
 
-// Storage of a memory behind a base-protocol target. It holds zeros at first; untouched pages take no memory
-// of the host computer.
+// The stored bytes of SsramBank and HostMemory, with the operations of a base-protocol target. They are zeros
+// at first; untouched pages take no memory of the simulating machine.
 class Ram {
  public:
   // Throws std::bad_alloc.
@@ -24,11 +24,12 @@ class Ram {
   std::uint64_t bytes() const { return bytes_; }
   unsigned char* data() { return data_.get(); }
   const unsigned char* data() const { return data_.get(); }
+  // Whether all these bytes are inside the memory.
   bool holds(std::uint64_t address, std::uint64_t length) const {
     return address <= bytes_ && length <= bytes_ - address;
   }
 
-  // Executes a read or a write inside the memory, with its byte enables.
+  // Executes a read or a write with its byte enables. All its bytes must be inside the memory.
   void move(tlm::tlm_generic_payload& access) {
     unsigned char* stored = data_.get() + access.get_address();
     unsigned char* data = access.get_data_ptr();
@@ -58,8 +59,8 @@ class Ram {
     return length;
   }
 
-  // Grants the whole memory, read and write, for an address inside it. A refusal names the range beyond the
-  // memory.
+  // Grants DMI to the whole memory, for reads and writes, if the address is inside it. Otherwise returns
+  // false, and `dmi` is the range beyond the memory.
   bool grant_dmi(const tlm::tlm_generic_payload& access, const sc_core::sc_time& read_time,
                  tlm::tlm_dmi& dmi) {
     dmi.allow_read_write();

@@ -4,8 +4,9 @@
 
 namespace stereotlm::memory {
 
-// The list is searched from the port after the last one granted. The state is the place in the list where the
-// search begins; a refusal because of turnaround does not move it.
+// The first requesting port wins in a cyclic search of the priority list, which begins after the last port
+// granted. The state is the place in the list where the search begins; a refusal because of turnaround does
+// not change it.
 class RoundRobinPolicy : public ArbitrationPolicy {
  public:
   explicit RoundRobinPolicy(const PriorityList& list) : list_(list) {}

@@ -11,8 +11,8 @@ namespace stereotlm::memory {
 
 // One synchronous SRAM bank: a single port, one 32-bit word per access, byte enables. b_transport never
 // waits. A read adds to `delay` the time until its reader can use the word; a write adds nothing.
-// nb_transport_fw completes at once, with the same effect. The arbiter in front of the bank decides which
-// port may access it.
+// nb_transport_fw has the same effect and returns TLM_COMPLETED. The arbiter in front of the bank decides
+// which port may access it.
 //
 // Errors have no effect and add no delay:
 //   TLM_ADDRESS_ERROR_RESPONSE      an address outside the bank, or not a multiple of 4
@@ -37,7 +37,7 @@ class SsramBank : public sc_core::sc_module, private tlm::tlm_fw_transport_if<> 
 
   const SsramBankConfig& config() const { return config_; }
   const Stats& stats() const { return stats_; }
-  // The stored words. For the owner of the bank.
+  // The stored words, for the owner of the bank.
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(ram_.data()); }
 
  private:

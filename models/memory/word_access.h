@@ -20,7 +20,7 @@ class WordAccess {
   WordAccess& operator=(const WordAccess&) = delete;
 
   // `delay`: time of the access, from now; the target adds the time that it takes. Returns false if the
-  // target refuses: status() is the reason, and word() is 0 after a read.
+  // target refuses the access: status() is the reason, and word() is 0 after a read.
   bool read(std::uint64_t address, sc_core::sc_time& delay) {
     word_ = 0;
     return transport(tlm::TLM_READ_COMMAND, address, delay);
@@ -34,8 +34,8 @@ class WordAccess {
 
  private:
   bool transport(tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {
-    // Looked up once: the path through the socket and the virtual bases of its interface costs as much as an
-    // access.
+    // The target is looked up only once: the path through the socket and the virtual bases of its interface
+    // costs as much as an access.
     if (target_ == nullptr) target_ = socket_.operator->();
     access_.set_command(command);
     access_.set_address(address);

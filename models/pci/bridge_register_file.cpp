@@ -16,7 +16,7 @@ BridgeRegisterFile::Decoded BridgeRegisterFile::decode(std::uint64_t offset) {
           static_cast<std::size_t>(in_channels / kChannelStride)};
 }
 
-// Whether there is such a register, and it can be accessed in this direction.
+// Whether the register exists and can be accessed in this direction. `name`: Decoded::name.
 bool BridgeRegisterFile::allows(const tlm::tlm_generic_payload& access, std::uint64_t name) {
   switch (name) {
     case kPage:

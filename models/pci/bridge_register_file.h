@@ -16,12 +16,12 @@ namespace stereotlm::pci {
 // and the interrupt registers, and drives INTA#. Registers of a DMA channel are kept by the channel.
 class BridgeRegisterFile : public InterruptIf {
  public:
-  // `channels` outlives it.
+  // `channels` outlives this object.
   explicit BridgeRegisterFile(DmaChannels& channels) : channels_(channels) {}
 
-  // Carries out an access and sets its response status. An access that is not one aligned word of a
-  // register, or in the wrong direction, is refused without effect. Returns the channel whose start bit has
-  // been written, or null.
+  // Carries out an access and sets its response status. An access is refused without effect if it is not one
+  // aligned word of a register, or has the wrong direction. Returns the channel whose start bit has been
+  // written, or null.
   DmaChannel* access(tlm::tlm_generic_payload& access);
 
   // The first word on the board that an aperture leads to, as kPage names it.
@@ -34,7 +34,7 @@ class BridgeRegisterFile : public InterruptIf {
 
  private:
   struct Decoded {
-    std::uint64_t name = 0;  // offset of the register, of page 0 or channel 0
+    std::uint64_t name = 0;  // offset of the register; of page or channel 0 if it exists for each
     std::size_t index = 0;   // number of the page or channel
   };
 

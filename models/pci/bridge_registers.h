@@ -2,7 +2,8 @@
 
 #include <cstdint>
 
-// The PCI bridge on the FPGA board, as a program sees it (PLX PCI 9656 class; the map is ours).
+// The windows and registers of the PCI bridge on the FPGA board (PLX PCI 9656 class; the register map is our
+// own).
 //
 // The bridge has two windows on the PCI bus. The slave window leads to the local bus:
 //
@@ -34,7 +35,7 @@
 // | 2    | bit 31: from the board to PCI, else from PCI to the board; bits 30..0: words, at least 1  |
 // | 3    | PCI address of the next descriptor, a multiple of 16; 0: this is the last                 |
 //
-// A channel stops at an error. When it raises kDmaError, its last words may still be on their way.
+// A channel stops at an error. When it raises kDmaError, its last words may still be under way.
 namespace stereotlm::pci::bridge {
 
 inline constexpr int kApertures = 4;
@@ -53,19 +54,19 @@ inline constexpr std::uint64_t kChannelStride = 0x10;
 inline constexpr std::uint64_t kRegisterWindowBytes = 0x40;
 
 inline constexpr std::uint32_t kDoorbell = 1U << 0U;
-inline constexpr std::uint32_t kDmaDone = 1U << 1U;      // channel 0; channel 1 has the bit above
-inline constexpr std::uint32_t kDmaError = 1U << 3U;     // channel 0; channel 1 has the bit above
+inline constexpr std::uint32_t kDmaDone = 1U << 1U;   // for channel 0; the next higher bit is for channel 1
+inline constexpr std::uint32_t kDmaError = 1U << 3U;  // for channel 0; the next higher bit is for channel 1
 inline constexpr std::uint32_t kPostedError = 1U << 5U;  // the local bus refused a posted write
 inline constexpr std::uint32_t kAllInterrupts = (1U << 6U) - 1;
 
 inline constexpr std::uint32_t kToPci = 1U << 31U;
 
-// Byte address on the local bus of a word on the board, which registers name as bank and word.
+// The byte address on the local bus of a word on the board, given by bank and word as in the registers.
 constexpr std::uint64_t local_address(std::uint32_t board_word) {
   return static_cast<std::uint64_t>(board_word >> 26U) << 28U | (board_word & 0x03FF'FFFFULL) << 2U;
 }
 
-// Addresses of one bank on the local bus. A burst stays in one bank.
+// The size of a bank's address range on the local bus. A burst stays in one bank.
 inline constexpr std::uint64_t kBankBytes = std::uint64_t{1} << 28U;
 
 }  // namespace stereotlm::pci::bridge

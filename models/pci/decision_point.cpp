@@ -5,7 +5,7 @@
 namespace stereotlm::pci {
 namespace {
 
-// The first DecisionPoint below these objects; null if there is none.
+// Returns the first DecisionPoint below these objects; null if there is none.
 DecisionPoint* first_below(const std::vector<sc_core::sc_object*>& objects) {
   for (sc_core::sc_object* const object : objects) {
     if (auto* const point = dynamic_cast<DecisionPoint*>(object)) return point;

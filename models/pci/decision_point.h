@@ -6,16 +6,16 @@
 
 namespace stereotlm::pci {
 
-// Makes a decision when nothing else is pending at the current time. The decision thus sees everything that
-// happens at that time, in whatever delta cycle.
+// Makes a decision, such as the arbitration of PciBus, when nothing else is pending at the current time. The
+// decision thus sees everything that happens at that time, in whatever delta cycle.
 //
 // Two processes that both wait until nothing else is pending would wait for each other. The process of one
-// DecisionPoint, the first in the module hierarchy, therefore serves all of a simulation.
+// DecisionPoint, the first in the module hierarchy, therefore serves all DecisionPoints of a simulation.
 class DecisionPoint : public sc_core::sc_module {
  public:
   DecisionPoint(const sc_core::sc_module_name& name, std::function<void()> decide);
 
-  // Has the decision made at the current time. Called from a method process.
+  // Requests the decision at the current time. To be called from a method process.
   void request();
 
  private:
@@ -23,8 +23,8 @@ class DecisionPoint : public sc_core::sc_module {
   void decide_when_settled();
 
   std::function<void()> decide_;
-  DecisionPoint* leader_ = this;           // the one whose process serves this one
-  std::vector<DecisionPoint*> requested_;  // kept by the leader
+  DecisionPoint* leader_ = this;           // the DecisionPoint whose process serves this one
+  std::vector<DecisionPoint*> requested_;  // of the leader: the points that have requested a decision
   sc_core::sc_event settle_{"settle"};
 };
 

@@ -18,7 +18,7 @@ struct BridgeTransfer {
   std::uint64_t address = 0;  // first byte, as an address on that bus
   std::vector<std::uint32_t> words = {};
   bool under_way = false;  // from its start to its end
-  bool failed = false;     // once it has ended: a target refused it
+  bool failed = false;     // whether a target has refused it; valid once it has ended
 };
 
 // One DMA channel of the bridge. It follows a chain of descriptors (bridge_registers.h) and splits the words
@@ -30,7 +30,7 @@ struct BridgeTransfer {
 class DmaChannel {
  public:
   struct Step {
-    std::array<BridgeTransfer*, 2> starts = {};  // in this order; null: no transfer
+    std::array<BridgeTransfer*, 2> starts = {};  // transfers to start, in this order; null: none
     std::uint32_t interrupts = 0;                // bits of kInterruptStatus to raise
   };
 
@@ -44,9 +44,11 @@ class DmaChannel {
   void set_descriptor(std::uint32_t address) { descriptor_ = address; }
   bool busy() const { return busy_; }
 
-  // The start bit of kDmaControl is written. A busy channel raises kDmaError and continues its chain.
+  // To be called when the start bit of kDmaControl is written. A busy channel raises kDmaError and continues
+  // its chain.
   Step start();
-  // A transfer of this channel has ended. The step is empty while the other transfer is under way.
+  // To be called when a transfer of this channel has ended. The step is empty while the other transfer is
+  // under way.
   Step next_step();
 
   BridgeTransfer& on_pci() { return pci_; }
@@ -78,7 +80,7 @@ class DmaChannel {
   bool busy_ = false;
   bool fetching_ = false;    // pci_ reads a descriptor
   Descriptor moving_;        // the descriptor whose words are moved
-  std::size_t written_ = 0;  // words of it whose write has begun
+  std::size_t written_ = 0;  // words of moving_ whose write has begun
   BridgeTransfer pci_{this};
   BridgeTransfer local_{this};
 };

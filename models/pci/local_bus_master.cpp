@@ -56,7 +56,7 @@ void LocalBusMaster::start(BridgeTransfer& transfer) {
   wake();
 }
 
-// Schedules work() for the time at which the bus can serve, if that time is known.
+// Schedules work() for the time at which the bus is free, if that time is known.
 void LocalBusMaster::wake(const sc_core::sc_time& delay) {
   if (!busy_) {
     work_.notify(delay);
@@ -71,11 +71,12 @@ void LocalBusMaster::work() {
   } else if (has_ended()) {
     settle();
   } else {
-    wake();  // it was scheduled before the end was known
+    wake();  // this call was scheduled before the end was known
   }
 }
 
-// Begins the next burst. False: nothing waits. What is asked for later at this time is served later.
+// Begins the next burst. Returns false if nothing waits. A transfer that starts later at the current time is
+// not considered.
 bool LocalBusMaster::serve() {
   if (posted_.waits()) {
     const PostedWrites::Burst burst = posted_.send(burst_words_);

@@ -13,15 +13,16 @@
 
 namespace stereotlm::pci {
 
-// The bridge as the only master of the FPGA board's local bus (fpga/local_bus.h). It owns the posted writes,
-// and runs one burst at a time: posted writes first, then the read of the slave window, then the DMA channels
-// in turn. Channel 1 has the first turn; a burst that ends while nothing waits passes the turn on.
+// The part of PciBridge that is the only master of the FPGA board's local bus (fpga/local_bus.h). It owns the
+// posted writes, and runs one burst at a time: posted writes first, then the read of the slave window, then
+// the DMA channels in turn. Channel 1 has the first turn; a burst that ends while nothing waits passes the
+// turn on.
 //
 // The end of a burst costs an event only if the burst was refused or something waits for its end. Otherwise
 // the end takes effect in the next call of settle().
 class LocalBusMaster : public sc_core::sc_module {
  public:
-  // Is called when the end of a burst takes effect.
+  // Receives the end of a burst when it takes effect.
   class Listener {
    public:
     virtual ~Listener() = default;
@@ -36,26 +37,29 @@ class LocalBusMaster : public sc_core::sc_module {
                  Listener& listener);
 
   const PostedWrites& posted() const { return posted_; }
-  // Words that can be posted now.
+  // The number of words that can be posted now.
   std::size_t free_places() const;
-  // Appends words to the posted writes, at most free_places(). settle() comes before, send_posted() after.
+  // Appends words to the posted writes, at most free_places(). The caller must call settle() before, and
+  // send_posted() after.
   void post(std::uint64_t address, const void* words, std::size_t count);
-  // Has the posted writes served: at once if the bus is free and `delay` is zero.
+  // Starts to send the posted writes: immediately if the bus is free and `delay` is zero, else when the bus
+  // is free or after `delay`.
   void send_posted(const sc_core::sc_time& delay);
 
-  // Reads words, behind all writes posted before. Waits until the words have arrived. False: refused.
+  // Reads words after all writes posted before. Waits until the words have arrived. Returns false if the read
+  // was refused.
   bool read(std::uint64_t address, void* words, std::size_t count);
 
   // Starts a DMA transfer, which waits for its turn.
   void start(BridgeTransfer& transfer);
   // Whether the burst of this transfer runs.
   bool runs(const BridgeTransfer& transfer) const { return &transfer == running_; }
-  // From now on the channel of the transfer waits for its end.
+  // To be called when the channel of a transfer begins to wait for the end of the transfer.
   void await_end_of(const BridgeTransfer& transfer) {
     if (runs(transfer)) wake();
   }
 
-  // Ends the running burst if its time has come, and serves the next one.
+  // If the end of the running burst has come, ends the burst and begins the next one.
   void settle();
 
  private:
@@ -77,7 +81,7 @@ class LocalBusMaster : public sc_core::sc_module {
   bool has_ended() const;
 
   std::size_t burst_words_;  // longest burst of posted writes
-  std::size_t places_;       // words of posted writes that it holds at most
+  std::size_t places_;       // most words of posted writes
   DmaChannels& channels_;
   Listener& listener_;
   PostedWrites posted_;
@@ -87,7 +91,7 @@ class LocalBusMaster : public sc_core::sc_module {
   bool busy_ = false;                  // a burst runs
   BridgeTransfer* running_ = nullptr;  // the transfer of that burst; null: posted writes
   std::uint64_t end_ps_ = kUnknown;    // end of that burst's idle clock, known from its response on
-  std::size_t turn_ = 1;               // the channel that is served first
+  std::size_t turn_ = 1;               // the channel whose turn is next
   sc_core::sc_event work_{"work_to_do"};
   Manager manager_;
   tlm::tlm_generic_payload burst_{&manager_};

@@ -24,8 +24,6 @@ PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig&
   dont_initialize();
 }
 
-// The slave window.
-
 std::size_t PciBridge::writable_words(std::uint64_t /*address*/, std::size_t words) const {
   return std::min(words, local_bus_.free_places());
 }
@@ -104,8 +102,6 @@ WordsByRange PciBridge::words_held() const {
   return held;
 }
 
-// The registers.
-
 void PciBridge::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& /*delay*/) {
   if (DmaChannel* const started = register_file_.access(access)) run(started->start());
   if (!access.is_response_ok()) ++stats_.errors;
@@ -116,8 +112,6 @@ void PciBridge::raise(std::uint32_t interrupts) {
   if ((interrupts & ~kNoErrors) != 0) ++stats_.errors;
   register_file_.raise(interrupts);
 }
-
-// The DMA channels.
 
 void PciBridge::run(const DmaChannel::Step& step) {
   for (BridgeTransfer* const transfer : step.starts) {
@@ -138,7 +132,7 @@ void PciBridge::advance(DmaChannel& channel) {
   run(channel.next_step());
 }
 
-// The PCI bus. A transfer that was cut continues with its next word.
+// A transfer that was cut continues with its next word.
 
 void PciBridge::start_on_pci(BridgeTransfer& transfer) {
   transfer.under_way = true;

@@ -19,20 +19,20 @@
 
 namespace stereotlm::pci {
 
-// The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge");
-// registers and descriptors in bridge_registers.h.
+// The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge"). Its
+// registers and descriptors are in bridge_registers.h.
 //
 // - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. The
 //   bridge takes as many words of a burst as it has free places at the address clock (`stop`). A word frees
 //   its place when its burst on the local bus ends. A read waits until all writes before it have left, and
 //   blocks until its words have arrived.
 // - A DMA channel fetches a descriptor, then moves its words in bursts (dma_channel.h). Both channels share
-//   one PCI master, which serves them in the order in which they ask.
+//   one PCI master, which serves their transfers in the order in which they start.
 // - LocalBusMaster arbitrates the local bus.
 //
-// Errors: bits of kInterruptStatus. Answered with an error response, without effect: a register access that
-// is not one aligned word or in the wrong direction, a slave access outside the window, and a posted write
-// of more words than there are free places.
+// Errors of posted writes and of DMA set bits of kInterruptStatus. These accesses have an error response and
+// no effect: a register access that is not one aligned word or has the wrong direction, a slave access
+// outside the window, and a posted write of more words than there are free places.
 class PciBridge : public sc_core::sc_module,
                   private PciMasterIf,
                   private PciStopIf,
@@ -58,13 +58,13 @@ class PciBridge : public sc_core::sc_module,
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
   const Stats& stats() const { return stats_; }
-  // Words for the banks that have arrived, posted or by DMA.
+  // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
   const WordsByRange& words_taken() const { return words_taken_; }
-  // Those of them that still wait in the bridge for the local bus.
+  // The part of words_taken() that still waits in the bridge for the local bus.
   WordsByRange words_held() const;
 
  private:
-  // The slave window and the register window.
+  // These serve the slave window and the register window.
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override;
   void access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
   tlm::tlm_response_status check_slave(const tlm::tlm_generic_payload& access) const;
@@ -76,7 +76,7 @@ class PciBridge : public sc_core::sc_module,
   void ring() { raise(bridge::kDoorbell); }
   void raise(std::uint32_t interrupts);
 
-  // The DMA channels.
+  // These run the DMA channels.
   void run(const DmaChannel::Step& step);
   void advance(DmaChannel& channel);
   void start_on_pci(BridgeTransfer& transfer);
@@ -90,8 +90,8 @@ class PciBridge : public sc_core::sc_module,
   BridgeRegisterFile register_file_{channels_};
   LocalBusMaster local_bus_;
   std::deque<BridgeTransfer*> pci_queue_;  // DMA transfers on PCI; the first one runs
-  std::size_t pci_done_ = 0;               // words of that transfer that have been transferred
-  std::vector<std::uint32_t> pci_words_;   // words of its running burst
+  std::size_t pci_done_ = 0;               // words of the running transfer that have been transferred
+  std::vector<std::uint32_t> pci_words_;   // words of its burst
   WordsByRange words_taken_;
   Stats stats_;
 };

@@ -41,8 +41,6 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
   SC_THREAD(run_transports);
 }
 
-// Requests.
-
 void PciBus::request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps) {
   if (requests_[master].clock != kNever) return;
   requests_[master] = {&from, clock_.edge_at_or_after(from_ps)};
@@ -69,8 +67,6 @@ std::uint64_t PciBus::earliest_request(std::size_t except) const {
   }
   return earliest;
 }
-
-// The steps of a burst.
 
 void PciBus::step() {
   switch (state_) {
@@ -140,7 +136,7 @@ void PciBus::begin_words(std::uint64_t first_clock, std::size_t words) {
   cut_words();
 }
 
-// The earliest request of another master decides: a later one cuts no earlier.
+// Cuts the burst for the earliest request of another master. A later request would not cut it earlier.
 void PciBus::cut_words() {
   const std::uint64_t request = earliest_request(running_.master);
   if (request == kNever) return;
@@ -187,9 +183,8 @@ void PciBus::end() {
   await_request();
 }
 
-// The access to the target.
-
-// A write is accessed when its words have been transferred, a read at the end of the address clock.
+// Makes the access of the running burst: of a write when its words have been transferred, of a read at the
+// end of the address clock.
 void PciBus::access(std::vector<std::uint32_t>& words, std::size_t count) {
   const bool write = running_.burst.write;
   access_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
@@ -197,7 +192,7 @@ void PciBus::access(std::vector<std::uint32_t>& words, std::size_t count) {
   access_.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
   access_.set_data_length(static_cast<unsigned>(count * sizeof(std::uint32_t)));
   if (memories_.access(running_.window, access_)) {
-    answered(true, access_clock());
+    end_access(true, access_clock());
   } else {
     transport_is_due_ = true;
     transport_.notify();
@@ -208,7 +203,8 @@ std::uint64_t PciBus::access_clock() const {
   return running_.burst.write ? running_.end_clock : running_.address_clock + 1;
 }
 
-// b_transport may wait and needs a thread. A write that ends in this thread costs no further event.
+// b_transport may wait, and is therefore called in a thread. A write that ends in this thread costs no
+// further event.
 void PciBus::run_transports() {
   for (;;) {
     wait(transport_);
@@ -229,12 +225,12 @@ void PciBus::transport() {
   if (access_.is_dmi_allowed())
     memories_.request(running_.window, *targets[running_.window].operator->(), access_);
   const std::uint64_t answer_ps = Clock::now_ps() + Clock::to_ps(delay);
-  answered(access_.is_response_ok(),
-           answer_ps == access_ps ? access_clock() : clock_.edge_at_or_after(answer_ps));
+  end_access(access_.is_response_ok(),
+             answer_ps == access_ps ? access_clock() : clock_.edge_at_or_after(answer_ps));
 }
 
-// `clock`: the first clock that begins at or after the response.
-void PciBus::answered(bool ok, std::uint64_t clock) {
+// The target has responded. `clock`: the first clock that begins at or after the response.
+void PciBus::end_access(bool ok, std::uint64_t clock) {
   BurstResult result = running_.result;
   if (running_.burst.write) {
     if (!ok) result = {BurstEnd::kTargetError, 0, result.first_data_clock};
@@ -274,7 +270,7 @@ void PciBus::count(std::size_t master, const BurstResult& result) {
   if (is_error(result.end)) ++stats.aborts;
 }
 
-// Outside the data clocks, the words of the result stand.
+// Outside the data clocks, running_.result has the number of words.
 BurstResult PciBus::transferred(std::size_t master) const {
   if (!address_clock_ || running_.master != master) return {};
   BurstResult so_far = running_.result;

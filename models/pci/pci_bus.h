@@ -24,8 +24,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // A 32-bit PCI bus (contract section 3). Targets see addresses relative to their window.
 //
 // Burst: an address clock, the target's wait clocks, one clock per word and an idle clock. The next address
-// clock can follow at once, because arbitration is hidden behind the burst. A burst of any length costs two
-// events: its grant and its end. A request that cuts the burst moves the second one.
+// clock can follow immediately, because arbitration is hidden behind the burst. A burst of any length costs
+// two events: its grant and its end. A request that cuts the burst moves the second one.
 //
 // Arbitration: round robin, from the slot after the last one granted, at first from slot 0. It considers the
 // requests made at or before the beginning of the clock, and decides when nothing else is pending at that
@@ -50,7 +50,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // Errors: a response other than OK ends the burst with kTargetError: a write after its words, a read (target
 // abort) with the clock of its first word. A burst that is not inside one window ends with kMasterAbort after
 // the address clock and 4 clocks without DEVSEL# (common knowledge, no source at hand). SC_REPORT_ERROR (type
-// /stereotlm/pci_bus): an address that is not a multiple of 4; a target that can take more words than asked.
+// /stereotlm/pci_bus) reports: an address that is not a multiple of 4; a target that can take more words than
+// asked.
 class PciBus : public sc_core::sc_module {
  public:
   struct MasterStats {
@@ -116,12 +117,12 @@ class PciBus : public sc_core::sc_module {
     BurstResult result;
   };
 
-  // Requests.
+  // These take requests.
   void request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps);
   void await_request();
   std::uint64_t earliest_request(std::size_t except) const;
 
-  // The steps of a burst.
+  // These step through a burst.
   void step();
   void arbitrate();
   void begin(std::size_t master, const PciBurst& burst);
@@ -133,14 +134,14 @@ class PciBus : public sc_core::sc_module {
   void end();
   void step_at(std::uint64_t time_ps);
 
-  // The access to the target.
+  // These access the target.
   std::optional<std::size_t> window_of(const PciBurst& burst) const;
   std::size_t writable_words() const;
   void access(std::vector<std::uint32_t>& words, std::size_t count);
   std::uint64_t access_clock() const;
   void run_transports();
   void transport();
-  void answered(bool ok, std::uint64_t clock);
+  void end_access(bool ok, std::uint64_t clock);
   void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) { memories_.forget(); }
 
   void count(std::size_t master, const BurstResult& result);
@@ -151,7 +152,7 @@ class PciBus : public sc_core::sc_module {
   Clock clock_;
   std::deque<Slot> slots_;
   std::vector<Request> requests_;  // [master]
-  std::size_t last_granted_;       // master
+  std::size_t last_granted_;       // index of the master that was granted last
   DecisionPoint arbitration_{"arbitration", [this] { arbitrate(); }};
   State state_ = State::kFree;
   std::uint64_t free_clock_ = 0;           // the first clock that can be an address clock
@@ -163,7 +164,7 @@ class PciBus : public sc_core::sc_module {
   tlm::tlm_generic_payload access_;
   DirectMemories memories_;
   std::vector<std::uint32_t> read_words_;
-  std::optional<std::uint64_t> address_clock_;  // of the running burst; none: no burst runs
+  std::optional<std::uint64_t> address_clock_;  // address clock of the running burst; none: no burst runs
   std::uint64_t busy_clocks_ = 0;               // clocks of the bursts that have ended
   std::vector<MasterStats> master_stats_;
 };

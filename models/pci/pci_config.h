@@ -20,7 +20,7 @@ inline constexpr kernels::IntegerRule kLoadBurstRule{1, 1024};
 inline constexpr kernels::IntegerRule kLoadTimeRule{0, 1'000'000'000'000'000};  // 1000 s
 inline constexpr kernels::IntegerRule kLoadAccessRule{0, 1'000'000'000'000};    // 1 s
 
-// A range of addresses that one target answers.
+// A range of addresses that belongs to one target.
 struct PciWindow {
   std::uint32_t base = 0;   // address of its first byte, kAddressRule
   std::uint32_t bytes = 4;  // size, kWindowBytesRule; the window ends within the 32-bit addresses
@@ -40,7 +40,7 @@ struct PciBridgeConfig {
   int posted_words = 64;  // places for words of posted writes, kPostedWordsRule
   // Byte address of the core's registers on the local bus, behind all banks.
   std::uint64_t core_registers = std::uint64_t{1} << 34U;
-  std::vector<AddressRange> buffers = {};  // on the local bus: words for the banks are counted by buffer
+  std::vector<AddressRange> buffers = {};  // on the local bus; words for the banks are counted for each
 };
 
 // A master that loads the bus: it reads the same words again and again. Transfer k = 0, 1, .. requests the

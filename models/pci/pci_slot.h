@@ -15,8 +15,8 @@ namespace stereotlm::pci {
 struct PciBurst {
   bool write = true;
   std::uint64_t address = 0;  // address of the first byte, a multiple of 4
-  // The words to write, or a buffer as long as the read. The master owns them and leaves them untouched until
-  // the end of the burst.
+  // The words to write, or a buffer of as many words as are to be read. The master owns this vector, and does
+  // not touch it until the end of the burst.
   std::vector<std::uint32_t>* words = nullptr;
 };
 
@@ -25,31 +25,32 @@ enum class BurstEnd : std::uint8_t {
   kLatencyTimer,  // the latency timer has expired and another master waits
   kDisconnect,    // the target accepts no more words now; if it accepted none, a retry
   kMasterAbort,   // no target at this address; no word was transferred
-  kTargetError,   // the target answered with an error; no word was transferred
+  kTargetError,   // the target responded with an error; no word was transferred
 };
 constexpr bool is_error(BurstEnd end) {
   return end == BurstEnd::kMasterAbort || end == BurstEnd::kTargetError;
 }
 
-// The result of a burst. Word i was transferred in bus clock first_data_clock + i, and left at its end.
+// The result of a burst. Word i was transferred in bus clock first_data_clock + i, and left its sender at the
+// end of that clock.
 struct BurstResult {
   BurstEnd end = BurstEnd::kComplete;
   std::size_t words = 0;  // words transferred
   std::uint64_t first_data_clock = 0;
 };
 
-// A master, as the bus sees it.
+// The interface of a master, called by the bus.
 class PciMasterIf {
  public:
   virtual ~PciMasterIf() = default;
-  // GNT#: the address clock begins now, at `address_clock_ps`. A burst without words returns the grant
-  // unused.
+  // GNT#: the address clock begins now, at `address_clock_ps`. Returns the burst to run; one without words
+  // leaves the grant unused.
   virtual PciBurst begin_burst(std::uint64_t address_clock_ps) = 0;
-  // The last data clock has ended. The master may request again at once.
+  // The last data clock has ended. The master may request again immediately.
   virtual void end_burst(const BurstResult& result) = 0;
 };
 
-// A slot of the bus, as its master sees it.
+// The interface of a slot of the bus, called by the master in the slot.
 class PciSlotIf : public virtual sc_core::sc_interface {
  public:
   // REQ#, asserted until the bus is granted. The request counts from the first clock that begins at or after

@@ -8,7 +8,7 @@
 namespace stereotlm::pci {
 namespace {
 
-// Words between an address and the end of its bank.
+// The number of words between an address and the end of its bank.
 std::size_t words_in_bank(std::uint64_t address) {
   return static_cast<std::size_t>((bridge::kBankBytes - address % bridge::kBankBytes) / 4);
 }

@@ -11,7 +11,7 @@ namespace stereotlm::pci {
 
 TrafficGenerator::TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config)
     : sc_module(name), config_(checked(this->name(), config)) {
-  device.register_b_transport(this, &TrafficGenerator::answer);
+  device.register_b_transport(this, &TrafficGenerator::respond);
 }
 
 PciBurst TrafficGenerator::begin_burst(std::uint64_t /*address_clock_ps*/) {
@@ -39,7 +39,7 @@ void TrafficGenerator::end_burst(const BurstResult& result) {
   pci->request(*this, std::max(due_ps, Clock::now_ps()));
 }
 
-void TrafficGenerator::answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+void TrafficGenerator::respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   if (!access.is_read()) {
     access.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
   } else if (access.get_data_length() % 4 != 0 || access.get_streaming_width() < access.get_data_length()) {

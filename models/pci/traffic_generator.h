@@ -12,17 +12,17 @@
 
 namespace stereotlm::pci {
 
-// A PCI master that loads the bus (TrafficGeneratorConfig). It only reads, so its target is not changed: its
-// own device, or any other target at its address. A transfer that the bus has cut, disconnected or retried
-// continues at once. An aborted transfer is reported with SC_REPORT_ERROR (type
-// /stereotlm/traffic_generator) and is the last one.
+// A PCI master that loads the bus (TrafficGeneratorConfig). It reads from its own device, or from any other
+// target at its address, and never writes. A transfer that the bus has cut, disconnected or retried continues
+// immediately. An aborted transfer is reported with SC_REPORT_ERROR (type /stereotlm/traffic_generator) and
+// is the last one.
 class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
  public:
   PciMasterPort pci{"pci"};
-  // The device. A read of whole words returns zeros after access_ps. It answers a write or another command
-  // with TLM_COMMAND_ERROR_RESPONSE, another length or a streaming width below it with
-  // TLM_BURST_ERROR_RESPONSE, and byte enables with TLM_BYTE_ENABLE_ERROR_RESPONSE. Unbound if the master
-  // reads from another target.
+  // The device, which stays unbound if the master reads from another target. A read of whole words returns
+  // zeros after access_ps. TLM_COMMAND_ERROR_RESPONSE refuses any other command, TLM_BURST_ERROR_RESPONSE a
+  // length that is not whole words or a smaller streaming width, and TLM_BYTE_ENABLE_ERROR_RESPONSE byte
+  // enables.
   tlm_utils::simple_target_socket_optional<TrafficGenerator> device{"device"};
 
   // Throws std::invalid_argument if the configuration has problems.
@@ -32,7 +32,7 @@ class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
   void start_of_simulation() override { pci->request(*this, config_.first_request_ps); }
-  void answer(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  void respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
   TrafficGeneratorConfig config_;
   std::vector<std::uint32_t> words_;

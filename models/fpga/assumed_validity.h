@@ -8,23 +8,25 @@
 
 namespace stereotlm::fpga {
 
-// Finds for a direct frame which table entries are valid.
+// The part of FastForward that knows which table entries are valid. While a frame is skipped, it treats all
+// entries of a side with an uncontended pixel port as valid, and it corrects the counts afterwards.
 //
 // An uncontended pixel port takes one cycle for a slot, whether the entry is valid (the port is granted) or
-// not (it passes). Only the counts differ. So all entries of such a side are assumed to be valid, and a pass
-// counts as a grant, until resolve() corrects the counts. Then the transitions of the core repeat far more
-// often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
-class EntryValidity {
+// not (it passes). Only the counts differ: a pass counts as a grant until resolve() corrects the counts. With
+// this assumption the transitions of the core repeat far more often with the tables of a rig: a frame of the
+// paper's board takes a thirtieth of the time.
+class AssumedValidity {
  public:
   // `stepper` outlives this object.
-  explicit EntryValidity(CoreStepper& stepper);
+  explicit AssumedValidity(CoreStepper& stepper);
 
-  // A frame with these accesses starts; the ports are routed. The patterns outlive the frame.
+  // To be called when a frame with these accesses starts, after its ports have been routed. The patterns must
+  // outlive the frame.
   void start_direct_frame(const AccessPatterns& patterns);
-  // A frame starts whose entries are not read here.
+  // To be called when a frame starts whose entries are read by the stages.
   void start_stepped_frame() { sides_ = {}; }
 
-  // The entries that are read with these grants.
+  // The validity of the entries that are read with these grants.
   EntriesRead read(memory::PortMask granted) const {
     return {reads_valid(Side::kLeft, granted), reads_valid(Side::kRight, granted)};
   }
@@ -32,9 +34,9 @@ class EntryValidity {
   // AccessPattern::uniform_until().
   std::uint64_t uniform_until(Side side) const;
 
-  // To be called before a route changes, and after the last cycle of a frame. Corrects the counts; from now
-  // on the patterns say which entries are valid. Returns whether entries were assumed to be valid:
-  // transitions that were recorded before do not hold any more.
+  // To be called before a route changes, and after the last cycle of a frame. Corrects the counts. From now
+  // on the patterns determine which entries are valid. Returns whether entries were assumed to be valid: if
+  // so, transitions that were recorded before are no longer true.
   bool resolve();
 
  private:

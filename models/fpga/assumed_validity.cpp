@@ -1,29 +1,29 @@
-#include "models/fpga/entry_validity.h"
+#include "models/fpga/assumed_validity.h"
 
 namespace stereotlm::fpga {
 
-EntryValidity::EntryValidity(CoreStepper& stepper)
+AssumedValidity::AssumedValidity(CoreStepper& stepper)
     : stepper_(stepper), all_valid_(stepper.control().geometry()) {}
 
-void EntryValidity::start_direct_frame(const AccessPatterns& patterns) {
+void AssumedValidity::start_direct_frame(const AccessPatterns& patterns) {
   for (const Side side : kSides) {
     sides_[index_of(side)] = {&patterns[index_of(side)], stepper_.arbitration().is_alone(pixel_port(side))};
   }
 }
 
-std::uint64_t EntryValidity::uniform_until(Side side) const {
+std::uint64_t AssumedValidity::uniform_until(Side side) const {
   const Table& table = sides_[index_of(side)];
   const AccessPattern& pattern = table.is_assumed_valid ? all_valid_ : *table.pattern;
   return pattern.uniform_until(stepper_.control().lane(side).next_slot().frame_column());
 }
 
-bool EntryValidity::resolve() {
+bool AssumedValidity::resolve() {
   const bool left_was_assumed = resolve(Side::kLeft);
   const bool right_was_assumed = resolve(Side::kRight);
   return left_was_assumed || right_was_assumed;
 }
 
-bool EntryValidity::resolve(Side side) {
+bool AssumedValidity::resolve(Side side) {
   Table& table = sides_[index_of(side)];
   if (!table.is_assumed_valid) return false;
   table.is_assumed_valid = false;
