@@ -16,7 +16,7 @@ constexpr double kPsPerMs = 1e9;
 
 double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
 
-ComputerCounters::Camera counters_of(const capture::Camera& camera, const capture::CaptureBoard& grabber) {
+ComputerCounters::Camera camera_counters(const capture::Camera& camera, const capture::CaptureBoard& grabber) {
   return {camera.stats().frames, grabber.undecided(), grabber.stats()};
 }
 
@@ -89,8 +89,8 @@ ComputerCounters counters_of(const Computer& computer) {
           local_bus.stats(),
           {computer.bridge.words_taken().words(), computer.bridge.words_held().words(),
            local_bus.words_to_grant().words(), local_bus.words_granted().words()},
-          {counters_of(computer.left_camera, computer.left_capture),
-           counters_of(computer.right_camera, computer.right_capture)}};
+          {camera_counters(computer.left_camera, computer.left_capture),
+           camera_counters(computer.right_camera, computer.right_capture)}};
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,
