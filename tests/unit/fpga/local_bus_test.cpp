@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -165,6 +164,7 @@ TEST_F(LocalBusTest, AnswersABurstAsTheFirstOfItsRefusedWords) {
   run_until(20);
   EXPECT_EQ(host.answers.at(0).status, tlm::TLM_COMMAND_ERROR_RESPONSE);
   EXPECT_EQ(bus.stats().errors, 2U);
+  EXPECT_EQ(bus.stats().register_accesses, registers::kEnd / 4 + 1);
 }
 
 TEST_F(LocalBusTest, RefusesAtOnceAccessesThatAreNoBurst) {

@@ -1,18 +1,21 @@
-// The stages that access memory, each alone: refused accesses, full and empty queues. What the stages compute
-// and count is tested through the core (stereo_core_test.cpp, stereo_core_random_test.cpp, and the random
-// boards of tests/integration/core).
+// Stages alone: slots, refused accesses, full and empty queues. What the stages compute and count is tested
+// through the core (stereo_core_test.cpp, stereo_core_random_test.cpp, and the random boards of
+// tests/integration/core).
 #include <gtest/gtest.h>
 
 #include <stdexcept>
-#include <vector>
 
 #include "models/fpga/lut_reader.h"
 #include "models/fpga/pixel_reader.h"
+#include "models/fpga/result_packer.h"
 #include "models/fpga/result_writer.h"
+#include "models/fpga/row_buffer.h"
+#include "models/fpga/sequencer.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/ssram_bank.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
+#include "tests/unit/fpga/random_core.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {
@@ -49,6 +52,21 @@ class StageTest : public testing::Test {
   memory::SsramBank bank{"bank", {10}};
   Stage stage;
 };
+
+TEST(Sequencer, SendsTheSlotsOfItsSideWithTheTimesOfTheirCycles) {
+  Sequencer sequencer("sequencer");
+  Collected<Slot> left;
+  Collected<Slot> right;
+  sequencer.left_out.bind(left);
+  sequencer.right_out.bind(right);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  sequencer.issue(Side::kRight, SlotCursor{FrameGeometry(small_core(8, 6))}, kAt);
+  EXPECT_TRUE(left.beats.empty());
+  ASSERT_EQ(right.beats.size(), 1U);
+  EXPECT_EQ(right.beats[0].row, -1);
+  EXPECT_TRUE(right.beats[0].empty);
+  EXPECT_EQ(right.beats[0].at, kAt);
+}
 
 class LutReaderTest : public StageTest<LutReader> {
  protected:
@@ -111,6 +129,34 @@ TEST_F(PixelReaderTest, ReportsASlotThatItDoesNotHave) {
   EXPECT_THROW(stage.release(), sc_core::sc_report);
 }
 
+TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
+  RowBuffer rows("rows", 4, 3);
+  Collected<PixelColumn> columns;
+  rows.columns_out.bind(columns);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  PixelColumn pixel;
+  for (const std::uint8_t value : {99, 1}) {
+    rows.start_frame();
+    pixel.values[0] = value;
+    rows.columns_in->push(pixel);
+  }
+  EXPECT_EQ(columns.beats.back().values[1], 99);
+  EXPECT_EQ(columns.beats.back().values[2], 1);
+}
+
+TEST(ResultPacker, BeginsAFrameWithAnEmptyWord) {
+  ResultPacker packer("packer");
+  Collected<ResultWord> words;
+  packer.words_out.bind(words);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  packer.start_frame();
+  packer.disparities_in->push({0x11});
+  packer.start_frame();
+  for (const std::uint8_t disparity : {0x22, 0x33, 0x44, 0x55}) packer.disparities_in->push({disparity});
+  ASSERT_EQ(words.beats.size(), 1U);
+  EXPECT_EQ(words.beats[0].word, 0x5544'3322U);
+}
+
 class ResultWriterTest : public StageTest<ResultWriter> {
  protected:
   ResultWriterTest() : StageTest(3) {
@@ -145,6 +191,12 @@ TEST_F(ResultWriterTest, CountsWordsThatMemoryRefuses) {
   EXPECT_EQ(bank.words()[4], 4U);
   EXPECT_EQ(bank.words()[9], 9U);
   EXPECT_EQ(bank.stats().writes, 6U);
+}
+
+TEST_F(ResultWriterTest, KeepsTheMostWordsOfAllFrames) {
+  for (const std::uint64_t most_queued : {2U, 3U, 1U}) stage.count({10, most_queued, 0});
+  EXPECT_EQ(stage.stats().writes, 30U);
+  EXPECT_EQ(stage.stats().most_queued_words, 3U);
 }
 
 TEST(ResultWriter, RefusesADepthOutsideItsRange) {
