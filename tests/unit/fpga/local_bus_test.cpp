@@ -233,5 +233,11 @@ TEST(LocalBus, RefusesAClockOrBanksOutsideTheirRange) {
   EXPECT_THROW(LocalBus("f", {40}, 65), std::invalid_argument);
 }
 
+TEST(LocalBus, IsInStepWithAClockThatHasItsEdges) {
+  const LocalBus bus("bus", {40, {}}, kBanks);
+  EXPECT_TRUE(bus.is_in_step_with(Clock(40)));
+  EXPECT_FALSE(bus.is_in_step_with(Clock(80)));
+}
+
 }  // namespace
 }  // namespace stereotlm::fpga

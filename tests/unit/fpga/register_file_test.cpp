@@ -100,6 +100,14 @@ TEST_F(RegisterFileTest, IgnoresAStrobeWhileBusyAndRaisesError) {
   EXPECT_EQ(starts.beats.size(), 2U);
 }
 
+TEST_F(RegisterFileTest, RaisesErrorWithARefusedStrobeAndIsNotBusy) {
+  control(kControlStart);
+  file.refuse_start();
+  settle();
+  EXPECT_EQ(status(), kStatusError);
+  EXPECT_FALSE(done.read());
+}
+
 TEST_F(RegisterFileTest, RaisesErrorWithTheEndOfAFrameThatMemoryRefused) {
   control(kControlStart);
   finish_frame(5, true);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <vector>
 
 #include "models/fpga/lut_reader.h"
 #include "models/fpga/pixel_reader.h"
@@ -135,7 +136,7 @@ TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
   rows.columns_out.bind(columns);
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
   PixelColumn pixel;
-  for (const std::uint8_t value : {99, 1}) {
+  for (const std::uint8_t value : std::vector<std::uint8_t>{99, 1}) {
     rows.start_frame();
     pixel.values[0] = value;
     rows.columns_in->push(pixel);
@@ -152,7 +153,8 @@ TEST(ResultPacker, BeginsAFrameWithAnEmptyWord) {
   packer.start_frame();
   packer.disparities_in->push({0x11});
   packer.start_frame();
-  for (const std::uint8_t disparity : {0x22, 0x33, 0x44, 0x55}) packer.disparities_in->push({disparity});
+  for (const std::uint8_t disparity : std::vector<std::uint8_t>{0x22, 0x33, 0x44, 0x55})
+    packer.disparities_in->push({disparity});
   ASSERT_EQ(words.beats.size(), 1U);
   EXPECT_EQ(words.beats[0].word, 0x5544'3322U);
 }

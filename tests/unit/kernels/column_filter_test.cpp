@@ -117,6 +117,31 @@ TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
   }
 }
 
+// Pixels that enter below the image may have any value.
+TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
+  constexpr int kWidth = 12;
+  constexpr int kHeight = 4;
+  constexpr int kBelow = 20;
+  SplitMix64 random(8);
+  for (const int size : {3, 7}) {
+    const int half = (size - 1) / 2;
+    const test::ReferenceKernel kernel = differences_kernel(size);
+    std::vector<std::uint8_t> pixels = test::noise_board(kWidth, kHeight, 3, random).pictures[0].left;
+    for (int pixel = 0; pixel < kBelow * kWidth; ++pixel) pixels.push_back(pixels[pixels.size() - kWidth]);
+    const auto expected = test::reference_filter(kWidth, kHeight + kBelow, pixels, kernel);
+    ColumnFilter filter(kWidth, kHeight, 1, test::filter_kernel(kernel));
+    const int first_seen = half * kWidth + half;
+    for (int count = 0; count < (kHeight + kBelow) * kWidth; ++count) {
+      const auto at = static_cast<std::size_t>(count);
+      const auto anything = static_cast<std::uint8_t>(random.between(0, 255));
+      ASSERT_TRUE(filter.push({count < kHeight * kWidth ? pixels[at] : anything, true}));
+      if (count < first_seen) continue;
+      ASSERT_EQ(int{filter.output().values[0]}, expected[at - static_cast<std::size_t>(first_seen)])
+          << size << ' ' << count;
+    }
+  }
+}
+
 // 255 * 65793 is the last multiple of 255 below 2^24, the limit up to which floats are exact integers. With
 // each shift other low bits of the sum decide the result.
 TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
