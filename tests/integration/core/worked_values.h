@@ -24,8 +24,8 @@ struct WorkedFrame {
 
 inline std::string name_of(const testing::TestParamInfo<WorkedFrame>& info) { return info.param.name; }
 
-// Simulates the frame. Expects its cycles and its blame, the disparity image of the kernels on whole images, no
-// failed identity and a rate within the bound. Once per process.
+// Simulates the frame. Expects its cycles and its blame, the disparity image of the kernels on whole images,
+// no failed identity and a rate within the bound. Once per process.
 platform::Statistics expect_worked_values(const WorkedFrame& frame);
 
 using CoreWorkedValues = testing::TestWithParam<WorkedFrame>;
