@@ -25,6 +25,9 @@ struct ChildResult {
 // fails.
 ChildResult run_in_child(const ChildWork& work, std::chrono::milliseconds timeout = std::chrono::seconds(60));
 
+// Runs work whose text is a result. The running test fails if the work throws, or with an expectation in it.
+std::string run_for_text(const ChildWork& work);
+
 // Runs many jobs, at most `parallel` (1 or more) at a time, each with its own timeout. Returns the results in
 // the order of the jobs.
 std::vector<ChildResult> run_in_children(const std::vector<ChildWork>& jobs, int parallel,

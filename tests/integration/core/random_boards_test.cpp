@@ -1,11 +1,8 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -160,24 +157,6 @@ TEST(RandomBoards, HaveTheRowsOfThePlainCycleLoopAtFastFidelity) {
   expect_boards_equal_references(Fidelity::kTiming, 500, compare_rows_with_references);
 }
 
-// A file that a child writes and this process reads.
-class Notes {
- public:
-  Notes() : path_(testing::TempDir() + "stereotlm_notes_" + std::to_string(getpid())) {}
-  ~Notes() { std::remove(path_.c_str()); }
-  Notes(const Notes&) = delete;
-  Notes& operator=(const Notes&) = delete;
-  const std::string& path() const { return path_; }
-  void write(const std::string& text) const { std::ofstream(path_) << text; }
-  std::string read() const {
-    std::ifstream file(path_);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-
- private:
-  std::string path_;
-};
-
 std::string text_of(const std::vector<kernels::GrayImage>& disparities) {
   std::string text;
   for (const kernels::GrayImage& image : disparities) {
@@ -212,17 +191,12 @@ TEST(RandomBoards, GiveTheSameStatisticsAgain) {
     SCOPED_TRACE(describe(board));
     std::vector<std::string> runs;
     for (const char byte : {'\x5A', '\xFF'}) {
-      const Notes notes;
-      const ChildResult result = run_in_child([&] {
+      runs.push_back(run_for_text([&] {
         dirty_heap(byte);
         const PreloadedRun run = run_board(board, board_config(board));
-        notes.write(text_of(run.statistics) + text_of(run.disparity));
-        return std::string();
-      });
-      ASSERT_TRUE(result.ok()) << result.text;
-      runs.push_back(notes.read());
+        return text_of(run.statistics) + text_of(run.disparity);
+      }));
     }
-    EXPECT_GT(runs[0].size(), 100U);
     EXPECT_EQ(runs[0], runs[1]);
   }
 }
@@ -253,16 +227,8 @@ TEST(RandomBoards, GiveTheSameDisparityImageWithAnyAllocation) {
     const RandomBoard board = make_random_board(seed);
     SCOPED_TRACE(describe(board));
     std::vector<std::string> images;
-    for (const platform::BoardConfig& config : allocations_of(board)) {
-      const Notes notes;
-      const ChildResult result = run_in_child([&] {
-        notes.write(text_of(run_board(board, config).disparity));
-        return std::string();
-      });
-      ASSERT_TRUE(result.ok()) << result.text;
-      images.push_back(notes.read());
-    }
-    EXPECT_FALSE(images[0].empty());
+    for (const platform::BoardConfig& config : allocations_of(board))
+      images.push_back(run_for_text([&] { return text_of(run_board(board, config).disparity); }));
     EXPECT_EQ(images[0], images[1]);
     EXPECT_EQ(images[0], images[2]);
   }

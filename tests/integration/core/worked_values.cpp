@@ -27,13 +27,22 @@ host::StereoPair noise_pair(int width, int height) {
   return pair;
 }
 
+std::vector<std::string> blame_of(const platform::Statistics& statistics) {
+  std::vector<std::string> rows;
+  for (const platform::BlameRow& row : statistics.blame)
+    rows.push_back(row.port + " in " + row.bank + " by " + row.by + ": " + std::to_string(row.cycles));
+  return rows;
+}
+
 }  // namespace
 
-platform::Statistics run_one_frame(const std::string& preset, const std::vector<std::string>& sets) {
-  const platform::BoardConfig board = platform::load_board(preset, sets);
+platform::Statistics expect_worked_values(const WorkedFrame& frame) {
+  const platform::BoardConfig board = platform::load_board(frame.preset, frame.sets);
   const platform::Tables tables = platform::identity_tables(board);
   const host::StereoPair pair = noise_pair(board.image.width, board.image.height);
   PreloadedRun run = run_preloaded(board, tables, {pair}, 1);
+  EXPECT_EQ(run.statistics.frame_cycles, std::vector<std::uint64_t>{frame.frame_cycles});
+  EXPECT_EQ(blame_of(run.statistics), frame.blame);
   EXPECT_EQ(run.statistics.failed, std::vector<std::string>());
   EXPECT_LE(run.statistics.frames_per_second.core, run.statistics.bound.core);
   const platform::MatcherConfig& matcher = board.matcher;
@@ -42,13 +51,6 @@ platform::Statistics run_one_frame(const std::string& preset, const std::vector<
                                {matcher.window, matcher.disparities, matcher.filter, matcher.lr_tolerance});
   EXPECT_TRUE(run.disparity.size() == 1 && run.disparity.front() == expected);
   return std::move(run.statistics);
-}
-
-std::vector<std::string> blame_of(const platform::Statistics& statistics) {
-  std::vector<std::string> rows;
-  for (const platform::BlameRow& row : statistics.blame)
-    rows.push_back(row.port + " in " + row.bank + " by " + row.by + ": " + std::to_string(row.cycles));
-  return rows;
 }
 
 }  // namespace stereotlm::test

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -8,13 +11,23 @@
 
 namespace stereotlm::test {
 
-// One frame of noise on a preset with `--set` options. Expects the disparity image of the kernels on whole
-// images, no failed identity and a rate within the bound. Once per process.
-platform::Statistics run_one_frame(const std::string& preset, const std::vector<std::string>& sets);
+// One frame of noise on a preset with `--set` options, and what the end of contract section 2 says of it.
+struct WorkedFrame {
+  std::string name;
+  std::string preset;
+  std::vector<std::string> sets;
+  std::uint64_t frame_cycles;
+  std::vector<std::string> blame = {};  // "left_lut in bank0 by left_pixel: 2137602"
 
-using Cycles = std::vector<std::uint64_t>;
+  friend void PrintTo(const WorkedFrame& frame, std::ostream* out) { *out << frame.name; }
+};
 
-// "left_lut in bank0 by left_pixel: 2137602" for every row.
-std::vector<std::string> blame_of(const platform::Statistics& statistics);
+inline std::string name_of(const testing::TestParamInfo<WorkedFrame>& info) { return info.param.name; }
+
+// Simulates the frame. Expects its cycles and its blame, the disparity image of the kernels on whole images,
+// no failed identity and a rate within the bound. Once per process.
+platform::Statistics expect_worked_values(const WorkedFrame& frame);
+
+using CoreWorkedValues = testing::TestWithParam<WorkedFrame>;
 
 }  // namespace stereotlm::test

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,37 +11,39 @@
 namespace stereotlm::test {
 namespace {
 
-using WindowCase = std::pair<int, std::uint64_t>;  // window, frame_cycles
+TEST_P(CoreWorkedValues, Hold) { expect_worked_values(GetParam()); }
 
-class CoreWindow : public testing::TestWithParam<WindowCase> {};
-
-std::string window_name(const testing::TestParamInfo<WindowCase>& info) {
-  return std::to_string(info.param.first);
+// The paper's board without filter.
+WorkedFrame plain(const std::string& name, std::vector<std::string> sets, std::uint64_t frame_cycles,
+                  std::vector<std::string> blame = {}) {
+  sets.emplace_back("matcher.filter=none");
+  return {name, "fpl2003", sets, frame_cycles, std::move(blame)};
 }
 
-TEST_P(CoreWindow, TakesTheWorkedCyclesWithoutFilter) {
-  const auto statistics =
-      run_one_frame("fpl2003", {"matcher.filter=none", "matcher.window=" + std::to_string(GetParam().first)});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{GetParam().second});
-  EXPECT_EQ(blame_of(statistics), std::vector<std::string>());
-}
+INSTANTIATE_TEST_SUITE_P(
+    Contract, CoreWorkedValues,
+    testing::Values(
+        plain("Window9", {"matcher.window=9"}, 2'765'568),
+        plain("Window11", {"matcher.window=11"}, 3'380'145),
+        plain("Window13", {"matcher.window=13"}, 3'994'726),
+        plain("Window15", {"matcher.window=15"}, 4'609'311), WorkedFrame{"Log7", "fpl2003", {}, 2'151'016},
+        WorkedFrame{"Window5WithLog7", "fpl2003", {"matcher.window=5"}, 1'539'641},
+        plain("TableInABankOfItsImage", {"allocation.left_lut=bank0"}, 4'288'597,
+              {"left_lut in bank0 by left_pixel: 2137602"}),
+        plain("TableInABankOfItsImageByAge", {"allocation.left_lut=bank0", "fpga.arbitration=age"}, 4'287'317,
+              {"left_lut in bank0 by left_pixel: 2136322", "left_pixel in bank0 by left_lut: 2135042"}),
+        plain("ResultInABankOfAnImage", {"allocation.disparity=[bank0, bank0]"}, 2'227'635,
+              {"left_pixel in bank0 by result: 76640"}),
+        WorkedFrame{"ResultInASyncBurstBankOfAnImage",
+                    "fpl2003-syncburst",
+                    {"matcher.filter=none", "allocation.disparity=[bank0, bank0]"},
+                    2'534'153,
+                    {"left_pixel in bank0 by result: 76640", "left_pixel in bank0 by turnaround: 306518",
+                     "result in bank0 by turnaround: 152960"}}),
+    name_of);
 
-INSTANTIATE_TEST_SUITE_P(Contract, CoreWindow,
-                         testing::Values(WindowCase{7, 2'150'995}, WindowCase{9, 2'765'568},
-                                         WindowCase{11, 3'380'145}, WindowCase{13, 3'994'726},
-                                         WindowCase{15, 4'609'311}),
-                         window_name);
-
-TEST(CoreWorkedValues, HoldWithLog7) {
-  EXPECT_EQ(run_one_frame("fpl2003", {}).frame_cycles, Cycles{2'151'016});
-}
-
-TEST(CoreWorkedValues, HoldForWindow5WithLog7) {
-  EXPECT_EQ(run_one_frame("fpl2003", {"matcher.window=5"}).frame_cycles, Cycles{1'539'641});
-}
-
-TEST(CoreWorkedValues, HoldForThePortStatesOfTheTablePort) {
-  const auto statistics = run_one_frame("fpl2003", {"matcher.filter=none"});
+TEST(CoreWorkedValues7x7, HoldWithThePortStatesOfTheTablePort) {
+  const auto statistics = expect_worked_values(plain("Window7", {}, 2'150'995));
   const platform::PortStatistics& port = statistics.ports.front();
   EXPECT_EQ(port.name, "left_lut");
   EXPECT_EQ(port.grants, 2'142'720U);
@@ -50,39 +51,6 @@ TEST(CoreWorkedValues, HoldForThePortStatesOfTheTablePort) {
   EXPECT_EQ(port.idle_cycles, 579U);
   EXPECT_EQ(port.stall_cycles + port.blocked_cycles + port.starved_cycles, 0U);
   EXPECT_EQ(statistics.cycles, 2'150'995U - 16U);
-}
-
-TEST(CoreWorkedValues, HoldWithATableInABankOfItsImage) {
-  const auto statistics = run_one_frame("fpl2003", {"matcher.filter=none", "allocation.left_lut=bank0"});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{4'288'597});
-  EXPECT_EQ(blame_of(statistics), std::vector<std::string>{"left_lut in bank0 by left_pixel: 2137602"});
-}
-
-TEST(CoreWorkedValues, HoldWithATableInABankOfItsImageByAge) {
-  const auto statistics =
-      run_one_frame("fpl2003", {"matcher.filter=none", "allocation.left_lut=bank0", "fpga.arbitration=age"});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{4'287'317});
-  EXPECT_EQ(blame_of(statistics), (std::vector<std::string>{"left_lut in bank0 by left_pixel: 2136322",
-                                                            "left_pixel in bank0 by left_lut: 2135042"}));
-}
-
-TEST(CoreWorkedValues, HoldWithTheResultInABankOfAnImage) {
-  const auto statistics =
-      run_one_frame("fpl2003", {"matcher.filter=none", "allocation.disparity=[bank0, bank0]"});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{2'227'635});
-  EXPECT_EQ(blame_of(statistics), std::vector<std::string>{"left_pixel in bank0 by result: 76640"});
-}
-
-TEST(CoreWorkedValues, HoldWithTheSameInSyncBurstBanks) {
-  const auto statistics =
-      run_one_frame("fpl2003-syncburst", {"matcher.filter=none", "allocation.disparity=[bank0, bank0]"});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{2'534'153});
-  const auto blame = blame_of(statistics);
-  const auto stated = [&blame](const std::string& row) {
-    return std::find(blame.begin(), blame.end(), row) != blame.end();
-  };
-  EXPECT_TRUE(stated("left_pixel in bank0 by turnaround: 306518")) << testing::PrintToString(blame);
-  EXPECT_TRUE(stated("result in bank0 by turnaround: 152960")) << testing::PrintToString(blame);
 }
 
 }  // namespace

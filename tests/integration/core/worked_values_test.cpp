@@ -2,28 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 // Worked values at the end of contract section 2, through all modules, on the presets and with `--set`: those
 // that take a few seconds under the sanitizers. worked_values_slow_test.cpp has the others.
 namespace stereotlm::test {
 namespace {
 
-TEST(CoreWorkedValues, HoldForLineBuffer) {
-  const auto statistics = run_one_frame("fpl2003-line-buffer", {"matcher.filter=none"});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{309'223});
-}
+TEST_P(CoreWorkedValues, Hold) { expect_worked_values(GetParam()); }
 
-TEST(CoreWorkedValues, HoldForLineBufferWithLog7) {
-  EXPECT_EQ(run_one_frame("fpl2003-line-buffer", {}).frame_cycles, Cycles{311'146});
-}
-
-TEST(CoreWorkedValues, HoldForWindow5) {
-  const auto statistics = run_one_frame("fpl2003", {"matcher.filter=none", "matcher.window=5"});
-  EXPECT_EQ(statistics.frame_cycles, Cycles{1'536'426});
-  EXPECT_EQ(blame_of(statistics), std::vector<std::string>());
-}
+INSTANTIATE_TEST_SUITE_P(
+    Contract, CoreWorkedValues,
+    testing::Values(WorkedFrame{"LineBuffer", "fpl2003-line-buffer", {"matcher.filter=none"}, 309'223},
+                    WorkedFrame{"LineBufferWithLog7", "fpl2003-line-buffer", {}, 311'146},
+                    WorkedFrame{
+                        "Window5", "fpl2003", {"matcher.filter=none", "matcher.window=5"}, 1'536'426}),
+    name_of);
 
 }  // namespace
 }  // namespace stereotlm::test

@@ -69,32 +69,5 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
   }
 }
 
-TEST(AccessPattern, BeginsWithEveryEntryValid) {
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    test::SplitMix64 random(seed);
-    const CoreConfig config = random_core(random, 140);
-    const AccessPattern fresh{FrameGeometry(config)};
-    AccessPattern all_valid{FrameGeometry(config)};
-    all_valid.set_entries(kernels::identity_table(config.width, config.height).entries.data());
-    ASSERT_EQ(fresh.pixel_accesses(), all_valid.pixel_accesses());
-    ASSERT_EQ(fresh.empty_slots(), all_valid.empty_slots());
-    ASSERT_EQ(fresh.uniform_until(0), all_valid.uniform_until(0));
-    ASSERT_TRUE(fresh.entry_valid(config.width - 1, config.height - 1));
-  }
-}
-
-TEST(AccessPattern, HasUniformColumnsAcrossTheEndOfAStrip) {
-  CoreConfig config;
-  config.width = 8;
-  config.height = 9;
-  config.window = 3;
-  config.filter.reset();
-  const AccessPattern pattern{FrameGeometry(config)};
-  // The first and the last strip have rows outside the image.
-  EXPECT_EQ(pattern.uniform_until(0), 8U);
-  EXPECT_EQ(pattern.uniform_until(8), 64U);
-  EXPECT_EQ(pattern.uniform_until(64), 72U);
-}
-
 }  // namespace
 }  // namespace stereotlm::fpga

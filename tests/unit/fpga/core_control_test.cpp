@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
-#include <vector>
+
+#include "tests/unit/fpga/random_core.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -11,32 +12,17 @@ namespace {
 using memory::mask_of;
 using memory::PortMask;
 
-CoreConfig small_core(Fetch fetch = Fetch::kColumn) {
-  CoreConfig config;
-  config.width = 8;
-  config.height = 2;
-  config.window = 3;
-  config.disparities = 2;
-  config.filter.reset();
-  config.fetch = fetch;
-  return config;
-}
-
-TEST(MatchControl, ConsumesOnlyWhatBothLanesHaveAndTheResultQueueCanTake) {
-  MatchControl match{FrameGeometry(small_core())};
-  match.start_frame();
-  EXPECT_TRUE(match.decide(true, true));
-  EXPECT_FALSE(match.decide(false, true));
-  EXPECT_FALSE(match.decide(true, false));
-}
+CoreConfig core_of_two_rows(Fetch fetch = Fetch::kColumn) { return small_core(8, 2, 2, fetch); }
 
 TEST(MatchControl, NeedsSlotsUpToTheLastOneAndNoneInTheDrain) {
-  const FrameGeometry geometry(small_core());
+  const FrameGeometry geometry(core_of_two_rows());
   MatchControl match(geometry);
   match.start_frame();
   for (std::uint64_t slot = 0; slot < geometry.slots; ++slot) {
     EXPECT_FALSE(match.draining());
+    EXPECT_TRUE(match.decide(true, true));
     EXPECT_FALSE(match.decide(false, true));
+    EXPECT_FALSE(match.decide(true, false));
     match.consume();
   }
   for (std::uint64_t cycle = 0; cycle < geometry.drain_cycles; ++cycle) {
@@ -50,7 +36,7 @@ TEST(MatchControl, NeedsSlotsUpToTheLastOneAndNoneInTheDrain) {
 
 TEST(MatchControl, CompletesAWordWithTheColumnOfItsLastResult) {
   for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
-    CoreConfig config = small_core(fetch);
+    CoreConfig config = core_of_two_rows(fetch);
     config.filter = kernels::log7();
     const FrameGeometry geometry(config);
     MatchControl match(geometry);
@@ -73,7 +59,7 @@ TEST(MatchControl, CompletesAWordWithTheColumnOfItsLastResult) {
 }
 
 TEST(ResultControl, RequestsAndHasRoomByTheWordsInItsQueue) {
-  ResultControl result(FrameGeometry(small_core()), 2);
+  ResultControl result(FrameGeometry(core_of_two_rows()), 2);
   result.start_frame();
   const auto expect = [&result](Intent intent, bool has_room) {
     EXPECT_EQ(result.decide(), intent);
@@ -93,7 +79,7 @@ TEST(ResultControl, RequestsAndHasRoomByTheWordsInItsQueue) {
 }
 
 TEST(ResultControl, IsDoneWithTheLastWordAndIdleThen) {
-  const FrameGeometry geometry(small_core());  // four words
+  const FrameGeometry geometry(core_of_two_rows());  // four words
   ResultControl result(geometry, 8);
   for (int frame = 0; frame < 2; ++frame) {
     result.start_frame();
@@ -129,7 +115,7 @@ std::uint64_t work_of(const CoreControl& core) {
 
 TEST(CoreControl, TakesTheLatenciesTheSlotsTheDrainAndTheLastWrite) {
   for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
-    CoreControl core(small_core(fetch));
+    CoreControl core(core_of_two_rows(fetch));
     core.start_frame({2, 2, 2, 2});
     EXPECT_EQ(run_frame(core), 4 + work_of(core));
     core.start_frame({1, 2, 1, 1});  // the slower side decides
@@ -141,7 +127,7 @@ TEST(CoreControl, TakesTheLatenciesTheSlotsTheDrainAndTheLastWrite) {
 
 TEST(CoreControl, NeedsNoTableLatencyWithoutTables) {
   for (const bool right_table : {true, false}) {
-    CoreConfig config = small_core();
+    CoreConfig config = core_of_two_rows();
     config.left_table = false;
     config.right_table = right_table;
     CoreControl core(config);
@@ -151,38 +137,6 @@ TEST(CoreControl, NeedsNoTableLatencyWithoutTables) {
   }
 }
 
-TEST(CoreControl, ConsumesBothLanesTogether) {
-  CoreControl core(small_core());
-  core.start_frame({1, 1, 1, 1});
-  // The first slot is empty; the second is refused in cycles 1 to 9.
-  EXPECT_EQ(run_frame(core, mask_of(lut_port(Side::kRight)), 10), 2 + work_of(core) + 9);
-  for (const Side side : kSides) EXPECT_EQ(core.lane(side).consumed(), core.geometry().slots);
-}
-
-TEST(CoreControl, PutsEachPortIntoOneStateACycle) {
-  CoreControl core(small_core());
-  std::uint64_t cycles = 0;
-  for (int frame = 0; frame < 3; ++frame) {
-    core.start_frame({2, 1, 2, 1});
-    cycles += run_frame(core, mask_of(pixel_port(Side::kLeft)), static_cast<std::uint64_t>(frame * 7));
-  }
-  for (std::size_t port = 0; port < kPortCount; ++port)
-    EXPECT_EQ(core.port_cycles(port).sum(), cycles) << kPorts[port].name;
-}
-
-TEST(CoreControl, CountsTheCyclesOfTheHostPort) {
-  CoreControl core(small_core());
-  core.count_host(false, false, 3);
-  core.count_host(true, false);
-  core.count_host(true, true);
-  core.host_was_busy(true, 2);
-  const PortCycles& host = core.port_cycles(kHostPort);
-  EXPECT_EQ(host.idle(), 1U);
-  EXPECT_EQ(host.stalled(), 1U);
-  EXPECT_EQ(host.granted(), 3U);
-  EXPECT_EQ(host.sum(), 5U);
-}
-
 TEST(CoreControl, StopsTheMatcherOnlyWhileTheResultQueueIsFull) {
   struct Queue {
     int words;
@@ -190,7 +144,7 @@ TEST(CoreControl, StopsTheMatcherOnlyWhileTheResultQueueIsFull) {
     std::uint64_t cycles;
     std::uint64_t stalls;
   };
-  const FrameGeometry geometry(small_core());
+  const FrameGeometry geometry(core_of_two_rows());
   const std::uint64_t uncontended = 2 + geometry.slots + geometry.drain_cycles + 1;
   // The lanes are consumed from cycle 2 on; the first word enters at the end of this cycle.
   const std::uint64_t first_word = 2 + (geometry.result_delay_columns + 4) * 3 - 1;
@@ -199,7 +153,7 @@ TEST(CoreControl, StopsTheMatcherOnlyWhileTheResultQueueIsFull) {
   for (const Queue& queue : {Queue{1, 0, one_place, 0}, Queue{1, first_word + 1, one_place, 0},
                              Queue{1, first_word + 2, one_place + 1, 1}, Queue{2, 0, uncontended, 0},
                              Queue{2, first_word + 3, uncontended, 2}}) {
-    CoreConfig config = small_core();
+    CoreConfig config = core_of_two_rows();
     config.result_fifo_words = queue.words;
     CoreControl core(config);
     core.start_frame({1, 1, 1, 1});
@@ -208,20 +162,8 @@ TEST(CoreControl, StopsTheMatcherOnlyWhileTheResultQueueIsFull) {
   }
 }
 
-TEST(CoreControl, NamesTheRequestsAndPassesOfACycle) {
-  CoreControl core(small_core());
-  core.start_frame({1, 1, 1, 1});
-  CoreControl::Decision decision = core.decide();  // the first slot lies above the image
-  EXPECT_EQ(decision.requests(), 0);
-  EXPECT_EQ(decision.passes(), mask_of(lut_port(Side::kLeft)) | mask_of(lut_port(Side::kRight)));
-  core.commit(decision, 0, {});
-  decision = core.decide();
-  EXPECT_EQ(decision.requests(), mask_of(lut_port(Side::kLeft)) | mask_of(lut_port(Side::kRight)));
-  EXPECT_EQ(decision.passes(), mask_of(pixel_port(Side::kLeft)) | mask_of(pixel_port(Side::kRight)));
-}
-
 TEST(CoreControl, RefusesAConfigurationWithProblems) {
-  CoreConfig config = small_core();
+  CoreConfig config = core_of_two_rows();
   config.window = 4;
   EXPECT_THROW(CoreControl{config}, std::invalid_argument);
 }

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
 #include <vector>
 
 #include "models/kernels/rectification_table.h"
+#include "tests/unit/fpga/random_core.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -15,18 +14,8 @@ using memory::Port;
 
 constexpr std::uint32_t kFirst = 100;  // word, of each buffer in its bank
 
-CoreConfig small_core() {
-  CoreConfig config;
-  config.width = 8;
-  config.height = 6;
-  config.window = 3;
-  config.disparities = 3;
-  config.filter.reset();
-  return config;
-}
-
 // A bank for each buffer.
-FrameBases bases() {
+FrameBases bases_of_frame() {
   FrameBases bases{};
   for (std::uint32_t port = 0; port < kCorePortCount; ++port) bases[port] = registers::base(port, kFirst);
   return bases;
@@ -37,13 +26,13 @@ std::uint32_t words_of(std::size_t port) {
 }
 
 TEST(DirectFrame, FindsDisparitiesThatOverlapAnotherBuffer) {
-  DirectFrame frame(small_core(), false);
-  frame.set_buffers(bases());
+  DirectFrame frame(small_core(8, 6), false);
+  frame.set_buffers(bases_of_frame());
   EXPECT_TRUE(frame.disparities_are_apart());
   const std::uint32_t own_words = words_of(kResultPort);
   for (std::uint32_t other = 0; other < kResultPort; ++other) {
     const auto is_apart = [&](std::uint32_t first_word) {
-      FrameBases moved = bases();
+      FrameBases moved = bases_of_frame();
       moved[kResultPort] = registers::base(other, first_word);
       frame.set_buffers(moved);
       return frame.disparities_are_apart();
@@ -56,8 +45,8 @@ TEST(DirectFrame, FindsDisparitiesThatOverlapAnotherBuffer) {
 }
 
 TEST(DirectFrame, FindsTheHazardOfAnAccess) {
-  DirectFrame frame(small_core(), false);
-  frame.set_buffers(bases());
+  DirectFrame frame(small_core(8, 6), false);
+  frame.set_buffers(bases_of_frame());
   for (std::uint32_t index = 0; index < kCorePortCount; ++index) {
     const Port port = index;
     const auto hazard = [&](std::uint32_t word, bool write) {
@@ -75,11 +64,11 @@ TEST(DirectFrame, FindsTheHazardOfAnAccess) {
 }
 
 TEST(DirectFrame, HasNoHazardWithATableThatItsCoreDoesNotHave) {
-  CoreConfig config = small_core();
+  CoreConfig config = small_core(8, 6);
   config.left_table = false;
   DirectFrame frame(config, false);
-  frame.set_buffers(bases());
-  const std::uint64_t address = registers::base_address(bases()[lut_port(Side::kLeft)]);
+  frame.set_buffers(bases_of_frame());
+  const std::uint64_t address = registers::base_address(bases_of_frame()[lut_port(Side::kLeft)]);
   EXPECT_EQ(frame.hazard_with({address, address + 4}, true), std::nullopt);
 }
 
@@ -104,7 +93,7 @@ class DirectFrameMemory : public testing::Test {
   std::vector<std::uint8_t> image = std::vector<std::uint8_t>(8 * 6);
   std::vector<std::uint8_t> disparities = image;
   DirectFrame::Memory memory;
-  DirectFrame frame{small_core(), true};
+  DirectFrame frame{small_core(8, 6), true};
 };
 
 TEST_F(DirectFrameMemory, IsReadOnlyIfAllOfItGrantsDirectAccess) {
@@ -138,13 +127,6 @@ TEST_F(DirectFrameMemory, HasTheAccessesOfATableThatMayHaveChanged) {
   EXPECT_LT(frame.patterns()[0].pixel_accesses(), all);
   EXPECT_FALSE(reads_left_entry(kernels::make_entry(8, 0)));
   EXPECT_FALSE(reads_left_entry(kernels::make_entry(8, 0), false));
-}
-
-TEST_F(DirectFrameMemory, GetsNoDisparitiesWithoutPixels) {
-  DirectFrame timing(small_core(), false);
-  EXPECT_TRUE(timing.read(memory));
-  EXPECT_FALSE(timing.has_pixels());
-  EXPECT_EQ(timing.answered(), std::nullopt);
 }
 
 }  // namespace

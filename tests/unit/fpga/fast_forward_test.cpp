@@ -167,6 +167,7 @@ void expect_equal_figures(std::uint64_t settings, const Frame& frame, bool recor
       ahead.finish();
       ASSERT_EQ(ahead.cycle(), stepped.cycle());
       ASSERT_EQ(ahead.figures(), stepped.figures()) << "frame " << number;
+      ASSERT_EQ(ahead.rows().empty(), !records_rows);
       cycle = stepped.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 3, 1000));
     }
   }
@@ -176,10 +177,6 @@ void run_to_the_end(Core& stepped, Core& ahead) {
   stepped.advance(kNever);
   ahead.advance(kNever);
   ASSERT_TRUE(ahead.done());
-}
-
-TEST(FastForward, CountsWhatItsStepsCount) {
-  expect_equal_figures(400, [](auto&, auto&, Core& stepped, Core& ahead) { run_to_the_end(stepped, ahead); });
 }
 
 TEST(FastForward, StopsInAnyCycleAndResumes) {
@@ -242,15 +239,6 @@ TEST(FastForward, RecordsInWhichRowsAPortIsStalled) {
       EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
     }
   }
-}
-
-TEST(FastForward, RecordsNoRowsUnasked) {
-  const Setting setting = bank_for_each_port(16, 5);
-  Core core(setting, Core::Way::kAhead);
-  core.start(0);
-  core.advance(kNever);
-  core.finish();
-  EXPECT_TRUE(core.rows().empty());
 }
 
 TEST(EarliestLastWrite, IsNeverLaterThanTheLastWrite) {

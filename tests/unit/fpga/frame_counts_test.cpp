@@ -3,19 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "models/fpga/frame_run.h"
+#include "tests/unit/fpga/random_core.h"
 
 namespace stereotlm::fpga {
 namespace {
-
-CoreConfig small_core() {
-  CoreConfig config;
-  config.width = 16;
-  config.height = 6;
-  config.window = 3;
-  config.disparities = 3;
-  config.filter.reset();
-  return config;
-}
 
 // A frame in which no port contends.
 class FrameCountsTest : public testing::Test {
@@ -33,7 +24,7 @@ class FrameCountsTest : public testing::Test {
   const FrameGeometry& geometry() const { return run_.control().geometry(); }
 
  private:
-  CoreConfig config_ = small_core();
+  CoreConfig config_ = small_core(16, 6);
   std::vector<memory::SsramBankConfig> banks_ = std::vector<memory::SsramBankConfig>(kPortCount);
   memory::Arbitration arbitration_{core_arbiter(), banks_};
   FrameRun run_{config_, banks_, arbitration_, UINT64_MAX};

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
 namespace stereotlm::fpga {
@@ -78,28 +77,6 @@ TEST(SlotCursor, WalksTheSequenceOfTheContract) {
   }
 }
 
-TEST(SlotCursor, AdvancesByAnyNumberOfSlots) {
-  for (const CoreConfig& config : boards()) {
-    const FrameGeometry geometry(config);
-    for (const std::uint64_t slots : {0U, 1U, 2U, 3U, 5U, 8U, 13U, 50U}) {
-      SlotCursor steps(geometry);
-      SlotCursor advances(geometry);
-      for (std::uint64_t left = geometry.slots; left > slots; left -= slots + 1) {
-        steps.advance();
-        advances.advance();
-        for (std::uint64_t slot = 0; slot < slots; ++slot) steps.advance();
-        advances.advance(slots);
-        ASSERT_EQ(advances.done(), steps.done());
-        ASSERT_EQ(advances.frame_column(), steps.frame_column());
-        ASSERT_EQ(advances.column(), steps.column());
-        ASSERT_EQ(advances.row(), steps.row());
-      }
-    }
-  }
-}
-
-TEST(SlotCursor, HasNothingToWalkBeforeAFrame) { EXPECT_TRUE(SlotCursor().done()); }
-
 TEST(FrameGeometry, HoldsResultsBackByTheColumnsOfTheContract) {
   for (const CoreConfig& config : boards()) {
     const FrameGeometry geometry(config);
@@ -117,15 +94,6 @@ TEST(FrameGeometry, HoldsResultsBackByTheColumnsOfTheContract) {
         (geometry.slots + geometry.drain_cycles) / static_cast<std::uint64_t>(geometry.slots_per_column);
     EXPECT_EQ(columns, geometry.result_delay_columns + geometry.result_words * 4);
   }
-}
-
-TEST(FrameGeometry, IsThatOfThePaper) {
-  CoreConfig config;
-  config.filter.reset();
-  const FrameGeometry geometry(config);
-  EXPECT_EQ(geometry.slots, 640U * 480 * 7);
-  EXPECT_EQ(geometry.drain_cycles, (79U + 3) * 7);
-  EXPECT_EQ(geometry.result_words, 76'800U);
 }
 
 }  // namespace

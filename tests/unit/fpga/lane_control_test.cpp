@@ -3,28 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "tests/unit/fpga/random_core.h"
+
 namespace stereotlm::fpga {
 namespace {
 
 // 4 x `height` pixels, 3 x 3 windows, line buffers: slots row by row, and one row of empty slots at the end.
-CoreConfig config(int height) {
-  CoreConfig core;
-  core.width = 4;
-  core.height = height;
-  core.window = 3;
-  core.disparities = 1;
-  core.filter.reset();
-  core.fetch = Fetch::kLineBuffer;
-  return core;
-}
+FrameGeometry geometry_of(int height) { return FrameGeometry(small_core(4, height, 1, Fetch::kLineBuffer)); }
 
-struct Setting {
+struct LaneSetting {
   int fifo_slots = 16;
   int table_latency = 2;
   int image_latency = 2;
@@ -35,7 +27,7 @@ struct Setting {
 // Cycles of a lane, one character a cycle.
 struct Cycles {
   const char* claim;
-  Setting setting = {};
+  LaneSetting setting = {};
   // Expected. Intents: R request, P pass, I idle, B blocked, S starved. Consumed: 1 a slot, 0 none. A shorter
   // text says nothing about the later cycles.
   std::string lut = "";
@@ -80,8 +72,8 @@ void expect_cycles(LaneControl& lane, const Cycles& cycles) {
 class LaneCycles : public testing::TestWithParam<Cycles> {};
 
 TEST_P(LaneCycles, AreThoseOfTheContract) {
-  const Setting& setting = GetParam().setting;
-  LaneControl lane(FrameGeometry(config(setting.height)), setting.has_table, setting.fifo_slots);
+  const LaneSetting& setting = GetParam().setting;
+  LaneControl lane(geometry_of(setting.height), setting.has_table, setting.fifo_slots);
   lane.start_frame(setting.table_latency, setting.image_latency);
   expect_cycles(lane, GetParam());
 }
@@ -136,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(LaneControl, LaneCycles, testing::ValuesIn(kCycles),
                          [](const auto& suite) { return std::string(suite.param.claim); });
 
 TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
-  LaneControl lane(FrameGeometry(config(1)), true, 16);
+  LaneControl lane(geometry_of(1), true, 16);
   lane.start_frame(2, 2);
   Cycles cycles{""};
   cycles.consumed = "00001111111100000000";
@@ -150,7 +142,7 @@ TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
 }
 
 TEST(LaneControl, RefusesADepthOrAReadLatencyOutsideItsRange) {
-  const FrameGeometry geometry(config(2));
+  const FrameGeometry geometry = geometry_of(2);
   for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, slots));
   for (const int slots : {0, 65}) EXPECT_THROW(LaneControl(geometry, true, slots), std::invalid_argument);
   LaneControl lane(geometry, true, 1);

@@ -9,6 +9,18 @@
 
 namespace stereotlm::fpga {
 
+// 3 x 3 windows, no filter, and a few disparities.
+inline CoreConfig small_core(int width, int height, int disparities = 3, Fetch fetch = Fetch::kColumn) {
+  CoreConfig config;
+  config.width = width;
+  config.height = height;
+  config.window = 3;
+  config.disparities = disparities;
+  config.filter.reset();
+  config.fetch = fetch;
+  return config;
+}
+
 // Small cores for property tests: every way to fetch and filter, images lower than the window, short queues.
 // `widest`: pixels, a multiple of 4.
 inline CoreConfig random_core(test::SplitMix64& random, int widest) {

@@ -16,9 +16,12 @@
 #include "models/memory/ssram_bank.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/test_host.h"
+#include "tests/unit/fpga/random_core.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {
+
+inline const sc_core::sc_time kPicosecond = sc_core::sc_time::from_value(1);
 
 // The core of an 8 x 6 board with six banks of 64 words: left image, right image, disparity, left table,
 // right table, and one that no frame uses. Hosts drive its registers and its local bus, every link under a
@@ -36,11 +39,7 @@ class StereoCoreBench : public testing::Test {
 
   static StereoCoreConfig small_board() {
     StereoCoreConfig config;
-    config.core.width = 8;
-    config.core.height = 6;
-    config.core.window = 3;
-    config.core.disparities = 3;
-    config.core.filter.reset();
+    config.core = small_core(8, 6);
     config.core.pipeline_latency_cycles = 5;
     config.memory.banks.assign(kBankCount, {kWords});
     return config;

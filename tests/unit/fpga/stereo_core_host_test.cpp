@@ -17,7 +17,6 @@ using tlm::TLM_READ_COMMAND;
 using tlm::TLM_WRITE_COMMAND;
 using Words = std::vector<std::uint32_t>;
 
-const sc_time kPicosecond = sc_time::from_value(1);
 constexpr std::uint64_t kFirst = 3;     // address, decode and word clock
 constexpr std::uint64_t kReadEnd = 3;   // read latency and idle clock, from the cycle of the last grant
 constexpr std::uint64_t kWriteEnd = 1;  // idle clock
@@ -84,17 +83,6 @@ TEST_P(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
   EXPECT_EQ(uncounted(), 0U);
 }
 
-TEST_P(StereoCoreHost, CostsNothingInABankThatNoPortWants) {
-  build(small_board());
-  run_frame_with(3, TLM_WRITE_COMMAND, crossbar_address(kSpare, 0));
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  EXPECT_EQ(memory.answers[0].at, edge(3 + kWriteEnd));
-  EXPECT_EQ(port(kHostPort).granted(), 1U);
-  const memory::ArbiterStats stats = core->crossbar().arbiters()[kSpare].stats();
-  EXPECT_EQ(stats.writes, 1U);
-  EXPECT_EQ(stats.idle_cycles, frame_cycles_alone(4) - pipeline() - 1);
-}
-
 TEST_P(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
   StereoCoreConfig board = small_board();
   auto& priority = board.memory.arbiter.priority;
@@ -141,24 +129,6 @@ TEST_P(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
   EXPECT_EQ(uncounted(), 1U);
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
-}
-
-TEST_P(StereoCoreHost, RequestsThroughTheEndOfAFrameAndTheBeginningOfTheNext) {
-  build(small_board());
-  on_done = [this] {
-    if (frame_cycles().size() == 1) start();
-  };
-  at(edge(0), [this] {
-    start();
-    while (frame_cycles().size() < 2) memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0));
-  });
-  finish();
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>(2, frame_cycles_alone(4)));
-  for (std::size_t word = 1; word < memory.answers.size(); ++word)
-    EXPECT_EQ(memory.answers[word].at - memory.answers[word - 1].at, edge(kFirst + kReadEnd)) << word;
-  EXPECT_EQ(port(kHostPort).granted() + uncounted(), memory.answers.size());
-  const std::uint64_t counted = frame_cycles_alone(4) - pipeline();
-  EXPECT_EQ(port(kHostPort).sum(), 2 * counted);
 }
 
 TEST_P(StereoCoreHost, IsRefusedABlockingAccessAndGrantedDirectAccess) {

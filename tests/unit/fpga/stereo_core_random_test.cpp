@@ -26,13 +26,13 @@ using test::SplitMix64;
 using Words = std::vector<std::uint32_t>;
 
 // Every bank has room for each buffer of a frame, all of them filled, and words that no frame uses.
-constexpr std::uint32_t kTableWords = 64 * 12;
+constexpr std::uint32_t kMostTableWords = 64 * 12;
 constexpr std::uint32_t kLeftTable = 0;
-constexpr std::uint32_t kRightTable = kLeftTable + kTableWords;
-constexpr std::uint32_t kLeftImage = kRightTable + kTableWords;
-constexpr std::uint32_t kRightImage = kLeftImage + kTableWords / 4;
-constexpr std::uint32_t kDisparity = kRightImage + kTableWords / 4;
-constexpr std::uint32_t kScratch = kDisparity + kTableWords / 4;
+constexpr std::uint32_t kRightTable = kLeftTable + kMostTableWords;
+constexpr std::uint32_t kLeftImage = kRightTable + kMostTableWords;
+constexpr std::uint32_t kRightImage = kLeftImage + kMostTableWords / 4;
+constexpr std::uint32_t kDisparity = kRightImage + kMostTableWords / 4;
+constexpr std::uint32_t kScratch = kDisparity + kMostTableWords / 4;
 constexpr std::uint32_t kBankWords = kScratch + 512;
 
 StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {

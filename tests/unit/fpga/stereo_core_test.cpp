@@ -17,8 +17,6 @@ using registers::kStatusDone;
 using registers::kStatusError;
 using sc_core::sc_time;
 
-const sc_time kPicosecond = sc_time::from_value(1);
-
 class StereoCoreTest : public StereoCoreFidelities {
  protected:
   std::vector<std::uint32_t> expected_words() const {
@@ -76,45 +74,6 @@ TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(registers.read(registers::kFrameCyclesLow).word, frame_cycles_alone(4));
   EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
-}
-
-TEST_P(StereoCoreTest, KeepsItsCyclesOnAClockWithoutWholePeriod) {
-  StereoCoreConfig board = small_board();
-  board.core.clock_mhz = 33.333;
-  for (auto& bank : board.memory.banks) bank.clock_mhz = 33.333;
-  build(board);
-  at(edge(7), [this] { start(); });
-  finish();
-  EXPECT_EQ(done_at, std::vector<sc_time>{edge(7 + frame_cycles_alone(4))});
-}
-
-TEST_P(StereoCoreTest, EndsAFrameWithoutPipelineLatencyRightAfterItsLastWrite) {
-  StereoCoreConfig board = small_board();
-  board.core.pipeline_latency_cycles = 0;
-  run(board);
-  EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
-}
-
-TEST_P(StereoCoreTest, TakesTheLatenciesOfTheBanksThatHoldTheFrame) {
-  StereoCoreConfig board = small_board();
-  for (const Bank bank : {kLeft, kRight, kLeftTable, kRightTable})
-    board.memory.banks[bank].kind = BankKind::kZbtFlowThrough;
-  build(board);
-  // Left image in a bank with latency 2, then all with 1.
-  memory.debug_write(memory::crossbar_address(kSpare, 0), words_of(left));
-  set_base(registers::kLeftImageBase, kSpare);
-  start();
-  finish();
-  set_base(registers::kLeftImageBase, kLeft);
-  start();
-  finish();
-  EXPECT_EQ(frame_cycles(), (std::vector<std::uint64_t>{frame_cycles_alone(3), frame_cycles_alone(2)}));
-  EXPECT_EQ(result_words(), expected_words());
-}
-
-TEST_P(StereoCoreTest, ComputesTheDisparitiesOfTheContract) {
-  run(small_board());
-  EXPECT_EQ(result_words(), expected_words());
 }
 
 TEST_P(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
@@ -182,17 +141,6 @@ TEST_P(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>(3, cycles));
   EXPECT_EQ(done_at, (std::vector<sc_time>{edge(2 + cycles), edge(2 + 2 * cycles), edge(2 + 3 * cycles)}));
   EXPECT_EQ(result_words(), expected_words());
-}
-
-TEST_P(StereoCoreTest, RunsAFrameAfterAPause) {
-  build(small_board());
-  start();
-  finish();
-  const sc_time later = edge(9000) + kPicosecond;
-  at(later, [this] { start(); });
-  run_until(edge(9500));
-  ASSERT_EQ(done_at.size(), 2U);
-  EXPECT_EQ(done_at[1], edge(9001 + frame_cycles_alone(4)));
 }
 
 TEST_P(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {

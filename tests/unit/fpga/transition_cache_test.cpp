@@ -8,25 +8,6 @@
 namespace stereotlm::fpga {
 namespace {
 
-TEST(Progress, FitsIfEachPartFits) {
-  const Progress progress = {10, 4, 3, 2, 1};
-  EXPECT_TRUE(progress.fits(progress));
-  for (const Progress& room : {Progress{9, 4, 3, 2, 1}, Progress{10, 3, 3, 2, 1}, Progress{10, 4, 2, 2, 1},
-                               Progress{10, 4, 3, 1, 1}, Progress{10, 4, 3, 2, 0}}) {
-    EXPECT_FALSE(progress.fits(room));
-  }
-}
-
-TEST(Progress, FitsAsOftenAsItsScarcestPart) {
-  const Progress room = {100, 100, 100, 100, 100};
-  EXPECT_EQ((Progress{7, 1, 1, 1, 1}).times_in(room), 14U);
-  EXPECT_EQ((Progress{7, 51, 1, 1, 1}).times_in(room), 1U);
-  EXPECT_EQ((Progress{1, 1, 26, 1, 1}).times_in(room), 3U);
-  EXPECT_EQ((Progress{1, 1, 1, 34, 1}).times_in(room), 2U);
-  EXPECT_EQ((Progress{1, 1, 1, 1, 101}).times_in(room), 0U);
-  EXPECT_EQ((Progress{20, 0, 0, 0, 0}).times_in({100, 0, 0, 0, 0}), 5U);
-}
-
 // Groups of 10, 11, 12, .. cycles with a word each, one behind the other; in each of them the result port is
 // granted once more than in the one before.
 class TransitionCacheTest : public testing::Test {
@@ -60,22 +41,6 @@ class TransitionCacheTest : public testing::Test {
   memory::Arbitration arbitration_{core_arbiter(), std::vector<memory::SsramBankConfig>(6)};
 };
 
-TEST_F(TransitionCacheTest, HasOneGroupForEachState) {
-  EXPECT_EQ(&group(1), &group(1));
-  EXPECT_NE(&group(1), &group(2));
-  EXPECT_EQ(group(1).begin->control.rest, 1U);
-  EXPECT_EQ(group(1).next, nullptr);
-}
-
-TEST_F(TransitionCacheTest, EndsTheWalkAtATransitionThatIsNotRecorded) {
-  group(0).progress = {10, 4, 8, 8, 1};
-  group(0).next = &group(1);
-  EXPECT_EQ(walk(0, {kMuch, kMuch, kMuch, kMuch, kMuch}), 1U);
-  EXPECT_EQ(progress_.cycles, 10U);
-  EXPECT_EQ(walk(1, {kMuch, kMuch, kMuch, kMuch, kMuch}), 1U);
-  EXPECT_EQ(progress_.cycles, 0U);
-}
-
 // Rings of every length, entered in every place.
 TEST_F(TransitionCacheTest, WalksARingAsIfGroupByGroup) {
   for (std::size_t length = 1; length <= 12; ++length) {
@@ -99,12 +64,6 @@ TEST_F(TransitionCacheTest, WalksARingAsIfGroupByGroup) {
       }
     }
   }
-}
-
-TEST_F(TransitionCacheTest, ForgetsTheTransitionsThatAreCleared) {
-  make_ring(3, 0);
-  groups_.clear();
-  EXPECT_EQ(group(0).next, nullptr);
 }
 
 TEST_F(TransitionCacheTest, IsFullAtItsCap) {

@@ -10,18 +10,6 @@
 namespace stereotlm::kernels {
 namespace {
 
-TEST(LrCheck, AcceptsADifferenceUpToTheTolerance) {
-  EXPECT_TRUE(left_right_consistent(10, 10, 0));
-  EXPECT_FALSE(left_right_consistent(10, 11, 0));
-  EXPECT_FALSE(left_right_consistent(10, 9, 0));
-  EXPECT_TRUE(left_right_consistent(10, 13, 3));
-  EXPECT_TRUE(left_right_consistent(10, 7, 3));
-  EXPECT_FALSE(left_right_consistent(10, 14, 3));
-  EXPECT_FALSE(left_right_consistent(10, 6, 3));
-  EXPECT_TRUE(left_right_consistent(0, 253, 253));
-  EXPECT_FALSE(left_right_consistent(0, 253, 252));
-}
-
 struct Stream {
   std::vector<std::uint8_t> left;
   std::vector<bool> left_valid;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/memory/ports.h"
 #include "tests/support/random_board.h"
+#include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
 
@@ -22,7 +22,6 @@ namespace {
 
 using State = ArbitrationPolicy::State;
 
-constexpr PortMask kAll = (1U << kPortCount) - 1;
 const PriorityList kList = {port::kRightLut, port::kResult,    port::kLeftLut,
                             port::kHost,     port::kLeftPixel, port::kRightPixel};
 

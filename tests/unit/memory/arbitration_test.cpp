@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tests/support/random_board.h"
@@ -17,14 +16,6 @@ namespace {
 
 using test::random_arbiter;
 using test::SplitMix64;
-
-constexpr PortMask kNone = 0;
-constexpr PortMask kLeft = mask_of(port::kLeftPixel);
-constexpr PortMask kRight = mask_of(port::kRightPixel);
-constexpr PortMask kResult = mask_of(port::kResult);
-constexpr PortMask kHost = mask_of(port::kHost);
-const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
-const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
 constexpr int kBanks = 4;
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -15,16 +14,6 @@ namespace {
 
 using std::uint64_t;
 using test::SplitMix64;
-
-constexpr PortMask kNone = 0;
-constexpr PortMask kAll = (1U << kPortCount) - 1;
-constexpr PortMask kHost = mask_of(port::kHost);
-constexpr PortMask kResult = mask_of(port::kResult);
-constexpr PortMask kLeft = mask_of(port::kLeftPixel);
-constexpr PortMask kRight = mask_of(port::kRightPixel);
-
-const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
-const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
 // One cycle, decided and counted. Returns the port that is granted.
 PortMask arbitrate(BankArbiter& arbiter, uint64_t cycle, PortMask requests, PortMask writes) {
@@ -129,45 +118,6 @@ TEST(AgeArbitration, LetsTheWinnerAndAllOthersGrowOlderWhileTheBankTurnsRound) {
                            {3, kHost | kRight, kRight}});
   // The bank is ready: the request is granted, and its age ends.
   expect_grants_by_age(2, {{0, kResult, kResult}, {3, kRight, kRight}, {4, kHost | kRight, kHost}});
-}
-
-TEST(BankArbiter, CountsUncontendedGrantsWhereverTheyLay) {
-  BankArbiter arbiter(kRoundRobin, 0);
-  arbiter.count_alone(kLeft, false, 7);
-  EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
-  arbiter.begin_counting(10);
-  arbiter.count_alone(kLeft, false, 4);
-  arbiter.count_alone(kResult, true, 1);
-  arbiter.count_alone(kLeft, false, 0);
-  arbiter.grant_alone(kLeft);
-  arbiter.grant_alone(kResult);
-  // The search begins after the result port, the last that was granted.
-  EXPECT_EQ(arbitrate(arbiter, 17, kLeft | kResult, kResult), kLeft);
-  arbiter.count_alone(kLeft, false, 2);
-  arbiter.end_counting(30);
-  const ArbiterStats stats = arbiter.stats();
-  EXPECT_EQ(stats.reads, 7U);
-  EXPECT_EQ(stats.writes, 1U);
-  EXPECT_EQ(stats.idle_cycles, 12U);
-  EXPECT_EQ(stats.contended_cycles, 1U);
-  EXPECT_EQ(stats.grants[port::kLeftPixel], 7U);
-  EXPECT_EQ(arbiter.uncounted_accesses(), 7U);
-}
-
-TEST(BankArbiter, HasTheStateOfItsPolicyAndOfTheCyclesThatItStillTurnsRound) {
-  BankArbiter arbiter(kRoundRobin, 2);
-  const uint64_t fresh = arbiter.state(0);
-  EXPECT_EQ(fresh, arbiter.state(1000));
-  arbitrate(arbiter, 10, kResult, kNone);
-  EXPECT_NE(arbiter.state(11), arbiter.state(12));
-  EXPECT_NE(arbiter.state(12), arbiter.state(13));
-  EXPECT_EQ(arbiter.state(13), arbiter.state(14));  // 10 + turnaround + 1: ready
-  EXPECT_NE(arbiter.state(14), fresh);              // the place is another
-  const uint64_t after_read = arbiter.state(11);
-  arbitrate(arbiter, 20, kResult, kResult);
-  EXPECT_NE(arbiter.state(21), after_read);  // turning for the other direction
-  arbitrate(arbiter, 30, kResult, kNone);
-  EXPECT_EQ(arbiter.state(31), after_read);
 }
 
 TEST(BankArbiter, RefusesAConfigurationWithProblems) {

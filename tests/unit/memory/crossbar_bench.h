@@ -26,7 +26,7 @@ class CrossbarBench : public testing::Test {
   static constexpr std::uint64_t kPeriodPs = 25'000;
 
   CrossbarBench() {
-    const CrossbarConfig config{arbiter_of("fixed_priority"),
+    const CrossbarConfig config{kFixedPriority,
                                 {{kWords, BankKind::kZbtPipelined},
                                  {kWords, BankKind::kZbtFlowThrough},
                                  {kWords, BankKind::kSyncBurst, 2}},

@@ -12,9 +12,6 @@
 namespace stereotlm::memory {
 namespace {
 
-constexpr PortMask kHost = mask_of(port::kHost);
-constexpr PortMask kResult = mask_of(port::kResult);
-
 // Words 4 .. 7 of a bank are watched.
 class CrossbarWatch : public CrossbarBench {
  protected:
@@ -120,15 +117,6 @@ TEST_F(CrossbarDirect, ReachesTheWordsOfABankAndNoneBeyondItsEnd) {
   EXPECT_EQ(accesses(kFlowThrough), 0U);
 }
 
-TEST_F(CrossbarDirect, CountsWhatIsReportedOfEachBank) {
-  crossbar->count_direct(kFlowThrough, 3);
-  crossbar->count_direct(kBurst, 1);
-  crossbar->count_direct(kBurst, 7);
-  EXPECT_EQ(crossbar->direct_accesses(kPipelined), 0U);
-  EXPECT_EQ(crossbar->direct_accesses(kFlowThrough), 3U);
-  EXPECT_EQ(crossbar->direct_accesses(kBurst), 8U);
-}
-
 // A bank that grants direct access to its words 0 and 1, or not at all, and revokes it; words 2 and 3 are
 // granted separately.
 class CrossbarRevoked : public testing::Test {
@@ -154,7 +142,7 @@ class CrossbarRevoked : public testing::Test {
   unsigned char* memory_behind = nullptr;
   bool reads_only = false;
   int asked = 0;
-  Crossbar crossbar{"crossbar", {arbiter_of("fixed_priority"), {{16}}}};
+  Crossbar crossbar{"crossbar", {kFixedPriority, {{16}}}};
   test::ScriptedTarget target{"target"};
   test::MonitoringBinder binder;
 };

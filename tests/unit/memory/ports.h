@@ -18,9 +18,18 @@ inline constexpr Port kHost = 5;
 }  // namespace port
 inline constexpr std::size_t kPortCount = 6;
 
+inline constexpr PortMask kNone = 0;
+inline constexpr PortMask kAll = (1U << kPortCount) - 1;
+inline constexpr PortMask kLeft = mask_of(port::kLeftPixel);
+inline constexpr PortMask kRight = mask_of(port::kRightPixel);
+inline constexpr PortMask kResult = mask_of(port::kResult);
+inline constexpr PortMask kHost = mask_of(port::kHost);
+
 inline ArbiterConfig arbiter_of(const std::string& policy) {
   return {policy,
           {port::kHost, port::kResult, port::kLeftPixel, port::kRightPixel, port::kLeftLut, port::kRightLut}};
 }
+inline const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
+inline const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
 }  // namespace stereotlm::memory

@@ -63,17 +63,6 @@ INSTANTIATE_TEST_SUITE_P(
                            "exited with status 77 before its work returned"}),
     [](const auto& ending) { return ending.param.name; });
 
-TEST(RunInChild, RunsInAnotherProcess) {
-  int touched = 0;
-  const auto parent = getpid();
-  const auto result = run_in_child([&] {
-    touched = 1;
-    return getpid() == parent ? std::string("same process") : std::string();
-  });
-  EXPECT_EQ(result.text, "");
-  EXPECT_EQ(touched, 0);
-}
-
 TEST(RunInChild, FailsWithAnExpectationThatFailsInTheWork) {
   const auto result = run_in_child([] {
     EXPECT_EQ(1 + 1, 3);
@@ -91,39 +80,6 @@ TEST(RunInChild, KillsAChildThatRunsOutOfTime) {
   EXPECT_EQ(result.text, "still running after 100 ms");
   EXPECT_LT(std::chrono::steady_clock::now() - start, seconds(20));
   EXPECT_TRUE(run_in_child(sleep_for(milliseconds(100)), seconds(50)).ok());
-}
-
-TEST(RunInChildren, ReturnsTheResultsInTheOrderOfTheJobs) {
-  std::vector<ChildWork> jobs;
-  for (int i = 0; i < 20; ++i) {
-    jobs.emplace_back([i] {
-      std::this_thread::sleep_for(milliseconds(20 - i));
-      return i % 3 == 0 ? std::string() : std::to_string(i);
-    });
-  }
-  const auto results = run_in_children(jobs, 4);
-  ASSERT_EQ(results.size(), 20U);
-  for (int i = 0; i < 20; ++i) {
-    EXPECT_EQ(results[static_cast<std::size_t>(i)].text, i % 3 == 0 ? "" : std::to_string(i));
-  }
-}
-
-// Two jobs that each wait for the other's pipe to be written: they end only if both run at once.
-TEST(RunInChildren, RunsAsManyAtATimeAsItIsTold) {
-  int to_first[2] = {};
-  int to_second[2] = {};
-  ASSERT_EQ(pipe(to_first), 0);
-  ASSERT_EQ(pipe(to_second), 0);
-  const auto meet = [](int mine, int other) {
-    const char hello = 'h';
-    char heard = 0;
-    if (write(other, &hello, 1) != 1 || read(mine, &heard, 1) != 1) return std::string("no pipe");
-    return std::string();
-  };
-  const std::vector<ChildWork> jobs = {[&] { return meet(to_first[0], to_second[1]); },
-                                       [&] { return meet(to_second[0], to_first[1]); }};
-  for (const auto& result : run_in_children(jobs, 2, seconds(30))) EXPECT_EQ(result.text, "");
-  for (const int fd : {to_first[0], to_first[1], to_second[0], to_second[1]}) close(fd);
 }
 
 TEST(RunInChildren, RunsNoMoreAtATimeThanItIsTold) {

@@ -43,14 +43,6 @@ TEST_F(MonitoringBinderTest, PutsAMonitorOfItsOwnIntoEveryLink) {
   binder->take_violations();
 }
 
-TEST_F(MonitoringBinderTest, CollectsTheViolationsOfAllLinks) {
-  violate(left);
-  violate(right);
-  EXPECT_EQ(binder->violations().size(), 2U);
-  EXPECT_EQ(binder->take_violations().size(), 2U);
-  EXPECT_TRUE(binder->violations().empty());
-}
-
 TEST_F(MonitoringBinderTest, FailsTheTestWithAViolationThatNobodyTook) {
   violate(right);
   EXPECT_NONFATAL_FAILURE(binder.reset(), "right_monitor at 0 s: b_transport: streaming width = 0");

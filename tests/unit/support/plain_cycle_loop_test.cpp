@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
-#include <utility>
 #include <vector>
 
 namespace stereotlm::test {
@@ -146,119 +145,6 @@ TEST(PlainCycleLoop, CountsThePortStatesTracedByHand) {
   EXPECT_EQ(result.banks[0].idle, 14U);
   EXPECT_EQ(result.banks[2].writes, 1U);
   EXPECT_EQ(result.banks[2].idle, 17U);
-}
-
-TEST(PlainCycleLoop, UsesTheBankOfTheFrameAndItsLatency) {
-  PlainCycleInput input = tiny_board();
-  input.left_image = {0, 3};
-  input.right_image = {1, 4};
-  input.banks[3].kind = PlainBankKind::kZbtFlowThrough;
-  input.banks[4].kind = PlainBankKind::kZbtFlowThrough;
-  const PlainCycleResult result = run_plain_cycle_loop(input, 3);
-  EXPECT_EQ(result.frame_cycles, (FrameCycles{18, 17, 18}));
-  EXPECT_EQ(result.banks[0].reads, 8U);
-  EXPECT_EQ(result.banks[3].reads, 4U);
-}
-
-TEST(PlainCycleLoop, PassesInvalidEntriesWithoutAccessInTheSameTime) {
-  PlainCycleInput input = tiny_board();
-  with_tables(input);
-  input.left_table = std::vector<std::uint32_t>{0x8000'0000U, 0x0000'0001U, 0x8000'0002U, 0};
-  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
-  EXPECT_EQ(result.frame_cycles, FrameCycles{20});
-  expect_states(result.port(PlainPort::kLeftLut), {4, 0, 8, 8, 0, 0});
-  expect_states(result.port(PlainPort::kLeftPixel), {2, 0, 10, 8, 0, 0});
-  expect_states(result.port(PlainPort::kRightPixel), {4, 0, 8, 8, 0, 0});
-}
-
-TEST(PlainCycleLoop, BlocksTheTakerAndStarvesThePixelPortWhileTheLaneIsFull) {
-  PlainCycleInput input = tiny_board();
-  input.lane_fifo_slots = 1;
-  expect_states(run_plain_cycle_loop(input, 1).port(PlainPort::kLeftPixel), {4, 0, 8, 6, 22, 0});
-  with_tables(input);  // slots are taken every fifth cycle, handled two later
-  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
-  EXPECT_EQ(result.frame_cycles, FrameCycles{64});
-  expect_states(result.port(PlainPort::kLeftLut), {4, 0, 8, 8, 44, 0});
-  expect_states(result.port(PlainPort::kLeftPixel), {4, 0, 8, 8, 0, 44});
-}
-
-TEST(PlainCycleLoop, StarvesTheResultPortBetweenItsFirstAndLastWord) {
-  PlainCycleInput input = tiny_board();
-  input.width = 8;  // the two words are written in cycles 17 and 29
-  expect_states(run_plain_cycle_loop(input, 1).port(PlainPort::kResult), {2, 0, 0, 17, 0, 11});
-}
-
-TEST(PlainCycleLoop, FetchesEachRowOnceWithLineBuffers) {
-  PlainCycleInput input = tiny_board();
-  input.fetch = PlainFetch::kLineBuffer;  // 8 slots: rows 0 and 1
-  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
-  EXPECT_EQ(result.frame_cycles, FrameCycles{12});
-  expect_states(result.port(PlainPort::kLeftPixel), {4, 0, 4, 4, 0, 0});
-}
-
-TEST(PlainCycleLoop, FetchesStripsAheadForAFilterLargerThanTheWindow) {
-  PlainCycleInput input = tiny_board();
-  input.filter_half = 1;  // h = r: no strip ahead, 12 slots
-  expect_states(run_plain_cycle_loop(input, 1).port(PlainPort::kLeftPixel), {4, 0, 8, 9, 0, 0});
-  input.filter_half = 3;  // w = 2, 36 slots; the only row is fetched in the first strip; 4 columns of drain
-  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
-  EXPECT_EQ(result.frame_cycles, FrameCycles{51});
-  expect_states(result.port(PlainPort::kLeftPixel), {4, 0, 32, 15, 0, 0});
-}
-
-TEST(PlainCycleLoop, BlamesTheTurnaround) {
-  PlainCycleInput input = tiny_board();
-  with_turnaround(input, 7);
-  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
-  EXPECT_EQ(result.blamed(PlainPort::kResult, 0, std::nullopt), 1U);
-  EXPECT_EQ(result.blame.size(), 1U);
-  EXPECT_EQ(result.banks[0].turnaround, 1U);
-  EXPECT_EQ(result.banks[0].contended, 0U);
-}
-
-TEST(PlainCycleLoop, GrantsTheFirstOfTheListWithFixedPriority) {
-  PlainCycleInput input = tiny_board_of_one_bank();  // both lanes ask in cycle 1 and never together again
-  PlainCycleResult result = run_plain_cycle_loop(input, 2);
-  EXPECT_EQ(result.frame_cycles, (FrameCycles{19, 19}));
-  EXPECT_EQ(result.blamed(PlainPort::kRightPixel, 0, PlainPort::kLeftPixel), 2U);
-  EXPECT_EQ(result.blame.size(), 1U);
-  EXPECT_EQ(result.banks[0].contended, 2U);
-
-  std::swap(input.priority[2], input.priority[3]);
-  result = run_plain_cycle_loop(input, 2);
-  EXPECT_EQ(result.blamed(PlainPort::kLeftPixel, 0, PlainPort::kRightPixel), 2U);
-  EXPECT_EQ(result.blame.size(), 1U);
-}
-
-// A list on which round robin starts with right_pixel, and after a result with left_pixel.
-PlainCycleInput round_robin_board() {
-  PlainCycleInput input = tiny_board_of_one_bank();
-  input.arbitration = PlainArbitration::kRoundRobin;
-  input.priority = {PlainPort::kRightPixel, PlainPort::kResult,   PlainPort::kLeftPixel,
-                    PlainPort::kHost,       PlainPort::kRightLut, PlainPort::kLeftLut};
-  return input;
-}
-
-TEST(PlainCycleLoop, KeepsTheRoundRobinPlaceOverFrames) {
-  const PlainCycleResult result = run_plain_cycle_loop(round_robin_board(), 3);
-  EXPECT_EQ(result.blamed(PlainPort::kLeftPixel, 0, PlainPort::kRightPixel), 1U);
-  EXPECT_EQ(result.blamed(PlainPort::kRightPixel, 0, PlainPort::kLeftPixel), 2U);
-  EXPECT_EQ(result.blame.size(), 2U);
-}
-
-TEST(PlainCycleLoop, DoesNotMoveTheRoundRobinPlaceWhileTheBankTurnsRound) {
-  PlainCycleInput input = round_robin_board();
-  // Frame 1: both ports are refused in cycle 1, left_pixel is granted in 2.
-  input.banks[0] = {PlainBankKind::kSyncBurst, 2};
-  const PlainCycleResult result = run_plain_cycle_loop(input, 2);
-  EXPECT_EQ(result.frame_cycles, (FrameCycles{19, 20}));
-  EXPECT_EQ(result.blamed(PlainPort::kLeftPixel, 0, PlainPort::kRightPixel), 1U);
-  EXPECT_EQ(result.blamed(PlainPort::kLeftPixel, 0, std::nullopt), 1U);
-  EXPECT_EQ(result.blamed(PlainPort::kRightPixel, 0, std::nullopt), 1U);
-  EXPECT_EQ(result.blamed(PlainPort::kRightPixel, 0, PlainPort::kLeftPixel), 1U);
-  EXPECT_EQ(result.blame.size(), 4U);
-  EXPECT_EQ(result.banks[0].turnaround, 1U);
-  EXPECT_EQ(result.banks[0].contended, 3U);
 }
 
 // Cycles in which the host's word is granted. The host asks in every cycle but `pause`, and is last in the list.

@@ -28,16 +28,6 @@ TEST(SplitMix64, DrawsBothEndsOfARangeAndNothingElse) {
   EXPECT_TRUE(random.chance(100));
 }
 
-TEST(RandomBoard, IsTheSameForTheSameSeed) {
-  const RandomBoard one = make_random_board(42);
-  const RandomBoard again = make_random_board(42);
-  EXPECT_EQ(one.priority, again.priority);
-  EXPECT_EQ(one.left_image, again.left_image);
-  EXPECT_EQ(one.left_table, again.left_table);
-  EXPECT_EQ(one.pictures.front().left, again.pictures.front().left);
-  EXPECT_NE(one.pictures.front().left, make_random_board(43).pictures.front().left);
-}
-
 bool names_a_bank_twice(const std::vector<int>& list) {
   return std::set<int>(list.begin(), list.end()).size() < list.size();
 }
