@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "calib/grid_pose.h"
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {
