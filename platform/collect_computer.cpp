@@ -16,11 +16,12 @@ constexpr double kPsPerMs = 1e9;
 
 double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
 
-ComputerCounters::Camera counters_of(const capture::Camera& camera, const capture::CaptureBoard& grabber) {
+ComputerCounters::Camera camera_counters(const capture::Camera& camera,
+                                         const capture::CaptureBoard& grabber) {
   return {camera.stats().frames, grabber.undecided(), grabber.stats()};
 }
 
-// A frame that begins at the end of the run counts as dropped: no capture has taken it.
+// A frame that begins just when the run ends counts as dropped (not armed), because no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
   const capture::CaptureBoard::Stats& capture = camera.capture;
   CameraStatistics statistics;
@@ -36,7 +37,7 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
   return statistics;
 }
 
-// The percentile by nearest rank.
+// Percentiles by nearest rank, in milliseconds.
 Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
   std::sort(values_ps.begin(), values_ps.end());
   const auto rank = [&values_ps](std::size_t percent) {
@@ -89,8 +90,8 @@ ComputerCounters counters_of(const Computer& computer) {
           local_bus.stats(),
           {computer.bridge.words_taken().words(), computer.bridge.words_held().words(),
            local_bus.words_to_grant().words(), local_bus.words_granted().words()},
-          {counters_of(computer.left_camera, computer.left_capture),
-           counters_of(computer.right_camera, computer.right_capture)}};
+          {camera_counters(computer.left_camera, computer.left_capture),
+           camera_counters(computer.right_camera, computer.right_capture)}};
 }
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,

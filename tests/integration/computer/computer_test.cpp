@@ -188,7 +188,7 @@ TEST_F(ComputerTest, BlamesTheHostForItsTrafficOnABankOfTheCore) {
 
 TEST_F(ComputerTest, HasAFifthMasterOnTheBusOnlyWithALoad) {
   run(small_board(kWindow7), 1);
-  EXPECT_EQ(computer->load, nullptr);
+  EXPECT_EQ(computer->traffic_generator, nullptr);
   EXPECT_EQ(computer->pci_bus.stats().masters.size(), 4U);
 }
 
@@ -199,14 +199,14 @@ TEST_F(ComputerTest, DeliversTheDisparitiesBesideAThirdPartyOnTheBus) {
   expect_results_of_the_captured_pictures();
   expect_all_words_accounted_for();
   const auto stats = computer->pci_bus.stats();
-  const auto& load = stats.masters.at(platform::Computer::kLoad);
+  const auto& load = stats.masters.at(platform::Computer::kTrafficGenerator);
   EXPECT_EQ(load.name, "load");
   EXPECT_EQ(load.aborts, 0U);
   const double intervals = (sc_core::sc_time_stamp().to_seconds() * 1e6 - 100) / 10;
-  EXPECT_NEAR(static_cast<double>(computer->load->transfers()), intervals, 1);
-  EXPECT_GE(load.words, computer->load->transfers() * 16);
+  EXPECT_NEAR(static_cast<double>(computer->traffic_generator->transfers()), intervals, 1);
+  EXPECT_GE(load.words, computer->traffic_generator->transfers() * 16);
   // Beside the address and data clocks of all masters: the microsecond before each first word, 33 clocks.
-  std::uint64_t clocks = computer->load->transfers() * 33;
+  std::uint64_t clocks = computer->traffic_generator->transfers() * 33;
   for (const auto& master : stats.masters) clocks += master.transactions + master.words;
   EXPECT_GE(stats.busy_clocks, clocks);
 }
@@ -218,7 +218,7 @@ TEST_F(ComputerTest, DeliversTheDisparitiesBesideALoadWithoutPauses) {
   expect_results_of_the_captured_pictures();
   expect_all_words_accounted_for();
   const auto stats = computer->pci_bus.stats();
-  EXPECT_GT(stats.masters.at(platform::Computer::kLoad).words, stats.clocks / 2);
+  EXPECT_GT(stats.masters.at(platform::Computer::kTrafficGenerator).words, stats.clocks / 2);
 }
 
 // Free-running cameras write straight into the idle buffer: a capture waits for the next frame, so that
