@@ -12,7 +12,7 @@
 namespace stereotlm::calib {
 namespace {
 
-// Finds the grids. Skips pairs without a grid in both pictures.
+// Finds the grids. Skips a pair unless the grid is found in both of its pictures.
 void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
   const auto search = [&](const kernels::GrayImage& picture, const std::string& name) {
     GridSearch found = find_grid(picture, request.grid);
@@ -58,7 +58,8 @@ void check_places(const Rig& rig) {
   }
 }
 
-// Whether the lens model covers the whole picture. Where it folds the picture over, it describes no lens.
+// Whether the pictures determine the lens model: it maps directions one to one in the whole picture. A model
+// that folds the picture over describes no lens.
 bool is_determined(const CameraModel& lens, const Rig& rig) {
   try {
     for (const int row : {0, rig.height - 1}) {
@@ -130,7 +131,8 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
   return errors.result();
 }
 
-// Measures each pair with a calibration that leaves it out. If there are many pairs, groups are left out.
+// Measures each pair with a calibration to which the pair did not contribute. If there are more than
+// kMostGroups pairs, each calibration leaves out several.
 HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std::vector<GridPair>& corners,
                  const std::vector<std::size_t>& pairs, Lens lens) {
   constexpr std::size_t kMostGroups = 20;
@@ -159,7 +161,7 @@ HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std
   return HeldOut{std::sqrt(squares / static_cast<double>(count)), rows.result()};
 }
 
-// Nothing if too few pairs would be left, or if they determine no calibration.
+// The result of hold_out(); nullopt if too few pairs would be left, or if the rest determines no calibration.
 std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
                                 const std::vector<GridPair>& corners, Lens lens) {
   std::vector<std::size_t> pairs;

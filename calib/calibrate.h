@@ -11,6 +11,7 @@
 
 namespace stereotlm::calib {
 
+// A pair of pictures, and their names in messages.
 struct PicturePair {
   std::string left_name;
   std::string right_name;
@@ -22,29 +23,29 @@ struct CalibrationRequest {
   GridShape grid;
   std::vector<PicturePair> pictures;    // all of one size
   int disparities = 80;                 // number of candidates of the board
-  std::optional<int> disparity_offset;  // nothing: chosen so that the grid's disparities fit
+  std::optional<int> disparity_offset;  // nullopt: chosen by disparity_offset_for()
 };
 
 // A pair in which the grid was found.
 struct CalibratedPair {
   std::size_t picture = 0;  // index in the request
   GridPair corners;
-  std::vector<bool> used;  // per corner: whether it fits
+  std::vector<bool> used;  // [corner]: whether the rig was fitted to it
 };
 
 struct CalibrationResult {
   Calibration calibration;  // without the checksums of the tables
   TablePair tables;
   std::vector<CalibratedPair> pairs;
-  std::vector<LeftOutCorner> left_out;  // their pair is an index in `pairs`
+  std::vector<LeftOutCorner> left_out;  // LeftOutCorner::pair is an index in `pairs`
   Lens lens = Lens::kFull;              // without k3 if the grid was not seen where k3 has an effect
   std::vector<std::string> skipped;     // one message per picture without grid: "'left04.jpg': no grid of .."
 };
 
 // Makes tables from pictures of a grid: finds the corners, fits the rig and leaves out corners that do not
-// fit, rectifies, chooses the disparity offset, and measures the quality. Throws std::invalid_argument with a
-// message that names the cure: too few pairs with a grid; cameras swapped or one above the other; too few
-// disparities for the grid.
+// fit, rectifies, chooses the disparity offset, and measures the quality. Throws std::invalid_argument, with
+// a message that names the cure, if too few pairs show a grid, if the cameras are swapped or one above the
+// other, or if the grid needs more disparities.
 CalibrationResult calibrate(const CalibrationRequest& request);
 
 }  // namespace stereotlm::calib

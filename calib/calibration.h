@@ -12,20 +12,23 @@
 
 namespace stereotlm::calib {
 
-// How well a rig that was fitted to some pairs explains the pairs that were left out. Each pair is left out
+// The errors of pairs under a rig that was fitted without them (cross-validation). Each pair is left out
 // once.
 struct HeldOut {
   double rms_px = 0;   // reprojection, over the pictures of both cameras
   RowError row_error;  // of rectified corners
 };
 
+// How well the calibration explains the corners, in pixels.
 struct Quality {
   double left_rms_px = 0;  // reprojection
   double right_rms_px = 0;
   double stereo_rms_px = 0;  // over the pictures of both cameras
   RowError row_error;        // of rectified corners
-  RowError found_again;  // of corners found in the rectified pictures, whose pixels are rounded by the tables
-  std::optional<HeldOut> held_out;  // nothing if there are too few pairs
+  // Of corners that are searched again in the rectified pictures. The tables round the sources of their
+  // pixels.
+  RowError found_again;
+  std::optional<HeldOut> held_out;  // nullopt if there are too few pairs
   DisparityRange disparities;       // of the grid, without the offset
 };
 
@@ -41,7 +44,7 @@ struct Calibration {
   GridShape grid;
   Rig rig;
   Rectification rectification;
-  int disparities = 0;  // number of candidates for which it was made
+  int disparities = 0;  // number of candidates of the board for which it was made
   int disparity_offset = 0;
   Quality quality;
   std::vector<Source> sources;

@@ -18,7 +18,7 @@ namespace {
 
 using Kind = StorageValue::Kind;
 
-// The value as a number; the whole text must be one.
+// The value as a number; nullopt unless its whole text is one, not in quotes.
 template <typename Number>
 std::optional<Number> number_of(const StorageValue& value) {
   Number number = 0;
@@ -156,7 +156,7 @@ class Reader {
   std::string path_;
 };
 
-// Q of OpenCV's stereoRectify.
+// Q as OpenCV's stereoRectify computes it.
 Eigen::Matrix4d q_of(const Projection& p1, const Projection& p2) {
   const double focal = p1(0, 0);
   const double baseline = -p2(0, 3) / p2(0, 0);

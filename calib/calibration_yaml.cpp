@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "calib/storage_yaml.h"
 
 namespace stereotlm::calib {

@@ -49,7 +49,7 @@ Eigen::Vector2d CameraModel::pixel(const Eigen::Vector2d& direction) const {
   return (matrix * bent(distortion, direction).direction.homogeneous()).hnormalized();
 }
 
-// Newton's method, starting at the direction without a lens.
+// Uses Newton's method, which starts at the direction that the pixel would have without distortion.
 Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
   constexpr int kMostSteps = 50;
   constexpr double kCloseEnough = 1e-12;

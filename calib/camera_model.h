@@ -16,7 +16,8 @@ struct CameraModel {
   // one; at most 10. Beyond it the polynomial bends the picture back into itself, which no lens does.
   double widest() const;
 
-  // The pixel at which a direction is seen. Beyond widest() it follows the polynomial.
+  // The pixel at which a direction is seen. Beyond widest() the result follows the polynomial, although no
+  // lens does.
   Eigen::Vector2d pixel(const Eigen::Vector2d& direction) const;
 
   // The direction that is seen at a pixel. Throws std::domain_error if the lens model does not map a

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -18,8 +18,8 @@ constexpr int kCaptionHeight = 24;  // pixels
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
 constexpr double kSmallestScale = 0.5;
-constexpr int kFractionBits = 4;  // of the positions and lengths that OpenCV draws
-// Positions beyond this cannot be drawn.
+constexpr int kFractionBits = 4;  // of the fixed-point positions and lengths for OpenCV
+// OpenCV cannot draw positions beyond this limit, in pixels.
 constexpr double kFarthest = 1e5;
 
 int fixed_point(double pixels) {

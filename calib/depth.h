@@ -16,8 +16,8 @@ struct DepthGeometry {
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();  // Rectification::q
   int disparity_offset = 0;  // offset that the left table subtracts from columns and disparities
 
-  // The point that the board's output shows at (column, row), which need not be whole, with this disparity.
-  // Nothing if the point is not in front of the camera at a finite distance.
+  // The point that the board's output shows at (column, row) with this disparity. `column` and `row` need not
+  // be whole numbers. Nullopt if the point is not in front of the camera at a finite distance.
   std::optional<Eigen::Vector3d> point(double column, double row, double disparity) const;
 };
 

@@ -49,8 +49,8 @@ cv::Mat in_colors(const cv::Mat1f& distances, double most) {
   return colors;
 }
 
-// Draws an arrow in white with a black edge, so that it is visible on every colour. A short arrow is only a
-// head, the shortest a point.
+// Draws an arrow in white with a black edge, so that it is visible on every colour. If the arrow is shorter
+// than its head, only the head is drawn, or a dot for the shortest.
 void draw_arrow(cv::Mat& panel, const cv::Point2d& from, const cv::Point2d& to) {
   constexpr double kLongestPoint = 1.5;  // pixels
   constexpr double kHeadLength = 6;      // pixels
@@ -70,7 +70,7 @@ void draw_arrow(cv::Mat& panel, const cv::Point2d& from, const cv::Point2d& to) 
 }
 
 cv::Mat drawn(const kernels::RectificationTable& table, const cv::Mat1f& distances, double most) {
-  constexpr int kSpacing = 40;  // pixels as drawn, about
+  constexpr int kSpacing = 40;  // pixels of the drawing, at most
   const int factor = enlargement({table.width, table.height});
   cv::Mat panel;
   cv::resize(in_colors(distances, most), panel, {}, factor, factor, cv::INTER_NEAREST);

@@ -93,7 +93,7 @@ std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const Capti
 }
 
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right) {
-  constexpr int kSpacing = 32;                                                // pixels as drawn, about
+  constexpr int kSpacing = 32;  // pixels of the drawing, at most
   const std::array<cv::Scalar, 2> colors = {{{0, 150, 255}, {220, 200, 0}}};  // orange, cyan
   check_sizes(size_of(left.image), size_of(right.image));
   Pair pair = side_by_side(left.caption, enlarged(left.image), right.caption, enlarged(right.image));

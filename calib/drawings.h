@@ -8,14 +8,14 @@
 #include "models/kernels/gray_image.h"
 #include "models/kernels/rectification_table.h"
 
-// Drawings for a person who calibrates a rig, as PNG bytes. The left half belongs to the left camera.
-// Pictures of up to 160 pixels each way are enlarged by a whole number, so that marks can be distinguished.
-// The same input gives the same bytes. The functions throw std::invalid_argument for an empty image, a table
-// with problems, or sides of different sizes.
+// Drawings for a person who calibrates a rig, as PNG bytes. The left half of each drawing belongs to the left
+// camera. Pictures of up to 160 pixels each way are enlarged by a whole number, so that marks can be
+// distinguished. The same input gives the same bytes. The functions throw std::invalid_argument for an empty
+// image, a table with problems, or sides of different sizes.
 namespace stereotlm::calib {
 
 struct CaptionedImage {
-  std::string caption;  // ASCII; if wider than the image, drawn at down to half the size, then cut off
+  std::string caption;  // ASCII; if wider than the image, shrunk to half the size at most, then cut off
   kernels::GrayImage image;
 };
 
@@ -39,8 +39,8 @@ std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, 
 std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right);
 
-// Draws a chart of source_lines() for 1, 3, .. 31 lines, but no more than the height of the tables: the
-// largest number of each table, and the mean.
+// Draws a chart of source_lines() for 1, 3, .. 31 lines, but no more than the height of the tables. It has
+// two curves for each table: the largest number and the mean.
 std::vector<std::uint8_t> encode_source_lines_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right);
 

@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -42,7 +42,7 @@ Corners to_corners(const std::vector<cv::Point2f>& points) {
   return corners;
 }
 
-// The corners of a square board that is turned by a quarter: (column, row) is seen at (row, last - column).
+// The corners of a square board that is turned by 90 degrees: (column, row) is seen at (row, last - column).
 Corners turned_by_quarter(const GridShape& shape, const Corners& corners) {
   Corners turned;
   for (int row = 0; row < shape.rows; ++row) {
@@ -53,7 +53,8 @@ Corners turned_by_quarter(const GridShape& shape, const Corners& corners) {
   return turned;
 }
 
-// How well the directions of rows and of columns agree: 2 if both are the same, -2 if both are opposite.
+// How well the directions of the rows and columns of `a` and `b` agree: 2 if both are the same, -2 if both
+// are opposite.
 double agreement(const GridShape& shape, const Corners& a, const Corners& b) {
   const auto along = [&shape](const Corners& corners, int column, int row) -> Eigen::Vector2d {
     return (corners[index_of(shape, column, row)] - corners.front()).normalized();
@@ -64,7 +65,7 @@ double agreement(const GridShape& shape, const Corners& a, const Corners& b) {
          along(a, 0, last_row).dot(along(b, 0, last_row));
 }
 
-// The mean of those of the 3 x 3 pixels that lie in the picture.
+// The mean grey of the 3 x 3 pixels around a position. Pixels outside the picture are left out.
 double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& position) {
   const auto column = static_cast<int>(std::lround(position.x()));
   const auto row = static_cast<int>(std::lround(position.y()));
@@ -79,8 +80,8 @@ double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& positio
   return count > 0 ? sum / count : 0;
 }
 
-// How much two opposite squares at a corner are brighter than the other two. `right` and `down` lead to the
-// next corners.
+// By how much two opposite squares at a corner are brighter than the other two. `right` and `down` lead to
+// the next corners.
 double contrast(const kernels::GrayImage& picture, const Eigen::Vector2d& corner,
                 const Eigen::Vector2d& right, const Eigen::Vector2d& down) {
   constexpr double kReach = 0.35;  // of a square
@@ -90,10 +91,10 @@ double contrast(const kernels::GrayImage& picture, const Eigen::Vector2d& corner
          grey_at(picture, corner + rising) - grey_at(picture, corner - rising);
 }
 
-// Checks that the corners are all corners of a chessboard.
-class Squares {
+// The checks of are_all_of_board().
+class BoardCheck {
  public:
-  Squares(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners)
+  BoardCheck(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners)
       : picture_(picture), shape_(shape), corners_(corners) {
     std::vector<cv::Point2d> on_board;
     std::vector<cv::Point2d> seen;
@@ -107,7 +108,8 @@ class Squares {
     without_lens_ = to_eigen<Eigen::Matrix3d>(cv::findHomography(on_board, seen));
   }
 
-  // Whether the corners alternate as those of a chessboard do. They do not if a line between them was missed.
+  // Whether the sign of the contrast alternates from corner to corner, as on a chessboard. It does not if a
+  // line of corners inside the board was missed.
   bool alternate() const {
     constexpr double kAtLeast = 0.9;  // single corners may be hard to see
     double sum = 0;
@@ -122,8 +124,8 @@ class Squares {
     return std::abs(sum) > kAtLeast * most;
   }
 
-  // Whether there are more lines of corners than those found. At the edge of the outermost squares one or two
-  // of the four squares at a point are missing, and the contrast is half that of a corner.
+  // Whether the board has further lines of corners outside those found. Where it has none, one or two of the
+  // four squares around a point are missing, so that the contrast is half that of a corner.
   bool continue_outside() const {
     constexpr double kAtLeast = 0.72;
     const auto exceeds = [](double beyond, double within) {
@@ -138,7 +140,8 @@ class Squares {
   }
 
  private:
-  // The position of a corner. Beyond the corners found it follows their plane, bent as at its neighbour.
+  // The position of a corner. Outside the corners found, it is extrapolated in the plane of the board, and
+  // shifted by the distortion of the nearest corner found.
   Eigen::Vector2d corner(int column, int row) const {
     const int inner_column = std::clamp(column, 0, shape_.columns - 1);
     const int inner_row = std::clamp(row, 0, shape_.rows - 1);
@@ -176,7 +179,7 @@ class Squares {
   const kernels::GrayImage& picture_;
   const GridShape& shape_;
   const Corners& corners_;
-  Eigen::Matrix3d without_lens_;  // from columns and rows of corners to pixels
+  Eigen::Matrix3d without_lens_;  // homography from columns and rows of corners to pixels
 };
 
 }  // namespace
@@ -198,8 +201,8 @@ GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) 
 }
 
 bool are_all_of_board(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {
-  const Squares squares(picture, shape, corners);
-  return squares.alternate() && !squares.continue_outside();
+  const BoardCheck check(picture, shape, corners);
+  return check.alternate() && !check.continue_outside();
 }
 
 Corners refined(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {

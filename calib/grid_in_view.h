@@ -5,16 +5,17 @@
 
 namespace stereotlm::calib {
 
-// The corners of a pair in its rectified pictures.
+// The positions of a pair's corners in its rectified pictures.
 GridPair rectified(const Rig& rig, const Rectification& rectification, const GridPair& pair);
 
+// Distances between the rows of the same corner in two rectified pictures, which should be 0.
 struct RowError {
-  double mean_px = 0;  // of the absolute values
+  double mean_px = 0;  // mean of the absolute values
   double max_px = 0;
   std::size_t corners = 0;
 };
 
-// Collects the distances between the rows of the same corner in the two pictures.
+// Computes a RowError, corner by corner.
 class RowErrors {
  public:
   void add(const Eigen::Vector2d& left, const Eigen::Vector2d& right);
@@ -31,12 +32,12 @@ struct DisparityRange {
   double min = 0;
   double max = 0;
 
-  // Number of candidates from the whole disparity below `min` to the whole disparity above `max`.
+  // The number of candidates that cover the range: the whole numbers from floor(min) to ceil(max).
   int needed() const;
 };
 
-// The offset that `auto` chooses. It leaves the same room on the near and the far side of `range`, and is
-// negative only if `range` is. Throws std::invalid_argument if `range` needs more than `disparities`
+// The offset that `--disparity-offset auto` chooses. It centres `range` among the candidates, but is not
+// below 0 unless `range` is. Throws std::invalid_argument if `range` needs more than `disparities`
 // candidates.
 int disparity_offset_for(const DisparityRange& range, int disparities);
 

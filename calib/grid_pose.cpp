@@ -3,14 +3,14 @@
 #include <Eigen/Cholesky>
 #include <opencv2/calib3d.hpp>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {
 
 using Step = Eigen::Matrix<double, 6, 1>;  // rotation vector (rad), translation (mm)
 
-// The starting point of the fit.
+// The pose from the left picture alone: the starting point of the fit.
 Eigen::Isometry3d pose_from_left(const Rig& rig, const std::vector<Eigen::Vector3d>& points,
                                  const Corners& corners) {
   std::vector<cv::Point3d> object;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kPointsPerMm = 72 / 25.4;
 constexpr double kLargestPageMm = 14400 / kPointsPerMm;
 constexpr double kLeastMarginMm = 10;
-constexpr double kPrintHeightMm = 10;  // below the margin under the board: half small print, half white
+constexpr double kPrintHeightMm = 10;  // strip at the bottom: above the small print, below it white
 constexpr double kFontSizeMm = 2.8;
 constexpr int kRulerMm = 100;
 constexpr double kLineMm = 0.2;
@@ -58,7 +58,7 @@ struct Line {
 struct Text {
   std::string words;
   double x, bottom;  // mm
-  bool ends_at_x;    // else it begins there
+  bool ends_at_x;    // true: it ends at x; false: it begins there
 };
 
 // The contents of the page, all in black.
@@ -136,7 +136,7 @@ void draw(cairo_t* context, const Drawing& drawing) {
   }
 }
 
-// Draws and finishes the surface, which has `units_per_mm`.
+// Draws on the surface, whose unit is 1 / units_per_mm, and finishes it.
 void draw(cairo_surface_t* surface, const Drawing& drawing, double units_per_mm) {
   const Context context(cairo_create(surface));
   cairo_scale(context.get(), units_per_mm, units_per_mm);
@@ -198,7 +198,8 @@ std::string grid_sheet_pdf(const GridShape& shape) {
   return bytes;
 }
 
-// Cairo is not used: it rounds positions to 1/256 of a unit, and numbers all drawings of a process.
+// Does not use Cairo, which rounds positions to 1/256 of a unit. Cairo also numbers the drawings of a
+// process, so that the same shape would not give the same bytes.
 std::string grid_sheet_svg(const GridShape& shape) {
   const Drawing drawing = drawing_of(shape);
   const double width = rounded(drawing.sheet.width_mm);
@@ -239,7 +240,7 @@ kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm
                     pixels_per_mm, sheet.width_mm, sheet.height_mm, kMostPixels));
   }
   kernels::GrayImage image(static_cast<int>(width), static_cast<int>(height));
-  std::vector<std::uint32_t> pixels(image.pixels.size());  // red, green and blue, all alike
+  std::vector<std::uint32_t> pixels(image.pixels.size());  // red, green and blue are equal
   const Surface surface(cairo_image_surface_create_for_data(
       reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_RGB24, image.width, image.height,
       image.width * static_cast<int>(sizeof pixels[0])));

@@ -18,10 +18,10 @@ struct GridSheet {
 };
 
 // The first of A4 landscape, A4 portrait, A3 landscape and A3 portrait that leaves a white margin of half a
-// square, and of at least 10 mm, around the board. If there is none, the first that leaves 10 mm. If there is
-// none, a page made to measure with a margin of half a square, but no narrower than A4. Throws
-// std::invalid_argument with all problems(shape), or if the page would be larger than the limit of PDF, 5080
-// mm (14400 pt).
+// square, and of at least 10 mm, around the board. If no page does, the first that leaves 10 mm. If no page
+// does that either, a page that fits the board with a margin of half a square, but no narrower than A4.
+// Throws std::invalid_argument with all problems(shape), or if the page would be larger than the limit of
+// PDF, 5080 mm (14400 pt).
 GridSheet grid_sheet(const GridShape& shape);
 
 // Files as bytes, to be printed at 100 %. Every edge is within 1/1000 mm of its place. The same shape gives
@@ -29,8 +29,8 @@ GridSheet grid_sheet(const GridShape& shape);
 std::string grid_sheet_pdf(const GridShape& shape);
 std::string grid_sheet_svg(const GridShape& shape);
 
-// The page as pixels: x mm from its left edge is column x * pixels_per_mm - 0.5. Throws as grid_sheet() does,
-// and if the picture would have no pixel, or more than 32767 in a row or column.
+// The page as pixels. A point at x mm from the left edge is at column x * pixels_per_mm - 0.5. Throws as
+// grid_sheet() does, and if the picture would have no pixel, or more than 32767 in a row or column.
 kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm);
 
 }  // namespace stereotlm::calib

@@ -14,7 +14,8 @@ std::string lut_bytes(const kernels::RectificationTable& table);
 // The size in bytes of the table file for images of this size.
 std::size_t lut_byte_count(int width, int height);
 
-// Throws std::runtime_error if the bytes are not a table for images of this size, or if an entry is broken.
+// Throws std::runtime_error if the bytes are not a table for images of this size, or if the table has
+// problems.
 kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height);
 
 }  // namespace stereotlm::calib

@@ -5,17 +5,18 @@
 #include <stdexcept>
 #include <vector>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {
 
 constexpr int kMostPoints = 150;
-constexpr int kReach = 7;     // of the window around a point to each side, pixels
-constexpr int kMostRows = 8;  // above and below
-constexpr float kAlike = 0.9F;
+constexpr int kReach = 7;     // pixels of the window to each side of a point
+constexpr int kMostRows = 8;  // rows that are searched above and below
+constexpr float kLeastCorrelation = 0.9F;
 
-// The position of the maximum between the neighbours of the largest of three values: -0.5..0.5.
+// The position of the maximum of a parabola through three values, from the middle one, which is the largest:
+// -0.5..0.5.
 double between(double before, double largest, double after) {
   const double bend = before - 2 * largest + after;
   return bend < 0 ? 0.5 * (before - after) / bend : 0;
@@ -51,7 +52,7 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
     double largest = 0;
     cv::Point at;
     cv::minMaxLoc(likeness, nullptr, &largest, nullptr, &at);
-    if (!(largest >= kAlike) || at.y == 0 || at.y == likeness.rows - 1) continue;
+    if (!(largest >= kLeastCorrelation) || at.y == 0 || at.y == likeness.rows - 1) continue;
     const double rest =
         between(likeness.at<float>(at.y - 1, at.x), largest, likeness.at<float>(at.y + 1, at.x));
     const double found = inside.y + at.y + rest;

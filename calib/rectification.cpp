@@ -6,8 +6,8 @@
 namespace stereotlm::calib {
 namespace {
 
-// From camera coordinates of the camera to homogeneous pixels of its rectified picture. The last column of P2
-// adds the distance between the cameras, which does not change directions.
+// The matrix from camera coordinates of a camera to homogeneous pixels of its rectified picture. It leaves
+// out the last column of P2, which adds the distance between the cameras and does not change directions.
 Eigen::Matrix3d to_rectified(const Eigen::Matrix3d& rotation, const Projection& projection) {
   return projection.leftCols<3>() * rotation;
 }

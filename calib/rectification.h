@@ -12,27 +12,29 @@ using Projection = Eigen::Matrix<double, 3, 4>;
 // Two ideal cameras that replace those of a rig. They have parallel axes, the same focal length and the same
 // principal point, and see a point in the same row. Names as in OpenCV's stereoRectify.
 struct Rectification {
-  // Camera coordinates of an ideal camera = r1 (r2) * those of the left (right) camera.
+  // r1 (r2) maps camera coordinates of the left (right) camera to those of its ideal camera.
   Eigen::Matrix3d r1 = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d r2 = Eigen::Matrix3d::Identity();
-  // From camera coordinates of the ideal left camera to pixels of the left (right) rectified picture.
+  // p1 (p2) maps camera coordinates of the ideal left camera to pixels of the left (right) rectified picture.
   Projection p1 = Projection::Zero();
   Projection p2 = Projection::Zero();
-  // From (column, row, true disparity, 1) of the rectified left picture to homogeneous camera coordinates of
-  // the ideal left camera, mm.
+  // q maps (column, row, true disparity, 1) of the rectified left picture to homogeneous camera coordinates
+  // of the ideal left camera, in mm.
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
 };
 
-// The rectified pictures have the size of the rig's pictures, and contain only pixels that the cameras saw.
+// Rectifies a rig. The rectified pictures have the size of the rig's pictures, and contain only pixels that
+// the cameras saw.
 Rectification rectify(const Rig& rig);
 
-// The position in the rectified picture of a pixel of a camera's picture. `rotation` and `projection` are r1
-// and p1, or r2 and p2. Throws as CameraModel::direction() does.
+// Maps a pixel of a camera's picture to its position in the rectified picture. `rotation` and `projection`
+// are r1 and p1, or r2 and p2. Throws as CameraModel::direction() does.
 Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
                                 const Projection& projection, const Eigen::Vector2d& pixel);
 
-// The reverse: the pixel of the camera's picture that is seen at a position of the rectified picture. Nothing
-// if the position is behind the camera or beyond the view of its lens (CameraModel::widest()).
+// The inverse of rectified_pixel(): maps a position of the rectified picture to the pixel of the camera's
+// picture that is seen there. at() returns nullopt if the position is behind the camera, or beyond the view
+// of its lens (CameraModel::widest()).
 class SourcePixels {
  public:
   SourcePixels(const CameraModel& camera, const Eigen::Matrix3d& rotation, const Projection& projection);

@@ -1,6 +1,6 @@
 #include <opencv2/calib3d.hpp>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "calib/rectification.h"
 
 namespace stereotlm::calib {

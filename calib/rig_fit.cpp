@@ -9,7 +9,7 @@
 #include <string>
 
 #include "calib/grid_pose.h"
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using Used = std::vector<std::vector<bool>>;
 
 constexpr double kMostMedians = 8;
-constexpr double kAlwaysFits = 0.1;  // pixels: no camera sees corners more exactly
+constexpr double kAlwaysFits = 0.1;  // pixels; a corner with a smaller misfit is never left out
 constexpr int kMostRounds = 20;
 
 // The used corners in OpenCV's form, without pairs that have none.
@@ -66,8 +66,9 @@ struct SingleFit {
   std::vector<cv::Mat> translations;
 };
 
+// Runs a step of the fit, and turns an exception of OpenCV into std::runtime_error.
 template <typename Step>
-auto or_refused(const Step& step) {
+auto with_refusal(const Step& step) {
   try {
     return step();
   } catch (const cv::Exception& error) {
@@ -79,7 +80,7 @@ int flags_of(Lens lens) { return lens == Lens::kWithoutK3 ? cv::CALIB_FIX_K3 : 0
 
 SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv::Point2f>>& corners,
                      cv::Size size, Lens lens) {
-  return or_refused([&] {
+  return with_refusal([&] {
     SingleFit fit;
     cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
                         fit.translations, flags_of(lens));
@@ -87,10 +88,10 @@ SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv:
   });
 }
 
-// Starts at the parameters of the two cameras.
+// Fits both cameras and their relative pose together. Starts at the parameters of `left` and `right`.
 Rig solve(const Observations& seen, const CameraModel& left, const CameraModel& right, cv::Size size,
           Lens lens) {
-  return or_refused([&] {
+  return with_refusal([&] {
     cv::Mat m1 = to_mat(left.matrix);
     cv::Mat d1 = to_mat(left.distortion);
     cv::Mat m2 = to_mat(right.matrix);
@@ -125,8 +126,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// The pairs that agree about the place of the right camera. A grid that moved between the two pictures of a
-// pair would spoil the fit to all pairs.
+// Uses all corners of the pairs in which the right camera is near its median position relative to the left. A
+// grid that moved between the two pictures of a pair would spoil the fit to all pairs.
 Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
   constexpr double kMostShare = 0.02;  // of the distance of the grid
   std::array<std::vector<double>, 3> places;
@@ -162,7 +163,7 @@ void for_each_corner(const Used& used, const Visit& visit) {
   }
 }
 
-Used those_that_fit(const RigFit& fit) {
+Used corners_that_fit(const RigFit& fit) {
   std::vector<double> of_used;
   for_each_corner(fit.used, [&](std::size_t pair, std::size_t corner) {
     if (fit.used[pair][corner]) of_used.push_back(fit.misfits[pair].of_corner(corner));
@@ -261,7 +262,7 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   check_pairs(used);
   RigFit fit = fit_once(shape, pairs, used, guess, lens);
   for (int round = 1; round < kMostRounds; ++round) {
-    used = those_that_fit(fit);
+    used = corners_that_fit(fit);
     check_pairs(used);
     if (used == fit.used) break;
     fit = fit_once(shape, pairs, used, fit.rig, lens);

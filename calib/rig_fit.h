@@ -16,7 +16,8 @@ struct GridPair {
   Corners right;
 };
 
-// Distances in pixels between the corners of a pair and where a rig would see them.
+// Distances in pixels from the corners found in a pair to the positions at which a rig would see them:
+// [corner].
 struct Misfit {
   std::vector<double> left;
   std::vector<double> right;
@@ -34,7 +35,7 @@ struct LeftOutCorner {
 // The rig that explains the observed corners best (least squares).
 struct RigFit {
   Rig rig;
-  std::vector<std::vector<bool>> used;  // per pair and corner
+  std::vector<std::vector<bool>> used;  // [pair][corner]
   std::vector<LeftOutCorner> left_out;  // the unused corners
   std::vector<Misfit> misfits;          // of all corners
   // Reprojection errors of the used corners: root of the mean square of their distances, in pixels.
@@ -43,17 +44,17 @@ struct RigFit {
   double stereo_rms_px = 0;  // over the pictures of both cameras
 };
 
-// Whether the last coefficient of the lens is fitted too, or is 0.
+// Whether all five coefficients of the lens are fitted, or k3 stays 0.
 enum class Lens : std::uint8_t { kFull, kWithoutK3 };
 
 inline constexpr std::size_t kFewestPairs = 3;
 
 // Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate). The first
-// fit uses the pairs that agree about the place of the right camera. A corner whose misfit is more than eight
-// times the median, and more than 0.1 pixels, is left out on both sides. A pair that keeps less than half of
-// its corners is left out completely. The fit is repeated until no corner changes. Throws
-// std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if OpenCV finds no
-// rig.
+// fit uses the pairs that agree about the position of the right camera relative to the left. A corner whose
+// misfit is more than eight times the median, and more than 0.1 pixels, is left out on both sides. A pair
+// that keeps less than half of its corners is left out completely. The fit is repeated until no corner
+// changes. Throws std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if
+// OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
@@ -62,7 +63,7 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs,
               const std::vector<std::vector<bool>>& used, const Rig& guess, Lens lens);
 
-// The grid is placed where the used corners fit best.
+// The misfit of all corners of a pair. The grid is placed where the used corners fit best.
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used);
 
 }  // namespace stereotlm::calib

@@ -18,8 +18,8 @@ using kernels::GrayImage;
 // Levels before they are rounded, row by row.
 using Levels = std::vector<float>;
 
-// Mixes every level with its neighbours, for `count` levels that are `step` apart. The first and the last
-// level repeat.
+// Mixes each of `count` levels, which are `step` apart, with its two neighbours. Beyond the ends, the first
+// and the last level repeat.
 void mix(const float* in, float* out, std::size_t count, std::size_t step) {
   constexpr float kNeighbour = 0.15F;
   for (std::size_t i = 0; i < count; ++i) {
@@ -72,12 +72,12 @@ std::vector<SceneCamera::Corner> SceneCamera::corners_above(int row, const Scene
   return result;
 }
 
-// Samples the middle and the corners, which neighbouring pixels share. If an edge crosses the pixel, it takes
-// more samples.
+// Samples the middle of the pixel and its corners, which neighbouring pixels share. If their levels show that
+// an edge crosses the pixel, takes 64 samples instead.
 double SceneCamera::level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
                           const Corner& d) const {
   constexpr double kEdge = 95;
-  constexpr int kSamplesOfAnEdge = 8;  // across, and down
+  constexpr int kSamplesOfAnEdge = 8;  // in each direction
   const auto [least, most] = std::minmax({a.level, b.level, c.level, d.level});
   if (most - least < kEdge) {
     const Vector3d middle = (a.direction + b.direction + c.direction + d.direction) / 4;

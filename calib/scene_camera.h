@@ -9,8 +9,9 @@
 
 namespace stereotlm::calib {
 
-// A camera at a place of the scene, with a lens that is slightly blurred. It keeps a ray for every pixel,
-// because finding the rays takes longer than rendering most pictures.
+// Renders the pictures of a camera of SyntheticRig, from one place in the scene and slightly blurred. It
+// stores the direction of the ray at every corner of a pixel, because computing the directions takes longer
+// than rendering most pictures.
 class SceneCamera {
  public:
   // `to_scene` turns directions in camera coordinates to scene coordinates. Throws as
@@ -20,8 +21,8 @@ class SceneCamera {
 
   const Eigen::Vector3d& place() const { return place_; }
 
-  // Every pixel is a mean of samples, of 64 where an edge crosses it. The rays are exact at the corners of
-  // the pixels and interpolated between them, with an error below 0.001 pixels at 320 x 240.
+  // Every pixel is a mean of samples: of 64 if an edge crosses it, else of five. The rays are exact at the
+  // corners of the pixels and interpolated between them, with an error below 0.001 pixels at 320 x 240.
   kernels::GrayImage picture(const SceneSurfaces& surfaces) const;
 
  private:
@@ -29,7 +30,7 @@ class SceneCamera {
 
   // The corners above a row of pixels.
   std::vector<Corner> corners_above(int row, const SceneSurfaces& surfaces) const;
-  // The level of the pixel between the corners a and b above, c and d below.
+  // The grey level of the pixel whose upper corners are a and b, and whose lower corners are c and d.
   double level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
                const Corner& d) const;
 

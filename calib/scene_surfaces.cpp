@@ -76,7 +76,7 @@ Plane::Plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& across, const
 
 double Plane::meets(const Ray& ray) const {
   const double t = normal_.dot(origin_ - ray.origin) / normal_.dot(ray.direction);
-  // This includes rays that are parallel to the plane or lie in it.
+  // A ray that is parallel to the plane or lies in it misses it too.
   if (!(t > 0) || !std::isfinite(t)) return kNowhere;
   if (!extent_.contains(position(ray.at(t)))) return kNowhere;
   return t;

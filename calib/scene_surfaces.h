@@ -31,16 +31,17 @@ Texture noise(std::uint64_t seed, double level);
 // to the left of it is black.
 Texture chessboard(const GridShape& shape);
 
-// A plane with the origin of its texture at `origin`. `across` and `down` are one unit of the texture each,
-// at right angles. `extent`, in these units, limits the plane. Both sides look the same.
+// A textured rectangle. `origin` is the origin of its texture. The vectors `across` and `down`, at right
+// angles, are one unit of the texture each. `extent` is the rectangle in these units. Both sides look the
+// same.
 class Plane {
  public:
   Plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& across, const Eigen::Vector3d& down,
         const Eigen::AlignedBox2d& extent, Texture texture);
 
-  // t of the first point on the ray, infinite if there is none.
+  // t of the first point of the ray on this surface; infinite if there is none.
   double meets(const Ray& ray) const;
-  // The level of a point on the surface.
+  // The grey level of a point on the surface.
   double level(const Eigen::Vector3d& point) const { return texture_(position(point)); }
 
  private:
@@ -60,7 +61,7 @@ class Sphere {
  public:
   Sphere(const Eigen::Vector3d& centre, double radius, double unit_mm, Texture texture);
 
-  // As for a plane.
+  // As in Plane.
   double meets(const Ray& ray) const;
   double level(const Eigen::Vector3d& point) const;
 
@@ -71,16 +72,17 @@ class Sphere {
   Texture texture_;
 };
 
+// All surfaces of a scene.
 class SceneSurfaces {
  public:
-  // `background` is the level where a ray meets no surface.
+  // `background` is the grey level of a ray that meets no surface.
   SceneSurfaces(std::vector<std::variant<Plane, Sphere>> surfaces, double background);
 
-  // The first point of a surface on a ray.
+  // The first point of a ray on a surface; nullopt if it meets none.
   std::optional<Eigen::Vector3d> first(const Ray& ray) const;
   // Whether no surface lies between the eye and `point`, which is on a surface.
   bool visible(const Eigen::Vector3d& eye, const Eigen::Vector3d& point) const;
-  // The level that is seen along a ray.
+  // The grey level that is seen along a ray.
   double level(const Ray& ray) const;
 
  private:

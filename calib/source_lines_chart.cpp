@@ -26,12 +26,12 @@ struct Curve {
   cv::Scalar color;
   int thickness = 1;  // pixels
   Mark mark = Mark::kNone;
-  std::vector<double> values;  // for lines_of(0), lines_of(1), ..
+  std::vector<double> values;  // [i]: for lines_of(i)
 };
 
 int lines_of(std::size_t index) { return 1 + 2 * static_cast<int>(index); }
 
-// Curves of the largest number of lines over the picture, and of the mean.
+// Two curves of source_lines(): the largest number in the picture, and the mean.
 std::vector<Curve> curves_of(const kernels::RectificationTable& table, const std::string& side,
                              const cv::Scalar& color, Mark mark) {
   Curve largest{side + ", maximum", color, 2, mark, {}};
@@ -111,7 +111,7 @@ void draw_curve(cv::Mat& chart, const Axis& axis, const Curve& curve) {
   }
 }
 
-// One line above the plot.
+// Draws the legend as one line above the plot.
 void draw_legend(cv::Mat& chart, const std::vector<Curve>& curves) {
   constexpr int kSample = 28;
   const int bottom = kPlot.y - 16;

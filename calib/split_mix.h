@@ -13,7 +13,7 @@ constexpr std::uint64_t mixed(std::uint64_t value) {
   return value ^ value >> 31U;
 }
 
-// A number of 53 bits, 0 <= unit < 1.
+// Turns 64 random bits into a number of 53 bits, 0 <= number < 1.
 constexpr double unit(std::uint64_t bits) {
   return static_cast<double>(static_cast<std::int64_t>(bits >> 11U)) *
          0x1p-53;  // a signed number converts faster
@@ -25,7 +25,7 @@ class SplitMix {
 
   std::uint64_t next() { return mixed(state_ += kSplitMixStep); }
   double between(double low, double high) { return low + (high - low) * unit(next()); }
-  // Deviates from the value by at most `part` of it.
+  // A random number that deviates from `value` by at most `part` * `value`.
   double about(double value, double part) { return value * between(1 - part, 1 + part); }
 
  private:

@@ -138,7 +138,7 @@ StorageValue parse_storage(const std::string& text) {
   }
   check_characters(text);
   std::string yaml = text;
-  yaml[0] = '#';  // the first line is no directive of YAML
+  yaml[0] = '#';  // the first line is no directive of YAML: makes it a comment
   Builder builder;
   try {
     std::istringstream stream(yaml);

@@ -6,7 +6,7 @@
 
 namespace stereotlm::calib {
 
-// A value in a text of OpenCV's FileStorage, with its line.
+// A value of a text in OpenCV's FileStorage format, with its line; calibration_reader.cpp uses it.
 struct StorageValue {
   enum class Kind { kScalar, kList, kMap };
 
@@ -21,12 +21,13 @@ struct StorageValue {
   const StorageValue* find(const std::string& key) const;
 };
 
-// Limits of such a text. Each pair of pictures of a calibration adds 60 bytes and two paths.
+// Limits of the texts that parse_storage() accepts. Each pair of pictures of a calibration adds 60 bytes and
+// two paths.
 inline constexpr std::size_t kMostStorageBytes = 1'000'000;
 inline constexpr std::size_t kMostStorageDepth = 8;  // nested maps and lists
 
-// The root of the text, which is a map. The two limits bound memory and stack for any text, which OpenCV's
-// own parser does not. Throws std::runtime_error `line N: what was found: rule`.
+// Parses a text, and returns its root, which is a map. The two limits bound memory and stack for any text;
+// OpenCV's own parser has no such limits. Throws std::runtime_error `line N: what was found: rule`.
 StorageValue parse_storage(const std::string& text);
 
 }  // namespace stereotlm::calib

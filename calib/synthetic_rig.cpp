@@ -24,11 +24,12 @@ constexpr kernels::IntegerRule kGridSideRule{1, 1000};
 constexpr double kGridBackground = 115;
 constexpr double kPi = 3.14159265358979323846;
 
-// Each of these has its own random numbers, so that none depends on how many another takes.
-enum class Drawn : std::uint64_t { rig, scene, poses };
+// Each part of the rig has its own sequence of random numbers, so that no part depends on how many numbers
+// another draws.
+enum class Part : std::uint64_t { rig, scene, poses };
 
-SplitMix random_for(std::uint64_t seed, Drawn drawn) {
-  return SplitMix(mixed(mixed(seed) + static_cast<std::uint64_t>(drawn)));
+SplitMix random_for(std::uint64_t seed, Part part) {
+  return SplitMix(mixed(mixed(seed) + static_cast<std::uint64_t>(part)));
 }
 
 double radians(double degrees) { return degrees * (kPi / 180); }
@@ -49,7 +50,7 @@ CameraModel random_camera(SplitMix& random, int width, int height) {
 }
 
 Rig random_rig(std::uint64_t seed, int width, int height) {
-  SplitMix random = random_for(seed, Drawn::rig);
+  SplitMix random = random_for(seed, Part::rig);
   Rig rig;
   rig.width = kWidthRule.required("width", width);
   rig.height = kHeightRule.required("height", height);
@@ -80,9 +81,10 @@ struct Rectangle {
   double level;
 };
 
-// Random numbers are drawn inside braces, which evaluate in order; parentheses do not.
+// Draws random numbers only inside braces, whose elements are evaluated in order. Arguments in parentheses
+// are not.
 SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
-  SplitMix random = random_for(seed, Drawn::scene);
+  SplitMix random = random_for(seed, Part::scene);
   std::vector<std::variant<Plane, Sphere>> surfaces;
   const auto add_plane = [&](const Rectangle& shape) {
     const Matrix3d axes = (AngleAxisd(radians(shape.turn), Vector3d::UnitY()) *
@@ -137,7 +139,8 @@ bool inside(const Vector2d& position, int width, int height) {
          position.y() >= -0.5 && position.y() < height - 0.5;
 }
 
-// The pixel at which a camera sees a point in its own coordinates; nothing if it does not see it.
+// The pixel at which a camera sees a point, which is in its own coordinates; nullopt if it is not in the
+// picture.
 std::optional<Vector2d> pixel_of(const CameraModel& camera, const Vector3d& point, int width, int height) {
   if (!(point.z() > 0)) return std::nullopt;
   const Vector2d pixel = camera.pixel(point.hnormalized());
@@ -172,23 +175,22 @@ SyntheticRig::CornerPair SyntheticRig::grid_corners(const GridShape& shape, int 
   return seen(points).value();
 }
 
-// Size and tilt follow from the number, so that a few poses are well spread. Places are drawn, each a little
-// farther away, until the squares lie inside both pictures.
+// Size and tilt follow from the number, so that a few poses are well spread. Positions are drawn at random,
+// each a little farther away, until the squares lie inside both pictures.
 Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) const {
   check(shape, number);
   constexpr int kMostDraws = 500;
   constexpr double kFartherEachTime = 1.003;
   constexpr double kGoldenRatio = 1.618033988749895;
   constexpr double kRootOfTwo = 1.4142135623730951;
-  SplitMix random(random_for(seed_, Drawn::poses).next() + static_cast<std::uint64_t>(number));
+  SplitMix random(random_for(seed_, Part::poses).next() + static_cast<std::uint64_t>(number));
 
   const Vector2d middle = Vector2d(shape.columns - 1, shape.rows - 1) * shape.square_mm / 2;
   const Vector2d squares = Vector2d(shape.columns + 1, shape.rows + 1) * shape.square_mm;
   const double focal = rig_.left.matrix(0, 0);
-  // The part of a side of the picture that the squares fill, and the largest disparity as a part of the
-  // width.
+  // The squares fill this part of a side of the picture.
   const double part = 0.4 + 0.3 * std::fmod(number * kGoldenRatio, 1.0);
-  constexpr double kApart = 0.25;
+  constexpr double kApart = 0.25;  // the largest disparity, as a part of the width
   double distance = focal * std::max({squares.x() / rig_.width / part, squares.y() / rig_.height / part,
                                       rig_.translation.norm() / rig_.width / kApart});
 
@@ -214,7 +216,8 @@ Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) co
                           std::to_string(rig_.height) + " pixels show");
 }
 
-// Where the cameras see points given in coordinates of the left camera; nothing unless both see all points.
+// The pixels at which the cameras see points, which are in coordinates of the left camera; nullopt unless
+// both see all points.
 std::optional<SyntheticRig::CornerPair> SyntheticRig::seen(const std::vector<Vector3d>& points) const {
   CornerPair result;
   for (const Vector3d& point : points) {

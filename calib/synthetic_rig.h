@@ -15,9 +15,9 @@
 
 namespace stereotlm::calib {
 
-// Two cameras that are known exactly, with pictures of chessboards to calibrate them, and of a scene with a
-// wall, a floor, a slanted board and spheres, all textured. A seed gives the same pictures on every machine,
-// within floating-point accuracy.
+// A rig whose parameters are known exactly. It renders pictures of chessboards, to calibrate the cameras, and
+// of a textured scene: a wall, a floor, a slanted board and spheres. The same seed gives the same pictures on
+// every machine, within floating-point accuracy.
 //
 // The cameras are about 80 mm apart and not quite parallel. Their wide-angle lenses see about 68 degrees
 // across (51 down if the picture is taller than 3:4 of its width). The rectified disparities of the scene are
@@ -39,29 +39,31 @@ class SyntheticRig {
     Corners right;
   };
 
-  // The chessboard with a white border before a grey background, in pose `number`, 0, 1, .. It fills a good
-  // part of the pictures where both cameras see it, is tilted from the line of sight by 10 to 35 degrees and
-  // rolled, and every square lies wholly inside both pictures. A dozen poses calibrate the rig. Throws
-  // std::invalid_argument for columns or rows outside 1..1000, squares that are not larger than 0 mm or a
-  // negative number, std::domain_error if the pictures have no room for it (a picture of a few rows).
+  // The pictures of the chessboard, with a white border before a grey background, in pose `number`: 0, 1, ..
+  // The board fills a good part of both pictures. It is tilted from the line of sight by 10 to 35 degrees,
+  // and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate the rig.
+  // Throws std::invalid_argument for columns or rows outside 1..1000, squares that are not larger than 0 mm,
+  // or a negative `number`. Throws std::domain_error if the pictures have no room for the board, such as
+  // pictures of a few rows.
   Pair grid_view(const GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
   CornerPair grid_corners(const GridShape& shape, int number) const;
 
+  // The pictures of the scene.
   Pair scene() const;
   // The point that a position of the scene's left picture shows, in camera coordinates of the left camera, in
-  // mm. Nothing if the position is outside the picture, or shows no surface.
+  // mm. Nullopt if the position is outside the picture, or shows no surface.
   std::optional<Eigen::Vector3d> point(const Eigen::Vector2d& left_pixel) const;
-  // The pixel at which the right camera sees that point. Nothing if there is no point, if it is hidden from
-  // the right camera, or if it lies outside its picture.
+  // The pixel at which the right camera sees that point. Nullopt if there is no point, if it is hidden from
+  // the right camera, or if it lies outside the right picture.
   std::optional<Eigen::Vector2d> match(const Eigen::Vector2d& left_pixel) const;
 
   // The disparities that a board with a calibration of this rig should find in the scene: for every pixel of
   // its output, row by row, its column less the column of its match in the rectified right picture; NaN
   // without a match. Column u of the output is column u + disparity_offset of the rectified left picture, so
-  // the true disparity is larger by disparity_offset. The calibration may be recovered, and then differ from
-  // rig(): pixels match in the pictures of the cameras, and `calibrated` and its `rectification` give their
-  // places in the rectified pictures. Throws std::invalid_argument if the pictures of `calibrated` have
+  // the true disparity is larger by disparity_offset. `calibrated` may differ from rig(), if it was fitted to
+  // pictures: the matches are those in the pictures of the cameras, and `calibrated` and its `rectification`
+  // map them to the rectified pictures. Throws std::invalid_argument if the pictures of `calibrated` have
   // another size, else as rectified_pixel() does.
   std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
                                int disparity_offset) const;

@@ -9,7 +9,8 @@
 
 namespace stereotlm::platform {
 
-// Checks identities between counters (contract section 6) and lists those that do not hold.
+// Checks identities between counters (contract section 6), and collects a message for each that does not
+// hold. `what` and `as` name the two values in the message.
 class Audit {
  public:
   void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {

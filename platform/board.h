@@ -9,8 +9,8 @@
 
 namespace stereotlm::platform {
 
-// The ADM-XRC-II board: the FPGA and its SSRAM banks, bound together. Its sockets are those of `core`:
-// `registers`, `local_bus` and `done`.
+// The ADM-XRC-II board: the FPGA and its SSRAM banks, bound together. The board is connected by the sockets
+// of its core: `core.registers`, `core.local_bus` and `core.done`.
 class Board : public sc_core::sc_module {
  public:
   // Throws std::invalid_argument if the board has problems.

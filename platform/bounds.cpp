@@ -14,7 +14,7 @@ namespace {
 
 using kernels::RectificationTable;
 
-// For each row of the image: the number of slots per column that fetch it.
+// The number of strips that fetch each row of the image: [row].
 std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) {
   std::vector<std::uint64_t> fetches(static_cast<std::size_t>(geometry.height));
   for (int strip = 0; strip < geometry.strips; ++strip) {
@@ -45,7 +45,8 @@ PortAccesses accesses_of(const fpga::FrameGeometry& geometry,
   return accesses;
 }
 
-// Clocks of a bus for `words` words in bursts of at most `burst_words`.
+// The clocks that a bus needs for `words` words in bursts of at most `burst_words`: one per word, and
+// `clocks_a_burst` more per burst.
 std::uint64_t bus_clocks(std::uint64_t words, int burst_words, int clocks_a_burst) {
   const auto burst = static_cast<std::uint64_t>(burst_words);
   return words + (words + burst - 1) / burst * static_cast<std::uint64_t>(clocks_a_burst);
@@ -85,12 +86,12 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
                   accesses.right}};
   const int disparity = bank_in_turn(layout.disparity, frame);
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
-  const std::uint64_t after_last_slot = geometry.drain_cycles + 1 + pipeline;  // the drain and the last write
+  const std::uint64_t after_last_slot = geometry.drain_cycles + 1 + pipeline;  // 1: the last write
 
   struct BankDemand {
     std::uint64_t reads = 0;
     std::uint64_t writes = 0;
-    std::uint64_t after_last_read = 0;  // a lower bound
+    std::uint64_t after_last_read = 0;  // least number of cycles from a read to the matcher
   };
   std::map<int, BankDemand> demands;
   const auto read = [&demands](int bank, std::uint64_t count, std::uint64_t cycles_to_matcher) {
@@ -122,8 +123,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   bounds.push_back({"port result", geometry.result_words + pipeline});
   for (const auto& [bank, demand] : demands) {
     std::uint64_t cycles = demand.reads + demand.writes + pipeline;
-    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher consumes its slot one
-    // read latency later at the earliest.
+    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher consumes its slot
+    // at least `after_last_read` cycles later.
     if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
     bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});
   }
@@ -149,7 +150,7 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   constexpr int kAddressAndIdle = 2;
   const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
-  // DMA: words and descriptor.
+  // The clocks of one DMA transfer: a descriptor of 4 words, then a picture or result.
   const std::uint64_t moved =
       bus_clocks(4, 4, memory_burst) + bus_clocks(picture, board.bridge.dma_burst_words, memory_burst);
   const std::uint64_t captured =
@@ -157,9 +158,9 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
               : bus_clocks(picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
                            kAddressAndIdle + board.pci.bridge_wait_clocks);
   const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
-  // The local bus moves the result, and the pair either by DMA or as it was captured. Each word is granted in
-  // its own cycle of the FPGA. Two words of a burst are at least one local clock apart. Two bursts are apart by
-  // an idle, an address, a decode and a word clock.
+  // The local bus moves the result, and the pair either by DMA or as it was captured. A cycle of the FPGA
+  // grants one word at most. From one word of a burst to the next it takes at least one local clock. From the
+  // last word of a burst to the first of the next burst it takes four: idle, address, decode and word.
   const double local_pictures = to_host || whole_pictures ? 3 : 1;
   const double words = local_pictures * static_cast<double>(picture);
   const double bursts =
@@ -188,7 +189,7 @@ Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t f
 }
 
 Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames) {
-  if (frames == 0) throw std::invalid_argument("frames = 0: a bound of no frames");
+  if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
   const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t total = 0;
   ResourceBound slowest;
@@ -209,7 +210,8 @@ Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::u
 double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from) {
   const BufferLayout layout = layout_buffers(board);
-  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;  // a picture has as many
+  // A picture has as many words as a result.
+  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
   const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t one_by_one = 0;
   std::vector<std::uint64_t> cycles_of_banks(board.banks.size());

@@ -10,8 +10,8 @@
 
 namespace stereotlm::platform {
 
-// Memory accesses of one side's ports in a frame. They follow from the tables and are the same for every
-// allocation of the buffers.
+// Numbers of memory accesses that the ports of one side make in a frame. They depend on the geometry of the
+// frame and on the tables, not on the allocation of the buffers.
 struct PortAccesses {
   std::uint64_t lut = 0;
   std::uint64_t pixel = 0;
@@ -24,48 +24,52 @@ struct FrameAccesses {
 // Throws std::invalid_argument if the board has problems.
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 
-// A lower bound for the length of a frame: the cycles that one resource of the core needs, pipeline latency
-// included. No run is faster.
+// A lower bound for the length of a frame: the cycles that one resource of the core needs for it, pipeline
+// latency included.
 //
 // | resource | needs                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
 // | port P   | One cycle per slot or word. The first port of a lane (its LUT port, or its pixel port if   |
-// |          | the side has no table) also waits for the lane: with F places, slot s+F is taken when slot |
-// |          | s has left, the read latencies later.                                                      |
-// | bank B   | One cycle per access, without turnaround. After the last read the drain and the last write.|
-// | matcher  | The latencies of the first slot, one cycle per slot, the drain, the last write.            |
+// |          | the side has no table) also waits for a place in the lane, which has F places: slot s+F is |
+// |          | taken after slot s was consumed, at least the read latencies of the lane after s was taken.|
+// | bank B   | One cycle per access, no turnaround. After the last read: the latencies of its slot up to  |
+// |          | the matcher, the drain and the last write.                                                 |
+// | matcher  | The read latencies of the first slot, one cycle per slot, the drain, the last write.       |
 struct ResourceBound {
   std::string resource;  // "port left_lut", "bank bank0", "matcher"
   std::uint64_t cycles = 0;
 };
 
-// The bounds of frame number `frame` with these tables: ports, banks of the frame, matcher. Throws
-// std::invalid_argument if the board has problems.
+// The bounds of frame number `frame` with these tables: first the ports, then the banks that the frame uses,
+// last the matcher. Throws std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
 
-// An upper bound for the frame rate, from time 0 to the last delivery, that one part of the computer around
-// the board allows. No run is faster.
+// An upper bound for the frame rate that one part of the computer around the board allows. The rate counts
+// from time 0 to the last delivery.
 //
 // | resource | limit                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
 // | camera   | Its frame clock. On demand: the time from the first to the last pixel of a frame.          |
-// | pci      | The clocks for the words of a pair and a result, and for the fewest bursts that hold them. |
-// | bridge   | The same for its local bus, which moves at most one word per cycle of the FPGA.            |
+// | pci      | The clocks of the words of a pair and a result, and of the fewest bursts that hold them.   |
+// | bridge   | The same for the local bus, which moves at most one word per cycle of the FPGA.            |
 //
-// A run that drops pixels moves fewer words. Without `whole_pictures` the words of captures do not count.
+// A run that drops pixels moves fewer words. With `whole_pictures` false, as for such a run, the words that
+// the capture boards write are not counted.
 struct RateBound {
   std::string resource;  // "camera", "pci", "bridge"
   double frames_per_second = 0;
 };
 
-// The bounds in the order of the table. Throws std::invalid_argument if the board has problems.
+// The bounds of the computer, in the order of the table above. Throws std::invalid_argument if the board has
+// problems.
 std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures);
 
-// Sets bound.system to the least of bound.core and computer_bounds(). Throws as computer_bounds() does.
+// Sets bound.system to the least of bound.core and the bounds of computer_bounds(), and
+// bound.system_limited_by to its resource. Throws as computer_bounds() does.
 void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound);
 
-// A point in the run of a computer: the core starts frame number `frame` at `start_s`, in seconds from time
-// 0.
+// The start of a frame in the run of a computer: the core starts frame number `frame` at `start_s`, in
+// seconds from time 0.
 struct FrameBegin {
   std::uint64_t frame = 0;
   double start_s = 0;
@@ -73,17 +77,17 @@ struct FrameBegin {
 
 // A lower bound for the time of the last of `frames` deliveries, in seconds from time 0, of a run that
 // continues from `from` and loses no pixel. Two things limit the run:
-// - The core runs its frames one after another, none faster than its bound.
-// - A bank has one access per cycle. It serves what the core reads and writes, the results that are read
-//   back, and each pair that is captured after the core has begun an earlier frame (all but the first pair of
-//   each buffer).
+// - The core runs its frames one after another, and each takes at least the cycles of its bound.
+// - A bank makes one access per cycle: for the core, for the results that are read back, and for the pictures
+//   that are captured. The first pair of each buffer is left out, because its capture may have ended before
+//   `from`.
 // Throws std::invalid_argument if the board has problems.
 double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from);
 
-// The upper bound for the frame rate of frames 0..frames-1, and the resource that limits the slowest of them
-// (of equal ones the last in the order of frame_bounds()). Throws std::invalid_argument if the board has
-// problems or `frames` is 0.
+// The upper bound for the frame rate of the core over frames 0..frames-1, and the resource that limits the
+// slowest of these frames. If several resources limit it equally, it is the last of them in the order of
+// frame_bounds(). Throws std::invalid_argument if the board has problems or `frames` is 0.
 Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames);
 Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames);
 

@@ -38,7 +38,7 @@ PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
           cycles.idle(),           cycles.blocked(), cycles.starved()};
 }
 
-// Sorted by port, bank and causing port, turnaround last.
+// Returns the stall cycles that are not 0, sorted by port, bank and cause. The last cause is turnaround.
 std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters& counters) {
   std::vector<BlameRow> rows;
   for (std::size_t victim = 0; victim < kPortCount; ++victim) {

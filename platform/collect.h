@@ -16,17 +16,17 @@
 
 namespace stereotlm::platform {
 
-// Counters of a board's modules over its finished frames. Valid between two frames only: a running frame has
-// counted in part. Taking them costs the same after any number of frames.
+// Counters of a board's modules, summed over the finished frames. They must be taken between two frames,
+// because the modules count during a frame. The cost of taking them does not depend on the number of frames.
 struct BoardCounters {
   struct Bank {
     memory::ArbiterStats arbiter;
     std::uint64_t uncounted_grants = 0;  // grants outside the counted cycles
-    std::uint64_t accesses = 0;          // accesses that reached the bank, also refused ones
+    std::uint64_t accesses = 0;          // accesses that reached the bank, including those that it refused
   };
   struct Lane {
-    std::uint64_t issued = 0;    // slots
-    std::uint64_t consumed = 0;  // slots
+    std::uint64_t issued = 0;    // slots that the sequencer has issued
+    std::uint64_t consumed = 0;  // slots that the matcher has consumed
   };
 
   std::size_t frames = 0;
@@ -39,15 +39,17 @@ struct BoardCounters {
 };
 
 BoardCounters counters_of(const Board& board);
-// What control and arbiters alone have counted. The rest is 0: accesses, slots issued, words packed and written.
+// The counters that the control and the arbiters keep. The other counters are 0: accesses, slots issued,
+// words packed and written.
 BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters);
 
-// The figures of the frames that `counters` cover, and their bound. Checks the identities of contract section
-// 6; `failed` lists those that do not hold. `counters` are of this board, now or earlier.
+// Returns the figures of the frames that `counters` cover, and the bound for these frames. Checks the
+// identities of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken
+// from this board, now or earlier.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters);
 
-// The same for a core that ran without a board. `frame_cycles`: one entry per frame.
+// The same for a core that ran without a board. `frame_cycles`: the length of each frame.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters);
 

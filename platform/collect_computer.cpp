@@ -21,7 +21,7 @@ ComputerCounters::Camera camera_counters(const capture::Camera& camera,
   return {camera.stats().frames, grabber.undecided(), grabber.stats()};
 }
 
-// A frame that begins at the end of the run counts as dropped: no capture has taken it.
+// A frame that begins just when the run ends counts as dropped (not armed), because no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
   const capture::CaptureBoard::Stats& capture = camera.capture;
   CameraStatistics statistics;
@@ -37,7 +37,7 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
   return statistics;
 }
 
-// The percentile by nearest rank.
+// Percentiles by nearest rank, in milliseconds.
 Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
   std::sort(values_ps.begin(), values_ps.end());
   const auto rank = [&values_ps](std::size_t percent) {

@@ -18,23 +18,23 @@ namespace stereotlm::platform {
 
 // Times of a delivered frame.
 struct Delivery {
-  std::uint64_t capture_ps = 0;  // time of its first pixel
+  std::uint64_t capture_ps = 0;  // time of the first pixel
   std::uint64_t host_ps = 0;     // time at which the host has handled the end of its read-back
 };
 
-// Counters of a computer's modules up to now. Valid only while the core runs no frame.
+// Counters of a computer's modules up to now. They must be taken while the core runs no frame.
 struct ComputerCounters {
-  // Words written to the board: one entry per buffer in the order of buffers() in buffer_layout.h, then one for
-  // words outside all buffers.
+  // Words that are written to the board through the bridge. Each list has one entry per buffer, in the order
+  // of buffers() in buffer_layout.h, and a last entry for words outside all buffers.
   struct Words {
-    std::vector<std::uint64_t> into_bridge;
-    std::vector<std::uint64_t> in_bridge;  // words that wait in the bridge
-    std::vector<std::uint64_t> on_bus;     // words of the burst on the local bus that are not granted yet
-    std::vector<std::uint64_t> granted;    // words granted to the host port
+    std::vector<std::uint64_t> into_bridge;  // words that the bridge has taken
+    std::vector<std::uint64_t> in_bridge;    // words that wait in the bridge
+    std::vector<std::uint64_t> on_bus;       // words of the burst on the local bus that are not granted yet
+    std::vector<std::uint64_t> granted;      // words granted to the host port
   };
   struct Camera {
     std::uint64_t frames = 0;  // frames that have begun
-    bool undecided = false;    // the last frame began at this time: its capture is not decided yet
+    bool undecided = false;    // the last frame began just now, and it is not decided whether it is captured
     capture::CaptureBoard::Stats capture;
   };
 
@@ -48,9 +48,9 @@ struct ComputerCounters {
 
 ComputerCounters counters_of(const Computer& computer);
 
-// The figures of a run that ended with the last of `deliveries`, and their bounds. Checks the identities of
-// contract section 6; `failed` lists those that do not hold. `counters` were taken at the end of the run, and
-// cover the same frames as `deliveries`, at least one.
+// Returns the figures and the bounds of a run that ended with the last of `deliveries`. Checks the identities
+// of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken at the end of
+// the run. `deliveries` has one entry for each frame that they cover, at least one.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries);
 

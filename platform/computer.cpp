@@ -13,11 +13,11 @@ enum Window : std::size_t {
   kBridgeRegisters,
   kLeftRegisters,
   kRightRegisters,
-  kLoadDevice
+  kTrafficDevice
 };
 enum Interrupt : std::size_t { kBridgeInterrupt, kLeftInterrupt, kRightInterrupt, kInterruptCount };
 
-// Registers of add-in boards have the access time of the bridge.
+// The registers of the capture boards have as many wait clocks as the bridge.
 pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes) {
   const DeviceMap map;
   const auto window = [](std::uint64_t base, std::uint64_t bytes, int wait_clocks) {
@@ -36,16 +36,17 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
   if (board.pci.load) {
     config.masters.emplace_back("load");
     config.windows.push_back(
-        window(map.load, 4 * static_cast<std::uint64_t>(board.pci.load->burst_words), 0));
+        window(map.traffic_generator, 4 * static_cast<std::uint64_t>(board.pci.load->burst_words), 0));
   }
   return config;
 }
 
-std::unique_ptr<pci::TrafficGenerator> make_load(const std::optional<PciLoadConfig>& load) {
+std::unique_ptr<pci::TrafficGenerator> make_traffic_generator(const std::optional<PciLoadConfig>& load) {
   if (!load) return nullptr;
   const auto ps = [](double us) { return static_cast<std::uint64_t>(std::llround(us * 1e6)); };
-  const pci::TrafficGeneratorConfig config = {static_cast<std::uint32_t>(DeviceMap().load), load->burst_words,
-                                              ps(load->first_us), ps(load->interval_us), ps(load->access_us)};
+  const pci::TrafficGeneratorConfig config = {static_cast<std::uint32_t>(DeviceMap().traffic_generator),
+                                              load->burst_words, ps(load->first_us), ps(load->interval_us),
+                                              ps(load->access_us)};
   return std::make_unique<pci::TrafficGenerator>("load", config);
 }
 
@@ -78,7 +79,7 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
       right_camera("right_camera", camera_config(config), right),
       left_capture("left_capture", capture_config(config)),
       right_capture("right_capture", capture_config(config)),
-      load(make_load(config.pci.load)) {
+      traffic_generator(make_traffic_generator(config.pci.load)) {
   bind_pci(binder);
   bind_capture();
   binder.bind(cpu.bus, host_bridge.cpu, "cpu_to_host_bridge");
@@ -102,9 +103,9 @@ void Computer::bind_pci(Binder& binder) {
   binder.bind(pci_bus.targets[kLeftRegisters], left_capture.registers, "pci_to_left_capture");
   binder.bind(pci_bus.targets[kRightRegisters], right_capture.registers, "pci_to_right_capture");
   pci_bus.stops[kBridgeSlave].bind(bridge.stop);
-  if (load) {
-    load->pci.bind(pci_bus.slots[kLoad]);
-    binder.bind(pci_bus.targets[kLoadDevice], load->device, "pci_to_load");
+  if (traffic_generator) {
+    traffic_generator->pci.bind(pci_bus.slots[kTrafficGenerator]);
+    binder.bind(pci_bus.targets[kTrafficDevice], traffic_generator->device, "pci_to_load");
   }
 }
 
@@ -116,7 +117,7 @@ void Computer::bind_capture() {
   };
   bind(left_camera, left_capture);
   bind(right_camera, right_capture);
-  // The left board's trigger starts both cameras.
+  // The trigger of the left capture board starts both cameras.
   left_capture.triggers_out.bind(left_camera.triggers_in);
   left_capture.triggers_out.bind(right_camera.triggers_in);
   left_capture.partner.bind(right_capture.as_partner);

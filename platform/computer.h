@@ -22,11 +22,12 @@
 namespace stereotlm::platform {
 
 // The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board
-// behind its PCI bridge, host memory, and the processor that runs `program`. DeviceMap has the addresses of
-// the devices.
+// behind its PCI bridge, host memory, and the processor that runs `program`. The board key `pci.load` adds a
+// traffic generator. DeviceMap has the addresses of the devices.
 class Computer : public sc_core::sc_module {
  public:
-  enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kLoad };
+  // Masters of the PCI bus: indices of its slots and of its statistics.
+  enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kTrafficGenerator };
 
   // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has
   // problems, or `host_memory_bytes` is out of range.
@@ -44,8 +45,8 @@ class Computer : public sc_core::sc_module {
   capture::Camera right_camera;
   capture::CaptureBoard left_capture;
   capture::CaptureBoard right_capture;
-  std::unique_ptr<pci::TrafficGenerator>
-      load;  // null on a board without `pci.load`; then there is no master kLoad
+  // Null on a board without `pci.load`. Such a bus has no master kTrafficGenerator.
+  std::unique_ptr<pci::TrafficGenerator> traffic_generator;
 
  private:
   void bind_pci(Binder& binder);

@@ -25,6 +25,7 @@ std::vector<memory::SsramBankConfig> bank_configs(const BoardConfig& board) {
   return banks;
 }
 
+// Runs frames for run_core(), and sums their counts.
 class CoreRun {
  public:
   CoreRun(const BoardConfig& board, const Tables& tables, std::uint64_t stall_timeout_cycles)
@@ -86,7 +87,7 @@ class CoreRun {
   fpga::FrameRun frames_;
   fpga::AccessPatterns patterns_{fpga::AccessPattern(frames_.control().geometry()),
                                  fpga::AccessPattern(frames_.control().geometry())};
-  // Of all frames.
+  // Sums over all frames.
   std::vector<std::uint64_t> accesses_;    // [bank]
   std::array<std::uint64_t, 2> issued_{};  // [side]: slots
   std::uint64_t packed_words_ = 0;

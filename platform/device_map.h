@@ -8,8 +8,8 @@
 
 namespace stereotlm::platform {
 
-// Addresses of the devices on the PCI bus, in bytes. They are our choice: in a real machine the BIOS assigns
-// them. This header and those in the table are all that a program on the host needs.
+// Base addresses of the devices on the PCI bus, in bytes. They are a choice of this model; in a real machine
+// the BIOS assigns them. A program on the host needs this header and those that the table names.
 //
 // | from        | holds                                                    | described in                |
 // |-------------|----------------------------------------------------------|-----------------------------|
@@ -26,7 +26,7 @@ struct DeviceMap {
   std::uint64_t bridge_registers = 0xE000'0000;
   std::uint64_t left_capture = 0xE100'0000;
   std::uint64_t right_capture = 0xE100'1000;
-  std::uint64_t load = 0xE200'0000;
+  std::uint64_t traffic_generator = 0xE200'0000;
 };
 
 }  // namespace stereotlm::platform

@@ -9,8 +9,9 @@
 
 namespace stereotlm::platform {
 
-// The figures of one run, as `stats.json` lists them (contract section 6). Counters of banks and ports are
-// sums over the frames and cover the counted cycles of contract section 2 only.
+// Statistics, at the end of this header, has the figures of one run, as `stats.json` lists them (contract
+// section 6). Counters of banks and ports are sums over the frames, and cover only the counted cycles of
+// contract section 2.
 struct BankStatistics {
   std::string name;
   std::uint64_t reads = 0;
@@ -20,7 +21,7 @@ struct BankStatistics {
   std::uint64_t idle_cycles = 0;
   std::uint64_t contended_cycles = 0;
   double utilization = 0;           // busy_cycles / cycles, 0..1
-  double megabytes_per_second = 0;  // 10^6 bytes; 4 * (reads + writes) * clock_mhz / cycles
+  double megabytes_per_second = 0;  // 10^6 bytes per second: 4 * (reads + writes) * clock_mhz / cycles
 };
 
 struct PortStatistics {
@@ -41,12 +42,13 @@ struct BlameRow {
 };
 
 struct FramesPerSecond {
-  double core = 0;
-  std::optional<double> system;  // delivered / time of the last delivery
-  std::optional<double> steady;  // (delivered - 1) / (last - first); from two deliveries on
+  double core = 0;  // frames / the time that the core runs
+  // The other rates are those of a computer, and nullopt without one.
+  std::optional<double> system;  // deliveries / time of the last delivery
+  std::optional<double> steady;  // (deliveries - 1) / time between the first and the last; nullopt for one
 };
 
-// Frames per second that no run of these frames can exceed, and what limits them.
+// Upper bounds for the rates `core` and `system` of FramesPerSecond, and the resource that sets each of them.
 struct Bound {
   double core = 0;
   std::string core_limited_by;
@@ -58,7 +60,7 @@ struct PciMasterStatistics {
   std::string name;
   std::uint64_t transactions = 0;
   std::uint64_t words = 0;
-  std::uint64_t wait_clocks = 0;  // from each request to its address clock
+  std::uint64_t wait_clocks = 0;  // clocks from each request to its address clock, summed
 };
 
 struct CameraStatistics {
@@ -83,7 +85,7 @@ struct Percentiles {
 // The computer around the board, from time 0 to the last delivery.
 struct ComputerStatistics {
   std::uint64_t pci_clocks = 0;
-  std::uint64_t pci_busy_clocks = 0;  // address, wait and data clocks
+  std::uint64_t pci_busy_clocks = 0;  // address, wait and data clocks among them
   std::vector<PciMasterStatistics> pci_masters;
   std::uint64_t posted_words = 0;  // words that masters wrote into the bridge
   std::uint64_t dma_words = 0;     // words that the bridge's DMA moved
@@ -97,8 +99,8 @@ struct Statistics {
   std::string board;
   std::string fidelity;
   std::uint64_t frames = 0;
-  std::uint64_t cycles = 0;                 // sum over frames of the counted cycles
-  std::vector<std::uint64_t> frame_cycles;  // per processed frame
+  std::uint64_t cycles = 0;                 // counted cycles, summed over the frames
+  std::vector<std::uint64_t> frame_cycles;  // length of each frame, including the pipeline latency
   FramesPerSecond frames_per_second;
   Bound bound;
   std::vector<BankStatistics> banks;  // in the order of the board file

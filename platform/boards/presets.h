@@ -11,7 +11,7 @@ struct Preset {
   std::string_view text;
 };
 
-// All of them, `fpl2003` first.
+// All presets, `fpl2003` first.
 const std::vector<Preset>& presets();
 
 }  // namespace stereotlm::platform

@@ -33,10 +33,10 @@ class FieldChecker {
   }
 
   bool broke(const std::string& path) const { return broken_.count(path) > 0; }
-  // Problems by the index of the key in the table, so that they are in the order of the fields.
+  // The problems, sorted by the index of their key in board_keys(): that is the order of the fields.
   std::multimap<std::size_t, std::string> found;
 
-  // The index of the first key at or below the path.
+  // The index in board_keys() of the first key at or below the path.
   static std::size_t order_of(const std::string& path) {
     const std::string schema = schema_path(path);
     const auto& keys = board_keys();

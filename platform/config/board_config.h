@@ -17,7 +17,7 @@ using capture::CameraTrigger;
 enum class CaptureDestination { kBoard, kHostMemory };
 
 // One board as its YAML file describes it (contract section 4). Plain values; the defaults are the paper's
-// board, preset `fpl2003`. Each field has its unit and range beside it; problems() checks them all.
+// board, preset `fpl2003`. Each field has its unit and range beside it; problems() checks all ranges.
 struct ImageConfig {
   int width = 640;   // pixels, 4..2048, a multiple of 4
   int height = 480;  // pixels, 1..2048
@@ -39,7 +39,7 @@ struct CaptureConfig {
 // to picoseconds.
 struct PciLoadConfig {
   int burst_words = 32;    // 32-bit words per transfer, 1..1024
-  double interval_us = 0;  // time from one request to the next, 0..10^9; 0: requests again at once
+  double interval_us = 0;  // time from one request to the next, 0..10^9; 0: requests again immediately
   double first_us = 0;     // time of the first request, 0..10^9
   double access_us = 0;    // wait of the bus before the first word of a transfer, 0..10^6
 };
@@ -76,7 +76,7 @@ struct BankConfig {
 };
 
 // The bank of each buffer, by name. The frames use the entries of a list in turn. A list has 1 to 3 entries;
-// the two image lists are equally long. A table without value does not exist (`none`).
+// the two image lists are equally long. A side whose `.._lut` has no value has no look-up table (`none`).
 struct AllocationConfig {
   std::vector<std::string> left_image = {"bank0", "bank1"};
   std::vector<std::string> right_image = {"bank2", "bank3"};
@@ -111,8 +111,8 @@ bool operator==(const PciLoadConfig& a, const PciLoadConfig& b);
 bool operator==(const BoardConfig& a, const BoardConfig& b);
 inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a == b); }
 
-// Every broken rule as `path.of.key = value: rule`, in the order of the fields; empty if the board can be
-// built. The reader of board files adds file, line and column to the same rules.
+// Returns every broken rule as `path.of.key = value: rule`, in the order of the fields; nothing if the board
+// can be built. The reader of board files checks the same rules, and adds file, line and column.
 std::vector<std::string> problems(const BoardConfig& board);
 
 // The place of a buffer: an index into BoardConfig::banks, and the first word in that bank.
@@ -121,8 +121,8 @@ struct BufferPlace {
   std::uint32_t first_word = 0;
 };
 
-// The places of all buffers (contract 1.5). Buffers that share a bank begin at word 0 and follow each other in
-// the order left_image, right_image, disparity (each in list order), left_lut, right_lut.
+// The places of all buffers (contract 1.5). Buffers that share a bank begin at word 0 and follow each other
+// in the order left_image, right_image, disparity (each in list order), left_lut, right_lut.
 struct BufferLayout {
   std::vector<BufferPlace> left_image;
   std::vector<BufferPlace> right_image;
@@ -131,7 +131,7 @@ struct BufferLayout {
   std::optional<BufferPlace> right_lut;
 };
 
-// Throws std::invalid_argument with all problems() if there are any.
+// Computes the places. Throws std::invalid_argument with all problems() if there are any.
 BufferLayout layout_buffers(const BoardConfig& board);
 
 // The number of frames after which all allocation lists start over: the least common multiple of their

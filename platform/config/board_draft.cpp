@@ -19,7 +19,8 @@ namespace {
   throw BoardError({{std::move(place), std::move(text)}});
 }
 
-// Adds to `own` the values that only `base` has, map by map.
+// Adds to the map `own`, and to the maps in it, the entries that only `base` has. Some maps are taken whole
+// from `own`.
 void merge_into(YamlNode& own, const YamlNode& base, const std::string& path) {
   constexpr std::array<std::string_view, 2> kTakenWhole = {"ssram.banks", "matcher.filter"};
   const bool is_whole = std::find(kTakenWhole.begin(), kTakenWhole.end(), path) != kTakenWhole.end();
@@ -44,7 +45,7 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// Why the tree cannot hold a value at the path; empty if it can.
+// The reason for which the tree cannot hold a value at the path; empty if it can.
 std::string way_problem(const YamlNode& tree, const std::string& path) {
   const YamlNode* at = &tree;
   std::string passed;
@@ -58,7 +59,7 @@ std::string way_problem(const YamlNode& tree, const std::string& path) {
   return "";
 }
 
-// Puts the value into the tree at the path, or returns way_problem().
+// Puts the value into the tree at the path. If the tree cannot hold it there, returns way_problem(), else "".
 std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
   YamlNode* at = &tree;
   YamlNode::Entry* entry = nullptr;
@@ -83,9 +84,9 @@ std::string put(YamlNode& tree, const std::string& path, YamlNode value, const P
   return "";
 }
 
-// If most keys are missing, replaces these findings by one that advises `extends`: such a file usually means to
-// extend a preset.
-void say_what_to_extend(std::vector<Finding>& findings) {
+// If most keys are missing, replaces the findings of missing keys by one that advises `extends`: the author
+// of such a file usually wants to extend a preset.
+void advise_extends(std::vector<Finding>& findings) {
   const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
   std::size_t missing = 0;
   for (const Finding& finding : findings) {
@@ -112,7 +113,7 @@ void set_source(YamlNode& node, int source) {
 }  // namespace
 
 std::string path_problem(const std::string& path) {
-  if (path == "extends") return "extends stands in the board file";
+  if (path == "extends") return "extends can only be given in the board file";
   std::string schema;
   for (const std::string& part : parts_of(path)) {
     const std::vector<std::string> known = child_keys(schema);
@@ -156,7 +157,7 @@ BoardDraft::BoardDraft(const std::string& board) {
   resolve_extends();
 }
 
-// Presets are files of this project and have no errors.
+// Does not handle errors, because the presets are files of this project.
 BoardDraft BoardDraft::of_preset(std::string_view name) {
   BoardDraft draft;
   draft.tree_ = parse_yaml(std::string(preset_text(name)), Place::kPreset);
@@ -164,7 +165,7 @@ BoardDraft BoardDraft::of_preset(std::string_view name) {
   return draft;
 }
 
-// Removes `extends` from the tree and adds the values of the preset.
+// Removes `extends` from the tree, and adds the values of the preset that it names.
 void BoardDraft::resolve_extends() {
   const auto is_extends = [](const YamlNode::Entry& entry) {
     return entry.key.is_scalar() && entry.key.text == "extends";
@@ -274,7 +275,7 @@ BoardConfig BoardDraft::read() const {
 BoardDraft::Reading BoardDraft::read_with_problems() const {
   std::vector<Finding> findings = findings_;
   Reading reading{read_board(tree_, is_whole_, findings), {}};
-  if (!has_extends_) say_what_to_extend(findings);
+  if (!has_extends_) advise_extends(findings);
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return std::tie(a.place.source, a.place.line, a.place.column) <
            std::tie(b.place.source, b.place.line, b.place.column);

@@ -11,33 +11,36 @@
 
 namespace stereotlm::platform {
 
-// Whether `board` is the path of a file (it has a / or ends in .yaml) or the name of a preset.
+// Whether `board` is the path of a board file: it has a / or ends in .yaml. Otherwise it is the name of a
+// preset.
 bool is_board_file(const std::string& board);
 
-// Why a value at this path cannot be replaced; empty if the schema has the path.
+// The reason for which no board has a value at this path; empty if the schema has the path.
 std::string path_problem(const std::string& path);
 
-// A board file as a tree of YAML values, with the preset that it extends, before its values are checked.
-// Values can be replaced. It may be copied: a sweep makes many boards from one file.
+// A board file before its values are checked: a tree of YAML values, merged with the preset that the file
+// extends. load_board() replaces the values of `--set` in it. A sweep copies it, and makes many boards from
+// one file.
 class BoardDraft {
  public:
-  // `board` as for load_board(). Throws BoardError for an unknown preset, a file that cannot be read and an
-  // error of syntax. read() reports all other problems.
+  // `board` as for load_board(). Throws BoardError for an unknown preset, a file that cannot be read and a
+  // syntax error. read() reports all other problems.
   explicit BoardDraft(const std::string& board);
 
   // Replaces a value. `assignment` is `path=value` as in `--set`.
   void set(const std::string& assignment);
 
-  // Replaces or adds the value at that path of the schema. Messages give its place as `file:line:column`; line
-  // and column are those of `value`.
+  // Replaces or adds the value at that path of the schema. Messages give its place as `file:line:column`,
+  // with the line and column of `value`.
   void replace(const std::string& path, YamlNode value, const std::string& file);
 
-  // The problems of a value at that path that do not depend on other keys. Does not check the rest of the
-  // board. Places are as for replace().
+  // Checks a value for that path alone: neither rules between keys nor the rest of the board. Places are as
+  // for replace().
   std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value,
                                       const std::string& file) const;
 
-  // A board and all its problems. `board` has all values of the draft if each problem is between keys.
+  // The board, and every problem found. `board` is complete if each problem is a broken rule between several
+  // keys. It is not complete after a problem of a single value (missing, wrong type, out of range).
   struct Reading {
     BoardConfig board;
     std::vector<Diagnostic> problems;
@@ -51,10 +54,10 @@ class BoardDraft {
   std::string to_yaml() const { return yaml_text(tree_); }
 
  private:
-  // The origin of a value.
+  // The origin of a replaced value.
   struct Source {
-    std::string name;
-    bool has_lines = false;
+    std::string name;        // `--set PATH`, or the path of a file
+    bool has_lines = false;  // it is a file
   };
 
   static BoardDraft of_preset(std::string_view name);
@@ -68,8 +71,8 @@ class BoardDraft {
   std::vector<Source> sources_;  // origins of replaced values, by Place::source - Place::kFirstSet
   YamlNode tree_;
   bool has_extends_ = false;
-  bool is_whole_ = true;  // false: the preset that it extends does not exist
-  std::vector<Finding> findings_;
+  bool is_whole_ = true;           // false: the preset that it extends does not exist
+  std::vector<Finding> findings_;  // problems found before read()
 };
 
 }  // namespace stereotlm::platform

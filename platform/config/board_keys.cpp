@@ -67,7 +67,7 @@ Key word(const char* path, const char* meaning, std::vector<std::string> words) 
   return {path, meaning, "", std::move(key), text};
 }
 
-// One of the names that `kNames` returns; the board holds the name.
+// A key whose value is one of the names that kNames() returns. The board stores the name itself.
 template <const std::vector<std::string>& (*kNames)(), auto... kMembers>
 Key name(const char* path, const char* meaning) {
   const auto get = [](const BoardConfig& board) {
@@ -115,7 +115,7 @@ const std::vector<std::string>& policy_names() {
   return kNames;
 }
 
-// "the ports, highest priority first; ..": what the list means to each policy.
+// The meaning of `fpga.priority` under each policy: "the ports, highest priority first; ..".
 std::string priority_meaning() {
   std::vector<std::string> meanings;
   for (const memory::PolicyEntry& policy : memory::arbitration_policies())
@@ -240,7 +240,8 @@ std::vector<Key> make_keys() {
   };
 }
 
-// Edit distance: characters to change, add, remove or swap with a neighbour.
+// The edit distance of two words: the least number of characters to change, add, remove or swap with a
+// neighbour.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> above_last(b.size() + 1);
   std::vector<std::size_t> above(b.size() + 1);
@@ -259,8 +260,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// The distance of a word from a known word, or nothing if the known word is unlikely to be meant. It is likely
-// with at most one edit per three characters, or if the word is the known one without an ending such as a unit.
+// The edit distance of a word from a known word; nullopt if the known word was probably not meant. It was
+// probably meant if at most one of three characters is edited, or if `word` is the known word without its
+// last part, such as a unit.
 std::optional<std::size_t> likely_distance(std::string_view word, std::string_view known) {
   const bool is_begin = !word.empty() && word.size() < known.size() && known[word.size()] == '_' &&
                         known.substr(0, word.size()) == word;
@@ -272,7 +274,7 @@ std::optional<std::size_t> likely_distance(std::string_view word, std::string_vi
   return distance <= most && distance < longer ? std::optional(distance) : std::nullopt;
 }
 
-// The distance of two paths after removing equal sections in front.
+// likely_distance() of two paths, without the sections with which both begin.
 std::optional<std::size_t> likely_path_distance(std::string_view path, std::string_view known) {
   for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
     if (path.substr(0, dot + 1) != known.substr(0, dot + 1)) break;
@@ -289,8 +291,8 @@ bool is_below(std::string_view path, std::string_view section) {
 
 std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
-// The known path nearest to an unknown one; empty if no path is near. Below `ssram.banks` every bank name is
-// known.
+// The known path nearest to an unknown one; empty if no path is near. Below `ssram.banks` every name counts
+// as the name of a bank.
 std::string nearest_path(const std::string& path) {
   const std::string schema = schema_path(path);
   std::string best;
@@ -304,7 +306,8 @@ std::string nearest_path(const std::string& path) {
     if (is_below(schema, known)) return;  // the section that holds `path`
     if (schema == known) return;          // the schema path of a bank, not a key
     offer(known, likely_path_distance(schema, known));
-    // The right key in a wrong section is nearer than most wrong keys in the right section.
+    // The right key in a wrong section, at a distance of 2, is nearer than most wrong keys in the right
+    // section.
     if (const auto moved = likely_distance(last_part(schema), last_part(known))) offer(known, *moved + 2);
   };
   offer_known("extends");
@@ -327,7 +330,7 @@ struct Names {
   std::vector<std::string> required;
 };
 
-// The names directly below each path. Computed once, because sweeps read thousands of boards.
+// The names directly below a path. All paths are computed once, because sweeps read thousands of boards.
 const Names& names_below(std::string_view path) {
   static const std::map<std::string, Names, std::less<>> kNames = [] {
     std::map<std::string, Names, std::less<>> found;

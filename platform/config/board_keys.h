@@ -15,7 +15,7 @@ namespace stereotlm::platform {
 using kernels::IntegerRule;
 
 // The schema of board files: each key with its rule, once. The reader, the writer, problems() and the `keys`
-// command use this table. On a board without `pci.load` the fields below that key throw
+// command use this table. On a board without `pci.load`, `field` of the keys below it throws
 // std::bad_optional_access.
 struct IntegerKey {
   IntegerRule rule;
@@ -30,8 +30,9 @@ struct DecimalKey {
   bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
 };
 
-// A key whose value is one of a few words, stored as its index. `get` returns an index outside the list if the
-// board's value is none of the words; `text` returns that value for messages.
+// A key whose value is one of a few words. `get` and `set` use the index of the word in `words`. If the
+// board's value is none of the words, `get` returns an index outside the list. `text` returns the value as a
+// text for messages.
 struct WordKey {
   std::vector<std::string> words;
   int (*get)(const BoardConfig&);
@@ -53,7 +54,7 @@ struct Key {
   bool is_optional = false;  // may be missing from its map
 };
 
-// All keys in the order in which boards are written.
+// All keys, in the order in which the writer of board files writes them.
 const std::vector<Key>& board_keys();
 const Key& board_key(std::string_view path);  // throws std::out_of_range
 
@@ -63,13 +64,14 @@ const std::vector<std::string>& child_keys(std::string_view path);
 // The keys of child_keys() that are not optional.
 const std::vector<std::string>& required_keys(std::string_view path);
 
-// The number of keys that a board needs at or below the path; 1 for the banks. "" is the whole board.
+// The number of required keys at or below the path, where all banks count as one key. "" is the whole board.
 std::size_t required_count(std::string_view path);
 
-// The rule of a key. For a map the keys in it: "a map of width, height".
+// The rule of a key. The rule of a map lists its keys: "a map of width, height".
 std::string rule_text(std::string_view path);
 
-// The message for an unknown path: "unknown key; nearest known key: PATH", or that no known key is near.
+// The message for an unknown path: "unknown key; nearest known key: PATH", or a text that says that no known
+// key is near.
 std::string unknown_key_text(const std::string& path);
 
 // "; nearest: WORD" with the word of least edit distance, the first of equals; empty if no word is near.
@@ -78,15 +80,15 @@ std::string nearest_text(std::string_view word, const std::vector<std::string>& 
 // `path` with NAME in place of a bank's name: `ssram.banks.NAME.words` for `ssram.banks.bank0.words`.
 std::string schema_path(const std::string& path);
 
-// "a, b or c".
+// Joins words: "a, b or c".
 std::string listed(const std::vector<std::string>& words);
 
 inline constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 
-// The names of the kinds of banks in board files, in the order of memory::BankKind.
+// The names that board files use for the kinds of banks, in the order of memory::BankKind.
 const std::vector<std::string>& bank_kind_names();
-// "sync_burst": the kinds of banks that have turnaround.
+// The kinds of banks that have turnaround, joined by listed(): "sync_burst".
 std::string turnaround_kinds();
 
 bool is_bank_name(std::string_view name);

@@ -18,14 +18,15 @@
 namespace stereotlm::platform {
 namespace {
 
-// A value that a later source may override: its place, and the value if it could be read.
+// A value of `ssram.default` or of a bank, if the tree has it, and its place. `value` is empty if it could
+// not be read.
 struct Given {
   bool present = false;
   Place place;
   std::optional<int> value;
 };
 
-// The entry of `ssram.default` or of one bank.
+// The entry of `ssram.default` or of one bank. `key` is the place of its key.
 struct BankEntry {
   Place key;
   Given words;
@@ -147,7 +148,7 @@ class BoardReader {
     board_.fpga.arbiter.priority = ports;
   }
 
-  // That the bank exists is a rule between keys.
+  // Reads the names of banks. Whether they exist is a rule between keys, which check_rules() checks.
   void read_banks_of(const Key& key, const YamlNode& node, std::vector<std::string>& banks) {
     const std::vector<YamlNode> single = {node};
     const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
@@ -278,27 +279,28 @@ class BoardReader {
     return bank;
   }
 
-  // Turnaround cycles beside a kind without turnaround in the same entry are a mistake. With an inherited kind
-  // they are allowed, and have no effect unless the kind has turnaround.
+  // Turnaround cycles beside a kind without turnaround in the same entry are a mistake. If the entry inherits
+  // its kind, they are allowed, and have no effect unless that kind has turnaround.
   void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;
     if (!given.value || !kind.value || traits_of(kind)->has_turnaround) return;
-    // The value of a preset whose kind is overridden by the file or `--set` counts as inherited.
+    // Turnaround cycles of a preset count as inherited: the file or `--set` has overridden the kind beside
+    // them.
     if (given.place.source == Place::kPreset) return;
     values_.report_between_keys(
         latest(given.place, kind.place),
         fmt::format("{}.turnaround_cycles = {}: only where the kind is {}, and it is {}", path, *given.value,
                     turnaround_kinds(), traits_of(kind)->name));
   }
-  // Null if the kind could not be read.
+  // Null if there is no kind, or it could not be read.
   static const memory::BankTraits* traits_of(const Given& kind) {
     return kind.value ? &memory::kBankTraits[static_cast<std::size_t>(*kind.value)] : nullptr;
   }
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
     const std::string path = "ssram.banks";
-    // Checks the number of banks first: the time to check their names grows with its square.
+    // The number of banks is checked first, because the time to check their names grows with its square.
     if (node.is_map() && !memory::kBankCountRule.allows(static_cast<std::int64_t>(node.entries.size()))) {
       Place place = node.place;
       for (const YamlNode::Entry& entry : node.entries) place = latest(place, entry.key.place);
@@ -358,7 +360,8 @@ class BoardReader {
     board_.banks.push_back(std::move(bank));
   }
 
-  // A rule between keys is reported at the value that was written last; if several were, at the first of them.
+  // Reports each broken rule between keys at one of the values that it involves: the value of the last source
+  // (preset, file, then each `--set`), or the first of several such values.
   void check_rules() {
     const auto is_valid = [this](const std::string& path) { return values_.find(path) != nullptr; };
     for (const BrokenRule& rule : broken_rules(board_, is_valid)) {

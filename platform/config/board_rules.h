@@ -8,16 +8,17 @@
 
 namespace stereotlm::platform {
 
-// A rule between several keys that a board breaks.
+// A broken rule that involves several keys.
 struct BrokenRule {
   std::string text;  // `path = value: rule`
-  // Dotted paths of the values that take part; the first is the one that the text names. An element of a list
-  // is `allocation.disparity[1]`.
+  // Dotted paths of the values that the rule involves; the first is the one that the text begins with. An
+  // element of a list is `allocation.disparity[1]`.
   std::vector<std::string> involved;
 };
 
-// Every broken rule between keys, in the order of the keys. `is_valid(path)` tells whether a value keeps its
-// own rule. A rule is checked only if all values that take part do.
+// Returns every broken rule between keys, in the order of the keys. `is_valid(path)` returns whether the
+// value at the path keeps its own rule. A rule between keys is checked only if all values that it involves
+// are valid.
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
                                      const std::function<bool(const std::string&)>& is_valid);
 

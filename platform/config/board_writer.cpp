@@ -58,7 +58,7 @@ class BoardWriter {
   std::vector<BoardValue> values() {
     for (const Key& key : board_keys()) {
       if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0)
-        continue;  // written with the section they belong to
+        continue;  // not a value: a map, or a part of `matcher.filter`
       if (key.path.find("pci.load.") == 0 && !board_.pci.load) continue;
       if (key.path.find("ssram.") == 0) continue;
       values_.push_back({key.path, std::visit([&](const auto& rule) { return value(key, rule); }, key.rule)});

@@ -15,11 +15,12 @@ namespace stereotlm::platform {
 struct Diagnostic {
   std::string place;             // `file:line:column`, `--set path`, or a file or preset as a whole
   std::string text;              // `full.path = value: rule`, `full.path: missing: rule`, or a rule alone
-  bool is_between_keys = false;  // a rule between keys: another key's value can also repair it
+  bool is_between_keys = false;  // the rule involves several keys: each of them could be changed
 };
 
 // All problems of a board, in the order of its file, then of the `--set` options. what() has one line,
-// `place: text`, for each of the first kMostLines problems, a line that counts the rest, and the note, if any.
+// `place: text`, for each of the first kMostLines problems, a line that counts the rest, and the note, if
+// any.
 class BoardError : public std::runtime_error {
  public:
   static constexpr std::size_t kMostLines = 20;
@@ -32,14 +33,14 @@ class BoardError : public std::runtime_error {
 };
 
 // Loads a board (contract section 4). `board` is the path of a board file if it has a `/` or ends in `.yaml`,
-// else the name of a preset. `sets` are `path=value` pairs, applied in order after presets are merged: each
-// value is one YAML flow value and replaces the whole value at its path, or adds it (also a bank). The result
-// is checked once, at the end. Throws BoardError.
+// else the name of a preset. `sets` are `path=value` pairs. They are applied in order after presets are
+// merged. Each value is one YAML flow value. It replaces the whole value at its path, or is added there, so
+// that a bank can be added. The result is checked once, at the end. Throws BoardError.
 BoardConfig load_board(const std::string& board, const std::vector<std::string>& sets = {});
 
 // The board as a complete board file, without `extends`. load_board() reads it back to an equal BoardConfig.
-// `ssram.default` is the first bank; the other banks hold what differs from it. There is no `pci.load` if the
-// board has none. Throws std::invalid_argument if the board has problems().
+// `ssram.default` has the values of the first bank; the other banks give only the values that differ. There
+// is no `pci.load` if the board has none. Throws std::invalid_argument if the board has problems().
 std::string to_yaml(const BoardConfig& board);
 
 // One value of a board.
@@ -48,9 +49,8 @@ struct BoardValue {
   std::variant<std::int64_t, double, std::string> value;
 };
 
-// Every value of a valid board by its path, in the order in which boards are written. Numbers are numbers;
-// lists, words and filters are text as in to_yaml(), in one line. Each bank has all its values. A board without
-// `pci.load` has no values below it.
+// Every value of a valid board with its path, in the order of to_yaml(). Lists, words and filters are text as
+// in to_yaml(), in one line. Each bank has all its values. A board without `pci.load` has no values below it.
 std::vector<BoardValue> values_of(const BoardConfig& board);
 
 // Names of the boards that are compiled in, `fpl2003` first.
@@ -64,10 +64,10 @@ struct KeyInfo {
   std::string path;
   std::string meaning;
   std::string unit;   // empty: none
-  std::string range;  // or the allowed values
+  std::string range;  // range or allowed values
 };
 
-// All keys, `extends` first, then in the order in which boards are written.
+// All keys: `extends`, then the others in the order of to_yaml().
 std::vector<KeyInfo> keys();
 
 }  // namespace stereotlm::platform

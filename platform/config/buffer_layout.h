@@ -14,8 +14,8 @@
 
 namespace stereotlm::platform {
 
-// The members of an allocation: lists of buffers that are used in turn, and tables of one buffer each. Their
-// order is that in which buffers lie in a bank that they share (contract 1.5).
+// The members of an allocation: lists of buffers that the frames use in turn, and tables of one buffer each.
+// Buffers that share a bank lie in it in this order (contract 1.5).
 enum class Buffer { kLeftImage, kRightImage, kDisparity, kLeftLut, kRightLut };
 
 struct BufferKey {
@@ -36,11 +36,11 @@ constexpr const char* name_of(Buffer buffer) {
   return key_of(buffer) + std::string_view("allocation.").size();
 }
 
-// Nothing if the key is not one of an allocation.
+// The member of a key such as "allocation.left_image"; nullopt if the key is not one of an allocation.
 std::optional<Buffer> buffer_of_key(std::string_view key);
 
-// Calls `visit` with the member of `all` for the buffer, and returns what it returns: a std::vector for a
-// list, a std::optional for a table. `all`: an AllocationConfig or a BufferLayout.
+// Calls `visit` with the member `buffer` of `all`, which is an AllocationConfig or a BufferLayout. The member
+// is a std::vector for a list, and a std::optional for a table. Returns the result of `visit`.
 template <typename All, typename Visit>
 decltype(auto) visit_buffer(All& all, Buffer buffer, const Visit& visit) {
   switch (buffer) {
@@ -61,7 +61,7 @@ decltype(auto) visit_buffer(All& all, Buffer buffer, const Visit& visit) {
 // One buffer, and the bank that holds it.
 struct PlacedBuffer {
   Buffer buffer;
-  int index;         // in its list, from 0; -1: a table
+  int index;         // index in its list; -1: a table
   std::string bank;  // name
 
   std::string label() const;                                    // "left_image[0]", "left_lut"
@@ -77,7 +77,7 @@ void move_buffer(AllocationConfig& allocation, const PlacedBuffer& buffer, const
 // Size of a buffer in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
-// Throws as layout_buffers() does.
+// The values of the base registers for these buffers. Throws as layout_buffers() does.
 fpga::BufferBases buffer_bases(const BoardConfig& board);
 
 // The addresses of the buffers on the local bus, in the order of buffers(). Throws as layout_buffers() does.

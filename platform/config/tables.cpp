@@ -36,7 +36,7 @@ std::optional<std::string> calibration_size_problem(const BoardConfig& board, in
 std::optional<std::string> calibration_buffer_problem(const BoardConfig& board) {
   const AllocationConfig& allocation = board.allocation;
   if (allocation.left_lut && allocation.right_lut) return std::nullopt;
-  return fmt::format("goes with a board that has both tables; {} = none",
+  return fmt::format("needs a board with both tables, but {} = none",
                      key_of(allocation.left_lut ? Buffer::kRightLut : Buffer::kLeftLut));
 }
 

@@ -14,7 +14,7 @@ struct Tables {
   std::optional<kernels::RectificationTable> right;
 };
 
-// The tables of a board without calibration (contract 1.1).
+// The tables of a board that is not calibrated: every entry is its own source (contract 1.1).
 inline Tables identity_tables(const BoardConfig& board) {
   Tables tables;
   if (board.allocation.left_lut) tables.left = kernels::identity_table(board.image.width, board.image.height);
@@ -23,14 +23,16 @@ inline Tables identity_tables(const BoardConfig& board) {
   return tables;
 }
 
-// Why a board cannot have the tables of a calibration of pictures of that size; nothing: the size fits.
+// The reason for which a board cannot have the tables of a calibration for pictures of width x height;
+// nullopt if the size fits.
 std::optional<std::string> calibration_size_problem(const BoardConfig& board, int width, int height);
 
-// Why a board cannot have the tables of any calibration; nothing: it has a buffer for both.
+// The reason for which a board cannot have the tables of any calibration: a side has no buffer for a table.
+// It is nullopt if both sides have one.
 std::optional<std::string> calibration_buffer_problem(const BoardConfig& board);
 
-// Throws std::invalid_argument if a side has a table but the allocation has no bank for it, or the other way
-// round; if a table has another size than the images; or if it has problems.
+// Throws std::invalid_argument if a side has a table but no buffer for it, or a buffer but no table; if a
+// table has another size than the images; or if a table has problems.
 void check_tables(const BoardConfig& board, const Tables& tables);
 
 }  // namespace stereotlm::platform

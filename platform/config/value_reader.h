@@ -17,20 +17,20 @@ struct Finding {
 
   Place place;
   std::string text;
-  bool is_between_keys = false;  // a rule between keys: each value may keep its own rule
+  bool is_between_keys = false;  // the rule involves several keys
   std::string missing;           // path of a missing key or section; else empty
 };
 
 // The path of `name` below `path`: "image.width" for "image" and "width". The top is "".
 std::string below(const std::string& path, const std::string& name);
 
-// Reads maps and single values of a board's tree. A value that breaks its rule is appended to the findings and
-// returned as empty. The path and place of a value that keeps its rule are stored.
+// Reads maps and single values of a board's tree; read_board() uses it. If a value breaks its rule, appends a
+// finding and returns nullopt. Stores the path and place of each value that keeps its rule.
 class ValueReader {
  public:
   using Entries = std::map<std::string, const YamlNode::Entry*>;
 
-  // With `report_missing` false a missing key is no finding. `findings` must outlive the reader.
+  // `report_missing`: whether a missing key is a finding. `findings` must outlive the reader.
   ValueReader(bool report_missing, std::vector<Finding>& findings)
       : report_missing_(report_missing), findings_(findings) {}
 
@@ -38,18 +38,20 @@ class ValueReader {
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
   void report_missing(const Place& place, const std::string& path, const std::string& rule);
-  // Reports a missing key that another key's value requires.
+  // Reports a missing key that the value of another key requires.
   void report_missing_beside(const Place& place, const std::string& path, const std::string& rule);
   std::size_t finding_count() const { return findings_.size(); }
 
+  // Stores the path and place of a value that keeps its rule.
   void accept(const std::string& path, const Place& place);
   const Place* find(const std::string& path) const;  // nullptr if the path was not accepted
 
-  // False, and reported, for an anchor, an alias or a tag.
+  // Reports an anchor, an alias or a tag, and returns false if the value has one.
   bool check_use(const std::string& path, const YamlNode& node);
 
-  // The entries of a map by name. Reports a value that is no map, keys that are not in `known`, repeated keys
-  // and, at the place `key`, missing keys of `required`.
+  // Returns the entries of a map by name; reports a value that is no map, and returns nullopt. Reports keys
+  // that are not in `known`, repeated keys, and missing keys of `required`. `key` is the place of the map's
+  // own key, at which missing keys are reported.
   std::optional<Entries> read_entries(const std::string& path, const YamlNode& node, const Place& key,
                                       const std::vector<std::string>& known,
                                       const std::vector<std::string>& required);
@@ -57,7 +59,7 @@ class ValueReader {
   std::optional<int> read_integer(const std::string& path, const YamlNode& node, const IntegerRule& rule,
                                   const std::string& rule_text);
 
-  // The index of the word in `words`.
+  // Returns the index of the word in `words`.
   std::optional<int> read_word(const std::string& path, const YamlNode& node,
                                const std::vector<std::string>& words);
 
@@ -66,7 +68,7 @@ class ValueReader {
 
   bool report_missing_;
   std::vector<Finding>& findings_;
-  std::map<std::string, Place> valid_;
+  std::map<std::string, Place> valid_;  // [path]
 };
 
 }  // namespace stereotlm::platform

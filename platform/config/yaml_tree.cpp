@@ -90,6 +90,7 @@ bool is_closed(const std::string& text, std::size_t at) {
   return false;
 }
 
+// Builds the tree from the events of yaml-cpp's parser.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(const std::string& text, const Places& places) : text_(text), places_(places) {}
@@ -175,7 +176,7 @@ class TreeBuilder : public YAML::EventHandler {
       parent.key = std::move(node);
       parent.has_key = true;
     } else {
-      // A missing value has no place of its own.
+      // A missing value has no place of its own; it gets that of its key.
       if (node.kind == YamlNode::Kind::kNull && node.text.empty() && node.misuse.empty()) {
         node.place = parent.key.place;
       }
@@ -191,7 +192,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::vector<Open> open_;
 };
 
-// The rule to report for a message of yaml-cpp; empty if the message states the rule itself.
+// The text that follows "expected" for a message of yaml-cpp; empty if the message needs none.
 std::string_view expectation(std::string_view message) {
   namespace Message = YAML::ErrorMsg;
   static const std::array<std::array<std::string_view, 2>, 7> kExpectations = {{
@@ -210,7 +211,8 @@ std::string_view expectation(std::string_view message) {
   return "";
 }
 
-// The rule that the text breaks at an error of yaml-cpp. Text after `size` was added by this reader.
+// The message for an error of yaml-cpp. The first `size` characters of `text` are the user's; this reader has
+// added the rest.
 std::string syntax_rule(const std::string& text, std::size_t size, const YAML::Exception& error) {
   const std::size_t at = std::min(static_cast<std::size_t>(std::max(error.mark.pos, 0)), size);
   const std::size_t line = text.substr(0, at).rfind('\n') + 1;
@@ -226,7 +228,7 @@ std::string syntax_rule(const std::string& text, std::size_t size, const YAML::E
                      expected);
 }
 
-// `size`: length of the user's text; the rest of `text` was added by this reader.
+// The first `size` characters of `text` are the user's; this reader has added the rest.
 YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   check_characters(text, source);
   const Places places(text, source);
@@ -243,7 +245,7 @@ YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   return builder.take_root();
 }
 
-// Text after `enough` bytes may be left out.
+// Appends the value in flow style to `out`. May leave out text beyond `enough` bytes.
 void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
   if (out.size() > enough) return;
   switch (node.kind) {
@@ -343,7 +345,8 @@ YamlNode parse_yaml(const std::string& text, int source) {
   return parse_document(text, text.size(), source);
 }
 
-// Flow style throughout: inside a flow list there is no block style. A comment ends with its line.
+// Parses the text inside a flow list, where block style is not allowed. The line break ends a comment in the
+// text.
 YamlNode parse_flow_value(const std::string& text, int source) {
   YamlNode list = parse_document("[" + text + "\n]", 1 + text.size(), source);
   const std::size_t first = text.find_first_not_of(" \t\r\n");

@@ -46,7 +46,7 @@ struct YamlNode::Entry {
   YamlNode value;
 };
 
-// The text is not one YAML document.
+// A text is not one YAML document. what() is the rule that it breaks.
 class YamlError : public std::runtime_error {
  public:
   YamlError(const Place& error_place, const std::string& rule)
@@ -54,8 +54,8 @@ class YamlError : public std::runtime_error {
   Place place;
 };
 
-// Parses one YAML document. Throws YamlError for the first error of syntax, text that is not UTF-8, control
-// characters, an empty text and a second document.
+// Parses one YAML document. `source`: of the places of all values. Throws YamlError for the first error of
+// syntax, text that is not UTF-8, control characters, an empty text and a second document.
 YamlNode parse_yaml(const std::string& text, int source);
 
 // Parses one YAML flow value, such as `3`, `[a, b]` or `{a: 1}`. Throws YamlError.

@@ -76,7 +76,7 @@ std::optional<double> decimal_of(const YamlNode& node) {
   if (!node.is_scalar() || node.quoted || !is_decimal(node.text)) return std::nullopt;
   double value = 0;
   const auto result = std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
-  // Too large for double, or so small that it rounds to 0.
+  // The number is too large for double, or so small that it rounds to 0.
   if (result.ec == std::errc::result_out_of_range) {
     const bool is_large = node.text.find_first_not_of("-0") < node.text.find('.');
     return is_large ? std::numeric_limits<double>::infinity() : 0.0;

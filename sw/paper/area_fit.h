@@ -13,19 +13,19 @@ struct PrintedArea {
   double slices_percent = 0;
 };
 
-// Table 2 of the paper: images of 640x480 and windows of 7x7 (its caption), for the circuit of figure 5, with
-// look-up tables and LoG filters for both sides. The coefficients of the filter and the depths of the queues,
-// which the paper does not state, are those of the preset `fpl2003`.
+// The rows of Table 2 of the paper: images of 640x480 and windows of 7x7 (its caption), for the circuit of
+// figure 5, with look-up tables and LoG filters for both sides. The coefficients of the filter and the depths
+// of the queues, which the paper does not state, are those of the preset `fpl2003`.
 std::vector<PrintedArea> table_2();
 
-// The constant of area::total() with the least squared error in slices over the printed rows, and the model's
-// value for each row.
+// The result of fit_area(): the constant that area::total() should use for the least squared error over the
+// printed rows, and the share of slices that the model then gives for each row.
 struct AreaFit {
   double slices_per_lut_equivalent = 0;
   std::vector<double> slices_percent;
 };
 
-// Throws std::invalid_argument without rows, and if a core has problems.
+// Throws std::invalid_argument if there are no rows, or if a core has problems.
 AreaFit fit_area(const std::vector<PrintedArea>& rows, const area::Device& device);
 
 }  // namespace stereotlm::paper

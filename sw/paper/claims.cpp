@@ -15,24 +15,27 @@ constexpr const char* kBoard = "fpl2003";
 constexpr std::pair<int, double> kTable1[] = {{15, 8.7}, {13, 10.0}, {11, 11.8},
                                               {9, 14.5}, {7, 18.9},  {5, 26.0}};
 constexpr double kTable1HalfDigit = 0.05;
-// Tolerance for all rows but one. A row has three digits, a rounding of up to 0.57 %.
+// The tolerance for rates of tables; all rows of Table 1 but one keep it. A printed row has two or three
+// digits, and is rounded by up to 0.57 %.
 constexpr double kRatePercent = 0.35;
 // Table 2: frames per second at 80, 160 and 200 disparities, 640x480, 7x7, 40 MHz.
 constexpr double kTable2Rate = 18.9;
 constexpr double kSizeHalfDigit = 0.5;
 constexpr double kSizePoints = 1;
-// Section 4 gives the rate in practice for windows of 7x7 and 9x9. The abstract and section 5 give it without a
-// window. Section 1 says more.
+// Section 4 gives the rate in practice for windows of 7x7 and 9x9. The abstract and section 5 give it without
+// a window. Section 1 says "more than" this rate.
 constexpr double kPracticeRate = 20;
-// Abstract: at 320x240. Section 1: more. Section 4: four times as fast there.
+// The rate at 320x240, in the abstract. Section 1 says "more than" this rate. Section 4 says four times the
+// rate at 640x480.
 constexpr double kSmallRate = 80;
 constexpr double kSmallSpeedUp = 4;
 constexpr double kWholeHalfDigit = 0.5;
-// Sections 3.1 and 5: banks needed with calibration; section 3.1: for matching itself.
+// The number of banks that is needed: with calibration (sections 3.1 and 5), and for matching itself (section
+// 3.1).
 constexpr double kBanks = 8;
 constexpr double kBanksOfMatching = 6;
 
-constexpr const char* kOf[] = {"the core alone", "the whole computer"};
+constexpr const char* kSources[] = {"the core alone", "the whole computer"};
 
 std::string window_key(int window) { return fmt::format("matcher.window={}", window); }
 std::string square(int n) { return fmt::format("{}x{}", n, n); }
@@ -45,7 +48,7 @@ std::vector<Case> of_windows(double printed, const std::vector<int>& windows, co
     for (const int window : windows) {
       std::vector<std::string> sets = {window_key(window)};
       sets.insert(sets.end(), more.begin(), more.end());
-      cases.push_back({square(window) + ", " + kOf[camera ? 1 : 0], printed, {{preset, sets, camera}}});
+      cases.push_back({square(window) + ", " + kSources[camera ? 1 : 0], printed, {{preset, sets, camera}}});
     }
   }
   return cases;
@@ -210,8 +213,8 @@ std::string key(const std::string& buffer, const std::string& first, const std::
   return key(buffer, fmt::format("[{}, {}]", first, second));
 }
 
-// The whole computer with chosen allocations: for each number of banks the best, as `allocate` finds it. Buffers
-// that are not named stay in the board's banks.
+// The whole computer with chosen allocations: for each number of banks the best one that `allocate` finds.
+// Buffers that are not named keep the board's banks.
 Claim banks_of_computer() {
   const std::vector<std::vector<std::string>> placed = {
       {},

@@ -17,21 +17,23 @@ struct BoardRun {
 // The quantity that is compared.
 enum class Quantity {
   // Frames per second of the first run: of the core alone, or of the computer from the first delivery to the
-  // last. Further runs are shown beside it.
+  // last. The rates of further runs are shown beside it, and not compared.
   kRate,
   kSlices,   // % of the FPGA's slices that the first run's board uses
   kSpread,   // highest rate of the runs minus the lowest
   kSpeedUp,  // rate of the first run divided by that of the second
-  // The fewest banks for which some allocation reaches the best rate of the first run's board. Proved over all
-  // allocations.
+  // The smallest number of banks with which some allocation is as fast as the fastest allocation on the first
+  // run's board. All allocations are searched, so the minimum is proved.
   kBanksProved,
-  // The fewest banks among the runs that reach the rate of the first run.
+  // The smallest number of banks among the runs that reach the rate of the first run. It is no proof of a
+  // minimum.
   kBanksFound,
 };
 
 // "frames/s", "% of the slices", "times", "banks"
 std::string unit_of(Quantity quantity);
 
+// One printed number of a claim, and the boards that are simulated for it.
 struct Case {
   std::string name;  // "7x7, the core alone"
   double printed = 0;
@@ -49,8 +51,8 @@ struct Claim {
   std::vector<Case> cases;
 };
 
-// All numbers of the paper that are compared: place, boards and rule of each. The sizes of Table 2 are in
-// table_2(): the area model is fitted to them.
+// All numbers of the paper that are compared, each with its place, its boards and its rule. The sizes of
+// Table 2 come from table_2(), because the area model is fitted to them.
 std::vector<Claim> claims();
 
 }  // namespace stereotlm::paper

@@ -32,7 +32,7 @@ constexpr const char* kHead =
 
 std::string three(double value) { return fmt::format("{:.3f}", value); }
 
-// The value with the digits of the paper: 10.0 in Table 1, 80 elsewhere.
+// The printed value with as many decimals as in the paper: 10.0 in Table 1, 80 elsewhere.
 std::string printed_text(const Claim& claim, double printed) {
   const bool has_decimals = claim.half_digit > 0 && claim.half_digit < 0.5;
   return fmt::format("{:.{}f}", printed, has_decimals ? 1 : 0);
@@ -310,7 +310,7 @@ std::string remarks(const Findings& findings, const ClaimFinding& found) {
   return found.claim.quantity == Quantity::kBanksProved ? banks_remarks(findings, found) : "";
 }
 
-// The picture below its claim.
+// The picture that is shown below a claim, if it has one.
 std::string figure_text(const std::string& claim) {
   if (claim == "table1") return "\n![frames per second against the window](table1.png)\n";
   if (claim == "table2_size") return "\n![slices against the disparities](table2.png)\n";

@@ -8,22 +8,23 @@
 
 namespace stereotlm::paper {
 
-// The report on the findings.
+// File name of the report on the findings.
 inline constexpr const char* kDocument = "paper.md";
-// The pictures of the report, drawn from the tables.
+// Names of the pictures of the report, which are drawn from the tables.
 inline constexpr const char* kFigures[] = {"table1", "table2", "banks"};
 
-// The files beside the report: tables and pictures.
+// The names of the files beside the report: tables and pictures.
 std::vector<std::string> file_names();
 
-// The tables by name: table1.csv, table2.csv, banks.csv, claims.csv. Numbers are the shortest decimals that read
-// back equal, as in stats.json.
+// The contents of the tables by file name: table1.csv, table2.csv, banks.csv, claims.csv. Numbers are the
+// shortest decimals that read back equal, as in stats.json.
 std::map<std::string, std::string> tables(const Findings& findings);
 
 // paper.md: each claim with its rule, its values and the commands that reproduce them.
 std::string document(const Findings& findings);
 
-// One line per claim, then one per case that is not confirmed; at most 100 columns.
+// The text that `paper` prints: one line per claim, then one per case that is not confirmed; at most 100
+// columns.
 std::string summary(const Findings& findings);
 
 }  // namespace stereotlm::paper

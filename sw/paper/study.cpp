@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "platform/config/buffer_layout.h"
 #include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
@@ -26,7 +26,8 @@ bool reaches(double rate, double best) { return rate >= best * (1 - kRounding); 
 
 int banks_of(const BoardConfig& board) {
   std::vector<std::string> names;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.bank);
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation))
+    names.push_back(buffer.bank);
   std::sort(names.begin(), names.end());
   return static_cast<int>(std::unique(names.begin(), names.end()) - names.begin());
 }
@@ -37,7 +38,7 @@ std::string identity_of(const BoardRun& run) {
   return text;
 }
 
-// The board as on a command line: "fpl2003 --set matcher.window=7".
+// The words that name the board on a command line: "fpl2003 --set matcher.window=7".
 std::string words_of(const BoardRun& run) {
   std::string text = run.preset;
   for (const std::string& set : run.sets) {
@@ -47,7 +48,7 @@ std::string words_of(const BoardRun& run) {
   return text;
 }
 
-// All different runs of the claims, either of the core or of the computer.
+// All different runs of the claims: those of the computer if `camera`, else those of the core alone.
 class Runs {
  public:
   Runs(const std::vector<Claim>& claims, bool camera) : run_{camera, 0, ""} {
@@ -89,12 +90,13 @@ class Runs {
   std::map<std::string, std::size_t> numbers_;
 };
 
-// The progress of all searches and runs.
-class Count {
+// The progress of a study, whose parts are its searches and runs.
+class Progress {
  public:
-  // `most`: upper limit for the boards of all parts.
-  Count(std::uint64_t most, const Means& means) : after_(most), means_(means) {}
-  // `most`: the share of the next part in that limit.
+  // `most`: upper limit for the number of boards of all parts.
+  Progress(std::uint64_t most, const Means& means) : after_(most), means_(means) {}
+  // `most`: upper limit for the number of boards of the next part, which is included in that of the
+  // constructor.
   void begin_part(std::uint64_t most) { after_ -= most; }
   // Reports the progress of the running part.
   bool keep_going(std::uint64_t done, std::uint64_t most_left) const {
@@ -120,28 +122,28 @@ class BankSearch {
                 [this](const BoardConfig& one) { return bound(one).core; }),
         most_(search_.most_left()) {}
 
-  // Boards, at most.
+  // Upper limit for the number of boards to simulate.
   std::uint64_t most() const { return most_; }
 
-  // Returns false if it was ended.
-  bool simulate(Count& count) {
+  // Returns false if keep_going() has ended the search.
+  bool simulate(Progress& progress) {
     const files::TemporaryFolder folder;
     explore::SweepOptions sweep;
     sweep.store = (folder.path() / "allocations.db").string();
     sweep.version = means_.version;
     sweep.jobs = means_.jobs;
     std::uint64_t simulated = 0;
-    count.begin_part(most_);
+    progress.begin_part(most_);
     const bool is_whole =
         explore::simulate(search_, means_.evaluate, sweep, [&](std::uint64_t done, std::uint64_t most_left) {
           simulated = done;
-          return count.keep_going(done, most_left);
+          return progress.keep_going(done, most_left);
         });
-    count.end_part(simulated);
+    progress.end_part(simulated);
     return is_whole;
   }
 
-  // Once it is simulated.
+  // The best allocation for each number of banks. To be called after simulate().
   std::vector<BankRow> rows() const {
     std::vector<BankRow> rows;
     for (const explore::BestPlacement& best : search_.best()) {
@@ -180,7 +182,7 @@ class BankSearch {
   std::uint64_t most_;
 };
 
-// The fewest banks among a claim's rows that reach the best rate of all rows.
+// The smallest number of banks among the rows of a claim that reach the best rate of these rows.
 int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
   double best = 0;
   int fewest = 0;
@@ -194,7 +196,7 @@ int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
   return fewest;
 }
 
-// The fewest banks among the runs that reach the rate of the first run.
+// The smallest number of banks among the runs that reach the rate of the first run.
 int fewest_banks(const std::vector<Measured>& runs) {
   int fewest = runs.front().banks;
   for (const Measured& run : runs) {
@@ -235,7 +237,7 @@ Verdict verdict_of_case(const Claim& claim, const Case& one, double modelled) {
   return verdict_of_need(static_cast<int>(one.printed), static_cast<int>(modelled), is_proved);
 }
 
-// The chosen allocations of a case as rows.
+// Appends a row for each chosen allocation of a case.
 void add_chosen(const Claim& claim, const Case& one, const std::vector<Measured>& runs,
                 std::vector<BankRow>& rows) {
   for (std::size_t i = runs.size(); i-- > 0;) {
@@ -266,23 +268,23 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
   for (const Claim& claim : claims) {
     if (claim.quantity == Quantity::kBanksProved) most += searches.emplace_back(claim, means).most();
   }
-  Count count(most, means);
+  Progress progress(most, means);
   Findings findings;
   for (BankSearch& search : searches) {
-    if (!search.simulate(count)) return std::nullopt;
+    if (!search.simulate(progress)) return std::nullopt;
     const std::vector<BankRow> rows = search.rows();
     findings.banks.insert(findings.banks.end(), rows.begin(), rows.end());
   }
   explore::Batch batches[2];
   for (const int i : {0, 1}) {
-    count.begin_part(runs_of[i].size());
+    progress.begin_part(runs_of[i].size());
     const bool is_whole =
         batches[i].run(runs_of[i].points(), means.evaluate, means.version, means.jobs,
                        [&](const explore::SweepCounts& counts) {
-                         return count.keep_going(counts.done(), counts.total - counts.done());
+                         return progress.keep_going(counts.done(), counts.total - counts.done());
                        });
     if (!is_whole) return std::nullopt;
-    count.end_part(runs_of[i].size());
+    progress.end_part(runs_of[i].size());
   }
   for (const Claim& claim : claims) {
     ClaimFinding found = {claim, {}, Verdict::kOpen};
@@ -338,7 +340,7 @@ std::optional<ClockRange> clock_for(const Claim& claim, const Case& one, const C
   const BoardRun& run = one.runs.front();
   if (claim.quantity != Quantity::kRate || run.camera) return std::nullopt;
   const double mhz = platform::load_board(run.preset, run.sets).fpga.clock_mhz;
-  const double mhz_for_a_frame = mhz / finding.modelled;  // its cycles do not depend on the clock
+  const double mhz_for_a_frame = mhz / finding.modelled;  // the cycles of a frame do not depend on the clock
   return ClockRange{(one.printed - claim.half_digit) * mhz_for_a_frame,
                     (one.printed + claim.half_digit) * mhz_for_a_frame};
 }

@@ -15,8 +15,8 @@ namespace stereotlm::paper {
 
 // The figures of a simulated board.
 struct Measured {
-  double rate =
-      0;  // frames per second of the core alone, or of the computer from the first delivery to the last
+  // Frames per second of the core alone, or of the computer from the first delivery to the last.
+  double rate = 0;
   std::optional<double> delivered;  // frames per second of the computer from time 0 to the last delivery
   double bound = 0;                 // upper bound for the rate, frames per second
   std::string limited_by;           // the resource that limits the bound
@@ -24,30 +24,34 @@ struct Measured {
   int banks = 0;  // number of banks that its allocation uses
 };
 
-// The best allocation for a number of banks, or a chosen one.
+// A row of the table of banks: the best allocation for a number of banks, or a chosen allocation.
 struct BankRow {
   std::string of;  // name of the claim
   int banks = 0;
-  std::optional<std::uint64_t>
-      allocations;  // number of allocations with so many banks that fit; all are simulated. nullopt: a chosen allocation
-  std::optional<std::uint64_t> reached_by;  // number of these that reach the rate
-  Measured measured;                        // figures of the best, or of the chosen one
+  // Number of allocations that use so many banks and fit, all of which are simulated. nullopt: the allocation
+  // was chosen.
+  std::optional<std::uint64_t> allocations;
+  std::optional<std::uint64_t> reached_by;  // how many of these allocations reach the rate
+  Measured measured;                        // figures of the best allocation, or of the chosen one
   std::string allocation;                   // "left_image bank0 bank1, .., right_lut bank7"
   std::string command;
 };
 
+// The result for a case of a claim.
 struct CaseFinding {
   double modelled = 0;
   std::vector<Measured> runs;  // runs of the case, in order; empty for kBanksProved
   Verdict verdict = Verdict::kOpen;
 };
 
+// The result for a claim.
 struct ClaimFinding {
   Claim claim;
   std::vector<CaseFinding> cases;  // in the order of the claim
   Verdict verdict = Verdict::kOpen;
 };
 
+// The result of study().
 struct Findings {
   std::vector<ClaimFinding> claims;
   std::vector<BankRow> banks;
@@ -55,20 +59,20 @@ struct Findings {
   const ClaimFinding& of(const std::string& claim) const;  // throws std::out_of_range
 };
 
-// Functions that simulate boards.
+// What study() needs to simulate boards.
 struct Means {
   explore::Evaluate evaluate;
   // platform::core_bound() of the core alone, without calibration, for this number of frames.
   std::function<platform::Bound(const platform::BoardConfig& board, std::uint64_t frames)> bound;
   std::string version;
   unsigned jobs = 1;
-  // Called several times a second with the number of boards that are done, and an upper limit for those that are
-  // left.
+  // Called several times a second with the number of boards that are done, and an upper limit for the number
+  // of those that are left. study() ends if it returns false.
   std::function<bool(std::uint64_t done, std::uint64_t most_left)> keep_going;
 };
 
-// Simulates the boards of the claims. nullopt if `keep_going` has ended it. Throws std::runtime_error if a board
-// cannot be simulated.
+// Simulates the boards of the claims. Returns nullopt if `keep_going` has ended the study. Throws
+// std::runtime_error if a board cannot be simulated.
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means);
 
 // The shell command that reproduces the number of a run: "stereotlm run fpl2003 --timing-only ..".
@@ -76,16 +80,17 @@ std::string command_of(const BoardRun& run);
 // The commands that reproduce the numbers of a case.
 std::vector<std::string> commands_of(const Claim& claim, const Case& one);
 
-// The clock of the FPGA, in MHz, at which the core alone reaches a printed rate: for the least and the greatest
-// value that rounds to it. nullopt unless the case is a rate of the core alone.
+// A range of clocks of the FPGA. At these clocks the core alone would reach a printed rate: from the least to
+// the greatest rate that rounds to the printed one.
 struct ClockRange {
   double least_mhz = 0;
   double most_mhz = 0;
 };
+// The clocks for the printed rate of a case; nullopt unless the case is a rate of the core alone.
 std::optional<ClockRange> clock_for(const Claim& claim, const Case& one, const CaseFinding& finding);
 
-// The deviation of the modelled value from the printed one, in percent of the printed one. nullopt for numbers of
-// banks and if the printed value is 0.
+// The deviation of the modelled value from the printed one, in percent of the printed one. nullopt if the
+// values are numbers of banks, or if the printed value is 0.
 std::optional<double> deviation_percent(const Claim& claim, const Case& one, const CaseFinding& finding);
 
 }  // namespace stereotlm::paper

@@ -35,7 +35,7 @@ std::string command_text(const Claim& claim, const Case& one) {
   return text;
 }
 
-// Columns of a table that describe its boards: one per key.
+// The keys that a table has columns for, which describe its boards.
 constexpr std::array kBoardKeys = {"image.width",         "image.height",   "matcher.window",
                                    "matcher.disparities", "matcher.filter", "fpga.clock_mhz",
                                    "fpga.device"};
@@ -46,7 +46,7 @@ std::string board_header() {
   return text + '\n';
 }
 
-// The values of these columns for the board of a run: the end of a row.
+// Appends to a row the values of kBoardKeys for the board of a run.
 std::string with_board(std::string row, const BoardRun& run) {
   row.pop_back();  // the newline
   const auto values = platform::values_of(platform::load_board(run.preset, run.sets));
@@ -58,7 +58,7 @@ std::string with_board(std::string row, const BoardRun& run) {
   return row + '\n';
 }
 
-// The number in the name of a case: "7x7", "80 disparities".
+// The number at the beginning of the name of a case: 7 in "7x7", 80 in "80 disparities".
 std::string leading_number(const std::string& name) {
   return name.substr(0, name.find_first_not_of("0123456789"));
 }

@@ -17,10 +17,10 @@ std::string text_of(Verdict verdict);
 
 // The rule by which a modelled value confirms a printed one.
 enum class Relation {
-  kWithinPercent,  // it differs by at most `tolerance` percent of the printed one
-  kWithin,         // it differs by at most `tolerance`
-  kAtLeast,        // it is at most `tolerance` below the printed one
-  kMore,           // it is above the printed one
+  kWithinPercent,  // the values differ by at most `tolerance` percent of the printed one
+  kWithin,         // the values differ by at most `tolerance`
+  kAtLeast,        // the modelled value is at most `tolerance` below the printed one
+  kMore,           // the modelled value is above the printed one
 };
 
 struct Rule {
@@ -36,12 +36,14 @@ std::string text_of(const Rule& rule);
 // Returns kConfirmed or kNotConfirmed.
 Verdict verdict_of(const Rule& rule, double printed, double modelled);
 
-// For the claim that `printed` are needed. `found`: the fewest that were found to be enough. Fewer than `printed`
-// refute the claim in any case. To confirm it takes a proof that no fewer are enough.
+// The verdict on the claim that `printed` banks are needed. `found` is the smallest number of banks that was
+// found to be enough. If it is below `printed`, the claim is not confirmed. Otherwise the claim is confirmed
+// if a proof shows that no fewer banks are enough, and open without such a proof.
 Verdict verdict_of_need(int printed, int found, bool is_proved);
 
-// The verdict on a claim from those on its cases. If all are equal, it is theirs. Otherwise it is kInPart if some
-// case is confirmed, else kNotConfirmed. Without cases it is kOpen.
+// The verdict on a claim, from the verdicts on its cases. If all cases have the same verdict, the claim has
+// it too. Otherwise the verdict is kInPart if some case is confirmed, at least in part, else kNotConfirmed.
+// Without cases it is kOpen.
 Verdict verdict_of_all(const std::vector<Verdict>& cases);
 
 }  // namespace stereotlm::paper

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "calib/lut_file.h"
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "models/kernels/image_filter.h"
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/simd.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "sw/media/load.h"
 #include "sw/report/accuracy.h"
 

@@ -32,7 +32,8 @@ const std::vector<std::string>& names() {
   return kNames;
 }
 
-// The tables of a point: "(SELECT ?1 AS width, ..) AS image, ..". Without a point all values are NULL.
+// The SQL tables for the values of a point: "(SELECT ?1 AS width, ..) AS image, ..". If `has_point` is false,
+// all values are NULL.
 std::string tables_text(bool has_point) {
   std::vector<std::string> tables;
   std::map<std::string, std::string> columns;
@@ -52,8 +53,8 @@ std::string tables_text(bool has_point) {
   return text;
 }
 
-// The functions whose result depends only on their arguments. SQLite also lists the functions of dates, but
-// their argument may be 'now'.
+// The names of the functions whose result depends only on their arguments. The date functions are removed
+// from SQLite's list, because their argument may be 'now'.
 std::set<std::string> pure_functions(const Database& database) {
   Statement list(database,
                  fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));

@@ -12,7 +12,8 @@
 
 namespace stereotlm::explore {
 
-// A condition cannot be computed for a point. what() has the place of the condition, its name and the reason.
+// A condition cannot be computed for a point. what() has the place of the condition, its name and the reason;
+// `reason` is the reason alone.
 class ConditionError : public std::runtime_error {
  public:
   ConditionError(const std::string& what, const std::string& its_reason)
@@ -20,11 +21,11 @@ class ConditionError : public std::runtime_error {
   std::string reason;
 };
 
-// Conditions on a point: SQL expressions of SQLite over the keys of the board, with the names that a board
-// file uses, such as `image.width * image.height <= 307200`. The value of a list or a filter is its text.
-// `ssram.banks` is the number of banks, `board.name` the name of the board; `run.source` and `run.frames` are
-// also defined. An absent value is NULL. A condition depends on nothing but the point: it cannot use other
-// tables, parameters, or functions of time or chance. Must not be used across fork().
+// The conditions of a plan, computed for one point after another. A condition is an SQL expression of SQLite
+// over the keys of the board, such as `image.width * image.height <= 307200`. The value of a list or a filter
+// is its text. `ssram.banks` is the number of banks, `board.name` the name of the board; `run.source` and
+// `run.frames` are also defined. An absent value is NULL. A condition depends on nothing but the point: it
+// cannot use other tables, parameters, or functions of time or chance. Must not be used across fork().
 class Conditions {
  public:
   // Throws std::invalid_argument with the reason if a text is not such an expression.

@@ -10,8 +10,8 @@ namespace stereotlm::explore {
 
 // The contents of stats.json as one row of a database.
 struct Figures {
-  // Each with the dotted path of its key; an element of a list is named by its member `name`, as in
-  // "banks.bank0.reads". A list of numbers is one text, "[1,2]".
+  // Each value has the dotted path of its key. The path of an element of a list has the element's member
+  // `name`, as in "banks.bank0.reads". A list of numbers is one text, "[1,2]".
   std::vector<platform::BoardValue> values;
   std::vector<StoredBlame> blame;
 };

@@ -82,7 +82,7 @@ class Steps {
     }
   }
 
-  // Changes the turnaround of all banks that have any at the same time.
+  // Changes the turnaround of all banks in one step, except those without turnaround.
   void add_turnarounds() {
     std::set<int> cycles;
     for (const BankConfig& bank : board_.banks) {

@@ -14,7 +14,7 @@ struct KnobStep {
   std::string from;
   std::string to;
   platform::BoardConfig board;
-  bool changes_disparities = false;  // the board computes other disparities
+  bool changes_disparities = false;  // the changed board computes other disparities
   // The steps of this knob are alternatives (which buffer gets the new bank), and only the best of them
   // counts.
   bool only_best = false;
@@ -29,8 +29,8 @@ struct KnobStep {
 //   one less
 //   a bank more: a buffer that shares its bank gets a new bank, which is like the shared one
 //   a bank less: all buffers of one bank move into another bank that is used
-// The size of the images, the depth of banks and the device do not change. `camera`: all knobs of the
-// computer, else only those of the board.
+// The size of the images, the depth of banks and the device do not change. `camera`: whether the knobs of the
+// computer around the board are included.
 std::vector<KnobStep> knob_steps(const platform::BoardConfig& board, bool camera);
 
 // A list of boards as points, in the order of the list.

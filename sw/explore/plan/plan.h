@@ -29,9 +29,9 @@ class Plan : public Points {
   // have.
   static Plan load(const std::string& path, const std::string& board = "");
 
-  // The number of points before conditions.
+  // The number of points before conditions leave out some.
   std::uint64_t size() const override { return sample_ ? sample_->points : product_; }
-  // number: 0..size()-1. Reads a board each time.
+  // number: 0..size()-1. Each call reads and checks a board.
   Point point(std::uint64_t number) const override;
   const std::vector<Condition>& conditions() const override { return conditions_; }
   // Paths whose values vary, in the order of the file.
@@ -41,18 +41,19 @@ class Plan : public Points {
   const std::string& path() const { return path_; }
   const std::string& board() const { return board_; }  // name of a preset, or path of a board file
 
-  // Path of the calibration that `run` names; empty: none. And the place of that value in the plan.
+  // Path of the calibration that the section `run` names; empty: none. calibration_place() is the place of
+  // that value in the plan.
   const std::string& calibration() const { return calibration_; }
   const std::string& calibration_place() const { return calibration_place_; }
-  // Gives all points the tables of a calibration of images of that size, in place of the identity. Points
-  // whose boards cannot have them become impossible. Returns the rule that is broken if no point can have
-  // them. `sha256`: of the tables.
+  // Gives all points the tables of a calibration for images of width x height, in place of the identity. A
+  // point whose board cannot have these tables becomes impossible. If that holds for all points, returns the
+  // broken rule, else nullopt. `sha256`: of the tables.
   std::optional<std::string> use_calibration(const std::string& sha256, int width, int height);
 
  private:
   friend class PlanReader;
 
-  // Values that vary together: at place i each path takes its value i.
+  // Keys whose values vary together: at index i each key takes its value i.
   struct Axis {
     std::vector<std::string> paths;
     std::vector<PlanValues> values;  // [path]; all have the same size
@@ -66,17 +67,17 @@ class Plan : public Points {
 
   Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
   std::vector<PlanValue> values_at(std::uint64_t number) const;
-  // The values that the plan gives a point.
+  // The values that the plan gives a point, before they are checked.
   struct Combination {
     platform::BoardDraft draft;
     PointRun run;
   };
   Combination combination(std::uint64_t number) const;
   // The reason for which a board cannot have the tables of the calibration: its image size, or a side without
-  // a buffer for a table. Nothing without a calibration.
+  // a buffer for a table. Nullopt if there is no such reason, or no calibration.
   std::optional<std::string> size_problem(const platform::BoardConfig& board) const;
   std::optional<std::string> buffer_problem(const platform::BoardConfig& board) const;
-  bool varies(const std::string& path) const;  // the key or a key below it varies
+  bool varies(const std::string& path) const;  // whether the key or a key below it varies
 
   std::string path_;
   std::string board_;

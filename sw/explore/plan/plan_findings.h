@@ -8,7 +8,7 @@
 
 namespace stereotlm::explore {
 
-// Collects what is wrong with the file of a plan, each finding with its place.
+// Collects the errors of a plan file, each with its place; PlanReader uses it.
 class PlanFindings {
  public:
   using Entries = std::vector<platform::YamlNode::Entry>;
@@ -21,11 +21,11 @@ class PlanFindings {
   void report(const platform::Place& place, const std::string& text);
   // Reports `path = value: rule`.
   void report(const std::string& path, const platform::YamlNode& node, const std::string& rule);
-  // Adds findings that have their places.
+  // Adds errors that already have a place.
   void add(const std::vector<platform::Diagnostic>& found);
 
   // The entries of a map. Reports repeated entries, and entries whose keys are not among `known`; without
-  // known keys all keys are allowed. If the value is not a map, reports it and returns null.
+  // known keys all keys are allowed. If the value is not a map, reports it with `rule` and returns null.
   const Entries* read_map(const std::string& path, const platform::YamlNode& node,
                           const std::vector<std::string>& known, const std::string& rule);
 

@@ -77,7 +77,7 @@ class PlanReader {
     return nullptr;
   }
 
-  // Reads `board`, `set` and `run`: the board and the run before values vary.
+  // Reads `board`, `set` and `run`: the board and the run that all points have in common.
   void read_base(const Entries& sections, const YamlNode& tree) {
     if (const YamlNode* run = find(sections, "run")) read_run(*run);
     const YamlNode* const board = find(sections, "board");
@@ -137,14 +137,15 @@ class PlanReader {
     }
   }
 
-  // Records a path that a section gives. Reports a path that may not stand in the section, or that the plan
-  // has given before, and returns false then. Also reports an overlap with a path above or below it.
+  // Records a path that occurs in a section of the plan. Reports a path that is not allowed in the section,
+  // or that has occurred before; returns false for both. Also reports a path if the plan has another path
+  // above or below it.
   bool take_path(const std::string& section, const YamlNode& key) {
     const std::string& path = key.text;
     const bool is_run = section != "set" && may_vary(path);
     const bool is_checked_later = section == "set";  // by the draft of the board
     const std::string rule = is_run || is_checked_later ? ""
-                             : path == kCalibrationPath ? "goes with `run`: one for all points"
+                             : path == kCalibrationPath ? "can only be given in `run`: one for all points"
                                                         : platform::path_problem(path);
     const auto [first, is_new] = places_.emplace(path, key.place);
     if (!rule.empty()) {
@@ -168,7 +169,7 @@ class PlanReader {
     return rule.empty() && is_new;
   }
 
-  // Takes the names of banks from values of `ssram.banks`, or from a key below it.
+  // Records the names of banks in values of `ssram.banks`, or in a key below it.
   void take_banks(const YamlNode& key, const std::vector<YamlNode>& values) {
     static const std::string kBanks = "ssram.banks";
     if (key.text == kBanks) {
@@ -181,7 +182,8 @@ class PlanReader {
     }
   }
 
-  // Records the name of a bank. All points have their rows in one table, whose columns ignore case.
+  // Records the name of a bank. Reports it if it differs from an earlier name only in case: all points are
+  // rows of one table, and SQL ignores the case of its columns.
   void take_bank(const std::string& name, const Place& place) {
     const auto [known, is_new] = banks_.emplace(without_case(name), name);
     if (is_new) {
@@ -226,9 +228,9 @@ class PlanReader {
     }
   }
 
-  // Reads the values of a key that varies, and reports those that are wrong by themselves. (A value that is
-  // wrong only beside a value of another key makes points impossible.) Reports and returns nothing if there
-  // are no values.
+  // Reads the values of a key that varies, and reports each value that is wrong by itself. (A value that is
+  // wrong only beside a value of another key makes points impossible.) If there are no values, reports that
+  // and returns nullopt.
   std::optional<PlanValues> values_of(const std::string& section, const YamlNode::Entry& entry) {
     const std::string& path = entry.key.text;
     const YamlNode& node = entry.value;
@@ -254,7 +256,7 @@ class PlanReader {
   void check_range(const std::string& name, const std::string& path, const YamlNode& node,
                    const DecimalRange& range, const PlanValues& values) {
     RefusedNumbers refused = refused_by_rule(path, range);
-    // A key without a rule for numbers allows all of them or none.
+    // A key without a rule for numbers allows all numbers or none.
     if (refused.count == 0 && !problems_of(path, values.at(0)).empty()) refused = {range.count, 0};
     if (refused.count == 0) return;
     const std::vector<Diagnostic> first = problems_of(path, values.at(refused.first));
@@ -309,7 +311,7 @@ class PlanReader {
     }
   }
 
-  // Reports keys that are missing in the first point: they are missing in all points.
+  // Reports the keys that are missing in the first point, because they are missing in all points.
   void check_first_point() {
     const auto [draft, run] = plan_.combination(0);
     for (const Diagnostic& problem : draft.read_with_problems().problems) {
@@ -370,7 +372,7 @@ class PlanReader {
 
   Plan plan_;
   PlanFindings findings_;
-  std::map<std::string, Place> places_;       // [path that the plan gives]
+  std::map<std::string, Place> places_;       // [path that occurs in the plan]
   std::map<std::string, std::string> banks_;  // [name without_case()]: name
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMostValues = 1'000'000;  // of one range
 constexpr int kMostDigits = 15;                  // of a number as the plan has it
-constexpr int kMostRangeDigits = 18;             // of a number written with all places of its range
+constexpr int kMostRangeDigits = 18;  // of a number that is written with as many places as its range has
 
 // A decimal number: an integer, and the number of its digits behind the decimal point.
 struct Decimal {
@@ -21,7 +21,8 @@ struct Decimal {
   int places = 0;
 };
 
-// Nothing if the value is not a decimal number (see platform::decimal_of()) of at most kMostDigits digits.
+// The exact value of a node; nullopt if it is not a decimal number (see platform::decimal_of()) of at most
+// kMostDigits digits.
 std::optional<Decimal> exact_decimal(const platform::YamlNode& node) {
   if (!platform::decimal_of(node)) return std::nullopt;
   std::string text = node.text;

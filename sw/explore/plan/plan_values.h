@@ -12,8 +12,7 @@
 
 namespace stereotlm::explore {
 
-// The numbers from, from + step, .. : `count` of them, each an exact decimal number with the same number of
-// places.
+// A range of `count` exact decimal numbers: from, from + step, and so on. All have the same number of places.
 struct DecimalRange {
   std::int64_t from = 0;  // digits without the decimal point
   std::int64_t step = 1;
@@ -25,15 +24,15 @@ struct DecimalRange {
   std::string text(std::uint64_t number) const;
 };
 
-// Reads a range such as {from: 16, to: 128, step: 16}. Returns nothing, and reports the problems, if it is
-// not one. `name`: of the range in messages.
+// Reads a range such as {from: 16, to: 128, step: 16}. If the value is no range, reports the problems and
+// returns nullopt. `name` is the name of the range in messages.
 std::optional<DecimalRange> read_range(const std::string& name, const platform::YamlNode& node,
                                        PlanFindings& findings);
 
-// The numbers of a range that break a rule.
+// How many numbers of a range break a rule, and which is the first.
 struct RefusedNumbers {
   std::uint64_t count = 0;
-  std::uint64_t first = 0;  // place of the first in the range
+  std::uint64_t first = 0;  // its index in the range
 };
 RefusedNumbers refused_numbers(const DecimalRange& range, const platform::IntegerRule& rule);
 RefusedNumbers refused_numbers(const DecimalRange& range, const platform::DecimalKey& rule);

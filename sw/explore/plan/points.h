@@ -24,31 +24,34 @@ struct PointRun {
   std::string calibration;   // SHA-256 of the tables; empty: the tables are the identity
 };
 
-// The number of frames of a run: run.frames if it is not 0. Otherwise, for the board alone, one turn of its
-// allocation's lists; where no frame affects the next, the frame rate of one turn is that of any number of
-// turns. For the whole computer kCameraFrames: every buffer of a list of 1, 2 or 3 is used equally often
-// between the first and the last delivery.
+// The default number of frames of the whole computer. In the 12 frames between the first and the last
+// delivery every buffer of a list of 1, 2 or 3 is used equally often.
 inline constexpr std::uint64_t kCameraFrames = 13;
+
+// The number of frames of a run: run.frames if it is not 0. The default is kCameraFrames for the whole
+// computer, and one turn of the allocation's lists for the board alone. If no frame affects the next, the
+// frame rate of one turn is that of any number of turns.
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 
-// Whether points of one plan may have different values of this key of a run.
+// Whether the points of a plan may differ in this key of the run.
 bool may_vary(const std::string& run_key);
 
-// The rule that a value of this key of a run breaks; empty if the value is valid.
+// The rule that the value breaks as a value of this key of the run; empty if the value is valid.
 std::string run_key_problem(const std::string& run_key, const platform::YamlNode& value);
 inline constexpr platform::IntegerRule kFramesRule = {1, 1'000'000};
 
-// Gives the run a valid value of kSourcePath or kFramesPath.
+// Sets the member of `run` for kSourcePath or kFramesPath to the value, which must be valid. Ignores other
+// keys.
 void apply_run_key(const std::string& run_key, const platform::YamlNode& value, PointRun& run);
 
 // One point: a board and its run; or the reason for which there is no such board.
 struct Point {
   std::uint64_t number = 0;  // its place in Points, from 0
   std::string hash;          // SHA-256 of the board in full and of the run, 64 hexadecimal digits
-  std::optional<platform::BoardConfig> board;  // nothing if the point is impossible
+  std::optional<platform::BoardConfig> board;  // nullopt if the point is impossible
   std::string yaml;    // the board in full, as config.yaml has it, also of an impossible point
   std::string reason;  // of an impossible point: every rule that it breaks
-  PointRun run;        // with the number of frames_of(), if the point has a board
+  PointRun run;        // if the point has a board, `frames` is frames_of()
   std::vector<platform::BoardValue> values;  // of every key of the board and of the run
 };
 
@@ -67,13 +70,13 @@ struct Condition {
   std::string name;   // for messages: "where = image.width > 4"
 };
 
-// Points of which each is made from its number when it is needed.
+// A sequence of points. Each point is made from its number when it is needed, and not stored.
 class Points {
  public:
   virtual ~Points() = default;
   virtual std::uint64_t size() const = 0;
   virtual Point point(std::uint64_t number) const = 0;  // number: 0..size()-1
-  // A point for which one of them is not true is left out. There are none unless a class has some.
+  // A point is left out unless all conditions are true for it. By default there are none.
   virtual const std::vector<Condition>& conditions() const;
 
  protected:

@@ -4,9 +4,9 @@
 
 namespace stereotlm::explore {
 
-// The numbers 0..size-1 in an order that depends on a seed. Each is computed by itself: a Feistel network
-// permutes the numbers of the smallest sufficient even number of bits, and is applied again until the result
-// is below `size`. size: 1..2^62.
+// The numbers 0..size-1 in an order that depends on a seed. at() computes each number by itself: a Feistel
+// network permutes the numbers of the smallest even number of bits that suffices, and is applied again until
+// the result is below `size`. size: 1..2^62.
 class ShuffledNumbers {
  public:
   ShuffledNumbers(std::uint64_t size, std::uint64_t seed);

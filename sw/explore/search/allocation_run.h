@@ -10,10 +10,11 @@
 
 namespace stereotlm::explore {
 
-// Simulates the boards that a search asks for, and records the results in the search. The results are stored
-// in `sweep.store`. `keep_going` is called several times a second with the number of simulated boards and the
-// largest number that may be left. Returns false if `keep_going` has ended the search before its end. A board
-// that could not be simulated is recorded as failed. Throws as sweep() does.
+// Simulates the boards that a search selects, until it selects no more, and records the results in the
+// search. The results are stored in `sweep.store`. `keep_going` is called several times a second with the
+// number of boards that are done, and an upper limit for those that are left. The search ends early if
+// `keep_going` returns false, and simulate() then returns false. A board that could not be simulated is
+// recorded as failed. Throws as sweep() does.
 bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOptions& sweep,
               const std::function<bool(std::uint64_t done, std::uint64_t most_left)>& keep_going);
 

@@ -12,14 +12,14 @@
 namespace stereotlm::explore {
 namespace {
 
-// The number of boards that next() returns for each number of banks: enough to keep the processors busy, and
-// few enough that not many runs start which the results of the others would have left out.
-constexpr std::uint64_t kBoardsAtOnce = 8;
+// The largest number of boards that next() returns for each number of banks. It is large enough to keep the
+// processors busy. It is small enough that most runs start after the results that can leave them out.
+constexpr std::uint64_t kBoardsPerRound = 8;
 
-// Tolerance between a bound and a rate, relative: both are rounded quotients.
+// Relative tolerance in comparisons of a bound with a rate, which are both rounded quotients.
 constexpr double kRounding = 1e-9;
 
-// The banks of all buffers, in one text.
+// The banks of all buffers in one text, as a key of frame_numbers_.
 std::string key_of(const platform::BoardConfig& board) {
   std::string key;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) key += buffer.bank + ' ';
@@ -82,7 +82,7 @@ std::vector<std::size_t> AllocationSearch::next() const {
   std::map<int, std::uint64_t> taken;
   for (const std::size_t place : by_bound_) {
     if (is_done(place) || !can_win(place, best)) continue;
-    if (taken[banks_used(fitting_[place])]++ < kBoardsAtOnce) numbers.push_back(place);
+    if (taken[banks_used(fitting_[place])]++ < kBoardsPerRound) numbers.push_back(place);
   }
   return numbers;
 }

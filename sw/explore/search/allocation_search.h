@@ -31,19 +31,19 @@ struct BestPlacement {
   std::uint64_t given_up = 0;    // placements whose run was given up
   std::uint64_t losing = 0;      // known placements that lose pixels
   std::uint64_t failed = 0;      // known placements whose run has failed
-  std::uint64_t reached_by = 0;  // placements with the best rate; 0: no placement counts, the rest is empty
+  std::uint64_t reached_by = 0;  // placements with the best rate; 0: none counts, and the rest is empty
   double frames_per_second = 0;  // the best rate
-  AllocationOutcome outcome;     // of the witness; if by_frames(), only the cycles, of one turn of the lists
+  AllocationOutcome outcome;     // of the witness; if by_frames(), of one turn of the lists
   Placement witness;             // the first placement with the best rate
 };
 
 // Finds the best placement of a board's buffers for each number of banks. It selects the boards to simulate,
 // and the caller records their results.
 //
-// If frames_are_independent() and the core runs alone, the search is by frames: it needs one frame for each
-// way in which the buffers of a frame share banks, and gets the rate of every placement from those. Otherwise
-// each placement is a run. Placements whose bound is below the best known rate for as many banks are left
-// out, and a run may be given up as soon as it can no longer reach that rate.
+// If frames_are_independent() and the core runs alone, the search is by frames. It needs a simulation of one
+// frame for each way in which the buffers of a frame share banks, and computes the rate of every placement
+// from these. Otherwise each placement is a run. A placement is left out if its bound is below the best known
+// rate for as many banks. A run may be given up as soon as it can no longer reach that rate.
 class AllocationSearch {
  public:
   // An upper bound of the frames per second of a board that loses no pixels.
@@ -52,8 +52,8 @@ class AllocationSearch {
   // Limit of different placements, whether they fit or not.
   static constexpr std::uint64_t kMostPlacements = 5'000'000;
 
-  // most_banks: 1..banks of the board. run: the run of every point; its number of frames is 0 (see
-  // frames_of()). Throws std::length_error if there are more than kMostPlacements placements.
+  // most_banks: 1..banks of the board. run: the run of every point, with `frames` 0: the default of
+  // frames_of(). Throws std::length_error if there are more than kMostPlacements placements.
   AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
                    const BoundOf& bound);
 
@@ -72,8 +72,8 @@ class AllocationSearch {
   // The frames per second that a board must reach to be the best for its number of banks, among the results
   // so far. 0: the board is simulated in any case.
   double rate_to_reach(std::size_t number) const;
-  // The largest number of boards that may still have to be simulated: all boards without those that were
-  // recorded or left out so far.
+  // The largest number of boards that may still have to be simulated: all boards except those that were
+  // recorded, given up or left out so far.
   std::uint64_t most_left() const;
 
   std::size_t size() const { return outcomes_.size(); }
@@ -82,11 +82,11 @@ class AllocationSearch {
   // The best placement for each number of banks that can hold the buffers, the fewest banks first. Final once
   // next() returns no boards.
   std::vector<BestPlacement> best() const;
-  // "ALLOCATION: REASON" of the first board whose run has failed; empty if none has.
+  // "ALLOCATION: REASON" of the first board whose run has failed; empty if no run has failed.
   std::string first_failure() const;
 
  private:
-  AllocationOutcome outcome_of(std::size_t placement) const;  // of a known placement
+  AllocationOutcome outcome_of(std::size_t placement) const;  // the placement must be known
   bool is_known(std::size_t placement) const { return by_frames_ || outcomes_[placement].has_value(); }
   bool is_done(std::size_t placement) const {
     return outcomes_[placement].has_value() || given_up_[placement];
@@ -97,16 +97,16 @@ class AllocationSearch {
   platform::BoardConfig board_;
   PointRun run_;
   bool by_frames_;
-  std::uint64_t turn_frames_;
+  std::uint64_t turn_frames_;  // frames in one turn of the allocation's lists
   std::uint64_t placements_ = 0;
   std::vector<Placement> fitting_;
   std::vector<std::size_t> by_bound_;  // indices of fitting_, the highest bound first
   std::vector<double> bounds_;         // [index of fitting_]: frames per second
   std::vector<platform::BoardConfig> frame_boards_;
   std::map<std::string, std::size_t> frame_numbers_;  // [key_of(board)]: index of frame_boards_
-  // [number of a board: index of frame_boards_ if by_frames_, else of fitting_]
-  std::vector<bool> given_up_;
-  std::vector<std::optional<AllocationOutcome>> outcomes_;
+  // Both by the number of a board, which is an index of frame_boards_ if by_frames_, else of fitting_.
+  std::vector<bool> given_up_;                              // whether the run was given up
+  std::vector<std::optional<AllocationOutcome>> outcomes_;  // the result, once it is known
 };
 
 // Some boards of a search as points.

@@ -43,7 +43,7 @@ class Placements {
   }
 
  private:
-  // Whether no unused bank before it is like it.
+  // Whether no unused bank before `bank` is like it.
   bool is_first_of_its_kind(std::size_t bank) const {
     for (std::size_t other = 0; other < bank; ++other) {
       if (used_[other] == 0 && are_alike(board_.banks[other], board_.banks[bank])) return false;
@@ -82,7 +82,7 @@ class FirstBanks {
  private:
   const BoardConfig& board_;
   std::map<int, int> taken_;  // [bank]: the bank that replaces it
-  std::set<int> given_;       // banks that replace one
+  std::set<int> given_;       // banks that replace a bank
 };
 
 }  // namespace
@@ -127,7 +127,7 @@ bool frames_are_independent(const BoardConfig& board) {
 BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement, std::uint64_t frame) {
   BoardConfig result = board;
   FirstBanks banks(board);
-  std::size_t first = 0;  // of the list or table, as an index of the placement
+  std::size_t first = 0;  // index in the placement of the list's first buffer, or of the table
   platform::AllocationConfig& allocation = result.allocation;
   for (auto* list : {&allocation.left_image, &allocation.right_image, &allocation.disparity}) {
     const std::size_t length = list->size();

@@ -19,23 +19,24 @@ int banks_used(const Placement& placement);
 bool fits(const platform::BoardConfig& board, const Placement& placement);
 
 // Visits every placement of the board's buffers in at most `most_banks` of its banks. Among placements that
-// differ only by an exchange of equal banks (depth, kind, turnaround) it visits only the one that uses those
-// in the board's order. The order is that of the first buffer's bank, then of the second's, and so on.
-// Placements that do not fit are visited too.
+// differ only by an exchange of equal banks (same depth, kind and turnaround), it visits only the one that
+// uses the equal banks in the board's order. The order is that of the first buffer's bank, then of the
+// second's, and so on. Placements that do not fit are visited too.
 void for_each_placement(const platform::BoardConfig& board, int most_banks,
                         const std::function<void(const Placement&)>& visit);
 
 // The board with its buffers in the banks of the placement.
 platform::BoardConfig placed(const platform::BoardConfig& board, const Placement& placement);
 
-// Whether a frame of the core alone leaves no state behind that the next frame could observe: an arbitration
-// policy that forgets, and no bank with turnaround. (The search places of round robin persist, and the
-// direction of the last access to a bank with turnaround.)
+// Whether a frame of the core alone leaves no state behind that the next frame could observe. That holds if
+// the arbitration policy forgets, and no bank has turnaround. (Round robin keeps the place of its search; a
+// bank with turnaround keeps the direction of its last access.)
 bool frames_are_independent(const platform::BoardConfig& board);
 
-// A board that computes one frame of the lists' turn, with the buffers of that frame alone. Each lies in the
-// first unused bank that equals its bank in the placement. If frames_are_independent(), frames of different
-// placements that have the same such board take the same number of cycles.
+// A board that computes only frame number `frame` of the placement: it has only the buffers of that frame.
+// Each bank of the placement is replaced by the first equal bank that replaces no other. If
+// frames_are_independent(), two frames with the same such board take the same number of cycles, even if they
+// belong to different placements.
 platform::BoardConfig board_of_frame(const platform::BoardConfig& board, const Placement& placement,
                                      std::uint64_t frame);
 

@@ -63,7 +63,7 @@ set -- "$folder"/shard_*.db
 
 std::string sha(const std::string& text) { return files::sha256_hex(text.data(), text.size()); }
 
-// A text that differs between different sweeps.
+// A text that is different for each sweep.
 std::string identity(const ShardedSweep& sweep) {
   const auto& calibration = sweep.calibration;
   const std::string tables = calibration

@@ -10,28 +10,29 @@
 
 namespace stereotlm::explore {
 
-// A sweep on several machines: the data that its tasks need.
+// The data that the tasks of a sweep on several machines need.
 struct ShardedSweep {
-  std::string plan;                  // contents of its file
-  std::optional<std::string> board;  // contents of the board file that it names; nothing: it names a preset
+  std::string plan;                  // contents of the plan file
+  std::optional<std::string> board;  // contents of the plan's board file; nullopt: the plan names a preset
   struct Calibration {
     std::string file;
     std::string left_lut;
     std::string right_lut;
   };
-  std::optional<Calibration> calibration;  // contents of its files; nothing: tables are the identity
+  std::optional<Calibration> calibration;  // contents of its files; nullopt: tables are the identity
   std::vector<std::string> banks;          // names of the banks of all points
   std::string version;                     // of the program
   std::uint64_t points = 0;
   std::uint64_t shards = 1;
 
+  // The number of points of a shard.
   std::uint64_t points_of(std::uint64_t shard) const;
 };
 
 // The folder STORE.shards, on a file system that all machines share. It holds copies of the plan, its board
 // and its calibration, the scripts of the tasks, and the store, the counts and the log of each shard: some
-// files for each shard, none for each point. A shard is whole once shard_I.db exists. Member functions throw
-// std::runtime_error that names the file.
+// files for each shard, none for each point. A shard is whole (all of its points are done) once shard_I.db
+// exists. Member functions throw std::runtime_error that names the file.
 class ShardFolder {
  public:
   explicit ShardFolder(const std::string& store);  // neither makes nor changes the folder
@@ -47,25 +48,27 @@ class ShardFolder {
   static constexpr const char* kMergeLog = "merge.log";
 
   bool exists() const;
-  // Makes the folder if there is none. Locks it until this object or the process ends.
+  // Makes the folder if there is none, and locks it. The lock is released when this object is destroyed or
+  // the process ends.
   void lock();
   // Whether the folder exists and belongs to this sweep.
   bool is_of(const ShardedSweep& sweep) const;
-  // Merges the points of all shards, whole or not, into the store. No process may write to the shards.
+  // Merges the points of all shards, whole or not, into the store. No other process may write to the shards
+  // meanwhile.
   void keep_points(const std::string& version);
-  // Puts the files that the tasks of this sweep need into the folder, and removes all others. If the store
-  // exists, gives it the form that many processes may read.
+  // Replaces the contents of the folder by the files that the tasks of this sweep need. If the store exists,
+  // merge_stores() rewrites it, so that many processes can read it at the same time.
   void begin(const ShardedSweep& sweep);
   void remove();
 
   bool is_whole(std::uint64_t shard) const;
-  bool is_merged() const;  // the last job has merged all shards into the store
-  // The counts that the task of the shard has written last; all 0 if it has written none yet.
+  bool is_merged() const;  // whether the last job has merged all shards into the store
+  // The last counts that the task of the shard has written; all 0 if it has written none yet.
   SweepCounts counts(std::uint64_t shard) const;
   // The last line of a log; empty if there is no log.
   static std::string last_line(const std::string& log);
 
-  // Lists the folder; is_whole() and is_merged() refer to the last list.
+  // Lists the names in the folder. is_whole() and is_merged() use the last list.
   void refresh();
 
  private:

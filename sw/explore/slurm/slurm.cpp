@@ -34,7 +34,8 @@ std::string words_of(const std::string& program, const process::CommandEnd& end)
 
 std::string run(const std::vector<std::string>& words) {
   try {
-    // A user sets SQUEUE_.. and SCANCEL_.. for interactive use; SBATCH_.. also applies to jobs of programs.
+    // Runs without the variables SQUEUE_.. and SCANCEL_.., which users set for interactive use. Keeps
+    // SBATCH_.., which also apply to jobs that programs submit.
     const process::CommandEnd end = process::run_command(words, {"SQUEUE_", "SCANCEL_"});
     if (end.status != 0) throw SlurmError(words_of(words[0], end));
     return end.out;

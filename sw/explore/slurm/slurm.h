@@ -8,7 +8,7 @@
 
 namespace stereotlm::explore {
 
-// A command of Slurm failed. what() has the words of Slurm.
+// A command of Slurm failed. what() has Slurm's message.
 class SlurmError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,26 +19,27 @@ struct SlurmTask {
   std::string job;                     // number of the job, or of the job array
   std::optional<std::uint64_t> index;  // of a task in its job array
   std::string state;                   // "PENDING", "RUNNING", "NODE_FAIL", ..
-  std::string reason;                  // for waiting: "Resources", ..
+  std::string reason;                  // why it waits: "Resources", ..
 
-  bool is_live() const;  // it waits, runs, or still has processes
+  bool is_live() const;  // whether it waits, runs, or still has processes
 };
 
-// The jobs of a name, including those that ended in the last minutes. Throws SlurmError.
+// The jobs with this name, including those that ended in the last minutes. Throws SlurmError.
 std::vector<SlurmTask> slurm_jobs(const std::string& name);
 
 // Reads the output of squeue in the format that slurm_jobs() asks for. Throws SlurmError.
 std::vector<SlurmTask> read_squeue(const std::string& text);
 
-// Submits the shell script `script` with these arguments. `options`: of sbatch; of repeated options the last
-// counts. Returns the number of the job. Throws SlurmError.
+// Submits the shell script `script` with these arguments, and returns the number of the job. `options` are
+// those of sbatch; the last of equal options counts. Throws SlurmError.
 std::string submit_to_slurm(const std::vector<std::string>& options, const std::string& script,
                             const std::vector<std::string>& arguments);
 
 // Cancels jobs, given by their numbers. Throws SlurmError.
 void cancel_in_slurm(const std::vector<std::string>& jobs);
 
-// The indices of tasks as the option --array has them: "0,3,5-9". The numbers ascend.
+// The value of sbatch's option --array for these indices of tasks, such as "0,3,5-9". `numbers` must be
+// ascending.
 std::string array_text(const std::vector<std::uint64_t>& numbers);
 
 }  // namespace stereotlm::explore

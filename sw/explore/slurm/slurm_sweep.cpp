@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr int kMostLosses = 3;
-constexpr int kMostFailures = 10;     // of Slurm's commands, in a row
+constexpr int kMostFailures = 10;     // successive failures of Slurm's commands
 constexpr auto kCancelTimeout = 60s;  // until the cancelled jobs have ended
 constexpr auto kPollInterval = 100ms;
 constexpr const char* kJobsContinue = "the jobs continue; run the same command to wait for them";
@@ -56,7 +56,7 @@ SlurmSweep::SlurmSweep(const ShardedSweep& sweep, const std::string& store,
       shards_(sweep.shards),
       done_(sweep.shards) {}
 
-// Refuses the sweep, if it must, before it changes anything.
+// Makes all checks that can refuse the sweep before it changes anything.
 void SlurmSweep::begin() {
   const std::vector<SlurmTask> tasks = slurm_jobs(name_);
   const bool is_at_work =
@@ -222,7 +222,8 @@ std::string SlurmSweep::submit(const std::string& script, const std::string& log
   return job;
 }
 
-// Counts a loss if the work was submitted before. Returns false, and gives the work up, at the last loss.
+// Counts a loss if the work was submitted before. Gives the work up at loss number kMostLosses, and returns
+// false then.
 bool SlurmSweep::may_continue(Work& work, std::uint64_t done) const {
   if (work.job.empty()) return true;
   work.losses = done > work.most_done ? 1 : work.losses + 1;

@@ -8,7 +8,8 @@
 
 namespace stereotlm::explore {
 
-// SQLite ignores the case of letters in names of columns. Names of banks are case-sensitive.
+// Functions for the names of banks in names of columns. SQLite ignores the case of letters there, but names
+// of banks are case-sensitive.
 
 // The name with letters A to Z in lower case.
 std::string without_case(std::string name);

@@ -11,8 +11,8 @@
 namespace stereotlm::explore {
 namespace {
 
-// The text for a result code of SQLite. `error`: the error number of the system, which counts if input or
-// output failed or a file could not be opened.
+// The text for a result code of SQLite. `error` is the errno value, which is used if input or output failed,
+// or a file could not be opened.
 std::string meaning_of(const std::string& path, int code, int error, const char* message) {
   const int kind = code & 0xFF;
   if (code == SQLITE_READONLY_ROLLBACK) {
@@ -54,8 +54,8 @@ int flags_of(Database::Access access) {
   return 0;
 }
 
-// SQLite takes ":memory:" for a database in memory and "file:.." for a URI. It takes an absolute path for a
-// file.
+// Makes the path absolute, so that SQLite takes it for a file. It would take ":memory:" for a database in
+// memory, and "file:.." for a URI.
 std::string absolute(const std::string& path) {
   const std::filesystem::path file(path);
   return file.is_absolute() ? path : (std::filesystem::current_path() / file).string();

@@ -12,7 +12,7 @@ struct sqlite3_stmt;
 
 namespace stereotlm::explore {
 
-// SQLite could not do something. what() names the file and the reason.
+// A call of SQLite failed. what() names the file and the reason.
 class DatabaseError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,7 +24,7 @@ class Database {
  public:
   enum class Access { kRead, kWrite, kCreate, kMemory };
 
-  // How long it waits for a process that has locked the file.
+  // The default time that a call waits for a process that has locked the file.
   static constexpr std::chrono::milliseconds kBusyTimeout = std::chrono::minutes(1);
 
   // With kMemory the database is a new one in memory, and `path` is its name in messages. Otherwise `path` is
@@ -41,6 +41,7 @@ class Database {
   std::int64_t number(const std::string& sql);
   const std::string& path() const { return path_; }
   sqlite3* handle() const { return handle_; }
+  // Throws the DatabaseError for a result code of SQLite.
   [[noreturn]] void fail(int code) const;
 
  private:
@@ -56,11 +57,11 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  // Gives parameter number `place`, counted from 1, a value.
+  // Sets parameter number `place`, counted from 1, to a value.
   void bind(int place, const std::string& text);
   void bind(int place, std::int64_t number);
   void bind(int place, const platform::BoardValue& value);
-  // Gives the parameter the value of a column of the current row of `from`.
+  // Sets the parameter to the value of a column of the current row of `from`.
   void bind_column(int place, const Statement& from, int column);
   void clear_bindings();
 

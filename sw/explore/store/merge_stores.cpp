@@ -80,7 +80,7 @@ void check_columns(const Readers& readers) {
   }
 }
 
-// The columns of all readers behind kFirstColumns, in the order of is_before().
+// The columns of all readers without kFirstColumns, in the order of is_before().
 std::vector<std::string> further_columns(const Readers& readers) {
   check_columns(readers);
   std::set<std::string> names;
@@ -97,7 +97,7 @@ void copy_keys(const Readers& readers, Database& out) {
   for (const std::string& key : keys) insert_key(out, key);
 }
 
-// The place of each column of a reader among `columns`.
+// The index in `columns` of each column of a reader.
 std::vector<int> places_of(const StoreReader& reader, const std::vector<std::string>& columns) {
   std::vector<int> places;
   for (const std::string& column : reader.columns())
@@ -105,7 +105,7 @@ std::vector<int> places_of(const StoreReader& reader, const std::vector<std::str
   return places;
 }
 
-// Copies each point once. Throws if two readers hold different results of one.
+// Copies each point once. Throws if two readers hold different results of the same point.
 void copy_points(Readers& readers, Database& out, const std::vector<std::string>& columns) {
   Statement insert(out, insert_point_sql(columns));
   std::map<const StoreReader*, std::vector<int>> places;
@@ -167,7 +167,7 @@ void copy_attached(Database& out, const std::vector<std::string>& columns) {
                   kBlameColumns));
 }
 
-// Writes the contents of the journal to the file itself. After that the journal may be lost.
+// Moves the contents of the journal of a store into its file, so that the journal can be removed.
 void empty_journal(const std::string& path) {
   Database database(path, Database::Access::kWrite);
   check_layout(database);

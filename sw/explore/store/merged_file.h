@@ -4,10 +4,11 @@
 
 namespace stereotlm::explore {
 
-// A new file beside a store, into which a merge writes; it replaces the store or is removed.
+// The new file of a merge, beside the store. It replaces the store if the merge succeeds, and is removed
+// otherwise.
 class MergedFile {
  public:
-  // Makes the file. Removes such files that killed processes have left beside the same store. Throws
+  // Makes the file. Removes the files of earlier merges into this store whose processes were killed. Throws
   // DatabaseError.
   explicit MergedFile(const std::string& store);
   // Removes the file unless it has replaced the store.

@@ -12,7 +12,7 @@
 namespace stereotlm::explore {
 namespace {
 
-// SQLite does not wait for other writers before it changes the kind of its journal.
+// Waits until no other process writes. SQLite itself does not wait before it changes the kind of its journal.
 void wait_for_writers(Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
 
 std::string journal_of(const Database& database) {
@@ -20,7 +20,7 @@ std::string journal_of(const Database& database) {
   return statement.step() ? statement.text(0) : "";
 }
 
-// The values of a point in the columns behind kFirstColumns.
+// The values of a point, except those of kFirstColumns.
 std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
   std::vector<const platform::BoardValue*> values;
   for (const auto* part : {&point.keys, &point.figures}) {
@@ -43,7 +43,8 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
 // The first process to open the file creates the tables.
 void Store::create() {
   if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
-    // Small pages: a point changes some pages, and the journal gets each of them as a whole.
+    // Pages are small, because a point changes some pages, and each changed page is written to the journal as
+    // a whole.
     database_.execute("PRAGMA page_size = 1024");
     wait_for_writers(database_);
     // With this journal readers do not wait for a writer, and nothing is lost when a process ends, whatever

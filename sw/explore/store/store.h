@@ -24,7 +24,7 @@ struct StoredBlame {
 struct StoredPoint {
   std::string hash;
   std::string status;  // "ok"; "impossible": there is no such board; "failed": the run ended with an error
-  std::string reason;  // of a status other than "ok"
+  std::string reason;  // for the status, unless it is "ok"
   std::string config;  // the board in full
   std::vector<platform::BoardValue> keys;     // of the board and the run; each has a column
   std::vector<platform::BoardValue> figures;  // each has a column; no path is that of a key
@@ -44,6 +44,7 @@ class Store {
   // Throws if the file has columns of a bank whose name differs from one of these only in case.
   void check_banks(const std::vector<std::string>& banks) const;
 
+  // Whether the store has the point.
   bool has(const std::string& hash);
   // Returns false, and changes nothing, if the store has the point already.
   bool add(const StoredPoint& point);
@@ -56,7 +57,7 @@ class Store {
     std::vector<std::string> paths;
     std::unique_ptr<Statement> statement;
   };
-  // Adds the columns that the table lacks.
+  // The insertion for a point with these values. Adds the columns that the table lacks.
   Statement& insertion(const StoredPoint& point, const std::vector<const platform::BoardValue*>& values);
   void add_columns(const StoredPoint& point);
 

@@ -8,14 +8,14 @@
 
 namespace stereotlm::explore {
 
-// The tables of a store, for the classes that read or write one (see Store). All functions throw
+// The tables of a store, for the classes that read or write stores (see Store). All functions throw
 // DatabaseError.
 
 // The first columns of `points`, which every store has.
 inline constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
 inline constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 
-// The query for has_point().
+// The query that has_point() needs as `find`.
 inline constexpr const char* kFindPoint = "SELECT 1 FROM points WHERE hash = ?";
 bool has_point(Statement& find, const std::string& hash);
 
@@ -31,9 +31,11 @@ std::vector<std::string> names_of(const Database& database, const std::string& s
 // The columns of `points`, in their order.
 std::vector<std::string> columns_of(const Database& database);
 
+// Records that a column holds a key.
 void insert_key(const Database& database, const std::string& name);
-// SQL that inserts a point with these columns, unless it exists; and SQL that inserts a row of blame.
+// SQL that inserts a point with these columns, unless the table has the point.
 std::string insert_point_sql(const std::vector<std::string>& columns);
+// SQL that inserts a row of blame, with the columns kBlameColumns.
 std::string insert_blame_sql();
 
 }  // namespace stereotlm::explore

@@ -15,7 +15,7 @@
 namespace stereotlm::explore {
 namespace {
 
-// A place in the file far behind those that SQLite locks itself.
+// The offset of the byte that is locked, far behind the bytes that SQLite itself locks.
 constexpr off_t kPlace = off_t{1} << 61;
 constexpr std::chrono::milliseconds kBetweenTries{20};
 
@@ -34,8 +34,8 @@ bool is_empty(int file) {
   return fstat(file, &opened) == 0 && opened.st_size == 0;
 }
 
-// Locks the open file description rather than the file for this process: that lock would end when any
-// descriptor of the file is closed.
+// Uses a lock of the open file description. A lock of the process would end as soon as the process closed any
+// descriptor of the file.
 Outcome try_lock(int file, const std::string& store) {
   struct flock range = {};
   range.l_type = F_WRLCK;

@@ -7,7 +7,7 @@
 
 namespace stereotlm::explore {
 
-// The path of the file to which the path of a store leads through symbolic links. Throws DatabaseError.
+// Follows the symbolic links in the path of a store, and returns the path of the file. Throws DatabaseError.
 std::string behind_links(const std::string& store);
 
 // The file of a store was removed or replaced while it was in use. The points that were added to it are lost.
@@ -17,16 +17,15 @@ class StoreGone : public DatabaseError {
       : DatabaseError(store + ": was removed or replaced while in use: its points are lost") {}
 };
 
-// Reserves a store for one writer. The merge at the end of a sweep replaces the file, so that points that
-// another process added during the sweep would be lost. The lock belongs to the system. It ends with this
-// object, or with this process and all processes that were forked while it was held. It does not stop
-// readers.
+// Reserves a store for one writer. The merge at the end of a sweep replaces the file, and would lose points
+// that another process added during the sweep. The operating system holds the lock: it is released when this
+// object is destroyed, or when this process and all its forks have ended. It does not stop readers.
 class StoreLock {
  public:
   // How long the constructor waits: the processes of a sweep that was killed take a moment to end.
   static constexpr std::chrono::milliseconds kBusyTimeout{3000};
 
-  // Makes an empty file if there is none. Such a file is removed with the lock if it is still empty. Throws
+  // Makes an empty file if there is none. The destructor removes this file if it is still empty. Throws
   // DatabaseError, also if another process holds the lock.
   explicit StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout = kBusyTimeout);
   ~StoreLock();

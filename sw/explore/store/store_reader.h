@@ -13,8 +13,8 @@ namespace stereotlm::explore {
 // Classes that read the file of a Store. Their member functions throw DatabaseError. They must not be used
 // across fork().
 
-// The set of points of a store that no process writes to. Any number of machines may read the file at the
-// same time once merge_stores() has written it.
+// A store that no process writes to, as a set of points. Once merge_stores() has written the file, any number
+// of machines may read it at the same time.
 class FinishedStore {
  public:
   // Throws if the file holds points of another version of the program.
@@ -26,7 +26,7 @@ class FinishedStore {
   std::optional<Statement> find_;
 };
 
-// One point at a time, by its hash.
+// Reads one point at a time, which it finds by its hash.
 class StoredRow {
  public:
   explicit StoredRow(const std::string& path);
@@ -45,7 +45,7 @@ class StoredRow {
   std::map<std::string, int> columns_;
 };
 
-// All points in the order of their hashes, for merge_stores().
+// Reads all points in the order of their hashes; merge_stores() uses it.
 class StoreReader {
  public:
   // Selects the first point.
@@ -59,11 +59,13 @@ class StoreReader {
   bool at_end() const { return !has_point_; }
   const std::string& hash() const { return hash_; }  // of the selected point
   const Statement& point() const { return *points_; }
-  void next();
-  // Everything that the file holds about the selected point, as one text: these columns, and the blame.
+  void next();  // selects the next point
+  // Everything that the file holds about the selected point, as one text to compare: the values of these
+  // columns, and the blame.
   std::string whole_text(const std::vector<std::string>& columns);
 
-  // The blame of all points, row by row in the order of the hashes. The first call selects the first row.
+  // Selects the next row of the blame of all points, in the order of the hashes. The first call selects the
+  // first row.
   void next_blame() { has_blame_ = blame_->step(); }
   bool has_blame() const { return has_blame_; }
   const Statement& blame() const { return *blame_; }

@@ -18,18 +18,18 @@ class PointFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Simulates points on several processors. The results are in a database in a temporary folder, which is
-// removed with the batch.
+// Simulates a few points on several processors, for `explain` and `paper`. The results are in a database in a
+// temporary folder, which is removed when the batch is destroyed.
 class Batch {
  public:
   // Throws std::runtime_error if the folder cannot be made.
   Batch() : path_((folder_.path() / "points.db").string()) {}
 
-  // Runs sweep(). Returns false if `keep_going` has ended it. May be called again with further points.
+  // Runs sweep(). Returns false if `keep_going` has ended the sweep. May be called again with further points.
   bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
            const std::function<bool(const SweepCounts& counts)>& keep_going);
 
-  // The database, after run().
+  // The path of the database, which exists after run().
   const std::string& path() const { return path_; }
   // The results of a point, valid until the next call. Throws PointFailed, and std::runtime_error if the
   // point was not simulated.

@@ -42,7 +42,7 @@ constexpr std::uint64_t kMostOfAnOrder = 16;  // points
 constexpr int kPollMs = 100;                  // between two calls of keep_going
 
 // Ignores SIGPIPE while it exists. Writing to a worker that has died must not end this process; receive()
-// finds out that it has died.
+// detects the death.
 class IgnoredSigpipe {
  public:
   IgnoredSigpipe() : before_(signal(SIGPIPE, SIG_IGN)) {}
@@ -106,7 +106,7 @@ class Sweep {
     give_order(*workers_[place]);
   }
 
-  // Hands out the next points, if there are any; those that a dead worker has left come first.
+  // Gives a worker the next points, if there are any. Points that a dead worker has left come first.
   void give_order(Worker& worker) {
     if (shared_.stop()) return;
     if (!left_.empty()) {
@@ -115,7 +115,7 @@ class Sweep {
       return;
     }
     const std::uint64_t rest = counts_.total - next_;
-    // The pieces get smaller towards the end, so that all workers finish at about the same time.
+    // The orders get smaller towards the end, so that all workers finish at about the same time.
     const std::uint64_t count =
         std::min(rest, std::clamp<std::uint64_t>(rest / (4 * workers_.size()), 1, kMostOfAnOrder));
     if (count == 0) return;
@@ -193,9 +193,9 @@ class Sweep {
   IgnoredSigpipe ignored_sigpipe_;
   process::SharedState shared_;
   SweepCounts counts_;
-  std::uint64_t next_ = 0;                        // the first point of this shard that was not handed out
-  std::deque<WorkOrder> left_;                    // orders that dead workers have not finished
-  std::map<std::uint64_t, int> deaths_;           // [number of a point]: workers that died while they did it
+  std::uint64_t next_ = 0;  // first point of this shard that no worker was given, as an index in the shard
+  std::deque<WorkOrder> left_;           // orders that dead workers have not finished
+  std::map<std::uint64_t, int> deaths_;  // [number of a point]: workers that died while they simulated it
   std::vector<std::unique_ptr<Worker>> workers_;  // destroyed before shared_
 };
 

@@ -19,7 +19,7 @@ struct SweepCounts {
   std::uint64_t ok = 0;
   std::uint64_t impossible = 0;
   std::uint64_t failed = 0;
-  std::uint64_t given_up = 0;  // nothing of them is stored
+  std::uint64_t given_up = 0;  // see GivenUp; not stored
 
   std::uint64_t done() const { return excluded + known + ok + impossible + failed + given_up; }
   void add(const SweepCounts& other);
@@ -30,36 +30,37 @@ std::string counts_text(const SweepCounts& counts);
 // Reads the lines of counts_text(). A number without a line is 0.
 SweepCounts read_counts(const std::string& text);
 
-// Evaluate throws it where the result of a point is no longer needed. The sweep stores nothing of the point.
+// An Evaluate function throws GivenUp if the result of the point is no longer needed. The sweep then stores
+// nothing about the point.
 struct GivenUp {};
 
-// Simulates a point that has a board. It is called in worker processes, which are forked from this one. The
-// text of an exception that it throws is the reason for which the point has failed. But std::system_error
-// ends the sweep, because the machine lacks something, and EndedBySignal and std::bad_alloc count as the
-// death of the worker.
+// A function that simulates a point that has a board. It is called in worker processes, which are forked from
+// this one. If it throws an exception, the point has failed, and the text of the exception is the reason.
+// Some exceptions have another meaning: GivenUp; std::system_error, which ends the sweep, because the machine
+// lacks something; process::EndedBySignal and std::bad_alloc, which count as the death of the worker.
 using Evaluate = std::function<Figures(const Point& point)>;
 
 struct SweepOptions {
   std::string store;        // path; an existing store is continued
   std::string version;      // of the program
-  std::string known;        // path of a store, only read, whose points are not simulated; empty: none
+  std::string known;        // path of a store that is only read; its points are not simulated; empty: none
   unsigned jobs = 1;        // worker processes
   std::uint64_t shard = 0;  // 0..shards-1: only the points whose number modulo `shards` is this
   std::uint64_t shards = 1;
   std::chrono::milliseconds busy_timeout = Database::kBusyTimeout;  // wait for processes that lock the store
 };
 
-// A point whose worker has died so many times has failed.
+// The number of deaths of its worker after which a point counts as failed.
 inline constexpr int kMostDeaths = 3;
 
 // Simulates all points that the stores do not have. `keep_going` is called several times a second with the
 // progress; after it has returned false no further point is begun. At the end merge_stores() gives the store
-// its final form, whose bytes depend on nothing but its points. A point whose worker dies is begun again; the
-// row of one that has failed with kMostDeaths deaths says how to try it again. All finished points stay in
-// the store, whatever is thrown: DatabaseError, also if another sweep uses the store; StoreGone
-// (store_lock.h) once the file of the store is gone; ConditionError (conditions.h) if a condition cannot be
-// computed for a point; std::runtime_error, also if the limit on open files is too low for the workers (see
-// workers_with_files()).
+// its final form, whose bytes depend on nothing but its points. A point whose worker dies is begun again,
+// until it counts as failed after kMostDeaths deaths; the reason in its row then says how to try it again.
+// Throws DatabaseError, also if another sweep uses the store; StoreGone (store_lock.h) once the file of the
+// store is gone; ConditionError (conditions.h) if a condition cannot be computed for a point;
+// std::runtime_error, also if the limit on open files is too low for the workers (see workers_with_files()).
+// Except after StoreGone, all finished points are in the store.
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& keep_going);
 

@@ -19,8 +19,8 @@
 namespace stereotlm::explore {
 namespace {
 
-// The message of a worker: a point has ended, or the worker has ended, for the reason in the text that
-// follows.
+// A message of a worker: a point has ended, or the worker ends because of an error. The text of the error,
+// `text_bytes` long, follows the message.
 struct Report {
   enum class Kind : std::uint8_t { kPoint, kFailure, kConditionError };
 
@@ -35,8 +35,8 @@ void report_end(int to, Report::Kind kind, const std::string& text) {
   process::write_all(to, text.data(), text.size());
 }
 
-// Renames a figure that has the path of a key, because each has a column: bridge.posted_words is the number
-// of words that the bridge can hold, and bridge.posted_words.counted the number that it has taken.
+// Renames a figure whose path is also that of a key, because both have a column: bridge.posted_words is the
+// number of words that the bridge can hold, and bridge.posted_words.counted the number that it has taken.
 void take_figures(Figures figures, StoredPoint& row) {
   for (platform::BoardValue& figure : figures.values) {
     const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
@@ -112,7 +112,7 @@ class PointRunner {
 // Runs in the process of the worker; returns its exit status.
 int run_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                const process::SharedState& shared, int from, int to) {
-  // Ctrl-C in a terminal goes to all processes; the process that hands out the work handles it.
+  // Ctrl-C in a terminal goes to all processes. Only the parent process, which gives the orders, handles it.
   signal(SIGINT, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
   Report report;

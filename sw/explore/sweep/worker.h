@@ -12,7 +12,7 @@
 
 namespace stereotlm::explore {
 
-// Points to simulate: `count` numbers first, first + step, .. . count 0: none.
+// The numbers of the points that a worker is to simulate: first, first + step, and so on, `count` numbers.
 struct WorkOrder {
   std::uint64_t first = 0;
   std::uint64_t step = 1;
@@ -25,8 +25,8 @@ enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFaile
 // The row to store for a point that has failed.
 StoredPoint failed_point(const Point& point, const std::string& reason);
 
-// A process that simulates points one after another, stores them, and reports how each has ended. It ends
-// with this process.
+// A process that simulates points one after another, stores them, and reports how each has ended. It ends at
+// the latest when this process ends.
 class Worker {
  public:
   // Forks. Throws std::system_error.
@@ -37,7 +37,7 @@ class Worker {
   // The points that receive() has not returned yet; count 0: the worker is idle.
   const WorkOrder& order() const { return order_; }
 
-  int descriptor() const { return reports_.read_end(); }  // readable when receive() would not wait
+  int descriptor() const { return reports_.read_end(); }  // is readable when receive() would not wait
   // Waits for the end of the next point of its order. Returns nothing if the process has died. Throws
   // std::runtime_error with the reason if the worker had to stop, ConditionError (conditions.h) if a
   // condition was the reason.

@@ -82,7 +82,7 @@ std::uint64_t CameraSimulation::work_done() {
   computer_.board.core.catch_up();
   std::uint64_t work = computer_.board.core.control().work();
   const pci::PciBus::Stats bus = computer_.pci_bus.stats();
-  for (std::size_t master = 0; master < platform::Computer::kLoad; ++master)
+  for (std::size_t master = 0; master < platform::Computer::kTrafficGenerator; ++master)
     work += bus.masters[master].words;
   return work;
 }

@@ -244,7 +244,7 @@ class RefusedCalibrations(CalibrateTest):
         size = "image size = 640x480: must be that of the board's images, 320x480"
         self.refused_with(self.rig, f"'{self.rig}': {size}", board=sets("image.width=320"))
         for side in SIDES:
-            both = f"goes with a board that has both tables; allocation.{side}_lut = none"
+            both = f"needs a board with both tables, but allocation.{side}_lut = none"
             self.refused_with(self.rig, both, board=sets(f"allocation.{side}_lut=none"))
 
     def test_one_inside_the_result_folder_is_refused(self):

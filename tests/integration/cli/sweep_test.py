@@ -173,7 +173,7 @@ vary:
 
     def test_each_point_keeps_what_its_run_with_tables_says(self):
         said = self.succeeds(self.sweep())
-        reason = "run.calibration: goes with a board that has both tables; allocation.left_lut = none"
+        reason = "run.calibration: needs a board with both tables, but allocation.left_lut = none"
         self.assertIn("6 points: 4 ok, 2 impossible, 0 failed", said)
         self.assertIn(f"  2 impossible: {reason}\n", said)
         columns = 'config, "run.frames", cycles, "banks.bank0.reads", "ports.left_pixel.grants"'

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "calib/calibration_reader.h"
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "calib/storage_yaml.h"
 #include "calib/synthetic_rig.h"
 #include "tests/support/scratch_folder.h"

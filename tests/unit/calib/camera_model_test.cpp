@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
 namespace {

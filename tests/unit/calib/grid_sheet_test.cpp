@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {

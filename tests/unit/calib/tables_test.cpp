@@ -7,7 +7,7 @@
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
 
-#include "calib/opencv_types.h"
+#include "calib/opencv_conversions.h"
 #include "calib/synthetic_rig.h"
 
 namespace stereotlm::calib {

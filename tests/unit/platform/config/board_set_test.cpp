@@ -117,7 +117,7 @@ TEST(BoardSet, IsNamedWhereItBreaksARuleWithOtherValues) {
 TEST(BoardSet, RefusesExtendsBadBankNamesAndTheSamePathTwice) {
   EXPECT_EQ(
       refusal_of_board("fpl2003", {"extends=fpl2003", "ssram.banks.9={}", "image.width=4", "image.width=4"}),
-      "--set extends: extends = fpl2003: extends stands in the board file\n"
+      "--set extends: extends = fpl2003: extends can only be given in the board file\n"
       "--set ssram.banks.9: ssram.banks.9 = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none\n"
       "--set image.width: image.width = 4: the same path was set before");
 }

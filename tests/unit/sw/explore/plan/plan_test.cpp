@@ -74,7 +74,7 @@ TEST(Plan, MakesPointsImpossibleThatCannotHaveTheTables) {
   const std::string size =
       "run.calibration: image size = 640x480: must be that of the board's images, 320x240";
   const std::string none =
-      "run.calibration: goes with a board that has both tables; allocation.left_lut = none";
+      "run.calibration: needs a board with both tables, but allocation.left_lut = none";
   const Lines reasons = {"", size, none, size};  // the axes of `vary` come before those of `zip`
   ASSERT_EQ(plan.size(), reasons.size());
   for (std::uint64_t number = 0; number < plan.size(); ++number) {
@@ -94,7 +94,7 @@ TEST(Plan, NamesTheRuleIfNoPointCanHaveTheTables) {
   EXPECT_EQ(plan_of(vary).use_calibration("5a", 320, 240), size);
   const std::string without = "board: fpl2003-no-calibration\n";
   EXPECT_EQ(load(without).use_calibration("5a", 640, 480),
-            "goes with a board that has both tables; allocation.left_lut = none");
+            "needs a board with both tables, but allocation.left_lut = none");
   EXPECT_EQ(load(without + vary).use_calibration("5a", 640, 480), std::nullopt);
 }
 
@@ -461,7 +461,7 @@ TEST(PlanRefusals, AreForCalibrationsThatAreNoFileOrVary) {
                    {"run: {calibration: \"\"}\n", {rule}},
                    {"run: {calibration: null}\n", {rule}},
                    {"vary: {run.calibration: [a.yaml, b.yaml]}\n",
-                    {":2:8: vary: run.calibration: goes with `run`: one for all points"}}});
+                    {":2:8: vary: run.calibration: can only be given in `run`: one for all points"}}});
 }
 
 }  // namespace

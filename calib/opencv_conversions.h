@@ -7,7 +7,8 @@
 
 #include "models/kernels/gray_image.h"
 
-// Conversions between Eigen and OpenCV. OpenCV's own header for Eigen depends on the order of includes.
+// Conversions to and from cv::Mat. OpenCV's own header for Eigen is not used, because it depends on the order
+// of includes.
 namespace stereotlm::calib {
 
 template <typename Derived>
@@ -19,12 +20,12 @@ cv::Mat to_mat(const Eigen::MatrixBase<Derived>& matrix) {
   return result;
 }
 
-// 1 x 5
+// The coefficients of a lens as a matrix of 1 x 5.
 inline cv::Mat to_mat(const std::array<double, 5>& coefficients) {
   return cv::Mat(1, 5, CV_64F, const_cast<double*>(coefficients.data())).clone();
 }
 
-// Throws std::invalid_argument if the matrix is not one of doubles of the size of `Matrix`.
+// Throws std::invalid_argument unless the matrix has the size of `Matrix` and holds doubles.
 template <typename Matrix>
 Matrix to_eigen(const cv::Mat& matrix) {
   Matrix result;
@@ -39,8 +40,8 @@ Matrix to_eigen(const cv::Mat& matrix) {
   return result;
 }
 
-// Shares the pixels of the image, which must outlive the result. The result must not be written to: OpenCV
-// has no read-only view.
+// The image as a cv::Mat that shares its pixels. The image must outlive the result. The result must not be
+// written to: OpenCV has no read-only view.
 inline cv::Mat view(const kernels::GrayImage& image) {
   return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data())};
 }
