@@ -22,7 +22,6 @@
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
-#include "sw/process/program.h"
 #include "sw/process/python_script.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
