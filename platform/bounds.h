@@ -60,7 +60,7 @@ struct RateBound {
   double frames_per_second = 0;
 };
 
-// The bounds of the computer, in the order of the table above. Throws std::invalid_argument if the board has
+// The bounds of the computer, in the order of the table at RateBound. Throws std::invalid_argument if the board has
 // problems.
 std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures);
 

@@ -13,8 +13,6 @@ namespace {
 using fpga::CoreConfig;
 using fpga::Fetch;
 
-constexpr int kPixelBits = 8;
-constexpr std::int64_t kMostPixel = 255;
 constexpr int kEntryBits = 11 + 11 + 1;  // contract 1.1: source row, source column, valid
 constexpr int kDisparityBits = 8;        // contract 1.5, 255 = invalid
 constexpr int kWordBits = 32;

@@ -9,9 +9,6 @@
 namespace stereotlm::area {
 namespace {
 
-constexpr int kPixelBits = 8;
-constexpr std::int64_t kMostPixel = 255;
-
 using Row = std::vector<int>;
 
 Row row_of(const kernels::FilterKernel& kernel, int row) {

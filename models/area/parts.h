@@ -5,6 +5,9 @@
 // The resources that parts of a circuit take on a Virtex-II FPGA (Xilinx DS031).
 namespace stereotlm::area {
 
+inline constexpr int kPixelBits = 8;
+inline constexpr std::int64_t kMostPixel = 255;
+
 struct Resources {
   std::int64_t luts = 0;        // 4-input look-up tables
   std::int64_t flip_flops = 0;  // each shares the place of the LUT in front of it, if there is one

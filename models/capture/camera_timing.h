@@ -37,8 +37,8 @@ class CameraTiming {
  private:
   CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz);
 
-  // Times are counted in steps. A step is the largest time that divides both a line time and the time between
-  // two pixels. 52.15/63.56 = 745/908.
+  // Times are counted in steps. A step divides both a line time and the time between two pixels, for every
+  // width: the pixels fill 52.15/63.56 = 745/908 of a line time.
   static constexpr std::uint64_t kPixelSteps = 745;  // steps between two pixels
   static constexpr std::uint64_t kLineSteps = 908;   // steps of a line time, for each pixel of the width
 

@@ -10,8 +10,8 @@ namespace stereotlm::fpga {
 
 // Computes, before a frame that works directly on memory, which accesses each slot of one side makes: none if
 // the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid.
-// Columns are uniform if their slots make the same accesses one by one. Runs of uniform columns are found
-// when the entries are set, so that queries are cheap.
+// Neighbouring columns are uniform if they make the same accesses slot for slot: slot k of one as slot k of
+// the other. Runs of uniform columns are found when the entries are set, so that queries are cheap.
 class AccessPattern {
  public:
   // At first every entry is valid, as on a side without table.

@@ -30,8 +30,8 @@ class StallWatchdog {
   std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
 };
 
-// Text for messages: what each port does in the next cycle of a frame. For a port that requests a bank it
-// adds to which port it has lost arbitration for that bank most often.
+// Text for messages: what each port does in the next cycle of a frame. For a port that requests a bank, the
+// text also names the port to which it has lost that bank most often.
 std::string waits_of_ports(const CoreControl& control, const memory::Arbitration& arbitration,
                            bool host_requests);
 

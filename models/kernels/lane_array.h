@@ -9,6 +9,7 @@
 
 namespace stereotlm::kernels {
 
+// Lanes here are those of vector instructions, one for each disparity.
 constexpr int padded_lanes(int disparities) {
   return (disparities + kLanePadding - 1) / kLanePadding * kLanePadding;
 }

@@ -19,9 +19,9 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
   return right_based != kInvalidDisparity && std::abs(int{left_based} - int{right_based}) <= *tolerance;
 }
 
-// The left-right check behind the select-min units, column by column; used by fpga::LrCheck. The results of
-// unit A come disparities-1 columns after those of unit B. The left-based results wait for that long, so that
-// both results belong to the same column.
+// The left-right check behind the select-min units, column by column; used by fpga::LrCheck. The right-based
+// results (unit A) come disparities-1 columns after the left-based results (unit B), which wait for that
+// long, so that both results belong to the same column.
 class LrCheck {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule and kLrToleranceRule.

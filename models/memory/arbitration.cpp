@@ -3,11 +3,7 @@
 #include <algorithm>
 
 namespace stereotlm::memory {
-namespace {
-
-constexpr std::size_t lowest(PortMask mask) { return static_cast<std::size_t>(__builtin_ctz(mask)); }
-
-}  // namespace
+namespace {}  // namespace
 
 Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks) {
   arbiters_.reserve(banks.size());
@@ -56,7 +52,7 @@ void Arbitration::share_banks() {
   }
   for (std::size_t i = 0; i < kMostPorts; ++i) {
     const auto port_mask = static_cast<PortMask>(1U << i);
-    if (together[i] == 0 || lowest(together[i]) != i) continue;
+    if (together[i] == 0 || lowest_port(together[i]) != i) continue;
     BankArbiter& arbiter = arbiters_[routes_[i].bank];
     if (together[i] == port_mask && !arbiter.needs_turnaround()) {
       alone_ = static_cast<PortMask>(alone_ | port_mask);

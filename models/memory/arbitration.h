@@ -10,7 +10,8 @@
 namespace stereotlm::memory {
 
 // Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
-// requests. Used by Crossbar, and by platform::run_core() without a crossbar. Plain C++, no SystemC.
+// requests. Used by Crossbar, by platform::run_core() without a crossbar, and by the core to skip cycles
+// (fpga::FastForward, fpga::HostPort). Plain C++, no SystemC.
 class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
@@ -34,11 +35,13 @@ class Arbitration {
     return static_cast<PortMask>(granted |
                                  arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
   }
-  // Whether the port is uncontended: as long as no route changes, each request is granted in its cycle.
+  // Whether the port is the only one on its bank, and the bank has no turnaround. Then each request is
+  // granted in its cycle, as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
-  // Subtracts grants of an uncontended port that were counted provisionally, for cycles in which the port did
-  // not request. To be called before a route changes or counting ends: at that time the remaining grants move
-  // the state of the bank's policy.
+  // Subtracts grants of a port that is alone. FastForward counts a grant for each slot of such a pixel port
+  // before it knows which table entries are valid, and then subtracts those of the slots that passed. To be
+  // called before a route changes or counting ends: at that time the remaining grants move the state of the
+  // bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
   // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the
@@ -71,7 +74,8 @@ class Arbitration {
     std::vector<Shared> shared;
     std::vector<Alone> alone;
   };
-  // Records decisions until take_recorded(). A change of routes drops the record.
+  // For FastForward, which steps a group of columns, records its decisions, and skips the groups that repeat
+  // it. Records decisions until take_recorded(). A change of routes drops the record.
   void begin_recording();
   Decided take_recorded();
   // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the

@@ -17,8 +17,6 @@ static_assert(
     }(),
     "an arbiter grants one access a cycle: a bank with more ports needs an arbiter for each");
 
-constexpr std::size_t lowest(PortMask mask) { return static_cast<std::size_t>(__builtin_ctz(mask)); }
-
 std::unique_ptr<const ArbitrationPolicy> make_policy(const ArbiterConfig& config) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
   return find_arbitration_policy(config.policy)->make(config.priority);
@@ -48,7 +46,7 @@ DecisionTable::Row& BankArbiter::row_at(std::uint64_t cycle) const {
 void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
   if (cycles == 0) return;
   if (counting_) {
-    outcomes_[outcome_of(port, lowest(port), write ? 1 : 0)] += cycles;
+    outcomes_[outcome_of(port, lowest_port(port), write ? 1 : 0)] += cycles;
     // All cycles up to the next call that are not counted here were idle. Their order does not matter.
     next_uncounted_cycle_ += cycles;
   } else {

@@ -23,6 +23,8 @@ inline constexpr std::size_t kMostPorts = 6;
 using PortMask = std::uint8_t;
 static_assert(kMostPorts <= 8);
 constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << port); }
+// The port with the lowest index in a set that is not empty.
+constexpr Port lowest_port(PortMask ports) { return static_cast<Port>(__builtin_ctz(ports)); }
 
 using PriorityList = std::vector<Port>;
 

@@ -67,7 +67,7 @@ std::string short_text(const YamlNode& node);
 // The value in one line in flow style, in full.
 std::string flow_text(const YamlNode& node);
 
-// The map as YAML in block style. parse_yaml() reads the same values back, without places and misuse.
+// The map as YAML in block style. parse_yaml() reads the same values back, without `place` and `misuse`.
 std::string yaml_text(const YamlNode& map);
 
 bool is_utf8(std::string_view text);

@@ -16,7 +16,7 @@ class NewFile {
   NewFile& operator=(const NewFile&) = delete;
 
   void write(std::string_view bytes);
-  // Makes the file durable.
+  // Makes the file durable, and closes it. No write() may follow.
   void close();
 
  private:

@@ -29,7 +29,7 @@ constexpr double kPracticeRate = 20;
 // rate at 640x480.
 constexpr double kSmallRate = 80;
 constexpr double kSmallSpeedUp = 4;
-constexpr double kWholeHalfDigit = 0.5;
+constexpr double kHalfOfLastDigit = 0.5;
 // The number of banks that is needed: with calibration (sections 3.1 and 5), and for matching itself (section
 // 3.1).
 constexpr double kBanks = 8;
@@ -125,8 +125,8 @@ Claim practice() {
           "sec. 4",
           "20 frames per second in practice, at 7x7 and 9x9",
           Quantity::kRate,
-          {Relation::kAtLeast, kWholeHalfDigit, "frames/s"},
-          kWholeHalfDigit,
+          {Relation::kAtLeast, kHalfOfLastDigit, "frames/s"},
+          kHalfOfLastDigit,
           of_windows(kPracticeRate, {7, 9}, kBoard, {})};
 }
 
@@ -135,8 +135,8 @@ Claim any_window() {
           "abstract, sec. 5",
           "20 frames per second",
           Quantity::kRate,
-          {Relation::kAtLeast, kWholeHalfDigit, "frames/s"},
-          kWholeHalfDigit,
+          {Relation::kAtLeast, kHalfOfLastDigit, "frames/s"},
+          kHalfOfLastDigit,
           of_windows(kPracticeRate, {5, 7, 9}, kBoard, {})};
 }
 
@@ -146,7 +146,7 @@ Claim more_than_any_window() {
           "more than 20 frames per second, with disparities up to 200",
           Quantity::kRate,
           {Relation::kMore, 0, ""},
-          kWholeHalfDigit,
+          kHalfOfLastDigit,
           of_windows(kPracticeRate, {5, 7, 9}, kBoard, {disparities_key(200)})};
 }
 
@@ -155,8 +155,8 @@ Claim small() {
           "abstract",
           "80 frames per second at 320x240",
           Quantity::kRate,
-          {Relation::kAtLeast, kWholeHalfDigit, "frames/s"},
-          kWholeHalfDigit,
+          {Relation::kAtLeast, kHalfOfLastDigit, "frames/s"},
+          kHalfOfLastDigit,
           of_windows(kSmallRate, {5, 7, 9}, "fpl2003-qvga", {})};
 }
 
@@ -166,7 +166,7 @@ Claim more_than_small() {
           "more than 80 frames per second at 320x240",
           Quantity::kRate,
           {Relation::kMore, 0, ""},
-          kWholeHalfDigit,
+          kHalfOfLastDigit,
           of_windows(kSmallRate, {5, 7, 9}, "fpl2003-qvga", {})};
 }
 

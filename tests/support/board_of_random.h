@@ -16,7 +16,7 @@ platform::BoardConfig board_config(const PlainCycleInput& input);
 // Throws std::invalid_argument if a side has a bank for its table, but no entries.
 platform::Tables board_tables(const PlainCycleInput& input);
 
-// With filter and tolerance, which cycle_input() leaves out.
+// The board with its filter and tolerance, which a PlainCycleInput does not have.
 platform::BoardConfig board_config(const RandomBoard& board);
 host::StereoPair stereo_pair(const RandomBoard& board, int frame);
 host::StereoPair stereo_pair(const RandomBoard& board, const PicturePair& pictures);

@@ -24,8 +24,8 @@ struct PointRun {
   std::string calibration;   // SHA-256 of the tables; empty: the tables are the identity
 };
 
-// The default number of frames of the whole computer. In the 12 frames between the first and the last
-// delivery every buffer of a list of 1, 2 or 3 is used equally often.
+// The default number of frames of the whole computer. In the 12 frame intervals between the first and
+// the last delivery every buffer of a list of 1, 2 or 3 is used equally often.
 inline constexpr std::uint64_t kCameraFrames = 13;
 
 // The number of frames of a run: run.frames if it is not 0. The default is kCameraFrames for the whole

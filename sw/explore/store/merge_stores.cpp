@@ -94,7 +94,7 @@ std::vector<std::string> further_columns(const Readers& readers) {
 void copy_keys(const Readers& readers, Database& out) {
   std::set<std::string> keys;
   for (const auto& reader : readers) keys.insert(reader->keys().begin(), reader->keys().end());
-  for (const std::string& key : keys) insert_key(out, key);
+  for (const std::string& key : keys) insert_board_key(out, key);
 }
 
 // The index in `columns` of each column of a reader.

@@ -132,7 +132,7 @@ void Store::add_columns(const StoredPoint& point) {
     for (const platform::BoardValue& value : *values) {
       if (!columns_.insert(value.path).second) continue;
       database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
-      if (values == &point.keys) insert_key(database_, value.path);
+      if (values == &point.keys) insert_board_key(database_, value.path);
     }
   }
 }

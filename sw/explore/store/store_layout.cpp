@@ -52,7 +52,7 @@ void check_version(Database& database, const std::string& version) {
                                   database.path(), other.text(0), version));
 }
 
-std::vector<std::string> names_of(const Database& database, const std::string& sql) {
+std::vector<std::string> first_column_of(const Database& database, const std::string& sql) {
   std::vector<std::string> names;
   Statement statement(database, sql);
   while (statement.step()) names.push_back(statement.text(0));
@@ -60,10 +60,10 @@ std::vector<std::string> names_of(const Database& database, const std::string& s
 }
 
 std::vector<std::string> columns_of(const Database& database) {
-  return names_of(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
+  return first_column_of(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
 }
 
-void insert_key(const Database& database, const std::string& name) {
+void insert_board_key(const Database& database, const std::string& name) {
   Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
   insert.bind(1, name);
   insert.run();

@@ -27,12 +27,12 @@ void check_layout(Database& database);
 void check_version(Database& database, const std::string& version);
 
 // The first column of each row of a query.
-std::vector<std::string> names_of(const Database& database, const std::string& sql);
+std::vector<std::string> first_column_of(const Database& database, const std::string& sql);
 // The columns of `points`, in their order.
 std::vector<std::string> columns_of(const Database& database);
 
-// Records that a column holds a key.
-void insert_key(const Database& database, const std::string& name);
+// Notes in table `keys` that this column of `points` is a key of the board, not a figure.
+void insert_board_key(const Database& database, const std::string& name);
 // SQL that inserts a point with these columns, unless the table has the point.
 std::string insert_point_sql(const std::vector<std::string>& columns);
 // SQL that inserts a row of blame, with the columns kBlameColumns.

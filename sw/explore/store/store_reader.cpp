@@ -46,7 +46,7 @@ double StoredRow::real(const std::string& column) const {
 StoreReader::StoreReader(const std::string& path) : database_(path, Database::Access::kRead) {
   check_layout(database_);
   columns_ = columns_of(database_);
-  keys_ = names_of(database_, "SELECT name FROM keys");
+  keys_ = first_column_of(database_, "SELECT name FROM keys");
   points_.emplace(database_, "SELECT * FROM points ORDER BY hash");
   blame_of_point_.emplace(
       database_,
@@ -56,7 +56,7 @@ StoreReader::StoreReader(const std::string& path) : database_(path, Database::Ac
 }
 
 std::vector<std::string> StoreReader::versions() const {
-  return names_of(database_, "SELECT DISTINCT version FROM points ORDER BY version");
+  return first_column_of(database_, "SELECT DISTINCT version FROM points ORDER BY version");
 }
 
 void StoreReader::next() {

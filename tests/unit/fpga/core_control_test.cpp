@@ -108,7 +108,7 @@ std::uint64_t run_frame(CoreControl& core, PortMask refused = 0, std::uint64_t r
   return cycles;
 }
 
-// Cycles of an uncontended frame beside the latencies.
+// Cycles of an uncontended frame without the latencies.
 std::uint64_t work_of(const CoreControl& core) {
   return core.geometry().slots + core.geometry().drain_cycles + 1;
 }

@@ -23,7 +23,8 @@ constexpr std::uint64_t kWriteEnd = 1;  // idle clock
 
 class StereoCoreHost : public StereoCoreFidelities {
  protected:
-  // Starts a frame in cycle 0, with an access of one word that requests from this cycle on.
+  // Runs a frame from cycle 0 to its end. Beside it the host accesses one word, which requests from `cycle`
+  // on.
   void run_frame_with(std::uint64_t cycle, tlm::tlm_command command, std::uint64_t address) {
     at(edge(0), [this] { start(); });
     at(edge(cycle - kFirst), [this, command, address] { memory.access(command, address, 5); });
