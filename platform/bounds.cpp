@@ -59,6 +59,10 @@ double camera_rate(const BoardConfig& board) {
   return 1e12 / static_cast<double>(timing.last_pixel_ps());
 }
 
+bool has_separate_ports(const BoardConfig& board, int bank) {
+  return memory::has_separate_ports(board.banks[static_cast<std::size_t>(bank)].kind);
+}
+
 int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
   return list[frame % list.size()].bank;
 }
@@ -122,7 +126,9 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   bounds.insert(bounds.end(), pixels.begin(), pixels.end());
   bounds.push_back({"port result", geometry.result_words + pipeline});
   for (const auto& [bank, demand] : demands) {
-    std::uint64_t cycles = demand.reads + demand.writes + pipeline;
+    const std::uint64_t served = has_separate_ports(board, bank) ? std::max(demand.reads, demand.writes)
+                                                                 : demand.reads + demand.writes;
+    std::uint64_t cycles = served + pipeline;
     // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher consumes its slot
     // at least `after_last_read` cycles later.
     if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
@@ -214,9 +220,13 @@ double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses,
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
   const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t one_by_one = 0;
-  std::vector<std::uint64_t> cycles_of_banks(board.banks.size());
-  const auto use = [&cycles_of_banks](int bank, std::uint64_t count) {
-    cycles_of_banks[static_cast<std::size_t>(bank)] += count;
+  // [0]: cycles of each bank, [1]: cycles of the write port of each bank with separate ports.
+  std::array<std::vector<std::uint64_t>, 2> cycles_of_banks;
+  for (auto& cycles : cycles_of_banks) cycles.resize(board.banks.size());
+  const auto use = [&](int bank, std::uint64_t reads, std::uint64_t writes) {
+    const auto index = static_cast<std::size_t>(bank);
+    cycles_of_banks[0][index] += reads;
+    cycles_of_banks[has_separate_ports(board, bank) ? 1 : 0][index] += writes;
   };
   std::vector<std::uint64_t> frame_cycles;
   for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
@@ -228,14 +238,15 @@ double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses,
   for (std::uint64_t frame = from.frame; frame < frames; ++frame) {
     one_by_one += frame_cycles[frame % period];
     const std::uint64_t pair_words = frame - from.frame < layout.left_image.size() ? 0 : words;
-    use(bank_in_turn(layout.left_image, frame), accesses.left.pixel + pair_words);
-    use(bank_in_turn(layout.right_image, frame), accesses.right.pixel + pair_words);
-    if (layout.left_lut) use(layout.left_lut->bank, accesses.left.lut);
-    if (layout.right_lut) use(layout.right_lut->bank, accesses.right.lut);
-    use(bank_in_turn(layout.disparity, frame), 2 * words);
+    use(bank_in_turn(layout.left_image, frame), accesses.left.pixel, pair_words);
+    use(bank_in_turn(layout.right_image, frame), accesses.right.pixel, pair_words);
+    if (layout.left_lut) use(layout.left_lut->bank, accesses.left.lut, 0);
+    if (layout.right_lut) use(layout.right_lut->bank, accesses.right.lut, 0);
+    use(bank_in_turn(layout.disparity, frame), words, words);
   }
-  const std::uint64_t cycles =
-      std::max(one_by_one, *std::max_element(cycles_of_banks.begin(), cycles_of_banks.end()));
+  std::uint64_t cycles = one_by_one;
+  for (const auto& of_port : cycles_of_banks)
+    cycles = std::max(cycles, *std::max_element(of_port.begin(), of_port.end()));
   return from.start_s + static_cast<double>(cycles) / (board.fpga.clock_mhz * 1e6);
 }
 

@@ -32,8 +32,9 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 // | port P   | One cycle per slot or word. The first port of a lane (its LUT port, or its pixel port if   |
 // |          | the side has no table) also waits for a place in the lane, which has F places: slot s+F is |
 // |          | taken after slot s was consumed, at least the read latencies of the lane after s was taken.|
-// | bank B   | One cycle per access, no turnaround. After the last read: the latencies of its slot up to  |
-// |          | the matcher, the drain and the last write.                                                 |
+// | bank B   | One cycle per access, no turnaround; with separate ports one cycle per read or one per     |
+// |          | write, whichever are more. After the last read: the latencies of its slot up to the        |
+// |          | matcher, the drain and the last write.                                                     |
 // | matcher  | The read latencies of the first slot, one cycle per slot, the drain, the last write.       |
 struct ResourceBound {
   std::string resource;  // "port left_lut", "bank bank0", "matcher"
@@ -78,9 +79,9 @@ struct FrameBegin {
 // A lower bound for the time of the last of `frames` deliveries, in seconds from time 0, of a run that
 // continues from `from` and loses no pixel. Two things limit the run:
 // - The core runs its frames one after another, and each takes at least the cycles of its bound.
-// - A bank makes one access per cycle: for the core, for the results that are read back, and for the pictures
-//   that are captured. The first pair of each buffer is left out, because its capture may have ended before
-//   `from`.
+// - A bank makes one access per cycle, with separate ports one read and one write: for the core, for the
+//   results that are read back, and for the pictures that are captured. The first pair of each buffer is left
+//   out, because its capture may have ended before `from`.
 // Throws std::invalid_argument if the board has problems.
 double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from);

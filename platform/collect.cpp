@@ -15,13 +15,14 @@ using fpga::kPortCount;
 using memory::ArbiterStats;
 using memory::Port;
 
-BankStatistics bank_statistics(const std::string& name, const ArbiterStats& arbiter, std::uint64_t cycles,
+BankStatistics bank_statistics(const BankConfig& config, const ArbiterStats& arbiter, std::uint64_t cycles,
                                double clock_mhz) {
   BankStatistics bank;
-  bank.name = name;
+  bank.name = config.name;
+  bank.ports = memory::traits_of(config.kind).ports;
   bank.reads = arbiter.reads;
   bank.writes = arbiter.writes;
-  bank.busy_cycles = arbiter.reads + arbiter.writes;
+  bank.busy_cycles = arbiter.busy_cycles;
   bank.turnaround_cycles = arbiter.turnaround_cycles;
   bank.idle_cycles = arbiter.idle_cycles;
   bank.contended_cycles = arbiter.contended_cycles;
@@ -78,7 +79,7 @@ void audit_banks(const BoardConfig& config, const BoardCounters& counters, std::
     const ArbiterStats& stats = bank.arbiter;
     const std::string name = "bank " + config.banks[index].name;
     audit.equal(name + ": busy + turnaround + idle cycles",
-                stats.reads + stats.writes + stats.turnaround_cycles + stats.idle_cycles, "cycles", cycles);
+                stats.busy_cycles + stats.turnaround_cycles + stats.idle_cycles, "cycles", cycles);
     audit.equal(name + ": accesses", bank.accesses, "granted by its arbiter",
                 stats.reads + stats.writes + bank.uncounted_grants);
   }
@@ -146,7 +147,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   const auto pipeline = static_cast<std::uint64_t>(config.fpga.pipeline_latency_cycles);
   statistics.cycles = all_cycles - statistics.frames * pipeline;
   for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
-    statistics.banks.push_back(bank_statistics(config.banks[bank].name, counters.banks[bank].arbiter,
+    statistics.banks.push_back(bank_statistics(config.banks[bank], counters.banks[bank].arbiter,
                                                statistics.cycles, config.fpga.clock_mhz));
   }
   for (std::size_t port = 0; port < kPortCount; ++port) {

@@ -22,6 +22,7 @@ struct BankStatistics {
   std::uint64_t contended_cycles = 0;
   double utilization = 0;           // busy_cycles / cycles, 0..1
   double megabytes_per_second = 0;  // 10^6 bytes per second: 4 * (reads + writes) * clock_mhz / cycles
+  int ports = 1;                    // accesses that the bank can serve in a cycle
 };
 
 struct PortStatistics {

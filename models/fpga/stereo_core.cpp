@@ -250,18 +250,32 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const std::uint64_t cycle = frames_.cycle();
   const bool host_requests = local_bus_.requests(edge_ps);
   PortMask granted = 0;
+  bool host_is_served = false;
+  bool burst_has_ended = false;
+  const auto serve_host = [&] {
+    host_is_served = true;
+    burst_has_ended = host_port_.access(cycle, at);
+  };
   if (frames_.is_running()) {
-    granted =
-        frames_.step(host_requests, [this, &at](const CoreControl::Decision& decision, PortMask grants) {
-          crossbar_.grant(grants);
-          return datapath_.move(control(), decision, grants, at);
-        });
+    granted = frames_.step(host_requests, [&](const CoreControl::Decision& decision, PortMask grants) {
+      crossbar_.grant(grants);
+      if (host_reads_where_core_writes(grants)) serve_host();
+      return datapath_.move(control(), decision, grants, at);
+    });
     if (control().frame_done()) finish_frame();
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(kHostPort) : PortMask{0});
     frames_.skip_to(cycle + 1);
   }
-  return has_host(granted) && host_port_.access(cycle, at);
+  if (has_host(granted) && !host_is_served) serve_host();
+  return burst_has_ended;
+}
+
+// Whether the core writes a result to a bank with separate ports that the host reads in the same cycle. The read
+// must come first, because it gets the old word. (move() reads before it writes, and before the host writes.)
+bool StereoCore::host_reads_where_core_writes(PortMask granted) const {
+  return has_host(granted) && (granted & memory::mask_of(kResultPort)) != 0 &&
+         crossbar_.bank_of(kHostPort) == crossbar_.bank_of(kResultPort);
 }
 
 void StereoCore::wait_for_request_until(std::uint64_t time_ps) {

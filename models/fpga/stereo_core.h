@@ -106,6 +106,7 @@ class StereoCore : public sc_core::sc_module {
   void fast_forward();
   void run_cycles();
   bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
+  bool host_reads_where_core_writes(memory::PortMask granted) const;
   void wait_until(std::uint64_t time_ps) { wait(Clock::to_time(time_ps) - sc_core::sc_time_stamp()); }
   void wait_for_request_until(std::uint64_t time_ps);
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 
 namespace stereotlm::memory {
-namespace {}  // namespace
-
 Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks) {
   arbiters_.reserve(banks.size());
-  for (const SsramBankConfig& bank : banks) arbiters_.emplace_back(arbiter, bank.turnaround_cycles);
+  for (const SsramBankConfig& bank : banks) arbiters_.emplace_back(arbiter, bank);
 }
 
 void Arbitration::route(Port port, std::size_t bank, bool write) {
@@ -89,7 +87,7 @@ void Arbitration::settle() {
   count_alone();
   for (std::size_t port = 0; port < kMostPorts; ++port) {
     if (alone_grants_[port] == 0) continue;
-    arbiters_[routes_[port].bank].grant_alone(mask_of(port));
+    arbiters_[routes_[port].bank].grant_alone(mask_of(port), routes_[port].write);
   }
   alone_grants_ = {};
 }

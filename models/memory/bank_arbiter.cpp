@@ -8,39 +8,52 @@
 namespace stereotlm::memory {
 namespace {
 
-static_assert(
-    [] {
-      for (const BankTraits& bank : kBankTraits) {
-        if (bank.ports != 1) return false;
-      }
-      return true;
-    }(),
-    "an arbiter grants one access a cycle: a bank with more ports needs an arbiter for each");
+constexpr bool contend(std::size_t requests) { return (requests & (requests - 1)) != 0; }
 
 std::unique_ptr<const ArbitrationPolicy> make_policy(const ArbiterConfig& config) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
   return find_arbitration_policy(config.policy)->make(config.priority);
 }
 
-}  // namespace
-
-BankArbiter::BankArbiter(const ArbiterConfig& config, int turnaround_cycles)
-    : table_(make_policy(config)),
-      row_(&table_.row_of(0)),
-      other_direction_cycles_(static_cast<std::uint64_t>(turnaround_cycles) + 1) {}
-
-// Fills a missing row or decision, then decides. Seldom called, and out of line so that decide() stays small.
-BankArbiter::Outcome BankArbiter::prepare_and_decide(std::uint64_t cycle, PortMask requests,
-                                                     PortMask writes) {
-  row_ = &row_at(cycle);
-  next_cycle_ = cycle;
-  table_.fill(*row_, requests);
-  return decide(cycle, requests, writes);
+const SsramBankConfig& checked(const SsramBankConfig& bank) {
+  if (const auto found = problems(bank); !found.empty()) throw std::invalid_argument(found.front());
+  return bank;
 }
 
-// The row of the policy's state in `cycle`, after cycles without request since next_cycle_.
-DecisionTable::Row& BankArbiter::row_at(std::uint64_t cycle) const {
-  return row_->after_idle_cycles(cycle - next_cycle_);
+}  // namespace
+
+// With separate ports an access never delays one in the other direction: both may be granted in one cycle.
+BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
+    : table_(make_policy(config)),
+      has_separate_ports_(has_separate_ports(checked(bank).kind)),
+      places_{Place{&table_.row_of(0)}, Place{&table_.row_of(0)}},
+      other_direction_cycles_(has_separate_ports_ ? 0
+                                                  : static_cast<std::uint64_t>(bank.turnaround_cycles) + 1) {}
+
+// Fills a missing row or decision, then decides. Seldom called, and out of line so that decide() stays small.
+BankArbiter::Outcome BankArbiter::prepare_and_decide(Place& place, std::uint64_t cycle, PortMask requests,
+                                                     PortMask writes) {
+  place = {&place.at(cycle), cycle};
+  table_.fill(*place.row, requests);
+  return decide_at(place, cycle, requests, writes);
+}
+
+BankArbiter::Outcome BankArbiter::decide_each_direction(std::uint64_t cycle, PortMask requests,
+                                                        PortMask writes) {
+  const auto reading = static_cast<PortMask>(requests & ~writes);
+  const auto writing = static_cast<PortMask>(requests & writes);
+  const Outcome reads = reading == 0 ? kNothing : decide_at(places_[0], cycle, reading, 0);
+  const Outcome written = writing == 0 ? kNothing : decide_at(places_[1], cycle, writing, writing);
+  return reads | written << kHalf;
+}
+
+// Counts the upper half of an outcome of a bank with separate ports, and what both halves have in common.
+void BankArbiter::add_writes(Outcome outcome, std::uint64_t cycles) {
+  const Outcome reads = outcome & kHalfMask;
+  const Outcome writes = outcome >> kHalf;
+  outcomes_[writes] += cycles;
+  if (granted_in_half(reads) != 0 && granted_in_half(writes) != 0) both_granted_cycles_ += cycles;
+  if (contend(reads & (kMasks - 1)) && contend(writes & (kMasks - 1))) both_contended_cycles_ += cycles;
 }
 
 void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
@@ -56,22 +69,28 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
 
 // The first grant moves the state. Each further one acts as a cycle without request does (see
 // ArbitrationPolicy).
-void BankArbiter::grant_alone(PortMask port) {
-  table_.fill(*row_, port);
-  row_ = row_->decisions[port].if_granted;
-  ++next_cycle_;
+void BankArbiter::grant_alone(PortMask port, bool write) {
+  Place& place = place_of(write);
+  table_.fill(*place.row, port);
+  place.row = place.row->decisions[port].if_granted;
+  ++place.next_cycle;
 }
 
 std::uint64_t BankArbiter::state(std::uint64_t cycle) const {
   const auto wait = [cycle](std::uint64_t ready) { return ready > cycle ? ready - cycle : 0; };
-  return row_at(cycle).state | wait(ready_cycle_[0]) << 32U | wait(ready_cycle_[1]) << 48U;
+  const std::uint64_t state = places_[0].at(cycle).state;
+  if (has_separate_ports_) return state | std::uint64_t{places_[1].at(cycle).state} << 32U;
+  return state | wait(ready_cycle_[0]) << 32U | wait(ready_cycle_[1]) << 48U;
 }
 
 void BankArbiter::skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles) {
   static_assert(kTurnaroundRule.max < 0xffff);
-  row_ = &table_.row_of(static_cast<ArbitrationPolicy::State>(state));
-  next_cycle_ = cycle;
-  ready_cycle_ = {cycle + (state >> 32U & 0xffffU), cycle + (state >> 48U)};
+  places_[0] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state)), cycle};
+  if (has_separate_ports_) {
+    places_[1] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state >> 32U)), cycle};
+  } else {
+    ready_cycle_ = {cycle + (state >> 32U & 0xffffU), cycle + (state >> 48U)};
+  }
   if (!counting_) return;
   next_uncounted_cycle_ += cycles;
   idle_cycles_ += cycles;
@@ -79,10 +98,10 @@ void BankArbiter::skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_
 
 void BankArbiter::count_skipped(Outcome outcome, std::uint64_t cycles) {
   if (counting_) {
-    outcomes_[outcome] += cycles;
+    add(outcome, cycles);
     idle_cycles_ -= cycles;
-  } else if (granted_in(outcome) != 0) {
-    uncounted_accesses_ += cycles;
+  } else {
+    add_uncounted(outcome, cycles);
   }
 }
 
@@ -105,7 +124,7 @@ ArbiterStats BankArbiter::stats() const {
       const std::uint64_t writes = outcomes_[outcome_of(requests, by, 1)];
       const std::uint64_t cycles = reads + writes;
       if (cycles == 0) continue;
-      if ((requests & (requests - 1)) != 0) stats.contended_cycles += cycles;
+      if (contend(requests)) stats.contended_cycles += cycles;
       if (by == ArbiterStats::kTurnaround) {
         stats.turnaround_cycles += cycles;
       } else {
@@ -118,6 +137,8 @@ ArbiterStats BankArbiter::stats() const {
       }
     }
   }
+  stats.busy_cycles = stats.reads + stats.writes - both_granted_cycles_;
+  stats.contended_cycles -= both_contended_cycles_;
   return stats;
 }
 

@@ -18,64 +18,60 @@ struct ArbiterStats {
   std::uint64_t writes = 0;             // cycles with a write granted
   std::uint64_t turnaround_cycles = 0;  // cycles in which no port was granted because of turnaround
   std::uint64_t idle_cycles = 0;        // cycles without request
-  std::uint64_t contended_cycles = 0;   // cycles with two or more requests
+  std::uint64_t busy_cycles = 0;        // cycles with one or more accesses granted
+  std::uint64_t contended_cycles = 0;   // cycles with two or more requests for one port of the bank
   std::array<std::uint64_t, kMostPorts> grants{};  // [port]
   std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts>
       blame{};  // [stalled port][port granted, or kTurnaround]: stall cycles
 };
 
 // Decides in each cycle which port may access one bank (contract section 2). The policy chooses the winner
-// first. If the bank is still turning round for the winner's direction, no port is granted. Plain C++, no
-// SystemC: the single description of arbitration, used at every fidelity.
+// first. If the bank is still turning round for the winner's direction, no port is granted. A bank with
+// separate ports grants one read and one write in a cycle: each direction has a state of the policy, and only
+// requests of the same direction compete. Plain C++, no SystemC: the single description of arbitration, used
+// at every fidelity.
 class BankArbiter {
  public:
   // What happened in one cycle, as a number: the requests, the port that was granted or the turnaround, and
-  // the direction. Does not depend on the policy.
-  using Outcome = std::uint16_t;
+  // the direction. Does not depend on the policy. For a bank with separate ports the lower half describes the
+  // reads and the upper half the writes. For any other bank the upper half is kNothing.
+  using Outcome = std::uint32_t;
 
-  // `turnaround_cycles`: 0 for a bank without turnaround. Throws std::invalid_argument if the configuration
-  // has problems.
-  BankArbiter(const ArbiterConfig& config, int turnaround_cycles);
+  // Takes kind and turnaround of the bank. Throws std::invalid_argument if one of the configurations has
+  // problems.
+  BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank);
 
   // Decides one cycle with at least one request. `writes`: the ports that would write. `cycle` must increase
   // from call to call; a cycle that is left out has no request. The caller passes the outcomes to count(), in
   // the order of the cycles.
   Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
-    const bool is_idle_over = cycle == next_cycle_ || row_->after_idle == row_;
-    const DecisionTable::Decision& decision = row_->decisions[requests];
-    if (!is_idle_over || !decision.is_known()) return prepare_and_decide(cycle, requests, writes);
-    next_cycle_ = cycle + 1;
-    const std::size_t write = writes >> decision.winner & 1U;
-    if (cycle < ready_cycle_[write]) {
-      row_ = decision.if_refused;
-      return outcome_of(requests, ArbiterStats::kTurnaround, 0);
-    }
-    row_ = decision.if_granted;
-    ready_cycle_[1 - write] = cycle + other_direction_cycles_;
-    return outcome_of(requests, decision.winner, write);
+    return has_separate_ports_ ? decide_each_direction(cycle, requests, writes)
+                               : decide_at(places_[0], cycle, requests, writes) | kNothing << kHalf;
   }
-  // The port that was granted, as a mask of one bit; 0 if the bank was turning round.
+  // The ports that were granted: at most one, with separate ports at most one in each direction; none if the
+  // bank was turning round.
   static PortMask granted_in(Outcome outcome) {
-    return static_cast<PortMask>(1U << (outcome >> (kMostPorts + 1)) & (kMasks - 1));
+    return static_cast<PortMask>(granted_in_half(outcome & kHalfMask) | granted_in_half(outcome >> kHalf));
   }
   // Counts `cycles` cycles with this outcome, of which `cycle` is the first.
   void count(std::uint64_t cycle, Outcome outcome, std::uint64_t cycles = 1) {
     if (counting_) {
       idle_cycles_ += cycle - next_uncounted_cycle_;
       next_uncounted_cycle_ = cycle + cycles;
-      outcomes_[outcome] += cycles;
-    } else if (granted_in(outcome) != 0) {
-      uncounted_accesses_ += cycles;
+      add(outcome, cycles);
+    } else {
+      add_uncounted(outcome, cycles);
     }
   }
   // Counts `cycles` cycles in which this port alone requested and was granted. They lie after the last call.
   // Only for a bank without turnaround.
   void count_alone(PortMask port, bool write, std::uint64_t cycles);
   // Moves the policy's state by the grants that count_alone() has counted, at least one.
-  void grant_alone(PortMask port);
+  void grant_alone(PortMask port, bool write);
 
   // The state that determines the decisions from `cycle` on: the policy's state in the lower 32 bits, then 16
-  // bits each for the cycles until a read and until a write can be granted.
+  // bits each for the cycles until a read and until a write can be granted. For a bank with separate ports:
+  // the policy's state for reads in the lower 32 bits, and its state for writes in the upper 32 bits.
   std::uint64_t state(std::uint64_t cycle) const;
   // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the
   // outcomes of the skipped cycles.
@@ -94,23 +90,67 @@ class BankArbiter {
  private:
   static constexpr std::size_t kMasks = std::size_t{1} << kMostPorts;
 
-  // `by`: index of the port that was granted, or ArbiterStats::kTurnaround. `write`: 1 for a write.
+  // A state of the policy.
+  struct Place {
+    DecisionTable::Row* row;       // row of the state in next_cycle
+    std::uint64_t next_cycle = 0;  // first cycle that is not decided
+
+    // The row of the state in `cycle`, after cycles without request since next_cycle.
+    DecisionTable::Row& at(std::uint64_t cycle) const { return row->after_idle_cycles(cycle - next_cycle); }
+  };
+
+  // Half of an outcome. `by`: index of the port that was granted, or ArbiterStats::kTurnaround. `write`: 1 for
+  // a write.
   static constexpr Outcome outcome_of(std::size_t requests, std::size_t by, std::size_t write) {
     return static_cast<Outcome>((by << 1U | write) << kMostPorts | requests);
   }
-  Outcome prepare_and_decide(std::uint64_t cycle, PortMask requests, PortMask writes);
-  DecisionTable::Row& row_at(std::uint64_t cycle) const;
+  static constexpr unsigned kHalf = 16;  // bits
+  static constexpr Outcome kHalfMask = (1U << kHalf) - 1;
+  // Half of an outcome without request.
+  static constexpr Outcome kNothing = static_cast<Outcome>(ArbiterStats::kTurnaround << (kMostPorts + 1));
+  static constexpr PortMask granted_in_half(Outcome half) {
+    return static_cast<PortMask>(1U << (half >> (kMostPorts + 1)) & (kMasks - 1));
+  }
+
+  Outcome decide_at(Place& place, std::uint64_t cycle, PortMask requests, PortMask writes) {
+    const bool is_idle_over = cycle == place.next_cycle || place.row->after_idle == place.row;
+    const DecisionTable::Decision& decision = place.row->decisions[requests];
+    if (!is_idle_over || !decision.is_known()) return prepare_and_decide(place, cycle, requests, writes);
+    place.next_cycle = cycle + 1;
+    const std::size_t write = writes >> decision.winner & 1U;
+    if (cycle < ready_cycle_[write]) {
+      place.row = decision.if_refused;
+      return outcome_of(requests, ArbiterStats::kTurnaround, 0);
+    }
+    place.row = decision.if_granted;
+    ready_cycle_[1 - write] = cycle + other_direction_cycles_;
+    return outcome_of(requests, decision.winner, write);
+  }
+  Outcome prepare_and_decide(Place& place, std::uint64_t cycle, PortMask requests, PortMask writes);
+  Outcome decide_each_direction(std::uint64_t cycle, PortMask requests, PortMask writes);
+  Place& place_of(bool write) { return places_[has_separate_ports_ && write ? 1 : 0]; }
+  void add(Outcome outcome, std::uint64_t cycles) {
+    outcomes_[outcome & kHalfMask] += cycles;
+    if (has_separate_ports_) add_writes(outcome, cycles);
+  }
+  void add_writes(Outcome outcome, std::uint64_t cycles);
+  void add_uncounted(Outcome outcome, std::uint64_t cycles) {
+    uncounted_accesses_ += static_cast<unsigned>(__builtin_popcount(granted_in(outcome))) * cycles;
+  }
 
   DecisionTable table_;
-  DecisionTable::Row* row_;               // row of the policy's state in next_cycle_
-  std::uint64_t next_cycle_ = 0;          // first cycle that is not decided
+  bool has_separate_ports_;
+  std::array<Place, 2> places_;           // of [0] reads, [1] writes; without separate ports [0] is of both
   std::uint64_t other_direction_cycles_;  // from an access to the first possible one in the other direction
   std::array<std::uint64_t, 2> ready_cycle_{};  // first cycle in which [0] a read, [1] a write can be granted
   bool counting_ = false;
   std::uint64_t next_uncounted_cycle_ = 0;  // all counted cycles before it are in the statistics
   std::uint64_t idle_cycles_ = 0;
-  // [outcome]: cycles counted. stats() is computed from this table and idle_cycles_.
+  // [half of an outcome]: cycles counted. stats() is computed from this table, from idle_cycles_, and from the
+  // cycles that are in the table twice, because both halves of their outcome have a grant or contend.
   std::array<std::uint64_t, (kMostPorts + 1) * 2 * kMasks> outcomes_{};
+  std::uint64_t both_granted_cycles_ = 0;
+  std::uint64_t both_contended_cycles_ = 0;
   std::uint64_t uncounted_accesses_ = 0;
 };
 

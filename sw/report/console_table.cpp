@@ -88,7 +88,7 @@ std::string bank_lines(const platform::Statistics& statistics, double clock_mhz)
   for (const auto& bank : statistics.banks) {
     text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f}\n", shortened(bank.name), width,
                         bank.reads, bank.writes, 100 * bank.utilization, bank.megabytes_per_second,
-                        kBytesPerWord * clock_mhz);
+                        bank.ports * kBytesPerWord * clock_mhz);
   }
   return text;
 }

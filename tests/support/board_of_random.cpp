@@ -16,8 +16,8 @@ memory::Port port_of(PlainPort plain) {
 
 memory::BankKind kind_of(PlainBankKind kind) {
   using memory::BankKind;
-  static constexpr std::array<BankKind, 3> kKinds = {BankKind::kZbtPipelined, BankKind::kZbtFlowThrough,
-                                                     BankKind::kSyncBurst};
+  static constexpr std::array<BankKind, 4> kKinds = {BankKind::kZbtPipelined, BankKind::kZbtFlowThrough,
+                                                     BankKind::kSyncBurst, BankKind::kQdr};
   return kKinds[static_cast<std::size_t>(kind)];
 }
 

@@ -10,6 +10,9 @@
 // Converts the boards of the references to boards of the platform.
 namespace stereotlm::test {
 
+// The knobs that the models have.
+inline constexpr RandomKnobs kKnobsOfTheModels = {true};
+
 // Bank i is called "bank<i>" and is as deep as its buffers need, at least one word. A filter of half h gets
 // some kernel of that size.
 platform::BoardConfig board_config(const PlainCycleInput& input);

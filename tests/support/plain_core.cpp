@@ -19,7 +19,7 @@ std::size_t index_of(PlainPort port) { return static_cast<std::size_t>(port); }
 
 int read_latency(PlainBankKind kind) { return kind == PlainBankKind::kZbtFlowThrough ? 1 : 2; }
 
-// One bank and its arbiter; both keep their state from frame to frame.
+// One port of a bank and its arbiter; both keep their state from frame to frame.
 class BankAndArbiter {
  public:
   BankAndArbiter(const PlainBank& bank, const PlainCycleInput& input)
@@ -267,7 +267,7 @@ class ResultQueue {
 class PlainCore::Cycles {
  public:
   explicit Cycles(const PlainCycleInput& input) : input_(input), sequence_(slots_of_a_frame(input)) {
-    for (const PlainBank& bank : input.banks) banks_.emplace_back(bank, input);
+    for (const PlainBank& bank : input.banks) banks_.push_back(ports_of(bank));
     result_.banks.resize(input.banks.size());
     blame_.resize(input.banks.size());
   }
@@ -380,6 +380,18 @@ class PlainCore::Cycles {
     return port == PlainPort::kResult ? Direction::kWrite : Direction::kRead;
   }
 
+  // A port of a bank, and the directions of the accesses that it serves.
+  struct BankPort {
+    BankAndArbiter arbiter;
+    std::vector<Direction> directions;
+  };
+
+  std::vector<BankPort> ports_of(const PlainBank& bank) const {
+    const BankAndArbiter arbiter(bank, input_);
+    if (bank.kind != PlainBankKind::kQdr) return {{arbiter, {Direction::kRead, Direction::kWrite}}};
+    return {{arbiter, {Direction::kRead}}, {arbiter, {Direction::kWrite}}};
+  }
+
   // Decides every bank, and notes the grants in the banks. Within a frame it counts bank states and blame.
   std::array<bool, kPlainPortCount> arbitrate(const std::array<Wish, kPlainPortCount>& wishes, Cycle now) {
     std::array<bool, kPlainPortCount> granted{};
@@ -388,34 +400,41 @@ class PlainCore::Cycles {
     for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
       PlainBankStates& states = frame_ ? result_.banks[bank] : not_counted;
       BlameOfBank& blame = frame_ ? blame_[bank] : blame_not_counted;
-      std::array<bool, kPlainPortCount> requests{};
-      int request_count = 0;
-      for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-        requests[port] = wishes[port] == Wish::kAccess && bank_of_port_[port] == static_cast<int>(bank);
-        if (requests[port]) ++request_count;
-      }
-      if (request_count == 0) {
-        ++states.idle;
-        continue;
-      }
-      if (request_count >= 2) ++states.contended;
+      bool is_busy = false;
+      bool is_turning = false;
+      bool is_contended = false;
+      for (BankPort& bank_port : banks_[bank]) {
+        std::array<bool, kPlainPortCount> requests{};
+        int request_count = 0;
+        for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+          const std::vector<Direction>& served = bank_port.directions;
+          requests[port] =
+              wishes[port] == Wish::kAccess && bank_of_port_[port] == static_cast<int>(bank) &&
+              std::count(served.begin(), served.end(), direction_of(static_cast<PlainPort>(port)));
+          if (requests[port]) ++request_count;
+        }
+        if (request_count == 0) continue;
+        if (request_count >= 2) is_contended = true;
 
-      const PlainPort winner = *banks_[bank].winner(requests, now);
-      const Direction direction = direction_of(winner);
-      const bool refused = banks_[bank].is_turning_round(direction, now);
-      if (refused) {
-        ++states.turnaround;
-      } else {
-        ++states.busy;
-        ++(direction == Direction::kRead ? states.reads : states.writes);
-        banks_[bank].grant(winner, direction, now);
-        granted[index_of(winner)] = true;
+        const PlainPort winner = *bank_port.arbiter.winner(requests, now);
+        const Direction direction = direction_of(winner);
+        const bool refused = bank_port.arbiter.is_turning_round(direction, now);
+        if (refused) {
+          is_turning = true;
+        } else {
+          is_busy = true;
+          ++(direction == Direction::kRead ? states.reads : states.writes);
+          bank_port.arbiter.grant(winner, direction, now);
+          granted[index_of(winner)] = true;
+        }
+        for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+          if (!requests[port] || granted[port]) continue;
+          ++blame[port][refused ? kTurnaround : index_of(winner)];
+          bank_port.arbiter.refuse(static_cast<PlainPort>(port), now);
+        }
       }
-      for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-        if (!requests[port] || granted[port]) continue;
-        ++blame[port][refused ? kTurnaround : index_of(winner)];
-        banks_[bank].refuse(static_cast<PlainPort>(port), now);
-      }
+      if (is_contended) ++states.contended;
+      ++(is_busy ? states.busy : is_turning ? states.turnaround : states.idle);
     }
     return granted;
   }
@@ -460,7 +479,7 @@ class PlainCore::Cycles {
 
   const PlainCycleInput& input_;
   std::vector<Slot> sequence_;
-  std::vector<BankAndArbiter> banks_;
+  std::vector<std::vector<BankPort>> banks_;
   std::array<std::optional<int>, kPlainPortCount> bank_of_port_;
   Direction host_direction_ = Direction::kRead;
   std::optional<Frame> frame_;  // that runs, until its last result write

@@ -15,7 +15,7 @@ enum class PlainPort { kLeftLut, kRightLut, kLeftPixel, kRightPixel, kResult, kH
 inline constexpr std::size_t kPlainPortCount = 6;
 const char* name_of(PlainPort port);  // as in the contract: "left_lut"
 
-enum class PlainBankKind { kZbtPipelined, kZbtFlowThrough, kSyncBurst };
+enum class PlainBankKind { kZbtPipelined, kZbtFlowThrough, kSyncBurst, kQdr };
 enum class PlainFetch { kColumn, kLineBuffer };
 enum class PlainArbitration { kFixedPriority, kRoundRobin, kAge };
 const char* name_of(PlainArbitration arbitration);

@@ -266,9 +266,21 @@ void draw_priority(RandomBoard& board, SplitMix64& random) {
   }
 }
 
+// In few boards all banks, in most some.
+void draw_qdr_banks(RandomBoard& board, SplitMix64& random) {
+  const int percent = random.chance(20) ? 100 : random.between(0, 60);
+  for (PlainBank& bank : board.banks) {
+    if (random.chance(percent)) bank = {PlainBankKind::kQdr, 0};
+  }
+}
+
+void draw_knobs(RandomBoard& board, const RandomKnobs& knobs, SplitMix64& random) {
+  if (knobs.qdr) draw_qdr_banks(board, random);
+}
+
 }  // namespace
 
-RandomBoard make_random_board(std::uint64_t seed) {
+RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs) {
   SplitMix64 random(seed);
   RandomBoard board;
   board.seed = seed;
@@ -293,6 +305,10 @@ RandomBoard make_random_board(std::uint64_t seed) {
   board.frames = random.between(1, 4);
   const int pairs = random.between(1, board.frames);
   for (int pair = 0; pair < pairs; ++pair) board.pictures.push_back(random_pair(board, random));
+
+  SplitMix64 random_knobs(seed +
+                          2'000'000);  // of its own, so that the draws above do not depend on the knobs
+  draw_knobs(board, knobs, random_knobs);
   return board;
 }
 

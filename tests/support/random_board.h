@@ -46,7 +46,13 @@ struct RandomBoard : PlainCycleInput {
   }
 };
 
-RandomBoard make_random_board(std::uint64_t seed);
+// The knobs of contract section 7 that a board draws, beside all of sections 1 to 6.
+struct RandomKnobs {
+  bool qdr = false;
+};
+
+// Without knobs a seed gives the board of sections 1 to 6 that it has always given.
+RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs = {});
 
 // For the message of a failure.
 inline std::string describe(const RandomBoard& board) {

@@ -24,9 +24,9 @@ PlainNumber usual_or_odd(SplitMix64& random, const std::vector<std::string>& usu
 
 }  // namespace
 
-RandomComputer make_random_computer(std::uint64_t seed) {
+RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs) {
   constexpr PlainTime kPsOfUs = 1'000'000;
-  const RandomBoard board = make_random_board(seed);
+  const RandomBoard board = make_random_board(seed, knobs);
   SplitMix64 random(seed + 1'000'000);
   PlainComputerInput input;
   input.frame_rate_hz = usual_or_odd(random, {"1000", "500", "299.7", "99.9"}, 100, 1000);

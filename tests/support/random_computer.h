@@ -15,7 +15,7 @@ struct RandomComputer {
   PlainComputerInput input;  // the same board and the computer around it
 };
 
-RandomComputer make_random_computer(std::uint64_t seed);
+RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs = {});
 
 // The pictures of a camera frame: noise, another one in each frame.
 PicturePair camera_pictures(const RandomBoard& board, std::uint64_t frame);

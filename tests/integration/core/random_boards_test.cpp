@@ -110,20 +110,30 @@ std::string compare_core_run_with_references(const RandomBoard& board, Fidelity 
 
 using Comparison = std::string (*)(const RandomBoard& board, Fidelity fidelity);
 
-void expect_boards_equal_references(Fidelity fidelity, std::uint64_t boards,
+// Boards without the knobs of contract section 7, or with those that the models have.
+class RandomBoards : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(Drawn, RandomBoards, testing::Bool(),
+                         [](const auto& suite) { return suite.param ? "WithKnobs" : "WithoutKnobs"; });
+
+RandomBoard board_of(std::uint64_t seed, bool with_knobs) {
+  return make_random_board(seed, with_knobs ? kKnobsOfTheModels : RandomKnobs{});
+}
+
+void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uint64_t boards,
                                     Comparison compare = compare_with_references) {
   const std::uint64_t first = from_environment("STEREOTLM_RANDOM_FIRST", 0);
   const std::uint64_t count = from_environment("STEREOTLM_RANDOM_BOARDS", boards);
   std::vector<ChildWork> jobs;
   for (std::uint64_t seed = first; seed < first + count; ++seed)
-    jobs.push_back([seed, fidelity, compare] { return compare(make_random_board(seed), fidelity); });
+    jobs.push_back([=] { return compare(board_of(seed, with_knobs), fidelity); });
   const std::vector<ChildResult> results = run_in_children(jobs, processors());
   std::uint64_t hangs = 0;
   for (std::size_t job = 0; job < results.size(); ++job) {
     if (results[job].text == kHang) {
       ++hangs;
     } else if (!results[job].ok()) {
-      const RandomBoard board = make_random_board(first + job);
+      const RandomBoard board = board_of(first + job, with_knobs);
       ADD_FAILURE() << results[job].text << "\n"
                     << describe(board) << "\n"
                     << platform::to_yaml(board_config(board));
@@ -133,28 +143,28 @@ void expect_boards_equal_references(Fidelity fidelity, std::uint64_t boards,
   EXPECT_EQ(hangs, 0U);
 }
 
-TEST(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmetic) {
-  expect_boards_equal_references(Fidelity::kCycle, 300);
+TEST_P(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmetic) {
+  expect_boards_equal_references(Fidelity::kCycle, GetParam(), 300);
 }
 
-TEST(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmeticAtFastFidelity) {
-  expect_boards_equal_references(Fidelity::kFast, 1000);
+TEST_P(RandomBoards, EqualThePlainCycleLoopAndTheLiteralArithmeticAtFastFidelity) {
+  expect_boards_equal_references(Fidelity::kFast, GetParam(), 1000);
 }
 
-TEST(RandomBoards, EqualThePlainCycleLoopWithoutPixels) {
-  expect_boards_equal_references(Fidelity::kTiming, 300);
+TEST_P(RandomBoards, EqualThePlainCycleLoopWithoutPixels) {
+  expect_boards_equal_references(Fidelity::kTiming, GetParam(), 300);
 }
 
-TEST(RandomBoards, EqualThePlainCycleLoopInALoopOfTheirOwn) {
-  expect_boards_equal_references(Fidelity::kTiming, 1000, compare_core_run_with_references);
+TEST_P(RandomBoards, EqualThePlainCycleLoopInALoopOfTheirOwn) {
+  expect_boards_equal_references(Fidelity::kTiming, GetParam(), 1000, compare_core_run_with_references);
 }
 
-TEST(RandomBoards, HaveTheRowsOfThePlainCycleLoop) {
-  expect_boards_equal_references(Fidelity::kCycle, 100, compare_rows_with_references);
+TEST_P(RandomBoards, HaveTheRowsOfThePlainCycleLoop) {
+  expect_boards_equal_references(Fidelity::kCycle, GetParam(), 100, compare_rows_with_references);
 }
 
-TEST(RandomBoards, HaveTheRowsOfThePlainCycleLoopAtFastFidelity) {
-  expect_boards_equal_references(Fidelity::kTiming, 500, compare_rows_with_references);
+TEST_P(RandomBoards, HaveTheRowsOfThePlainCycleLoopAtFastFidelity) {
+  expect_boards_equal_references(Fidelity::kTiming, GetParam(), 500, compare_rows_with_references);
 }
 
 std::string text_of(const std::vector<kernels::GrayImage>& disparities) {
@@ -185,7 +195,7 @@ void dirty_heap(char byte) {
   }
 }
 
-TEST(RandomBoards, GiveTheSameStatisticsAgain) {
+TEST(RandomRuns, GiveTheSameStatisticsAgain) {
   for (std::uint64_t seed = 10'000; seed < 10'020; ++seed) {
     const RandomBoard board = make_random_board(seed);
     SCOPED_TRACE(describe(board));
@@ -222,7 +232,7 @@ std::vector<platform::BoardConfig> allocations_of(const RandomBoard& board) {
   return {board_config(board), board_config(one_bank), board_config(spread)};
 }
 
-TEST(RandomBoards, GiveTheSameDisparityImageWithAnyAllocation) {
+TEST(RandomRuns, GiveTheSameDisparityImageWithAnyAllocation) {
   for (std::uint64_t seed = 20'000; seed < 20'020; ++seed) {
     const RandomBoard board = make_random_board(seed);
     SCOPED_TRACE(describe(board));
@@ -234,9 +244,9 @@ TEST(RandomBoards, GiveTheSameDisparityImageWithAnyAllocation) {
   }
 }
 
-TEST(RandomBoards, AreValid) {
+TEST_P(RandomBoards, AreValid) {
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
-    const RandomBoard board = make_random_board(seed);
+    const RandomBoard board = board_of(seed, GetParam());
     ASSERT_EQ(platform::problems(board_config(board)), std::vector<std::string>()) << describe(board);
     ASSERT_NO_THROW(platform::check_tables(board_config(board), board_tables(board))) << describe(board);
   }

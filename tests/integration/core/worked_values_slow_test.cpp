@@ -34,6 +34,8 @@ INSTANTIATE_TEST_SUITE_P(
               {"left_lut in bank0 by left_pixel: 2136322", "left_pixel in bank0 by left_lut: 2135042"}),
         plain("ResultInABankOfAnImage", {"allocation.disparity=[bank0, bank0]"}, 2'227'635,
               {"left_pixel in bank0 by result: 76640"}),
+        plain("ResultInAQdrBankOfAnImage",
+              {"allocation.disparity=[bank0, bank0]", "ssram.banks.bank0.kind=qdr"}, 2'150'995),
         WorkedFrame{"ResultInASyncBurstBankOfAnImage",
                     "fpl2003-syncburst",
                     {"matcher.filter=none", "allocation.disparity=[bank0, bank0]"},

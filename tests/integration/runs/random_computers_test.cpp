@@ -217,8 +217,8 @@ std::string differences(const std::string& expected, const std::string& found) {
 }
 
 // Where a run of the models is not what it should be.
-std::string problems_of(std::uint64_t seed, Fidelity fidelity) {
-  const test::RandomComputer computer = test::make_random_computer(seed);
+std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fidelity fidelity) {
+  const test::RandomComputer computer = test::make_random_computer(seed, knobs);
   const platform::BoardConfig board = test::board_config(computer);
   const platform::Tables tables = test::board_tables(computer.board);
   Pictures pictures(computer.board);
@@ -240,23 +240,32 @@ std::uint64_t computers() {
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-class RandomComputers : public testing::TestWithParam<Fidelity> {};
+// Computers without the knobs of contract section 7, or with those that the models have.
+class RandomComputers : public testing::TestWithParam<std::tuple<Fidelity, bool>> {};
 
 TEST_P(RandomComputers, EqualThePlainLoopOverEvents) {
+  const auto [fidelity, with_knobs] = GetParam();
+  const test::RandomKnobs knobs = with_knobs ? test::kKnobsOfTheModels : test::RandomKnobs{};
   std::vector<test::ChildWork> jobs;
   for (std::uint64_t seed = 0; seed < computers(); ++seed)
-    jobs.push_back([seed] { return problems_of(seed, GetParam()); });
+    jobs.push_back([seed, knobs, fidelity = fidelity] { return problems_of(seed, knobs, fidelity); });
   const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
   for (std::size_t seed = 0; seed < results.size(); ++seed)
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Fidelities, RandomComputers,
-                         testing::Values(Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming),
-                         [](const auto& suite) {
-                           if (suite.param == Fidelity::kCycle) return "Cycle";
-                           return suite.param == Fidelity::kFast ? "Fast" : "Timing";
-                         });
+std::string suite_name(const testing::TestParamInfo<std::tuple<Fidelity, bool>>& suite) {
+  const auto [fidelity, with_knobs] = suite.param;
+  const std::string name = fidelity == Fidelity::kCycle  ? "Cycle"
+                           : fidelity == Fidelity::kFast ? "Fast"
+                                                         : "Timing";
+  return name + (with_knobs ? "WithKnobs" : "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fidelities, RandomComputers,
+    testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming), testing::Bool()),
+    suite_name);
 
 // Four local clocks a cycle and one word a burst: what lies between two words costs nothing.
 TEST(SaturatedLocalBus, StaysBelowItsBound) {

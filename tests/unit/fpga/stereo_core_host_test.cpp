@@ -141,6 +141,30 @@ TEST_P(StereoCoreHost, IsRefusedABlockingAccessAndGrantedDirectAccess) {
   EXPECT_EQ(dmi.get_end_address(), crossbar_address(kResult, kWords) - 1);
 }
 
+class StereoCoreQdr : public StereoCoreBench {};
+
+// The host reads the last word of the results in the cycle in which the core writes it, the last counted one.
+TEST_F(StereoCoreQdr, GivesTheHostTheOldWordInTheCycleOfItsWrite) {
+  StereoCoreConfig board = small_board();
+  board.memory.banks[kResult].kind = memory::BankKind::kQdr;
+  build(board);
+  memory.debug_write(crossbar_address(kResult, 0), Words(12, 0xAAAA'AAAA));
+  at(edge(0), [this] { start(); });
+  const std::uint64_t last = frame_cycles_alone(4) - pipeline() - 1;
+  at(edge(last - kFirst), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kResult, 11)); });
+  finish();
+  ASSERT_EQ(memory.answers.size(), 1U);
+  EXPECT_EQ(memory.answers[0].word, 0xAAAA'AAAAU);
+  EXPECT_EQ(memory.answers[0].at, edge(last + kReadEnd));
+  EXPECT_NE(banks[kResult]->words()[11], 0xAAAA'AAAAU);
+  const memory::ArbiterStats stats = core->crossbar().arbiters()[kResult].stats();
+  EXPECT_EQ(stats.reads, 1U);
+  EXPECT_EQ(stats.busy_cycles, stats.writes);
+  EXPECT_EQ(stats.contended_cycles, 0U);
+  EXPECT_EQ(port(kHostPort).granted(), 1U);
+  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+}
+
 // A host that writes a word in every cycle, and is served first, keeps a reader of that bank waiting.
 class StereoCoreStarved : public StereoCoreHost {
  protected:

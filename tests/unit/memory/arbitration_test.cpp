@@ -17,12 +17,15 @@ namespace {
 using test::random_arbiter;
 using test::SplitMix64;
 
-constexpr int kBanks = 4;
+constexpr int kBanks = 5;
 
-// Banks without turnaround, and two with.
+// Banks without turnaround, two with, and one with separate ports.
 std::vector<SsramBankConfig> banks() {
-  return {
-      {16}, {16, BankKind::kZbtFlowThrough}, {16, BankKind::kSyncBurst, 2}, {16, BankKind::kSyncBurst, 9}};
+  return {{16},
+          {16, BankKind::kZbtFlowThrough},
+          {16, BankKind::kSyncBurst, 2},
+          {16, BankKind::kSyncBurst, 9},
+          {16, BankKind::kQdr}};
 }
 
 // Every port gets a route, or most of them.
@@ -64,7 +67,7 @@ TEST(Arbitration, GrantsAndCountsAsOneArbiterPerBank) {
     const ArbiterConfig config = random_arbiter(random);
     Arbitration arbitration(config, banks());
     std::vector<PlainArbiter> plain;
-    for (const SsramBankConfig& bank : banks()) plain.emplace_back(config, bank.turnaround_cycles);
+    for (const SsramBankConfig& bank : banks()) plain.emplace_back(config, bank);
     std::uint64_t cycle = 0;
     for (int part = 0; part < 6; ++part) {
       const Routes routes(random);
@@ -197,7 +200,8 @@ TEST(Arbitration, KnowsWhichOtherPortsAreRoutedToABankAndWhetherItHasTurnaround)
   EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 0));
   arbitration.unroute(port::kLeftPixel);
   EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 1));
-  for (std::size_t bank = 0; bank < kBanks; ++bank) EXPECT_EQ(arbitration.needs_turnaround(bank), bank >= 2);
+  for (std::size_t bank = 0; bank < kBanks; ++bank)
+    EXPECT_EQ(arbitration.needs_turnaround(bank), bank == 2 || bank == 3);
 }
 
 TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {
@@ -237,7 +241,7 @@ TEST(Arbitration, DecidesAndCountsUnroutedAsRouted) {
       const bool write = random.chance(50);
       routed.route(port::kHost, bank, write);
       decide(write, 1);
-      if (bank < 2) decide(write, static_cast<std::uint64_t>(random.between(1, 5)));
+      if (!unrouted.needs_turnaround(bank)) decide(write, static_cast<std::uint64_t>(random.between(1, 5)));
     }
     for (const Run& run : runs) unrouted.count_unrouted(bank, run.cycle, run.outcome, run.cycles);
     unrouted.end_counting(cycle + 5);

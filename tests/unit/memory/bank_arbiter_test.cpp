@@ -15,7 +15,13 @@ namespace {
 using std::uint64_t;
 using test::SplitMix64;
 
-// One cycle, decided and counted. Returns the port that is granted.
+// A bank with that turnaround, or with none.
+SsramBankConfig bank_with(int turnaround) {
+  return {16, turnaround > 0 ? BankKind::kSyncBurst : BankKind::kZbtPipelined, turnaround};
+}
+const SsramBankConfig kQdrBank{16, BankKind::kQdr};
+
+// One cycle, decided and counted. Returns the ports that are granted.
 PortMask arbitrate(BankArbiter& arbiter, uint64_t cycle, PortMask requests, PortMask writes) {
   const BankArbiter::Outcome outcome = arbiter.decide(cycle, requests, writes);
   arbiter.count(cycle, outcome);
@@ -27,9 +33,9 @@ TEST(BankArbiter, DecidesAndCountsAsItsPolicySteppedCycleByCycle) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SplitMix64 random(seed);
     const ArbiterConfig config = test::random_arbiter(random);
-    const int turnaround = random.chance(50) ? 0 : random.mostly_small(1, 3, 16);
-    BankArbiter arbiter(config, turnaround);
-    PlainArbiter plain(config, turnaround);
+    const SsramBankConfig bank = test::random_bank(random);
+    BankArbiter arbiter(config, bank);
+    PlainArbiter plain(config, bank);
     uint64_t cycle = 0;
     for (int part = 0; part < 5; ++part) {
       plain.counts = part % 2 == 1;
@@ -55,7 +61,7 @@ TEST_P(Turnaround, GrantsTheOtherDirectionAtTurnaroundPlusOne) {
   for (const PortMask first : {kHost, kNone}) {
     const auto second = static_cast<PortMask>(kHost ^ first);
     for (const uint64_t first_request : {uint64_t{11}, ready - 1, ready}) {
-      BankArbiter arbiter(kFixedPriority, GetParam());
+      BankArbiter arbiter(kFixedPriority, bank_with(GetParam()));
       ASSERT_EQ(arbitrate(arbiter, 10, kHost, first), kHost);
       for (uint64_t cycle = first_request; cycle < ready; ++cycle)
         EXPECT_EQ(arbitrate(arbiter, cycle, kHost, second), kNone) << cycle;
@@ -67,7 +73,7 @@ TEST_P(Turnaround, GrantsTheOtherDirectionAtTurnaroundPlusOne) {
 INSTANTIATE_TEST_SUITE_P(BankArbiter, Turnaround, testing::Values(1, 2, 7, 16));
 
 TEST(BankArbiter, RefusesAWinnerBecauseOfTurnaroundEvenIfAnotherPortCouldBeGranted) {
-  BankArbiter arbiter(kFixedPriority, 2);
+  BankArbiter arbiter(kFixedPriority, bank_with(2));
   const PortMask both = kResult | kLeft;
   ASSERT_EQ(arbitrate(arbiter, 0, kLeft, kNone), kLeft);
   arbiter.begin_counting(1);
@@ -90,7 +96,7 @@ struct Cycle {
 
 // The result port writes, all others read.
 void expect_grants_by_age(int turnaround, std::initializer_list<Cycle> cycles) {
-  BankArbiter arbiter(arbiter_of("age"), turnaround);
+  BankArbiter arbiter(arbiter_of("age"), bank_with(turnaround));
   for (const Cycle& cycle : cycles)
     EXPECT_EQ(arbitrate(arbiter, cycle.number, cycle.requests, kResult), cycle.granted) << cycle.number;
 }
@@ -120,8 +126,48 @@ TEST(AgeArbitration, LetsTheWinnerAndAllOthersGrowOlderWhileTheBankTurnsRound) {
   expect_grants_by_age(2, {{0, kResult, kResult}, {3, kRight, kRight}, {4, kHost | kRight, kHost}});
 }
 
+TEST(BankArbiter, WithSeparatePortsGrantsAReadAndAWriteAndBlamesWithinADirection) {
+  BankArbiter arbiter(kFixedPriority, kQdrBank);
+  arbiter.begin_counting(0);
+  const PortMask all = kHost | kResult | kLeft | kRight;
+  EXPECT_EQ(arbitrate(arbiter, 0, all, kHost | kResult), kHost | kLeft);
+  EXPECT_EQ(arbitrate(arbiter, 1, kResult | kRight, kResult), kResult | kRight);
+  EXPECT_EQ(arbitrate(arbiter, 2, kRight, kNone), kRight);
+  EXPECT_EQ(arbitrate(arbiter, 3, kResult, kResult), kResult);
+  EXPECT_EQ(arbitrate(arbiter, 4, kHost | kLeft | kResult, kResult), kHost | kResult);
+  arbiter.end_counting(8);
+  const ArbiterStats stats = arbiter.stats();
+  EXPECT_EQ(stats.reads, 4U);
+  EXPECT_EQ(stats.writes, 4U);
+  EXPECT_EQ(stats.busy_cycles, 5U);
+  EXPECT_EQ(stats.idle_cycles, 3U);
+  EXPECT_EQ(stats.contended_cycles, 2U);  // in cycle 0 in both directions, in cycle 4 in one
+  EXPECT_EQ(stats.turnaround_cycles, 0U);
+  EXPECT_EQ(stats.blame[port::kResult][port::kHost], 1U);
+  EXPECT_EQ(stats.blame[port::kRightPixel][port::kLeftPixel], 1U);
+  EXPECT_EQ(stats.blame[port::kLeftPixel][port::kHost], 1U);
+  EXPECT_EQ(stats.blame[port::kRightPixel][port::kHost], 0U);
+}
+
+TEST(BankArbiter, WithSeparatePortsHasARoundRobinPlaceForEachDirection) {
+  BankArbiter arbiter(kRoundRobin, kQdrBank);
+  EXPECT_EQ(arbitrate(arbiter, 0, kLeft | kResult, kResult), kLeft | kResult);
+  // Reads are searched from right_pixel on, writes from left_pixel on.
+  EXPECT_EQ(arbitrate(arbiter, 1, kLeft | kRight, kNone), kRight);
+  EXPECT_EQ(arbitrate(arbiter, 2, kHost | kResult, kHost | kResult), kHost);
+  EXPECT_EQ(arbitrate(arbiter, 3, kHost | kRight, kNone), kHost);
+  EXPECT_EQ(arbitrate(arbiter, 4, kHost | kResult, kHost | kResult), kResult);
+  const uint64_t before = arbiter.state(5);
+  arbitrate(arbiter, 5, kHost, kHost);
+  EXPECT_EQ(arbiter.state(6) & 0xffff'ffffU, before & 0xffff'ffffU);
+  EXPECT_NE(arbiter.state(6), before);
+  arbiter.skip_to(before, 10, 3);
+  EXPECT_EQ(arbiter.state(10), before);
+}
+
 TEST(BankArbiter, RefusesAConfigurationWithProblems) {
-  EXPECT_THROW(BankArbiter(arbiter_of("lottery"), 0), std::invalid_argument);
+  EXPECT_THROW(BankArbiter(arbiter_of("lottery"), {}), std::invalid_argument);
+  EXPECT_THROW(BankArbiter(kFixedPriority, {16, BankKind::kQdr, 1}), std::invalid_argument);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ using Problems = std::vector<std::string>;
 TEST(BankTraits, HaveTheLatenciesAndTurnaroundsOfTheDataSheets) {
   const std::vector<BankTraits> expected = {{BankKind::kZbtPipelined, "zbt_pipelined", 2, false, 1},
                                             {BankKind::kZbtFlowThrough, "zbt_flow_through", 1, false, 1},
-                                            {BankKind::kSyncBurst, "sync_burst", 2, true, 1}};
+                                            {BankKind::kSyncBurst, "sync_burst", 2, true, 1},
+                                            {BankKind::kQdr, "qdr", 2, false, 2}};  // QDR-II SRAM
   ASSERT_EQ(kBankTraits.size(), expected.size());
   for (const BankTraits& traits : expected) {
     EXPECT_STREQ(traits_of(traits.kind).name, traits.name);
@@ -29,7 +30,7 @@ TEST(SsramBankConfig, AcceptsTheEndsOfEachRange) {
   for (const SsramBankConfig& config :
        {SsramBankConfig{}, SsramBankConfig{1, BankKind::kZbtFlowThrough, 0, 1},
         SsramBankConfig{1U << 26U, BankKind::kSyncBurst, 1, 1000},
-        SsramBankConfig{1, BankKind::kSyncBurst, 16}})
+        SsramBankConfig{1, BankKind::kSyncBurst, 16}, SsramBankConfig{1, BankKind::kQdr}})
     EXPECT_EQ(problems(config), Problems{});
 }
 
@@ -40,6 +41,7 @@ TEST(SsramBankConfig, RefusesWhatLiesBeyondThem) {
       {{8, BankKind::kSyncBurst, 0}, "turnaround_cycles = 0: must be 1..16 for sync_burst"},
       {{8, BankKind::kSyncBurst, 17}, "turnaround_cycles = 17: must be 1..16 for sync_burst"},
       {{8, BankKind::kZbtPipelined, 1}, "turnaround_cycles = 1: must be 0 for zbt_pipelined"},
+      {{8, BankKind::kQdr, 1}, "turnaround_cycles = 1: must be 0 for qdr"},
       {{8, static_cast<BankKind>(kBankTraits.size())},
        "kind = " + std::to_string(kBankTraits.size()) + ": must be a BankKind"},
       {{8, BankKind::kZbtPipelined, 0, 0.5}, "clock_mhz = 0.500000: must be 1..1000"},

@@ -192,6 +192,17 @@ TEST_F(CoreBound, NamesTheLastOfEqualResources) {
   EXPECT_EQ(core_bound(board, identity_tables(board), 1).core_limited_by, "bank bank2");
 }
 
+TEST_F(FrameBounds, CountTheReadsOrTheWritesOfABankWithSeparatePorts) {
+  board.image = {16, 60};  // 240 words of results: more than the cycles after the last read
+  board.allocation.disparity = board.allocation.left_image = {"bank0"};
+  board.allocation.right_image = {"bank2"};
+  for (BankConfig& bank : board.banks) bank.words = 960;
+  const uint64_t reads = uint64_t{16} * (60 * 3 - 2);
+  EXPECT_EQ(bound_of("bank bank0"), reads + 240 + kPipeline);
+  board.banks[0].kind = memory::BankKind::kQdr;
+  EXPECT_EQ(bound_of("bank bank0"), reads + 2 + kAfter);
+}
+
 // A changed small board by name, so that each runs in a process of its own.
 struct Case {
   const char* name;
@@ -245,6 +256,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"large_filter_line_buffer",
              [](auto& b) { b.matcher.filter = kernels::log7(), b.matcher.fetch = fpga::Fetch::kLineBuffer; }},
         Case{"flow_through", [](auto& b) { set_kinds(b, kFlowThrough, 0); }},
+        Case{"qdr_result_with_image",
+             [](auto& b) {
+               set_kinds(b, memory::BankKind::kQdr, 0);
+               b.allocation.disparity = b.allocation.left_image;
+             }},
         Case{"one_slow_bank",
              [](auto& b) {
                set_kinds(b, kFlowThrough, 0);
@@ -306,6 +322,20 @@ TEST(LeastDelivery, CountsTheWordsThatTheHostMovesInABank) {
     EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 100, {from, 0.25}),
                 0.25 + static_cast<double>(cycles) * kCycle, 1e-12);
   }
+}
+
+TEST(LeastDelivery, CountsTheReadsOrTheWritesOfABankWithSeparatePorts) {
+  BoardConfig board = small_board();
+  board.image = {16, 60};
+  board.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
+  board.banks[0].words = 4096;
+  board.banks[0].kind = memory::BankKind::kQdr;
+  const Tables tables = identity_tables(board);
+  // Pictures, tables and the results that are read back; all writes are fewer.
+  const uint64_t cycles = 100 * (4 * uint64_t{16} * (60 * 3 - 2) + 240);
+  ASSERT_GT(cycles, 100 * largest(board, tables, 0));
+  EXPECT_NEAR(least_delivery_s(board, frame_accesses(board, tables), 100, {0, 0.25}),
+              0.25 + static_cast<double>(cycles) * kCycle, 1e-12);
 }
 
 }  // namespace

@@ -65,6 +65,19 @@ TEST_F(CollectStatistics, GivesTheUseOfEveryBankInTheOrderOfTheBoard) {
   }
 }
 
+TEST_F(CollectStatistics, CountsACycleWithAReadAndAWriteAsOneBusyCycle) {
+  board.banks[0].kind = memory::BankKind::kQdr;
+  board.allocation.left_image = board.allocation.right_image = board.allocation.disparity = {"bank0"};
+  const Statistics statistics = finish(2);
+  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+  const BankStatistics& bank = statistics.banks[0];
+  EXPECT_EQ(bank.ports, 2);
+  EXPECT_EQ(statistics.banks[1].ports, 1);
+  EXPECT_LT(bank.busy_cycles, bank.reads + bank.writes);
+  EXPECT_EQ(bank.idle_cycles, statistics.cycles - bank.busy_cycles);
+  for (const BlameRow& row : statistics.blame) EXPECT_NE(row.by, "result");
+}
+
 TEST_F(CollectStatistics, HasNoFiguresBeforeTheFirstFrame) {
   const Statistics statistics = finish(0);
   EXPECT_EQ(statistics.frames, 0U);

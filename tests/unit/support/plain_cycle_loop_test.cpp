@@ -147,6 +147,40 @@ TEST(PlainCycleLoop, CountsThePortStatesTracedByHand) {
   EXPECT_EQ(result.banks[2].idle, 17U);
 }
 
+// left_pixel reads in cycles 1, 4, 7 and 10, right_pixel, after a stall in 1, in 2, 5, 8 and 11. The host writes
+// in every cycle.
+TEST(PlainCycleLoop, GrantsAReadAndAWriteOfAQdrBankInOneCycle) {
+  PlainCycleInput input = tiny_board_of_one_bank();
+  input.banks[0].kind = PlainBankKind::kQdr;
+  PlainCore core(input);
+  core.start_frame(0);
+  for (int cycle = 0; cycle < 18; ++cycle) EXPECT_TRUE(core.step(cycle, PlainHostRequest{0, true})) << cycle;
+  const PlainCycleResult result = core.result();
+  EXPECT_EQ(result.banks[0].reads, 8U);
+  EXPECT_EQ(result.banks[0].writes, 18U);
+  EXPECT_EQ(result.banks[0].busy, 18U);
+  EXPECT_EQ(result.banks[0].idle, 0U);
+  EXPECT_EQ(result.banks[0].contended, 1U);
+  EXPECT_EQ(result.blamed(PlainPort::kRightPixel, 0, PlainPort::kLeftPixel), 1U);
+  EXPECT_EQ(result.blame.size(), 1U);
+}
+
+TEST(PlainCycleLoop, KeepsARoundRobinPlaceForEachDirectionOfAQdrBank) {
+  PlainCycleInput input = tiny_board_of_one_bank();
+  input.banks[0].kind = PlainBankKind::kQdr;
+  input.arbitration = PlainArbitration::kRoundRobin;
+  // With one place for both, the host's writes between the reads would move it in front of left_pixel.
+  input.priority = {PlainPort::kHost,   PlainPort::kLeftPixel, PlainPort::kRightPixel,
+                    PlainPort::kResult, PlainPort::kRightLut,  PlainPort::kLeftLut};
+  PlainCore core(input);
+  for (int frame = 0; frame < 2; ++frame) {
+    core.start_frame(frame);
+    for (int cycle = 0; core.runs(); ++cycle)
+      core.step(100 * frame + cycle, cycle == 0 ? std::optional(PlainHostRequest{0, true}) : std::nullopt);
+  }
+  EXPECT_EQ(core.result().blamed(PlainPort::kRightPixel, 0, PlainPort::kLeftPixel), 2U);
+}
+
 // Cycles in which the host's word is granted. The host asks in every cycle but `pause`, and is last in the list.
 std::string host_grants_by_age(const PlainBank& bank, int cycles, int pause = -1) {
   PlainCycleInput input = tiny_board_of_one_bank();  // without host, each lane asks in cycles 1, 4, 7 and 10

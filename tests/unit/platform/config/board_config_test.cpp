@@ -78,8 +78,8 @@ TEST(BoardConfig, DiffersInEachFieldOfALoad) {
 TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
             Problems{"cameras.trigger = 2: free_running or on_demand"});
-  EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(3); }),
-            Problems{"ssram.banks.bank0.kind = 3: zbt_pipelined, zbt_flow_through or sync_burst"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(4); }),
+            Problems{"ssram.banks.bank0.kind = 4: zbt_pipelined, zbt_flow_through, sync_burst or qdr"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
             Problems{"fpga.arbitration = lottery: fixed_priority, round_robin or age"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = 6; }).size(), 1U);

@@ -56,7 +56,7 @@ TEST(BoardBanks, TakeTheirWordsUpToBothLimits) {
 
 TEST(BoardBanks, TakeAKnownKind) {
   for (const std::string value : {"zbt", "null", "[sync_burst]", "0"}) {
-    const std::string rule = " = " + value + ": zbt_pipelined, zbt_flow_through or sync_burst";
+    const std::string rule = " = " + value + ": zbt_pipelined, zbt_flow_through, sync_burst or qdr";
     EXPECT_EQ(refusal_of(banks_board("{default: {kind: " + value + "}, banks: {a: {}}}")),
               "board.yaml:2:25: ssram.default.kind" + rule);
     EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: " + value + "}}}")),
@@ -94,6 +94,10 @@ TEST(BoardBanks, RequireATurnaroundOnlyWhereTheKindIsSyncBurst) {
   const std::string other = " = 2: only where the kind is sync_burst, and it is zbt_pipelined";
   EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: zbt_pipelined, turnaround_cycles: 2}}}")),
             "board.yaml:2:61: ssram.banks.a.turnaround_cycles" + other);
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: qdr, turnaround_cycles: 2}}}")),
+            "board.yaml:2:51: ssram.banks.a.turnaround_cycles = 2: only where the kind is sync_burst, and it "
+            "is qdr");
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: qdr}}}")), "");
   EXPECT_EQ(refusal_of(banks_board("{default: {turnaround_cycles: 2}, banks: {a: {}}}")),
             "board.yaml:2:38: ssram.default.turnaround_cycles" + other);
 }

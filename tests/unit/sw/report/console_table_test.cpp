@@ -102,6 +102,12 @@ TEST(ConsoleTable, ShowsNoSteadyRateOfOneFrameAndNoStallWhereNothingStalled) {
   EXPECT_THAT(text, HasSubstr("    120.00    250.00\n")) << "the peak follows from the clock";
 }
 
+TEST(ConsoleTable, ShowsThePeakOfAllPortsOfABank) {
+  platform::Statistics statistics = two_banks();
+  statistics.banks[0].ports = 2;
+  EXPECT_THAT(console_table(statistics, {}, std::nullopt), HasSubstr("    120.00    320.00\n"));
+}
+
 TEST(ConsoleTable, StaysWithinAHundredColumns) {
   platform::Statistics statistics = in_a_computer();
   statistics.bound.system_limited_by = std::string(300, 'l');

@@ -58,10 +58,11 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {"matcher.filter", {}, "log7 -> none; "},
       {"matcher.filter", {"matcher.filter=none"}, "none -> log7; "},
       {"matcher.filter", {kOwnFilter}, "its own -> none; its own -> log7; "},
-      {kKind, {}, "zbt_pipelined -> zbt_flow_through; zbt_pipelined -> sync_burst; "},
+      {kKind, {}, "zbt_pipelined -> zbt_flow_through; zbt_pipelined -> sync_burst; zbt_pipelined -> qdr; "},
       {kKind,
        {burst("bank3", 5)},
-       "different -> zbt_pipelined; different -> zbt_flow_through; different -> sync_burst; "},
+       "different -> zbt_pipelined; different -> zbt_flow_through; different -> sync_burst; "
+       "different -> qdr; "},
       {kTurnaround, {}, ""},
       {kTurnaround, {burst("bank3", 5)}, "5 -> 6; 5 -> 4; "},
       {kTurnaround, {burst("bank3", 1)}, "1 -> 2; "},
