@@ -126,9 +126,9 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   bounds.insert(bounds.end(), pixels.begin(), pixels.end());
   bounds.push_back({"port result", geometry.result_words + pipeline});
   for (const auto& [bank, demand] : demands) {
-    const std::uint64_t served = has_separate_ports(board, bank) ? std::max(demand.reads, demand.writes)
-                                                                 : demand.reads + demand.writes;
-    std::uint64_t cycles = served + pipeline;
+    // With separate ports the writes are made beside the reads.
+    const bool is_beside = has_separate_ports(board, bank);
+    std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
     // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher consumes its slot
     // at least `after_last_read` cycles later.
     if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
@@ -220,13 +220,11 @@ double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses,
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
   const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t one_by_one = 0;
-  // [0]: cycles of each bank, [1]: cycles of the write port of each bank with separate ports.
-  std::array<std::vector<std::uint64_t>, 2> cycles_of_banks;
-  for (auto& cycles : cycles_of_banks) cycles.resize(board.banks.size());
+  std::vector<std::uint64_t> cycles_of_banks(board.banks.size());
+  // With separate ports the writes are made beside the reads. They alone are never the limit: a frame has at
+  // least four slots for each word of a picture, and at most two pictures and one result are written.
   const auto use = [&](int bank, std::uint64_t reads, std::uint64_t writes) {
-    const auto index = static_cast<std::size_t>(bank);
-    cycles_of_banks[0][index] += reads;
-    cycles_of_banks[has_separate_ports(board, bank) ? 1 : 0][index] += writes;
+    cycles_of_banks[static_cast<std::size_t>(bank)] += reads + (has_separate_ports(board, bank) ? 0 : writes);
   };
   std::vector<std::uint64_t> frame_cycles;
   for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
@@ -244,9 +242,8 @@ double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses,
     if (layout.right_lut) use(layout.right_lut->bank, accesses.right.lut, 0);
     use(bank_in_turn(layout.disparity, frame), words, words);
   }
-  std::uint64_t cycles = one_by_one;
-  for (const auto& of_port : cycles_of_banks)
-    cycles = std::max(cycles, *std::max_element(of_port.begin(), of_port.end()));
+  const std::uint64_t cycles =
+      std::max(one_by_one, *std::max_element(cycles_of_banks.begin(), cycles_of_banks.end()));
   return from.start_s + static_cast<double>(cycles) / (board.fpga.clock_mhz * 1e6);
 }
 

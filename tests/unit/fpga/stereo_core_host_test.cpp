@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "models/kernels/stereo.h"
 #include "tests/support/expected_report.h"
 #include "tests/unit/fpga/stereo_core_bench.h"
 
@@ -163,6 +164,40 @@ TEST_F(StereoCoreQdr, GivesTheHostTheOldWordInTheCycleOfItsWrite) {
   EXPECT_EQ(stats.contended_cycles, 0U);
   EXPECT_EQ(port(kHostPort).granted(), 1U);
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
+}
+
+// The host writes word 4 of the left picture in cycle 37. In this cycle the core reads the last pixel of this
+// word for the row of results 1, and writes its second word of results. Later rows read the new pixels.
+TEST_F(StereoCoreQdr, GivesTheCoreTheOldWordInTheCycleOfTheHostsWrite) {
+  constexpr std::uint64_t kCycle = 37;
+  constexpr std::uint32_t kNew = 0xC200'0000;
+  StereoCoreConfig board = small_board();
+  board.memory.banks[kLeft].kind = memory::BankKind::kQdr;
+  build(board);
+  const auto image = [](const std::vector<std::uint8_t>& pixels) {
+    kernels::GrayImage picture(8, 6);
+    picture.pixels = pixels;
+    return picture;
+  };
+  const auto disparities = [&](const std::vector<std::uint8_t>& left_picture) {
+    const kernels::StereoConfig matcher{3, board.core.disparities, {}, 0};
+    return words_of(
+        kernels::disparity_image(image(left_picture), image(right), nullptr, nullptr, matcher).pixels);
+  };
+  const Words before = disparities(left);
+  std::vector<std::uint8_t> changed = left;
+  changed[19] = kNew >> 24U;
+  ASSERT_NE(disparities(changed)[2], before[2]) << "row 1 would show the new pixel";
+  changed[16] = changed[17] = changed[18] = 0;
+  const Words after = disparities(changed);
+  at(edge(0), [this] { start(); });
+  at(edge(kCycle - kFirst), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, 4), kNew); });
+  finish();
+  EXPECT_EQ(memory.answers.at(0).at, edge(kCycle + kWriteEnd));
+  EXPECT_EQ(core->crossbar().arbiters()[kLeft].stats().contended_cycles, 0U);
+  const Words words(banks[kResult]->words(), banks[kResult]->words() + 12);
+  EXPECT_EQ(Words(words.begin(), words.begin() + 4), Words(before.begin(), before.begin() + 4));
+  EXPECT_EQ(Words(words.begin() + 4, words.end()), Words(after.begin() + 4, after.end()));
 }
 
 // A host that writes a word in every cycle, and is served first, keeps a reader of that bank waiting.

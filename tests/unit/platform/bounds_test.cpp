@@ -201,6 +201,9 @@ TEST_F(FrameBounds, CountTheReadsOrTheWritesOfABankWithSeparatePorts) {
   EXPECT_EQ(bound_of("bank bank0"), reads + 240 + kPipeline);
   board.banks[0].kind = memory::BankKind::kQdr;
   EXPECT_EQ(bound_of("bank bank0"), reads + 2 + kAfter);
+  board.banks[4].kind = memory::BankKind::kQdr;
+  board.allocation.disparity = {"bank4"};
+  EXPECT_EQ(bound_of("bank bank4"), 240 + kPipeline);
 }
 
 // A changed small board by name, so that each runs in a process of its own.
