@@ -17,8 +17,15 @@ PlainPlaces plain_places(const PlainCycleInput& input) {
   for (const int bank : input.right_image) places.right_image.push_back(place(bank, table_words / 4));
   for (const int bank : input.disparity) places.disparity.push_back(place(bank, table_words / 4));
   if (input.left_lut) places.left_lut = place(*input.left_lut, table_words);
-  if (input.right_lut) places.right_lut = place(*input.right_lut, table_words);
+  if (input.right_lut) {
+    places.right_lut = input.joint_tables ? places.left_lut : place(*input.right_lut, table_words);
+  }
   return places;
+}
+
+ReferenceJointTable plain_joint_table(const PlainCycleInput& input) {
+  return reference_joint_table(input.width, plain_table(input, input.left_lut, input.left_table),
+                               plain_table(input, input.right_lut, input.right_table));
 }
 
 std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
@@ -111,12 +118,18 @@ void PlainBoard::compute(int frame) {
   input.height = core.height;
   input.left = pixels_at(core.left_image[input_entry], places_.left_image[input_entry]);
   input.right = pixels_at(core.right_image[input_entry], places_.right_image[input_entry]);
-  input.left_table = table_at(core.left_lut, places_.left_lut);
-  input.right_table = table_at(core.right_lut, places_.right_lut);
+  if (core.joint_tables) {
+    input.left_table = reference_left_entries(core.width, joint_table());
+    input.right_table = reference_right_entries(core.width, joint_table());
+  } else {
+    input.left_table = table_at(core.left_lut, places_.left_lut);
+    input.right_table = table_at(core.right_lut, places_.right_lut);
+  }
   input.filter = input_.filter;
   input.window = core.window;
   input.disparities = core.disparities;
   input.lr_tolerance = input_.lr_tolerance;
+  input.cost = input_.cost;
   const std::vector<std::uint32_t> words = compute_reference(input).disparity_words;
   std::copy(words.begin(), words.end(),
             words_at(core.disparity[output_entry], places_.disparity[output_entry]));
@@ -145,6 +158,13 @@ std::optional<std::vector<std::uint32_t>> PlainBoard::table_at(const std::option
       static_cast<std::ptrdiff_t>(input_.core.width) * static_cast<std::ptrdiff_t>(input_.core.height);
   const auto first = banks_[static_cast<std::size_t>(*bank)].begin() + static_cast<std::ptrdiff_t>(place);
   return std::vector<std::uint32_t>(first, first + entries);
+}
+
+ReferenceJointTable PlainBoard::joint_table() const {
+  const auto middle = [this](PlainMiddle which) { return middles_[static_cast<std::size_t>(which)]; };
+  return {*table_at(input_.core.left_lut, places_.left_lut),
+          {middle(PlainMiddle::kLeftX), middle(PlainMiddle::kLeftY)},
+          {middle(PlainMiddle::kRightX), middle(PlainMiddle::kRightY)}};
 }
 
 PlainCycleResult PlainBoard::core_result() const {

@@ -12,7 +12,7 @@
 #include "tests/support/plain_events.h"
 #include "tests/support/reference_arithmetic.h"
 
-// The FPGA and its banks with their words, as the local bus reaches them: contract sections 1 to 3.
+// The FPGA and its banks with their words, as the local bus reaches them: contract sections 1 to 3 and 7.
 namespace stereotlm::test {
 
 struct PlainBoardInput {
@@ -20,6 +20,7 @@ struct PlainBoardInput {
   PlainNumber clock_mhz;
   std::optional<ReferenceKernel> filter;
   std::optional<int> lr_tolerance;
+  ReferenceCost cost{};
 };
 
 // The first word of each buffer in its bank.
@@ -31,6 +32,12 @@ struct PlainPlaces {
   std::uint64_t right_lut = 0;
 };
 PlainPlaces plain_places(const PlainCycleInput& input);
+
+// The core's registers for the four coordinates X and Y of joint tables (contract 7.3).
+enum class PlainMiddle { kLeftX, kLeftY, kRightX, kRightY };
+
+// The one table for both sides. The input must have joint tables.
+ReferenceJointTable plain_joint_table(const PlainCycleInput& input);
 
 // The entries of a table; none for a side without table.
 std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
@@ -46,6 +53,10 @@ class PlainBoard {
   // `word` is usable.
   void host_asks(int bank, std::uint64_t place, bool write, std::uint32_t& word, PlainTime from_ps,
                  std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
+  // A write to one of these registers.
+  void write_middle(PlainMiddle which, std::uint32_t value) {
+    middles_[static_cast<std::size_t>(which)] = static_cast<int>(value);
+  }
   // The local-bus clock that carries the start strobe ends now.
   void start_frame();
 
@@ -70,6 +81,7 @@ class PlainBoard {
   std::uint32_t* words_at(int bank, std::uint64_t place);
   std::optional<std::vector<std::uint32_t>> table_at(const std::optional<int>& bank,
                                                      std::uint64_t place) const;
+  ReferenceJointTable joint_table() const;
 
   PlainEvents& events_;
   const PlainBoardInput& input_;
@@ -78,6 +90,7 @@ class PlainBoard {
   PlainPlaces places_;
   std::vector<std::vector<std::uint32_t>> banks_;
   PlainCore core_;
+  std::array<int, 4> middles_{};
   std::optional<HostWord> host_;
   std::uint64_t next_cycle_ = 0;
   std::uint64_t first_cycle_ = 0;  // of the running frame

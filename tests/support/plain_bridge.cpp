@@ -130,6 +130,9 @@ void PlainBridge::await_word(PlainTime end_ps) {
   events_.at(end_ps, PlainPhase::kEffects, [this, word] {
     const bool starts = word == of(PlainCoreRegister::kControl) && (local_->words[word_] & kPlainStart) != 0;
     if (local_->write && starts) board_.start_frame();
+    if (local_->write && word >= of(PlainCoreRegister::kMiddle))
+      board_.write_middle(static_cast<PlainMiddle>(word - of(PlainCoreRegister::kMiddle)),
+                          local_->words[word_]);
     word_ends(events_.now(), events_.now());
   });
 }

@@ -32,6 +32,7 @@ enum class PlainCoreRegister : std::uint64_t {
   kDisparity = 6,
   kLeftLut = 7,
   kRightLut = 8,
+  kMiddle = 9,  // of PlainMiddle, one after another
 };
 inline constexpr std::uint32_t kPlainStart = 1;
 

@@ -172,8 +172,17 @@ class Computer {
       chain.push_back({host, plain_board_word(*bank, place), false, table.size()});
       host += table.size();
     };
-    add(core.left_lut, places_.left_lut, plain_table(core, core.left_lut, core.left_table));
-    add(core.right_lut, places_.right_lut, plain_table(core, core.right_lut, core.right_table));
+    if (core.joint_tables) {
+      const ReferenceJointTable table = plain_joint_table(core);
+      std::uint64_t word = core_word(PlainCoreRegister::kMiddle);
+      for (const int middle : {table.left.x, table.left.y, table.right.x, table.right.y})
+        processor_.write(bridge_.slave(), word++, static_cast<std::uint32_t>(middle),
+                         input_.bridge_wait_clocks);
+      add(core.left_lut, places_.left_lut, table.words);
+    } else {
+      add(core.left_lut, places_.left_lut, plain_table(core, core.left_lut, core.left_table));
+      add(core.right_lut, places_.right_lut, plain_table(core, core.right_lut, core.right_table));
+    }
     if (chain.empty()) return;
     write(PlainBridgeRegister::kInterruptEnable, kPlainDmaDone);
     start_dma(kToBoard, chain);
@@ -235,7 +244,7 @@ class Computer {
       write(PlainCoreRegister::kDisparity, board_word(core.disparity[output], places_.disparity[output]));
       if (frame == 0 && core.left_lut)
         write(PlainCoreRegister::kLeftLut, board_word(*core.left_lut, places_.left_lut));
-      if (frame == 0 && core.right_lut)
+      if (frame == 0 && core.right_lut && !core.joint_tables)
         write(PlainCoreRegister::kRightLut, board_word(*core.right_lut, places_.right_lut));
     }
     if (starts || acknowledges_) write(PlainCoreRegister::kControl, starts ? kPlainStart : 0);

@@ -87,27 +87,47 @@ class BankAndArbiter {
   std::array<Wait, kPlainPortCount> waits_{};  // of each port, the last
 };
 
+// The figures of a frame that contract sections 2 and 7 name by these letters.
+struct Letters {
+  explicit Letters(const PlainCycleInput& input)
+      : R(input.rows),
+        r((input.window - 1) / 2),
+        h(input.filter_half + input.cost_half),
+        w(R * up(std::max(0, h - r), R)),
+        K(input.fetch == PlainFetch::kColumn ? input.window + R - 1 : 1),
+        S(input.units == 0 ? 1 : up(input.disparities, input.units)) {}
+
+  int R;
+  int r;
+  int h;
+  int w;
+  int K;
+  int S;
+
+  // ceil(dividend / divisor)
+  static int up(int dividend, int divisor) { return (dividend + divisor - 1) / divisor; }
+};
+
 // The rectified pixel that a slot is for; the row may be outside the image.
 struct Slot {
   int column = 0;
   int row = 0;
+  int k = 0;            // its place in its column; line_buffer: 0
+  bool begins = false;  // is the first of a strip; line_buffer: of a row
 };
 
 std::vector<Slot> slots_of_a_frame(const PlainCycleInput& input) {
-  const int n = input.window;
-  const int r = (n - 1) / 2;
-  const int h = input.filter_half;
+  const Letters is(input);
   std::vector<Slot> slots;
   if (input.fetch == PlainFetch::kColumn) {
-    const int w = std::max(0, h - r);
-    for (int v = -w; v <= input.height - 1; ++v) {
+    for (int v = -is.w; v < input.height; v += is.R) {
       for (int u = 0; u <= input.width - 1; ++u) {
-        for (int k = 0; k <= n - 1; ++k) slots.push_back({u, v + h - r + k});
+        for (int k = 0; k <= is.K - 1; ++k) slots.push_back({u, v + is.h - is.r + k, k, u == 0 && k == 0});
       }
     }
   } else {
-    for (int y = 0; y <= input.height + r + h - 1; ++y) {
-      for (int u = 0; u <= input.width - 1; ++u) slots.push_back({u, y});
+    for (int y = 0; y <= input.height + is.r + is.h - 1; ++y) {
+      for (int u = 0; u <= input.width - 1; ++u) slots.push_back({u, y, 0, u == 0});
     }
   }
   return slots;
@@ -118,7 +138,7 @@ class Lane {
  public:
   struct Setting {
     bool has_table = false;
-    const std::vector<std::uint32_t>* entries = nullptr;  // of the table; null: all valid
+    const std::vector<std::uint32_t>* entries = nullptr;  // of the table; null: the identity
     int table_latency = 0;                                // read latency of the table's bank
     int image_latency = 0;                                // read latency of the bank of this frame's image
   };
@@ -127,8 +147,10 @@ class Lane {
       : width_(input.width),
         height_(input.height),
         lane_fifo_slots_(static_cast<std::size_t>(input.lane_fifo_slots)),
+        has_cache_(input.word_cache),
         sequence_(sequence),
-        setting_(setting) {}
+        setting_(setting),
+        kept_(static_cast<std::size_t>(Letters(input).K)) {}
 
   Wish lut_port_wish() const { return setting_.has_table ? wish_of_taker() : Wish::kIdle; }
 
@@ -138,8 +160,7 @@ class Lane {
     const bool can_handle =
         handled_ < taken_ && now >= in_lane_[handled_ - consumed_].taken_at + setting_.table_latency;
     if (!can_handle) return handled_ == 0 ? Wish::kIdle : Wish::kStarved;  // idle before its first slot
-    return is_empty(sequence_[handled_]) || !entry_is_valid(sequence_[handled_]) ? Wish::kPass
-                                                                                 : Wish::kAccess;
+    return needs_access(sequence_[handled_]) ? Wish::kAccess : Wish::kPass;
   }
 
   bool can_be_consumed(Cycle now) const {
@@ -153,6 +174,7 @@ class Lane {
   }
   void pixel_port_handled(Cycle now) {
     if (!setting_.has_table) lut_port_took(now);  // the pixel port takes the slots itself
+    keep_word_of(sequence_[handled_]);
     in_lane_[handled_ - consumed_].handled_at = now;
     ++handled_;
   }
@@ -171,25 +193,45 @@ class Lane {
   Wish wish_of_taker() const {
     if (taken_ == sequence_.size()) return Wish::kIdle;  // after its last slot
     if (in_lane_.size() >= lane_fifo_slots_) return Wish::kBlocked;
-    return is_empty(sequence_[taken_]) ? Wish::kPass : Wish::kAccess;
+    const Slot& slot = sequence_[taken_];
+    if (setting_.has_table) return is_empty(slot) ? Wish::kPass : Wish::kAccess;
+    return needs_access(slot) ? Wish::kAccess : Wish::kPass;
   }
 
   bool is_empty(const Slot& slot) const { return slot.row < 0 || slot.row > height_ - 1; }
 
-  bool entry_is_valid(const Slot& slot) const {
-    if (setting_.entries == nullptr) return true;
-    const auto place = static_cast<std::size_t>(slot.row) * static_cast<std::size_t>(width_) +
-                       static_cast<std::size_t>(slot.column);
-    return ((*setting_.entries)[place] >> 31U) == 1;
+  // Of the pixel port.
+  bool needs_access(const Slot& slot) const {
+    if (is_empty(slot) || !word_of(slot)) return false;
+    return !has_cache_ || slot.begins || kept_[static_cast<std::size_t>(slot.k)] != word_of(slot);
+  }
+
+  // The word of the picture in which the source pixel of a slot that is not empty lies; nullopt if the entry is
+  // not valid.
+  std::optional<int> word_of(const Slot& slot) const {
+    const int place = slot.row * width_ + slot.column;
+    if (setting_.entries == nullptr) return place / 4;
+    const std::uint32_t entry = (*setting_.entries)[static_cast<std::size_t>(place)];
+    if (entry >> 31U == 0) return std::nullopt;
+    const int source_row = static_cast<int>(entry >> 16U & 0x7FFU);
+    const int source_column = static_cast<int>(entry & 0x7FFU);
+    return (source_row * width_ + source_column) / 4;
+  }
+
+  void keep_word_of(const Slot& slot) {
+    if (slot.begins) std::fill(kept_.begin(), kept_.end(), std::nullopt);
+    if (!is_empty(slot) && word_of(slot)) kept_[static_cast<std::size_t>(slot.k)] = word_of(slot);
   }
 
   int width_;
   int height_;
   std::size_t lane_fifo_slots_;
+  bool has_cache_;
   const std::vector<Slot>& sequence_;
   Setting setting_;
-  std::deque<SlotInLane> in_lane_;  // taken and not yet consumed; the first is slot number consumed_
-  std::size_t taken_ = 0;           // slots of the sequence, from the first
+  std::vector<std::optional<int>> kept_;  // [k]: the last word that was read in the strip
+  std::deque<SlotInLane> in_lane_;        // taken and not yet consumed; the first is slot number consumed_
+  std::size_t taken_ = 0;                 // slots of the sequence, from the first
   std::size_t handled_ = 0;
   std::size_t consumed_ = 0;
 };
@@ -197,43 +239,48 @@ class Lane {
 // Counts consume-cycles into columns and columns into result words, during one frame.
 class Matcher {
  public:
-  Matcher(const PlainCycleInput& input, std::size_t slots) : slots_(static_cast<std::int64_t>(slots)) {
-    const std::int64_t width = input.width;
-    const std::int64_t r = (input.window - 1) / 2;
-    const std::int64_t h = input.filter_half;
-    const std::int64_t w = std::max<std::int64_t>(0, h - r);
-    const std::int64_t drain_columns = input.disparities - 1 + r + h;  // C_d
-    if (input.fetch == PlainFetch::kColumn) {
-      cycles_per_column_ = input.window;
-      columns_ahead_ = drain_columns + w * width;
-    } else {
-      cycles_per_column_ = 1;
-      columns_ahead_ = drain_columns + (r + h) * width;
-    }
-    pixels_ = width * input.height;
-    drain_cycles_ = drain_columns * cycles_per_column_;
+  Matcher(const PlainCycleInput& input, std::size_t slots)
+      : is_(input), width_(input.width), height_(input.height), slots_(static_cast<std::int64_t>(slots)) {
+    const std::int64_t drain_columns = input.disparities - 1 + is_.r + is_.h;  // C_d
+    const std::int64_t strips_ahead = input.fetch == PlainFetch::kColumn ? is_.w / is_.R : is_.r + is_.h;
+    columns_ahead_ = drain_columns + strips_ahead * width_;
+    drain_cycles_ = drain_columns * is_.K;
   }
 
   bool needs_slots() const { return slots_consumed_ < slots_; }
   bool drains() const { return !needs_slots() && drain_cycles_done_ < drain_cycles_; }
 
-  // One consume-cycle, with a slot of both lanes or in the drain. True if it completes a result word.
-  bool consume() {
+  // It works on one slot of both lanes, or on a consume-cycle of the drain, for S cycles from `now` on.
+  bool works() const { return began_.has_value(); }
+  void begin(Cycle now) { began_ = now; }
+  bool ends(Cycle now) const { return began_ && now == *began_ + is_.S - 1; }
+
+  // The end of a consume-cycle. Returns the rows in which it completes a result word, in their order.
+  std::vector<int> consume() {
+    began_.reset();
     ++(needs_slots() ? slots_consumed_ : drain_cycles_done_);
     ++cycles_of_column_;
-    if (cycles_of_column_ < cycles_per_column_) return false;
+    if (cycles_of_column_ < is_.K) return {};
     cycles_of_column_ = 0;
     const std::int64_t column = columns_consumed_++;
-    const std::int64_t pixel = column - columns_ahead_;  // i, as column = i + C
-    return pixel >= 0 && pixel < pixels_ && pixel % 4 == 3;
+    const std::int64_t i = column - columns_ahead_;  // as column = i + C
+    if (i < 0 || i % 4 != 3) return {};
+    std::vector<int> rows;
+    for (int strip_row = 0; strip_row < is_.R; ++strip_row) {
+      const std::int64_t row = is_.R * (i / width_) + strip_row;
+      if (row < height_) rows.push_back(static_cast<int>(row));
+    }
+    return rows;
   }
 
  private:
+  Letters is_;
+  std::int64_t width_;
+  std::int64_t height_;
   std::int64_t slots_;
-  std::int64_t cycles_per_column_ = 0;  // K
-  std::int64_t columns_ahead_ = 0;      // C
-  std::int64_t pixels_ = 0;
+  std::int64_t columns_ahead_ = 0;  // C
   std::int64_t drain_cycles_ = 0;
+  std::optional<Cycle> began_;
   std::int64_t slots_consumed_ = 0;
   std::int64_t drain_cycles_done_ = 0;
   std::int64_t cycles_of_column_ = 0;
@@ -243,23 +290,35 @@ class Matcher {
 class ResultQueue {
  public:
   explicit ResultQueue(const PlainCycleInput& input)
-      : capacity_(input.result_fifo_words), words_of_frame_(input.width * input.height / 4) {}
+      : capacity_(input.result_fifo_words),
+        words_of_frame_(input.width * input.height / 4),
+        words_of_row_(input.width / 4),
+        written_in_row_(static_cast<std::size_t>(input.height)) {}
 
-  bool has_free_place() const { return entered_ - written_ < capacity_; }
+  bool has_free_places(int places) const {
+    return static_cast<std::int64_t>(rows_of_words_.size()) + places <= capacity_;
+  }
   bool all_written() const { return written_ == words_of_frame_; }
   Wish result_port_wish() const {
-    if (entered_ > written_) return Wish::kAccess;
-    return entered_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved;
+    if (!rows_of_words_.empty()) return Wish::kAccess;
+    return written_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved;
   }
-  void word_enters() { ++entered_; }
-  void word_is_written() { ++written_; }
-  std::int64_t written() const { return written_; }
+  void word_enters(int row) { rows_of_words_.push_back(row); }
+  // True if its row is complete.
+  bool word_is_written() {
+    const auto row = static_cast<std::size_t>(rows_of_words_.front());
+    rows_of_words_.pop_front();
+    ++written_;
+    return ++written_in_row_[row] == words_of_row_;
+  }
 
  private:
   std::int64_t capacity_;
   std::int64_t words_of_frame_;
-  std::int64_t entered_ = 0;
+  std::int64_t words_of_row_;
+  std::deque<int> rows_of_words_;  // that are in the queue
   std::int64_t written_ = 0;
+  std::vector<std::int64_t> written_in_row_;
 };
 
 }  // namespace
@@ -278,7 +337,7 @@ class PlainCore::Cycles {
     const int right_image = input_.right_image[entry % input_.right_image.size()];
     bank_of_port_.fill(std::nullopt);
     bank_of_port_[index_of(PlainPort::kLeftLut)] = input_.left_lut;
-    bank_of_port_[index_of(PlainPort::kRightLut)] = input_.right_lut;
+    if (!input_.joint_tables) bank_of_port_[index_of(PlainPort::kRightLut)] = input_.right_lut;
     bank_of_port_[index_of(PlainPort::kLeftPixel)] = left_image;
     bank_of_port_[index_of(PlainPort::kRightPixel)] = right_image;
     bank_of_port_[index_of(PlainPort::kResult)] = input_.disparity[entry % input_.disparity.size()];
@@ -297,7 +356,7 @@ class PlainCore::Cycles {
     std::array<Wish, kPlainPortCount> wishes{};  // idle
     if (frame_) {
       wishes[index_of(PlainPort::kLeftLut)] = frame_->left.lut_port_wish();
-      wishes[index_of(PlainPort::kRightLut)] = frame_->right.lut_port_wish();
+      if (!input_.joint_tables) wishes[index_of(PlainPort::kRightLut)] = frame_->right.lut_port_wish();
       wishes[index_of(PlainPort::kLeftPixel)] = frame_->left.pixel_port_wish(now);
       wishes[index_of(PlainPort::kRightPixel)] = frame_->right.pixel_port_wish(now);
       wishes[index_of(PlainPort::kResult)] = frame_->queue.result_port_wish();
@@ -333,8 +392,10 @@ class PlainCore::Cycles {
                   const std::array<bool, kPlainPortCount>& granted, Cycle now) {
     Frame& frame = *frame_;
     const bool slots_ready = frame.left.can_be_consumed(now) && frame.right.can_be_consumed(now);
-    const bool consumes = frame.queue.has_free_place() &&
-                          ((frame.matcher.needs_slots() && slots_ready) || frame.matcher.drains());
+    const bool begins = !frame.matcher.works() && frame.queue.has_free_places(input_.rows) &&
+                        ((frame.matcher.needs_slots() && slots_ready) || frame.matcher.drains());
+    if (begins) frame.matcher.begin(now);
+    const bool consumes = frame.matcher.ends(now);
     const bool consumes_slots = consumes && frame.matcher.needs_slots();
 
     count_port_states(wishes, granted);
@@ -347,7 +408,10 @@ class PlainCore::Cycles {
     const auto acts = [&](PlainPort port) {
       return wishes[index_of(port)] == Wish::kPass || granted[index_of(port)];
     };
-    if (consumes && frame.matcher.consume()) frame.queue.word_enters();
+    if (acts(PlainPort::kResult) && frame.queue.word_is_written()) frame.rows.push_back(frame.until_now);
+    if (consumes) {
+      for (const int row : frame.matcher.consume()) frame.queue.word_enters(row);
+    }
     if (consumes_slots) {
       frame.left.matcher_consumed();
       frame.right.matcher_consumed();
@@ -355,11 +419,8 @@ class PlainCore::Cycles {
     if (acts(PlainPort::kLeftPixel)) frame.left.pixel_port_handled(now);
     if (acts(PlainPort::kRightPixel)) frame.right.pixel_port_handled(now);
     if (acts(PlainPort::kLeftLut)) frame.left.lut_port_took(now);
-    if (acts(PlainPort::kRightLut)) frame.right.lut_port_took(now);
-    if (acts(PlainPort::kResult)) {
-      frame.queue.word_is_written();
-      if (frame.queue.written() * 4 % input_.width == 0) frame.rows.push_back(frame.until_now);
-    }
+    if (input_.joint_tables ? acts(PlainPort::kLeftLut) : acts(PlainPort::kRightLut))
+      frame.right.lut_port_took(now);
     if (!frame.queue.all_written()) return;
     result_.rows.push_back(frame.rows);
     frame_.reset();

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-// The part of a board on which contract section 2 depends, in types that share nothing with the models.
+// The part of a board on which contract sections 2 and 7 depend, in types that share nothing with the models.
 // Nothing checks it: a board must keep the rules of contract section 4.
 namespace stereotlm::test {
 
@@ -31,7 +31,10 @@ struct PlainCycleInput {
   int height = 0;       // H
   int window = 0;       // n
   int disparities = 0;  // D
-  int filter_half = 0;  // h; 0 without filter
+  int filter_half = 0;  // h is the sum of these two: of the filter, 0 without filter,
+  int cost_half = 0;    // and of the cost function, 0 but for census
+  int units = 0;        // U; 0: all, one for each disparity
+  int rows = 1;         // R; more than 1 only with kColumn
   PlainFetch fetch = PlainFetch::kColumn;
   PlainArbitration arbitration = PlainArbitration::kFixedPriority;
   std::array<PlainPort, kPlainPortCount> priority = {PlainPort::kHost,      PlainPort::kResult,
@@ -46,7 +49,10 @@ struct PlainCycleInput {
   std::vector<int> disparity;
   std::optional<int> left_lut;  // nullopt: a side without table
   std::optional<int> right_lut;
-  // The entries in the tables, row-major, W * H; nullopt: all valid. Only on a side with a table.
+  bool joint_tables = false;  // one table for both sides: left_lut and right_lut name its bank
+  bool word_cache = false;
+  // The entries in the tables, row-major, W * H, as in separate tables; nullopt: the identity. Only on a side
+  // with a table.
   std::optional<std::vector<std::uint32_t>> left_table;
   std::optional<std::vector<std::uint32_t>> right_table;
 };

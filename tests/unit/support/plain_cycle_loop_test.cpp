@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ostream>
+#include <string>
 #include <vector>
+
+#include "tests/unit/support/worked_boards.h"
 
 namespace stereotlm::test {
 namespace {
@@ -118,6 +122,71 @@ INSTANTIATE_TEST_SUITE_P(
                 input.fetch = PlainFetch::kLineBuffer;
               },
               {14}},
+        Trace{
+            "TwoPasses",  // each of the 12 slots and 9 consume-cycles of the drain takes 2 cycles, from 2 on
+            [](auto& input) {
+              input.disparities = 3;
+              input.units = 2;
+            },
+            {45, 45}},
+        Trace{"OnePassOfAllUnits",
+              [](auto& input) {
+                input.disparities = 3;
+                input.units = 3;
+              },
+              {24}},
+        Trace{"TwoPassesAndOneSlotInALane",  // taken every fourth cycle, the last in 44
+              [](auto& input) {
+                input.disparities = 2;
+                input.units = 1;
+                input.lane_fifo_slots = 1;
+              },
+              {61}},
+        Trace{"TwoRowsOfWhichOneIsInTheImage",  // 16 slots, 4 cycles of drain
+              [](auto& input) { input.rows = 2; },
+              {23}},
+        Trace{"TwoRows",
+              [](auto& input) {
+                input.height = 2;
+                input.rows = 2;
+              },
+              {24}},
+        Trace{"TwoRowsAndRoomForFourResults",  // two words enter in cycle 21, two in 37
+              [](auto& input) {
+                input.width = 8;
+                input.height = input.rows = 2;
+                input.result_fifo_words = 4;
+              },
+              {40}},
+        Trace{"TwoRowsAndRoomForThreeResults",
+              [](auto& input) {
+                input.width = 8;
+                input.height = input.rows = 2;
+                input.result_fifo_words = 3;
+              },
+              {41}},
+        Trace{"TwoRowsAndRoomForTwoResults",
+              [](auto& input) {
+                input.width = 8;
+                input.height = input.rows = 2;
+                input.result_fifo_words = 2;
+              },
+              {42}},
+        Trace{"TwoRowsAndAFilterLargerThanTheWindow",  // w = 4, 3 strips, 4 columns of drain, all of 4 cycles
+              [](auto& input) {
+                input.filter_half = 3;
+                input.cost_half = 1;
+                input.rows = 2;
+              },
+              {71}},
+        Trace{"JointTables",
+              [](auto& input) {
+                with_tables(input);
+                input.right_lut = input.left_lut;
+                input.joint_tables = true;
+              },
+              {20}},
+        Trace{"WordCache", [](auto& input) { input.word_cache = true; }, {18}},
         Trace{"TurnaroundThatHasPassed", [](auto& input) { with_turnaround(input, 6); }, {18}},
         Trace{"Turnaround", [](auto& input) { with_turnaround(input, 7); }, {19}},
         Trace{"TurnaroundThatHasPassedByTheNextFrame",
@@ -146,6 +215,142 @@ TEST(PlainCycleLoop, CountsThePortStatesTracedByHand) {
   EXPECT_EQ(result.banks[2].writes, 1U);
   EXPECT_EQ(result.banks[2].idle, 17U);
 }
+
+TEST(PlainCycleLoop, TakesASlotForBothLanesWithJointTables) {
+  PlainCycleInput input = tiny_board();
+  input.left_lut = input.right_lut = 3;
+  input.joint_tables = true;
+  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
+  expect_states(result.port(PlainPort::kLeftLut), {4, 0, 8, 8, 0, 0});
+  expect_states(result.port(PlainPort::kRightLut), {0, 0, 0, 20, 0, 0});
+  expect_states(result.port(PlainPort::kRightPixel), {4, 0, 8, 8, 0, 0});
+  EXPECT_EQ(result.banks[3].reads, 4U);
+}
+
+// The reads of left_pixel on a board whose table has the given entries, all in word 0 if they are valid.
+std::uint64_t reads_with_cache(int height, PlainFetch fetch, const std::vector<bool>& valid) {
+  PlainCycleInput input = tiny_board();
+  with_tables(input);
+  input.height = height;
+  input.fetch = fetch;
+  input.word_cache = true;
+  input.left_table.emplace();
+  for (const bool entry : valid) input.left_table->push_back(entry ? 0x8000'0002U : 0U);
+  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
+  EXPECT_EQ(result.port(PlainPort::kLeftPixel).granted + result.port(PlainPort::kLeftPixel).passed,
+            fetch == PlainFetch::kColumn ? 12U * static_cast<unsigned>(height)
+                                         : 4U * static_cast<unsigned>(height + 1));
+  return result.banks[0].reads;
+}
+
+TEST(PlainCycleLoop, KeepsAWordForEachPlaceInAColumnUpToTheEndOfTheStrip) {
+  EXPECT_EQ(reads_with_cache(1, PlainFetch::kColumn, std::vector<bool>(4, true)), 1U);
+  // Rows 0 and 1 are at k = 1, 2 of the first strip, and at 0, 1 of the second.
+  EXPECT_EQ(reads_with_cache(2, PlainFetch::kColumn, std::vector<bool>(8, true)), 4U);
+}
+
+TEST(PlainCycleLoop, KeepsOneWordUpToTheEndOfTheRowWithLineBuffers) {
+  EXPECT_EQ(reads_with_cache(2, PlainFetch::kLineBuffer, std::vector<bool>(8, true)), 2U);
+}
+
+TEST(PlainCycleLoop, KeepsTheWordOverInvalidEntries) {
+  EXPECT_EQ(reads_with_cache(1, PlainFetch::kColumn, {false, true, false, true}), 1U);
+}
+
+TEST(PlainCycleLoop, CachesOnASideWithoutTable) {
+  PlainCycleInput input = tiny_board();
+  input.width = 8;
+  input.word_cache = true;
+  expect_states(run_plain_cycle_loop(input, 1).port(PlainPort::kLeftPixel), {2, 0, 22, 6, 0, 0});
+}
+
+TEST(PlainCycleLoop, EndsTheRowsOfAStripOneAfterAnother) {
+  PlainCycleInput input = tiny_board();
+  input.height = 3;
+  input.rows = 2;  // words are written in cycles 22 and 23, and in 38
+  const PlainCycleResult result = run_plain_cycle_loop(input, 1);
+  std::vector<std::uint64_t> ends;
+  for (const PlainRowEnd& row : result.rows.at(0)) ends.push_back(row.cycles);
+  EXPECT_EQ(ends, (std::vector<std::uint64_t>{23, 24, 39}));
+}
+
+class PlainCycleLoopWorkedValues : public testing::TestWithParam<WorkedBoard> {};
+
+TEST_P(PlainCycleLoopWorkedValues, ComeOut) {
+  EXPECT_EQ(run(GetParam()).frame_cycles, FrameCycles{GetParam().frame_cycles});
+}
+
+void all_in_one_bank(PlainCycleInput& board, const PlainBank& bank) {
+  board.width = 64;
+  board.disparities = 16;
+  board.fetch = PlainFetch::kLineBuffer;
+  board.arbitration = PlainArbitration::kRoundRobin;
+  board.result_fifo_words = 1;
+  board.banks = {bank};
+  put_into(board, 0, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfSmallBoards, PlainCycleLoopWorkedValues,
+    testing::Values(
+        WorkedBoard{"TwoSyncBurstBanks",
+                    [](auto& board) {
+                      in_two_banks(board);
+                      with_log7(board);
+                      board.width = 64;
+                      board.height = 46;
+                      board.window = 5;
+                      board.disparities = 16;
+                      board.units = 6;
+                      board.rows = 4;
+                      board.lane_fifo_slots = 2;
+                      board.result_fifo_words = 4;
+                      board.arbitration = PlainArbitration::kAge;
+                      board.priority = {PlainPort::kHost,    PlainPort::kLeftPixel, PlainPort::kRightPixel,
+                                        PlainPort::kLeftLut, PlainPort::kRightLut,  PlainPort::kResult};
+                      board.banks = {{PlainBankKind::kSyncBurst, 3}, {PlainBankKind::kSyncBurst, 2}};
+                    },
+                    26'488},
+        WorkedBoard{"OneSyncBurstBank",
+                    [](auto& board) {
+                      all_in_one_bank(board, {PlainBankKind::kSyncBurst, 2});
+                      board.height = 47;
+                      board.window = 3;
+                      board.lane_fifo_slots = 3;
+                    },
+                    15'838},
+        WorkedBoard{"OneQdrBank",
+                    [](auto& board) {
+                      all_in_one_bank(board, {PlainBankKind::kQdr});
+                      board.height = 49;
+                      board.window = 5;
+                      board.priority = {PlainPort::kHost,       PlainPort::kRightLut,  PlainPort::kLeftLut,
+                                        PlainPort::kRightPixel, PlainPort::kLeftPixel, PlainPort::kResult};
+                    },
+                    12'744},
+        WorkedBoard{"WordCacheWithOddTables",
+                    [](auto& board) {
+                      board.width = 8;
+                      board.height = 48;
+                      board.window = 5;
+                      board.disparities = 16;
+                      board.word_cache = true;
+                      board.left_lut = 0;
+                      std::vector<std::uint32_t> entries;
+                      for (int y = 0; y < 48; ++y) {
+                        for (int x = 0; x < 8; ++x) {
+                          const int column = 8 * (x / 8) + x % 8 / 2;
+                          const int row = 3 * (y / 3);
+                          const bool valid = (3 * x + 5 * y) % 11 != 0;
+                          entries.push_back(valid ? 0x8000'0000U | static_cast<std::uint32_t>(row) << 16U |
+                                                        static_cast<std::uint32_t>(column)
+                                                  : 0);
+                        }
+                      }
+                      board.left_table = board.right_table = entries;
+                    },
+                    2'257}),
+    [](const auto& board) { return board.param.name; });
 
 // left_pixel reads in cycles 1, 4, 7 and 10, right_pixel, after a stall in 1, in 2, 5, 8 and 11. The host writes
 // in every cycle.

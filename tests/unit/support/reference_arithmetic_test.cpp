@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <utility>
 
 namespace stereotlm::test {
@@ -167,6 +168,129 @@ TEST(ReferenceCheck, LetsOtherInvalidEntriesTakePartAsZero) {
   }
   input.right_table = table;  // the column whose 9s made d = 0 worse
   EXPECT_EQ(compute_reference(input).disparity[kDifferingPixel], 0);
+}
+
+constexpr auto kSad = ReferenceCost::Kind::kSad;
+constexpr auto kSsd = ReferenceCost::Kind::kSsd;
+constexpr auto kZncc = ReferenceCost::Kind::kZncc;
+constexpr auto kCensus = ReferenceCost::Kind::kCensus;
+
+// The right-based disparity of pixel (1, 1) among 0 and 1, on three equal rows.
+int best_of_two(const ReferenceCost& cost, const Bytes& left, const Bytes& right) {
+  ReferenceInput input = input_of(4, 3, rows_of(left, 3), rows_of(right, 3));
+  input.disparities = 2;
+  input.cost = cost;
+  return compute_reference(input).right_based[5];
+}
+
+TEST(ReferenceSsd, SumsSquares) {
+  const Bytes left = {103, 102, 100, 100};
+  const Bytes right = {100, 102, 100, 0};  // differences 3, 0, 0 with d = 0, and 2, 2, 0 with d = 1
+  EXPECT_EQ(best_of_two({kSad}, left, right), 0);
+  EXPECT_EQ(best_of_two({kSsd}, left, right), 1);
+}
+
+TEST(ReferenceZncc, PrefersTheGreatestCorrelation) {
+  // d = 0: falls where the right picture rises. d = 1: rises likewise, but is brighter and steeper.
+  EXPECT_EQ(best_of_two({kZncc}, {20, 0, 100, 200}, {0, 10, 20, 0}), 1);
+  EXPECT_EQ(best_of_two({kSad}, {20, 0, 100, 200}, {0, 10, 20, 0}), 0);
+}
+
+TEST(ReferenceZncc, KeepsTheSignOfTheCovariance) {
+  // d = 0: cov < 0. d = 1: cov < 0 too, but it is smaller beside the variances.
+  EXPECT_EQ(best_of_two({kZncc}, {30, 10, 0, 9}, {0, 10, 20, 0}), 1);
+}
+
+TEST(ReferenceZncc, GivesAWindowWithoutVarianceTheScoreZero) {
+  EXPECT_EQ(best_of_two({kZncc}, {9, 7, 7, 7}, {0, 10, 20, 0}), 1);  // cov < 0; var_l = 0
+  EXPECT_EQ(best_of_two({kZncc}, {7, 7, 7, 8}, {0, 10, 20, 0}), 1);  // var_l = 0; cov > 0
+  EXPECT_EQ(best_of_two({kZncc}, {7, 7, 7, 6}, {0, 10, 20, 0}), 0);  // var_l = 0; cov < 0
+  EXPECT_EQ(best_of_two({kZncc}, {1, 2, 3, 9}, {5, 5, 5, 5}), 0);    // var_r = 0: a tie
+}
+
+TEST(ReferenceZncc, ComparesFractionsExactly) {
+  // Both windows are right pictures scaled: the scores are 1, of different numerators and denominators.
+  EXPECT_EQ(best_of_two({kZncc}, {3, 6, 12, 24}, {1, 2, 4, 0}), 0);
+  // With d = 0 off by one in one pixel it is a tie no more.
+  EXPECT_EQ(best_of_two({kZncc}, {4, 6, 12, 24}, {1, 2, 4, 0}), 1);
+  EXPECT_EQ(best_of_two({kZncc}, {3, 6, 12, 25}, {1, 2, 4, 0}), 0);
+}
+
+TEST(ReferenceZncc, HoldsTheLargestFractions) {
+  // The widest window, half of it black and half white: covariances of 34 bits. The left picture is the right
+  // one, but for a corner; the shift by one is worse.
+  Bytes right;
+  for (int pixel = 0; pixel < 32 * 31; ++pixel) right.push_back(pixel % 32 < 16 ? 0 : 255);
+  Bytes left = right;
+  left.front() = 1;
+  ReferenceInput input = input_of(32, 31, left, right);
+  input.window = 31;
+  input.disparities = 2;
+  input.cost = {kZncc};
+  const std::size_t middle = 15 * 32 + 15;
+  EXPECT_EQ(compute_reference(input).right_based[middle], 0);
+  for (int row = 0; row < 31; ++row) {  // now the shift by one
+    for (int column = 31; column > 0; --column) {
+      const auto place = static_cast<std::size_t>(32 * row + column);
+      input.left[place] = input.right[place - 1];
+    }
+  }
+  EXPECT_EQ(compute_reference(input).right_based[middle], 1);
+}
+
+TEST(ReferenceCensus, HasABitForEachSmallerNeighbourAndRepeatsTheEdge) {
+  EXPECT_EQ(reference_census(4, 1, {5, 3, 5, 7}, 3), (std::vector<std::uint64_t>{0x94, 0, 0x29, 0x29}));
+  // Four zeros in the upper left corner.
+  const auto census = reference_census(4, 4, {0, 0, 9, 9, 0, 0, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9}, 5);
+  EXPECT_EQ(census[10], 0x063U);  // all four, at j, i = -2, -1
+  EXPECT_EQ(census[15], 0x001U);  // the one at j = i = -2
+  EXPECT_EQ(census[8], 0x1EFU);   // column 0 three times, at i = -2, -1, 0, and column 1
+  EXPECT_EQ(census[0], 0U);
+  EXPECT_EQ(reference_census(4, 1, {5, 3, 5, 7}, 7)[0] >> 48U, 0U);
+}
+
+TEST(ReferenceCensus, CountsTheBitsThatDiffer) {
+  // Right pixels rise; left ones rise too with d = 1, far brighter, but not with d = 0.
+  EXPECT_EQ(best_of_two({kCensus, 3}, {50, 20, 60, 250}, {10, 20, 30, 40}), 1);
+  EXPECT_EQ(best_of_two({kSad}, {50, 20, 60, 250}, {10, 20, 30, 40}), 0);
+  EXPECT_EQ(best_of_two({kCensus, 3}, {7, 7, 7, 7}, {9, 9, 9, 9}), 0);  // a tie
+}
+
+TEST(ReferenceCost, LooksAheadOnlyWithCensus) {
+  EXPECT_EQ(half_of({kSad}), 0);
+  EXPECT_EQ(half_of({kZncc}), 0);
+  EXPECT_EQ(half_of({kCensus, 3}), 1);
+  EXPECT_EQ(half_of({kCensus, 7}), 3);
+}
+
+TEST(ReferenceJointTable, HoldsTheDisplacementsFromTheMiddleOfTheirRange) {
+  // Left: displacements (2, 1) and (-1, 0), so the middle is (1, 1). Right: (-1, 0) and (-2, 1).
+  const Entries left = {entry(2, 1), entry(0, 0), 0x0001'0002U, 0, 0, 0, 0, 0};
+  const Entries right = {0, entry(0, 0), entry(0, 1), 0, 0, 0, 0, 0};
+  const ReferenceJointTable table = reference_joint_table(4, left, right);
+  EXPECT_EQ(table.left.x, 1);
+  EXPECT_EQ(table.left.y, 1);
+  EXPECT_EQ(table.right.x, -1);
+  EXPECT_EQ(table.right.y, 1);
+  EXPECT_EQ(table.words, (Entries{0xC081'0000U, 0xBF7E'BF80U, 0x0000'C07FU, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(reference_left_entries(4, table), (Entries{entry(2, 1), entry(0, 0), 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(reference_right_entries(4, table), right);
+}
+
+TEST(ReferenceJointTable, FitsARangeOf256ColumnsAnd128Rows) {
+  const auto table_of = [](std::uint32_t column, std::uint32_t row) {
+    Entries entries(std::size_t{4} * 200, 0);
+    entries[0] = entry(0, 0);
+    entries[1] = entry(1 + column, row);
+    const ReferenceJointTable table = reference_joint_table(4, entries, Entries(entries.size(), 0));
+    EXPECT_EQ(reference_left_entries(4, table), entries);
+    EXPECT_EQ(table.right.x, 0);
+    return table;
+  };
+  EXPECT_EQ(table_of(255, 127).left.x, 128);
+  EXPECT_EQ(table_of(255, 127).left.y, 64);
+  EXPECT_THROW(table_of(256, 0), std::invalid_argument);
+  EXPECT_THROW(table_of(0, 128), std::invalid_argument);
 }
 
 TEST(ReferenceWords, PutTheLowestColumnIntoTheLowestByte) {
