@@ -67,6 +67,12 @@ std::optional<kernels::RectificationTable> table_of(
   return kernels::RectificationTable{input.width, input.height, *entries};
 }
 
+void check_knobs(const PlainCycleInput& input) {
+  const bool is_known = input.units == 0 && input.rows == 1 && !input.joint_tables && !input.word_cache &&
+                        input.cost_half == 0 && input.width <= 2048 && input.height <= 2048;
+  if (!is_known) throw std::invalid_argument("board_config: a knob that the models do not have");
+}
+
 kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::uint8_t>& pixels) {
   kernels::GrayImage image(board.width, board.height);
   if (image.pixels.size() != pixels.size()) {
@@ -80,6 +86,7 @@ kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::u
 }  // namespace
 
 platform::BoardConfig board_config(const PlainCycleInput& input) {
+  check_knobs(input);
   platform::BoardConfig board;
   board.name = "plain";
   board.image = {input.width, input.height};
@@ -114,6 +121,8 @@ platform::Tables board_tables(const PlainCycleInput& input) {
 }
 
 platform::BoardConfig board_config(const RandomBoard& board) {
+  if (board.cost.kind != ReferenceCost::Kind::kSad)
+    throw std::invalid_argument("board_config: a cost function that the models do not have");
   platform::BoardConfig config = board_config(cycle_input(board));
   config.name = "random-" + std::to_string(board.seed);
   if (board.filter)

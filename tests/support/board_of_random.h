@@ -11,10 +11,14 @@
 namespace stereotlm::test {
 
 // The knobs that the models have.
-inline constexpr RandomKnobs kKnobsOfTheModels = {true};
+inline constexpr RandomKnobs kKnobsOfTheModels = [] {
+  RandomKnobs knobs;
+  knobs.qdr = true;
+  return knobs;
+}();
 
 // Bank i is called "bank<i>" and is as deep as its buffers need, at least one word. A filter of half h gets
-// some kernel of that size.
+// some kernel of that size. Throws std::invalid_argument if the board has a knob that the models do not have.
 platform::BoardConfig board_config(const PlainCycleInput& input);
 // Throws std::invalid_argument if a side has a bank for its table, but no entries.
 platform::Tables board_tables(const PlainCycleInput& input);

@@ -266,16 +266,68 @@ void draw_priority(RandomBoard& board, SplitMix64& random) {
   }
 }
 
+// The generator of one knob.
+SplitMix64 random_of(const RandomBoard& board, std::uint64_t knob) {
+  return SplitMix64(SplitMix64(board.seed).next() + knob);
+}
+
+// A long row, or a high column. Windows and disparities stay small, because the references look at every pixel.
+void draw_large_image(RandomBoard& board, SplitMix64 random) {
+  if (board.left_lut || board.right_lut || !random.chance(50)) return;
+  const bool is_wide = random.chance(50);
+  board.width = 4 * (is_wide ? random.between(513, 2048) : random.between(1, 2));
+  board.height = is_wide ? random.between(1, 5) : random.between(2049, 8192);
+  board.window = std::min(board.window, 5);
+  board.disparities = std::min(board.disparities, 8);
+  board.frames = 1;
+  board.pictures = {random_pair(board, random)};
+}
+
+void draw_units(RandomBoard& board, SplitMix64 random) {
+  if (!random.chance(60)) return;
+  const int passes = random.mostly_small(1, 4, 16);
+  const int fewest = (board.disparities + passes - 1) / passes;
+  board.units = random.between(fewest, std::min(board.disparities, 2 * fewest));
+}
+
+void draw_rows(RandomBoard& board, SplitMix64 random) {
+  if (board.fetch == PlainFetch::kLineBuffer || !random.chance(60)) return;
+  board.rows = random.mostly_small(1, 5, 16);
+  board.result_fifo_words = std::max(board.result_fifo_words, board.rows);
+}
+
+void draw_joint_tables(RandomBoard& board, SplitMix64 random) {
+  const bool is_small = board.width <= 128 && board.height <= 64;  // any displacement fits
+  if (!is_small || !random.chance(50)) return;
+  board.joint_tables = true;
+  if (!board.left_lut) board.left_lut = random.between(0, static_cast<int>(board.banks.size()) - 1);
+  board.right_lut = board.left_lut;
+  for (auto* table : {&board.left_table, &board.right_table}) {
+    if (!*table) *table = random_table(board, random);
+  }
+}
+
 // In few boards all banks, in most some.
-void draw_qdr_banks(RandomBoard& board, SplitMix64& random) {
+void draw_qdr_banks(RandomBoard& board, SplitMix64 random) {
   const int percent = random.chance(20) ? 100 : random.between(0, 60);
   for (PlainBank& bank : board.banks) {
     if (random.chance(percent)) bank = {PlainBankKind::kQdr, 0};
   }
 }
 
-void draw_knobs(RandomBoard& board, const RandomKnobs& knobs, SplitMix64& random) {
-  if (knobs.qdr) draw_qdr_banks(board, random);
+void draw_cost(RandomBoard& board, SplitMix64 random) {
+  board.cost.kind = static_cast<ReferenceCost::Kind>(random.between(0, 3));
+  if (board.cost.kind == ReferenceCost::Kind::kCensus) board.cost.census_size = 2 * random.between(1, 3) + 1;
+}
+
+void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
+  if (knobs.large_images) draw_large_image(board, random_of(board, 1));
+  if (knobs.units) draw_units(board, random_of(board, 2));
+  if (knobs.rows) draw_rows(board, random_of(board, 3));
+  if (knobs.joint_tables) draw_joint_tables(board, random_of(board, 4));
+  if (knobs.word_cache) board.word_cache = random_of(board, 5).chance(50);
+  if (knobs.qdr) draw_qdr_banks(board, random_of(board, 6));
+  if (knobs.cost) draw_cost(board, random_of(board, 7));
 }
 
 }  // namespace
@@ -306,15 +358,14 @@ RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs) {
   const int pairs = random.between(1, board.frames);
   for (int pair = 0; pair < pairs; ++pair) board.pictures.push_back(random_pair(board, random));
 
-  SplitMix64 random_knobs(seed +
-                          2'000'000);  // of its own, so that the draws above do not depend on the knobs
-  draw_knobs(board, knobs, random_knobs);
+  draw_knobs(board, knobs);
   return board;
 }
 
 PlainCycleInput cycle_input(const RandomBoard& board) {
   PlainCycleInput input = board;
   input.filter_half = board.filter ? (board.filter->size - 1) / 2 : 0;
+  input.cost_half = half_of(board.cost);
   return input;
 }
 
@@ -331,6 +382,7 @@ ReferenceInput reference_input(const RandomBoard& board, int frame) {
   input.window = board.window;
   input.disparities = board.disparities;
   input.lr_tolerance = board.lr_tolerance;
+  input.cost = board.cost;
   return input;
 }
 

@@ -33,25 +33,36 @@ struct PicturePair {
 };
 
 // 4..64 x 1..40 pixels, 1..10 banks, a latency of the pipeline of up to 40 cycles, all else in its whole range.
-// Each side with a bank for its table has entries; filter_half is not set.
+// Each side with a bank for its table has entries; filter_half and cost_half are not set.
 struct RandomBoard : PlainCycleInput {
   std::uint64_t seed = 0;
   std::optional<ReferenceKernel> filter;  // nullopt: none
   std::optional<int> lr_tolerance;        // nullopt: off
-  int frames = 0;                         // 1..4
-  std::vector<PicturePair> pictures;      // 1..frames pairs; frame f shows pair f mod length
+  ReferenceCost cost;
+  int frames = 0;                     // 1..4
+  std::vector<PicturePair> pictures;  // 1..frames pairs; frame f shows pair f mod length
 
   const PicturePair& pictures_of_frame(int frame) const {
     return pictures[static_cast<std::size_t>(frame) % pictures.size()];
   }
 };
 
-// The knobs of contract section 7 that a board draws, beside all of sections 1 to 6.
+// The knobs of contract section 7 that boards draw, beside all of sections 1 to 6. Each is then drawn by every
+// second board or so: a board has any combination that is allowed.
 struct RandomKnobs {
+  bool large_images = false;  // few boards: up to 8192 columns or rows, without tables
+  bool units = false;         // up to 16 passes
+  bool rows = false;
+  bool joint_tables = false;
+  bool word_cache = false;
   bool qdr = false;
+  bool cost = false;
+
+  static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true}; }
 };
 
-// Without knobs a seed gives the board of sections 1 to 6 that it has always given.
+// Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a
+// generator of its own.
 RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs = {});
 
 // For the message of a failure.

@@ -43,7 +43,7 @@ RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs
   input.dma_burst_words = one_of<int>(random, {1, 2, 7, 32, 1024});
   input.posted_words = one_of<int>(random, {1, 2, 5, 64, 4096});
   const PlainNumber fpga_clock_mhz = usual_or_odd(random, {"40", "40", "12.5", "100"}, 12, 120);
-  input.board = {cycle_input(board), fpga_clock_mhz, board.filter, board.lr_tolerance};
+  input.board = {cycle_input(board), fpga_clock_mhz, board.filter, board.lr_tolerance, board.cost};
   input.frames = random.between(1, 8);
   if (random.chance(30)) {
     PlainLoad load;

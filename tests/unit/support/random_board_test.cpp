@@ -57,6 +57,49 @@ std::string number_of(Enumerator value) {
   return std::to_string(static_cast<int>(value));
 }
 
+// All that a board of contract sections 1 to 6 has, as one number.
+std::uint64_t hash_of(const RandomBoard& board) {
+  std::uint64_t hash = 0xCBF2'9CE4'8422'2325U;
+  const auto add = [&hash](std::int64_t value) {
+    hash = (hash ^ static_cast<std::uint64_t>(value)) * 0x100'0000'01B3U;
+  };
+  const auto add_all = [&add](const auto& values) {
+    add(static_cast<std::int64_t>(values.size()));
+    for (const auto& value : values) add(static_cast<std::int64_t>(value));
+  };
+  for (const int value :
+       {board.width, board.height, board.window, board.disparities, board.lane_fifo_slots,
+        board.result_fifo_words, board.pipeline_latency_cycles, board.frames, board.left_lut.value_or(-1),
+        board.right_lut.value_or(-1), board.lr_tolerance.value_or(-1)})
+    add(value);
+  add(static_cast<int>(board.fetch));
+  add(static_cast<int>(board.arbitration));
+  add_all(board.priority);
+  for (const PlainBank& bank : board.banks) {
+    add(static_cast<int>(bank.kind));
+    add(bank.turnaround_cycles);
+  }
+  for (const auto* list : {&board.left_image, &board.right_image, &board.disparity}) add_all(*list);
+  for (const auto* table : {&board.left_table, &board.right_table}) {
+    if (*table) add_all(**table);
+  }
+  if (board.filter) {
+    add(board.filter->shift);
+    add_all(board.filter->weights);
+  }
+  for (const PicturePair& pair : board.pictures) {
+    add_all(pair.left);
+    add_all(pair.right);
+  }
+  return hash;
+}
+
+TEST(RandomBoard, IsWithoutKnobsTheSameForEver) {
+  std::uint64_t all = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) all = 31 * all + hash_of(make_random_board(seed));
+  EXPECT_EQ(all, 0xB695'5E0D'CD22'EEB9U);
+}
+
 // Every kind of board that a comparison must not miss is drawn at least once in a hundred.
 TEST(RandomBoard, CoversEveryKindOfBoard) {
   std::map<std::string, int> seen = {{"fixed_priority", 0}, {"round_robin", 0}, {"age", 0}};
@@ -91,6 +134,86 @@ TEST(RandomBoard, CoversEveryKindOfBoard) {
     seen["several frames"] += board.frames > 1 ? 1 : 0;
   }
   for (const auto& [kind, count] : seen) EXPECT_GE(count, static_cast<int>(kSeeds / 100)) << kind;
+}
+
+int passes(const RandomBoard& board) {
+  return board.units == 0 ? 1 : (board.disparities + board.units - 1) / board.units;
+}
+
+TEST(RandomBoard, CoversEveryKnobAloneAndWithOthers) {
+  std::map<std::string, int> seen = {
+      {"qdr by fixed_priority", 0}, {"qdr by round_robin", 0}, {"qdr by age", 0}};
+  for (const int kind : {0, 1, 2, 3}) seen["cost " + std::to_string(kind)] = 0;
+  for (const int size : {3, 5, 7}) seen["census " + std::to_string(size)] = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RandomBoard board = make_random_board(seed, RandomKnobs::all());
+    const bool is_column = board.fetch == PlainFetch::kColumn;
+    const bool has_qdr = std::any_of(board.banks.begin(), board.banks.end(),
+                                     [](const PlainBank& bank) { return bank.kind == PlainBankKind::kQdr; });
+    seen["wide"] += board.width > 2048 ? 1 : 0;
+    seen["high"] += board.height > 2048 ? 1 : 0;
+    seen["as many units as disparities"] += board.units == board.disparities ? 1 : 0;
+    seen["two passes"] += passes(board) == 2 ? 1 : 0;
+    seen["more than four passes"] += passes(board) > 4 ? 1 : 0;
+    seen["passes with line buffers"] += passes(board) > 1 && !is_column ? 1 : 0;
+    seen["two rows"] += board.rows == 2 ? 1 : 0;
+    seen["more rows than the image"] += board.rows > board.height ? 1 : 0;
+    seen["rows that divide the image"] += board.rows > 1 && board.height % board.rows == 0 ? 1 : 0;
+    seen["rows that do not"] += board.height > board.rows && board.height % board.rows != 0 ? 1 : 0;
+    seen["a queue of as many words as rows"] +=
+        board.rows > 1 && board.result_fifo_words == board.rows ? 1 : 0;
+    seen["a longer queue"] += board.rows > 1 && board.result_fifo_words > board.rows ? 1 : 0;
+    seen["joint tables"] += board.joint_tables ? 1 : 0;
+    seen["separate tables in one bank"] +=
+        !board.joint_tables && board.left_lut && board.left_lut == board.right_lut ? 1 : 0;
+    seen["cache"] += board.word_cache ? 1 : 0;
+    seen["cache and line buffers"] += board.word_cache && !is_column ? 1 : 0;
+    seen["cache without table"] += board.word_cache && !board.left_lut ? 1 : 0;
+    seen["qdr"] += has_qdr ? 1 : 0;
+    seen["qdr by " + std::string(name_of(board.arbitration))] += has_qdr ? 1 : 0;
+    seen["cost " + number_of(board.cost.kind)]++;
+    seen["census " + std::to_string(board.cost.census_size)]++;
+    seen["no knob"] +=
+        passes(board) == 1 && board.rows == 1 && !board.joint_tables && !board.word_cache ? 1 : 0;
+    seen["all knobs"] += passes(board) > 1 && board.rows > 1 && board.joint_tables && board.word_cache &&
+                                 has_qdr && board.cost.kind != ReferenceCost::Kind::kSad
+                             ? 1
+                             : 0;
+  }
+  for (const auto& [kind, count] : seen) EXPECT_GE(count, static_cast<int>(kSeeds / 100)) << kind;
+}
+
+// What contract section 7 refuses.
+TEST(RandomBoard, KeepsTheRulesOfItsKnobs) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RandomBoard board = make_random_board(seed, RandomKnobs::all());
+    SCOPED_TRACE(describe(board));
+    EXPECT_LE(board.units, board.disparities);
+    EXPECT_LE(passes(board), 16);
+    EXPECT_LE(board.rows, board.fetch == PlainFetch::kColumn ? 16 : 1);
+    EXPECT_LE(board.rows, board.result_fifo_words);
+    EXPECT_EQ(board.left_table.has_value(), board.left_lut.has_value());
+    EXPECT_EQ(board.right_table.has_value(), board.right_lut.has_value());
+    if (board.joint_tables) {
+      EXPECT_TRUE(board.left_lut && board.left_lut == board.right_lut);
+      EXPECT_NO_THROW(reference_joint_table(board.width, *board.left_table, *board.right_table));
+    }
+    if (board.width > 2048 || board.height > 2048) {
+      EXPECT_FALSE(board.left_lut || board.right_lut);
+    }
+    EXPECT_LE(std::max(board.width, board.height), 8192);
+    for (const PicturePair& pair : board.pictures)
+      EXPECT_EQ(pair.left.size(), static_cast<std::size_t>(board.width * board.height));
+    for (const PlainBank& bank : board.banks)
+      EXPECT_EQ(bank.turnaround_cycles > 0, bank.kind == PlainBankKind::kSyncBurst);
+  }
+}
+
+TEST(RandomBoard, IsTheSameInAllThatAKnobDoesNotChange) {
+  RandomKnobs knobs;
+  knobs.word_cache = knobs.cost = knobs.units = true;
+  for (std::uint64_t seed = 0; seed < 100; ++seed)
+    EXPECT_EQ(hash_of(make_random_board(seed, knobs)), hash_of(make_random_board(seed)));
 }
 
 }  // namespace
