@@ -304,12 +304,13 @@ class ResultQueue {
     return written_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved;
   }
   void word_enters(int row) { rows_of_words_.push_back(row); }
-  // True if its row is complete.
-  bool word_is_written() {
+  // Returns its row if that is complete.
+  std::optional<std::size_t> word_is_written() {
     const auto row = static_cast<std::size_t>(rows_of_words_.front());
     rows_of_words_.pop_front();
     ++written_;
-    return ++written_in_row_[row] == words_of_row_;
+    if (++written_in_row_[row] < words_of_row_) return std::nullopt;
+    return row;
   }
 
  private:
@@ -346,7 +347,7 @@ class PlainCore::Cycles {
               Lane(input_, sequence_, lane_setting(input_.right_lut, input_.right_table, right_image)),
               Matcher(input_, sequence_.size()),
               ResultQueue(input_),
-              {},
+              std::vector<PlainRowEnd>(static_cast<std::size_t>(input_.height)),
               {}});
   }
 
@@ -408,7 +409,9 @@ class PlainCore::Cycles {
     const auto acts = [&](PlainPort port) {
       return wishes[index_of(port)] == Wish::kPass || granted[index_of(port)];
     };
-    if (acts(PlainPort::kResult) && frame.queue.word_is_written()) frame.rows.push_back(frame.until_now);
+    if (acts(PlainPort::kResult)) {
+      if (const auto row = frame.queue.word_is_written()) frame.rows[*row] = frame.until_now;
+    }
     if (consumes) {
       for (const int row : frame.matcher.consume()) frame.queue.word_enters(row);
     }
