@@ -24,6 +24,7 @@ class AccessPattern {
     const auto place = static_cast<std::size_t>(column);
     return (valid_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
+  bool all_valid() const { return all_valid_; }
   // The end of the run of uniform columns that begins with `frame_column`: the next column with other
   // accesses, or the number of columns. Columns are counted over the whole frame, strip after strip.
   std::uint64_t uniform_until(std::uint64_t frame_column) const;

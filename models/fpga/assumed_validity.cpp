@@ -7,7 +7,9 @@ AssumedValidity::AssumedValidity(CoreStepper& stepper)
 
 void AssumedValidity::start_direct_frame(const AccessPatterns& patterns) {
   for (const Side side : kSides) {
-    sides_[index_of(side)] = {&patterns[index_of(side)], stepper_.arbitration().is_alone(pixel_port(side))};
+    const AccessPattern& pattern = patterns[index_of(side)];
+    const bool is_uncontended = stepper_.arbitration().is_alone(pixel_port(side));
+    sides_[index_of(side)] = {&pattern, pattern.all_valid() || is_uncontended};
   }
 }
 
@@ -18,14 +20,14 @@ std::uint64_t AssumedValidity::uniform_until(Side side) const {
 }
 
 bool AssumedValidity::resolve() {
-  const bool left_was_assumed = resolve(Side::kLeft);
-  const bool right_was_assumed = resolve(Side::kRight);
-  return left_was_assumed || right_was_assumed;
+  const bool left_may_be_wrong = resolve(Side::kLeft);
+  const bool right_may_be_wrong = resolve(Side::kRight);
+  return left_may_be_wrong || right_may_be_wrong;
 }
 
 bool AssumedValidity::resolve(Side side) {
   Table& table = sides_[index_of(side)];
-  if (!table.is_assumed_valid) return false;
+  if (!table.is_assumed_valid || table.pattern->all_valid()) return false;
   table.is_assumed_valid = false;
   const LaneControl& lane = stepper_.control().lane(side);
   const std::uint64_t passed = table.pattern->invalid_before(lane.handled());

@@ -35,14 +35,14 @@ class AssumedValidity {
   std::uint64_t uniform_until(Side side) const;
 
   // To be called before a route changes, and after the last cycle of a frame. Corrects the counts. From now
-  // on the patterns determine which entries are valid. Returns whether entries were assumed to be valid: if
-  // so, transitions that were recorded before are no longer true.
+  // on the patterns determine which entries are valid. Returns whether an invalid entry may have been taken
+  // for valid: if so, transitions that were recorded before are no longer true.
   bool resolve();
 
  private:
   struct Table {
     const AccessPattern* pattern = nullptr;
-    bool is_assumed_valid = false;  // every entry is assumed to be valid
+    bool is_assumed_valid = false;  // every entry is valid, or assumed to be
   };
 
   bool resolve(Side side);

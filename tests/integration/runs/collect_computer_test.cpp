@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/config/buffer_layout.h"
 #include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/noise_pairs.h"
@@ -78,7 +78,8 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
     EXPECT_THAT(statistics().failed, ElementsAre(fmt::format("{} = {}, but {} = {}", left, is, right, but)));
   };
   std::vector<std::string> names;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) names.push_back(buffer.path());
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation))
+    names.push_back(buffer.path());
   names.emplace_back("no buffer");
   ASSERT_EQ(valid.words.into_bridge.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -73,8 +73,7 @@ TEST(Plan, MakesPointsImpossibleThatCannotHaveTheTables) {
   EXPECT_EQ(plan.use_calibration("5a", 640, 480), std::nullopt);
   const std::string size =
       "run.calibration: image size = 640x480: must be that of the board's images, 320x240";
-  const std::string none =
-      "run.calibration: needs a board with both tables, but allocation.left_lut = none";
+  const std::string none = "run.calibration: needs a board with both tables, but allocation.left_lut = none";
   const Lines reasons = {"", size, none, size};  // the axes of `vary` come before those of `zip`
   ASSERT_EQ(plan.size(), reasons.size());
   for (std::uint64_t number = 0; number < plan.size(); ++number) {
