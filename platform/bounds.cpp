@@ -19,7 +19,7 @@ std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) 
   std::vector<std::uint64_t> fetches(static_cast<std::size_t>(geometry.height));
   for (int strip = 0; strip < geometry.strips; ++strip) {
     for (int k = 0; k < geometry.slots_per_column; ++k) {
-      const int row = geometry.first_row + strip + k;
+      const int row = geometry.first_row_of(strip) + k;
       if (row >= 0 && row < geometry.height) ++fetches[static_cast<std::size_t>(row)];
     }
   }

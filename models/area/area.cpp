@@ -173,8 +173,7 @@ void add_select_min_tree(const Core& core, Items& items) {
 void add_left_right_check(const Core& core, Items& items) {
   const int bits = core.disparity_bits;
   Resources check = shift_register(core.config.disparities - 1, bits + kValidBit);
-  if (core.config.left_table)
-    check += shift_register(core.geometry.radius + core.geometry.filter_half, kValidBit);
+  if (core.config.left_table) check += shift_register(core.geometry.radius + core.geometry.half, kValidBit);
   if (core.config.lr_tolerance) {
     check += memory(core.config.disparities, bits + kValidBit) + absolute_difference(bits) +
              Resources{std::max(1, (bits + 1) / 3)} + Resources{1};

@@ -75,7 +75,7 @@ void AccessPattern::find_changes_of_strip(int strip, const std::vector<std::uint
                                      static_cast<std::uint64_t>(geometry_.slots_per_column);
   invalid_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
-    const int row = geometry_.first_row + strip + k;
+    const int row = geometry_.first_row_of(strip) + k;
     if (!inside(row)) {
       empty_slots_ += geometry_.columns_per_strip();
       continue;
@@ -106,9 +106,10 @@ void AccessPattern::find_strips_with_changes() {
 // Whether the first column of a strip makes the same accesses as the last column of the strip before.
 bool AccessPattern::strip_begins_alike(int strip) const {
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
-    const int row = geometry_.first_row + strip + k;
-    if (inside(row) != inside(row - 1)) return false;
-    if (inside(row) && entry_valid(0, row) != entry_valid(geometry_.width - 1, row - 1)) return false;
+    const int row = geometry_.first_row_of(strip) + k;
+    const int row_before = geometry_.first_row_of(strip - 1) + k;
+    if (inside(row) != inside(row_before)) return false;
+    if (inside(row) && entry_valid(0, row) != entry_valid(geometry_.width - 1, row_before)) return false;
   }
   return true;
 }
@@ -137,7 +138,7 @@ AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
   const std::uint64_t column = slot / slots_per_column;
   const std::uint64_t strip = column / geometry_.columns_per_strip();
   return {static_cast<int>(column % geometry_.columns_per_strip()),
-          geometry_.first_row + static_cast<int>(strip) + static_cast<int>(slot % slots_per_column)};
+          geometry_.first_row_of(static_cast<int>(strip)) + static_cast<int>(slot % slots_per_column)};
 }
 
 std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {

@@ -4,13 +4,29 @@ namespace stereotlm::fpga {
 
 std::vector<std::string> problems(const CoreConfig& config) {
   std::vector<std::string> found;
-  kWidthRule.check("width", config.width, found);
-  kHeightRule.check("height", config.height, found);
+  const bool has_table = config.left_table || config.right_table;
+  (has_table ? kWidthWithTableRule : kWidthRule).check("width", config.width, found);
+  (has_table ? kHeightWithTableRule : kHeightRule).check("height", config.height, found);
   kernels::kWindowRule.check("window", config.window, found);
   kernels::kDisparitiesRule.check("disparities", config.disparities, found);
+  if (config.units) {
+    kUnitsRule.check("units", *config.units, found);
+    if (*config.units > config.disparities)
+      found.push_back("units = " + std::to_string(*config.units) +
+                      ": must be at most disparities, which is " + std::to_string(config.disparities));
+  }
+  kRowsRule.check("rows", config.rows, found);
+  if (config.rows != 1 && config.fetch == Fetch::kLineBuffer)
+    found.push_back("rows = " + std::to_string(config.rows) + ": must be 1 with the line buffer");
+  for (const std::string& problem : kernels::problems(config.cost)) found.push_back("cost: " + problem);
+  if (config.joint_tables && !(config.left_table && config.right_table))
+    found.emplace_back("joint_tables = true: both sides must have a table");
   if (config.lr_tolerance) kernels::kLrToleranceRule.check("lr_tolerance", *config.lr_tolerance, found);
   kLaneFifoRule.check("lane_fifo_slots", config.lane_fifo_slots, found);
   kResultFifoRule.check("result_fifo_words", config.result_fifo_words, found);
+  if (config.result_fifo_words < config.rows)
+    found.push_back("result_fifo_words = " + std::to_string(config.result_fifo_words) +
+                    ": must be at least rows, which is " + std::to_string(config.rows));
   kPipelineLatencyRule.check("pipeline_latency_cycles", config.pipeline_latency_cycles, found);
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");

@@ -7,6 +7,7 @@
 
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/limits.h"
+#include "models/kernels/matching_cost.h"
 
 namespace stereotlm::fpga {
 
@@ -15,28 +16,52 @@ enum class Fetch : std::uint8_t {
   kLineBuffer,  // one pixel a cycle, older rows from block RAM
 };
 
-inline constexpr kernels::IntegerRule kWidthRule{4, 2048, 4};
-inline constexpr kernels::IntegerRule kHeightRule{1, 2048};
+// The word cache of a lane (contract 7.4).
+enum class PixelCache : std::uint8_t {
+  kNone,
+  kWord,  // keeps the last word that was read, for each slot of a column
+};
+
+inline constexpr kernels::IntegerRule kWidthRule{4, 8192, 4};
+inline constexpr kernels::IntegerRule kHeightRule{1, 8192};
+// With a look-up table: its entries hold coordinates of 11 bits.
+inline constexpr kernels::IntegerRule kWidthWithTableRule{4, 2048, 4};
+inline constexpr kernels::IntegerRule kHeightWithTableRule{1, 2048};
+inline constexpr kernels::IntegerRule kUnitsRule{1, 254};
+inline constexpr kernels::IntegerRule kRowsRule{1, 16};
 inline constexpr kernels::IntegerRule kLaneFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kResultFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kPipelineLatencyRule{0, 1024};
 
 // The parameters that the FPGA is synthesised with. Defaults: the board of the paper.
 struct CoreConfig {
-  int width = 640;                                                // pixels, kWidthRule
-  int height = 480;                                               // pixels, kHeightRule
-  int window = 7;                                                 // n: kWindowRule
-  int disparities = 80;                                           // D: window modules, kDisparitiesRule
+  int width = 640;           // pixels, kWidthRule; see also below
+  int height = 480;          // pixels, kHeightRule; see also below
+  int window = 7;            // n: kWindowRule
+  int disparities = 80;      // D: candidates, kDisparitiesRule
+  std::optional<int> units;  // U: window modules, kUnitsRule, at most D; nullopt: one for each candidate
+  int rows = 1;              // R: rows of results computed at once, kRowsRule; more than 1 only with kColumn
+  kernels::MatchingCost cost;
   std::optional<kernels::FilterKernel> filter = kernels::log7();  // nullopt: no filter
   Fetch fetch = Fetch::kColumn;
   std::optional<int> lr_tolerance = 0;  // kLrToleranceRule; nullopt: no left-right check
-  bool left_table = true;               // false: the left side has no look-up table
+  // false: the side has no look-up table. With a table the image follows kWidthWithTableRule and
+  // kHeightWithTableRule.
+  bool left_table = true;
   bool right_table = true;
+  bool joint_tables = false;  // one table for both sides, which both have one then (contract 7.3)
+  PixelCache pixel_cache = PixelCache::kNone;
   double clock_mhz = 40;             // 1..1000
   int lane_fifo_slots = 16;          // slots, kLaneFifoRule
-  int result_fifo_words = 8;         // 32-bit words, kResultFifoRule
+  int result_fifo_words = 8;         // 32-bit words, kResultFifoRule, at least `rows`
   int pipeline_latency_cycles = 16;  // cycles, kPipelineLatencyRule, after the last write
 };
+
+// S: the number of cycles in which the matcher works on a slot (contract 7.1).
+inline int passes_of(const CoreConfig& config) {
+  const int units = config.units.value_or(config.disparities);
+  return (config.disparities + units - 1) / units;
+}
 
 // Every broken rule as `field = value: rule`; empty if the core can be built.
 std::vector<std::string> problems(const CoreConfig& config);

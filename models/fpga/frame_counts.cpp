@@ -53,7 +53,7 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
         static_cast<std::uint64_t>(kernels::candidate_count(
             column, geometry.radius, geometry.width, geometry.height, config.window, config.disparities));
   }
-  chain.columns = sums.columns - static_cast<std::uint64_t>(geometry.filter_half + geometry.radius);
+  chain.columns = sums.columns - static_cast<std::uint64_t>(geometry.half + geometry.radius);
   chain.matches = matches;
   tree.columns = chain.columns;
   tree.matches = matches;

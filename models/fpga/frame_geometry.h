@@ -14,13 +14,14 @@ struct FrameGeometry {
       : width(config.width),
         height(config.height),
         radius((config.window - 1) / 2),
-        filter_half(config.filter ? config.filter->half() : 0),
-        slots_per_column(config.fetch == Fetch::kColumn ? config.window : 1),
-        lead_strips(config.fetch == Fetch::kColumn ? std::max(0, filter_half - radius)
-                                                   : radius + filter_half),
-        strips(height + lead_strips),
-        first_row(config.fetch == Fetch::kColumn ? filter_half - radius - lead_strips : 0),
-        drain_columns(config.disparities - 1 + radius + filter_half),
+        half((config.filter ? config.filter->half() : 0) + config.cost.half()),
+        rows(config.rows),
+        slots_per_column(config.fetch == Fetch::kColumn ? config.window + rows - 1 : 1),
+        lead_strips(config.fetch == Fetch::kColumn ? (std::max(0, half - radius) + rows - 1) / rows
+                                                   : radius + half),
+        strips((height + rows - 1) / rows + lead_strips),
+        first_row(config.fetch == Fetch::kColumn ? half - radius - lead_strips * rows : 0),
+        drain_columns(config.disparities - 1 + radius + half),
         slots(static_cast<std::uint64_t>(strips) * columns_per_strip() *
               static_cast<std::uint64_t>(slots_per_column)),
         drain_cycles(static_cast<std::uint64_t>(drain_columns) *
@@ -32,17 +33,20 @@ struct FrameGeometry {
   int width;
   int height;
   int radius;            // r
-  int filter_half;       // h
-  int slots_per_column;  // also the cycles of a column of the drain
+  int half;              // h: of the filter and of the cost together
+  int rows;              // R: rows of results of a strip
+  int slots_per_column;  // also the number of consume-cycles of a column of the drain
   int lead_strips;       // strips before the first row of results can begin
   int strips;
-  int first_row;      // of the first strip; may lie above the image. Each strip begins one row further down
+  int first_row;      // of the first strip; may lie above the image. Each strip begins `rows` further down
   int drain_columns;  // C_d of the contract
   std::uint64_t slots;
   std::uint64_t drain_cycles;
   std::uint64_t result_delay_columns;  // C of the contract: the result of pixel i leaves with column i + C
   std::uint64_t result_words;
 
+  // The row of the first slot of each column of a strip; may lie outside the image.
+  int first_row_of(int strip) const { return first_row + strip * rows; }
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
 };
 
@@ -54,7 +58,7 @@ class SlotCursor {
       : width_(geometry.width),
         height_(geometry.height),
         slots_per_column_(geometry.slots_per_column),
-        first_row_(geometry.first_row),
+        rows_(geometry.rows),
         strip_row_(geometry.first_row),
         left_(geometry.slots) {}
 
@@ -63,7 +67,7 @@ class SlotCursor {
   int row() const { return strip_row_ + k_; }  // may lie outside the image
   // The column, counted over the whole frame, strip after strip.
   std::uint64_t frame_column() const {
-    return static_cast<std::uint64_t>(strip_row_ - first_row_) * static_cast<std::uint64_t>(width_) +
+    return static_cast<std::uint64_t>(strip_) * static_cast<std::uint64_t>(width_) +
            static_cast<std::uint64_t>(column_);
   }
   // A slot outside the image makes no access, but takes its turn.
@@ -75,7 +79,8 @@ class SlotCursor {
     k_ = 0;
     if (++column_ < width_) return;
     column_ = 0;
-    ++strip_row_;
+    ++strip_;
+    strip_row_ += rows_;
   }
   void advance(std::uint64_t slots) {
     left_ -= slots;
@@ -84,14 +89,17 @@ class SlotCursor {
         static_cast<std::uint64_t>(column_) + slot / static_cast<std::uint64_t>(slots_per_column_);
     k_ = static_cast<int>(slot % static_cast<std::uint64_t>(slots_per_column_));
     column_ = static_cast<int>(column % static_cast<std::uint64_t>(width_));
-    strip_row_ += static_cast<int>(column / static_cast<std::uint64_t>(width_));
+    const auto strips = static_cast<int>(column / static_cast<std::uint64_t>(width_));
+    strip_ += strips;
+    strip_row_ += strips * rows_;
   }
 
  private:
   int width_ = 0;
   int height_ = 0;
   int slots_per_column_ = 1;
-  int first_row_ = 0;
+  int rows_ = 1;
+  int strip_ = 0;
   int strip_row_ = 0;  // row of the first slot of each column of the strip
   int column_ = 0;
   int k_ = 0;               // slot within the column

@@ -11,7 +11,7 @@ LrCheck::LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)
   // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
   // before this stage, cause a part of that delay.
   columns_before_frame_ =
-      geometry.result_delay_columns - static_cast<std::uint64_t>(geometry.filter_half + geometry.radius);
+      geometry.result_delay_columns - static_cast<std::uint64_t>(geometry.half + geometry.radius);
 }
 
 void LrCheck::start_frame() {

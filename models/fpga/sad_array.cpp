@@ -13,7 +13,7 @@ void SadArray::start_frame() {
   sums_.start_frame();
   have_left_ = false;
   have_right_ = false;
-  columns_before_window_ = geometry_.filter_half + geometry_.radius;
+  columns_before_window_ = geometry_.half + geometry_.radius;
   column_ = 0;
   row_ = -geometry_.lead_strips;
   left_valid_ = 0;

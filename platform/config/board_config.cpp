@@ -82,6 +82,12 @@ class FieldChecker {
     } else if (key.path == "matcher.lr_tolerance" && board_.matcher.lr_tolerance) {
       const int value = *board_.matcher.lr_tolerance;
       if (!kernels::kLrToleranceRule.allows(value)) report(key.path, value, key.rule_text);
+    } else if (key.path == "matcher.units" && board_.matcher.units) {
+      const int value = *board_.matcher.units;
+      if (!fpga::kUnitsRule.allows(value)) report(key.path, value, key.rule_text);
+    } else if (key.path == "matcher.cost") {
+      for (const std::string& text : kernels::problems(board_.matcher.cost))
+        found.emplace(order_of(key.path), "matcher.cost." + text);
     }
   }
 
@@ -152,7 +158,8 @@ auto fields(const BoardConfig& b) {
       b.fpga.clock_mhz, b.fpga.arbiter.policy, b.fpga.arbiter.priority, b.fpga.lane_fifo_slots,
       b.fpga.result_fifo_words, b.fpga.pipeline_latency_cycles, b.allocation.left_image,
       b.allocation.right_image, b.allocation.disparity, b.allocation.left_lut, b.allocation.right_lut,
-      b.matcher.window, b.matcher.disparities, b.matcher.filter, b.matcher.fetch, b.matcher.lr_tolerance);
+      b.matcher.window, b.matcher.disparities, b.matcher.filter, b.matcher.fetch, b.matcher.lr_tolerance,
+      b.matcher.units, b.matcher.rows, b.matcher.cost, b.fpga.joint_tables, b.fpga.pixel_cache);
 }
 
 }  // namespace
@@ -206,9 +213,14 @@ fpga::CoreConfig core_config(const BoardConfig& board) {
   core.disparities = board.matcher.disparities;
   core.filter = board.matcher.filter;
   core.fetch = board.matcher.fetch;
+  core.units = board.matcher.units;
+  core.rows = board.matcher.rows;
+  core.cost = board.matcher.cost;
   core.lr_tolerance = board.matcher.lr_tolerance;
   core.left_table = board.allocation.left_lut.has_value();
   core.right_table = board.allocation.right_lut.has_value();
+  core.joint_tables = board.fpga.joint_tables;
+  core.pixel_cache = board.fpga.pixel_cache;
   core.clock_mhz = board.fpga.clock_mhz;
   core.lane_fifo_slots = board.fpga.lane_fifo_slots;
   core.result_fifo_words = board.fpga.result_fifo_words;

@@ -9,6 +9,7 @@
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
+#include "models/kernels/matching_cost.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::platform {
@@ -19,8 +20,8 @@ enum class CaptureDestination { kBoard, kHostMemory };
 // One board as its YAML file describes it (contract section 4). Plain values; the defaults are the paper's
 // board, preset `fpl2003`. Each field has its unit and range beside it; problems() checks all ranges.
 struct ImageConfig {
-  int width = 640;   // pixels, 4..2048, a multiple of 4
-  int height = 480;  // pixels, 1..2048
+  int width = 640;   // pixels, 4..8192, a multiple of 4; at most 2048 with a look-up table
+  int height = 480;  // pixels, 1..8192; at most 2048 with a look-up table
 };
 
 struct CamerasConfig {
@@ -63,8 +64,10 @@ struct FpgaConfig {
   double clock_mhz = 40;  // 1..1000
   memory::ArbiterConfig arbiter = fpga::core_arbiter();
   int lane_fifo_slots = 16;          // slots, 1..64
-  int result_fifo_words = 8;         // 32-bit words, 1..64
+  int result_fifo_words = 8;         // 32-bit words, 1..64, at least matcher.rows
   int pipeline_latency_cycles = 16;  // cycles, 0..1024
+  bool joint_tables = false;         // true: one table for both sides
+  fpga::PixelCache pixel_cache = fpga::PixelCache::kNone;
 };
 
 // One SSRAM bank with everything that `ssram.default` supplies filled in.
@@ -77,6 +80,7 @@ struct BankConfig {
 
 // The bank of each buffer, by name. The frames use the entries of a list in turn. A list has 1 to 3 entries;
 // the two image lists are equally long. A side whose `.._lut` has no value has no look-up table (`none`).
+// With joint tables both name the bank of the one table.
 struct AllocationConfig {
   std::vector<std::string> left_image = {"bank0", "bank1"};
   std::vector<std::string> right_image = {"bank2", "bank3"};
@@ -91,6 +95,9 @@ struct MatcherConfig {
   std::optional<kernels::FilterKernel> filter = kernels::log7();  // nullopt: none
   fpga::Fetch fetch = fpga::Fetch::kColumn;
   std::optional<int> lr_tolerance = 0;  // 0..253; nullopt: off
+  std::optional<int> units;             // modules, 1..disparities; nullopt: all
+  int rows = 1;                         // rows of results at once, 1..16; 1 unless the fetch is kColumn
+  kernels::MatchingCost cost;
 };
 
 struct BoardConfig {

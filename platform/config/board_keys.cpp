@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "models/area/device.h"
+#include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
 #include "models/memory/arbitration_policies.h"
@@ -147,10 +148,10 @@ std::vector<Key> make_keys() {
       other("name", "the board's name, as results give it", "",
             "a text of one or more characters without control characters; quoted if it could be read as "
             "a number, a truth value or null"),
-      integer("image.width", "width of the images", "pixels", fpga::kWidthRule,
-              member<&B::image, &ImageConfig::width>),
-      integer("image.height", "height of the images", "pixels", fpga::kHeightRule,
-              member<&B::image, &ImageConfig::height>),
+      integer("image.width", "width of the images, at most 2048 with a look-up table", "pixels",
+              fpga::kWidthRule, member<&B::image, &ImageConfig::width>),
+      integer("image.height", "height of the images, at most 2048 with a look-up table", "pixels",
+              fpga::kHeightRule, member<&B::image, &ImageConfig::height>),
       decimal("cameras.frame_rate_hz", "frame rate of both cameras; on demand that of their line times", "Hz",
               0.1, 1000, member<&B::cameras, &CamerasConfig::frame_rate_hz>),
       word<&B::cameras, &CamerasConfig::trigger>(
@@ -206,6 +207,15 @@ std::vector<Key> make_keys() {
               fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
       integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
               "cycles", fpga::kPipelineLatencyRule, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
+      optional(word<&B::fpga, &FpgaConfig::joint_tables>("fpga.tables",
+                                                         "whether each side has a look-up table of its own, "
+                                                         "or both share one; optional, without it separate",
+                                                         {"separate", "joint"})),
+      optional(word<&B::fpga, &FpgaConfig::pixel_cache>(
+          "fpga.pixel_cache",
+          "whether a lane keeps the last word that it read, for each slot of a column; optional, without it "
+          "none",
+          {"none", "word"})),
       other_integer("ssram.default.words", "depth of a bank that gives none of its own", "words",
                     memory::kBankWordsRule, memory::kBankWordsRule.text()),
       other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
@@ -237,6 +247,20 @@ std::vector<Key> make_keys() {
           {"column", "line_buffer"}),
       other_integer("matcher.lr_tolerance", "difference that the left-right check tolerates", "pixels",
                     kernels::kLrToleranceRule, kernels::kLrToleranceRule.text() + " or off"),
+      optional(
+          other_integer("matcher.units",
+                        "column and window modules, at most matcher.disparities; optional, without it all, "
+                        "one for each disparity",
+                        "modules", fpga::kUnitsRule, fpga::kUnitsRule.text() + " or all")),
+      optional(
+          integer("matcher.rows",
+                  "rows of results computed at once, 1 unless matcher.fetch is column; optional, without "
+                  "it 1",
+                  "rows", fpga::kRowsRule, member<&B::matcher, &MatcherConfig::rows>)),
+      optional(other("matcher.cost", "how two windows are compared; optional, without it sad", "",
+                     "sad, ssd, zncc or a map of census")),
+      other_integer("matcher.cost.census", "rows and columns of the neighbourhood of the census bits",
+                    "pixels", kernels::kCensusSizeRule, "3, 5 or 7"),
   };
 }
 

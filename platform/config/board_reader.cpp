@@ -97,7 +97,11 @@ class BoardReader {
     if (const auto buffer = buffer_of_key(key.path))
       visit_buffer(board_.allocation, *buffer, [&](auto& banks) { read_banks_of(key, node, banks); });
     if (key.path == "matcher.filter") read_filter(key, entry);
-    if (key.path == "matcher.lr_tolerance") read_tolerance(key, node);
+    if (key.path == "matcher.lr_tolerance")
+      read_integer_or(key, node, "off", kernels::kLrToleranceRule, board_.matcher.lr_tolerance);
+    if (key.path == "matcher.units")
+      read_integer_or(key, node, "all", fpga::kUnitsRule, board_.matcher.units);
+    if (key.path == "matcher.cost") read_cost(key, entry);
   }
 
   void read_name(const Key& key, const YamlNode& node) {
@@ -177,13 +181,37 @@ class BoardReader {
     bank = item.text == "none" ? std::nullopt : std::optional(item.text);
   }
 
-  void read_tolerance(const Key& key, const YamlNode& node) {
-    if (node.is_scalar() && node.text == "off") {
-      board_.matcher.lr_tolerance = std::nullopt;
-    } else if (const auto value =
-                   values_.read_integer(key.path, node, kernels::kLrToleranceRule, key.rule_text)) {
-      board_.matcher.lr_tolerance = *value;
+  // Reads an integer, or the word that stands for no value.
+  void read_integer_or(const Key& key, const YamlNode& node, const char* none, const IntegerRule& rule,
+                       std::optional<int>& field) {
+    if (node.is_scalar() && node.text == none) {
+      values_.accept(key.path, node.place);
+      field = std::nullopt;
+    } else if (const auto value = values_.read_integer(key.path, node, rule, key.rule_text)) {
+      field = *value;
     }
+  }
+
+  void read_cost(const Key& key, const YamlNode::Entry& entry) {
+    using kernels::CostKind;
+    const YamlNode& node = entry.value;
+    if (node.is_map()) {
+      const std::vector<std::string> names = {kernels::name_of(CostKind::kCensus)};
+      const auto entries = values_.read_entries(key.path, node, entry.key.place, names, names);
+      if (!entries || entries->empty()) return;
+      const Key& census = board_key("matcher.cost.census");
+      const auto size = values_.read_integer(census.path, entries->begin()->second->value,
+                                             kernels::kCensusSizeRule, census.rule_text);
+      board_.matcher.cost = {CostKind::kCensus,
+                             size.value_or(static_cast<int>(kernels::kCensusSizeRule.min))};
+      return;
+    }
+    for (const CostKind kind : {CostKind::kSad, CostKind::kSsd, CostKind::kZncc}) {
+      if (!node.is_scalar() || node.text != kernels::name_of(kind)) continue;
+      board_.matcher.cost = {kind, 0};
+      return;
+    }
+    values_.report(key.path, node, key.rule_text);
   }
 
   void read_filter(const Key& key, const YamlNode::Entry& entry) {

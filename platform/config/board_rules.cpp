@@ -18,6 +18,11 @@ class RuleChecker {
 
   std::vector<BrokenRule> check() {
     check_trigger();
+    check_image_size("image.width", board_.image.width, fpga::kWidthWithTableRule);
+    check_image_size("image.height", board_.image.height, fpga::kHeightWithTableRule);
+    check_units();
+    check_rows();
+    check_joint_tables();
     check_bank_depths();
     check_list_lengths();
     check_bank_names();
@@ -36,6 +41,67 @@ class RuleChecker {
     found_.push_back({fmt::format("capture.fifo_trigger_words = {}: 1..fifo_words, which is {}",
                                   capture.fifo_trigger_words, capture.fifo_words),
                       involved});
+  }
+
+  // The keys of both tables that the board has.
+  std::vector<std::string> keys_of_tables() const {
+    std::vector<std::string> keys;
+    if (board_.allocation.left_lut) keys.emplace_back(key_of(Buffer::kLeftLut));
+    if (board_.allocation.right_lut) keys.emplace_back(key_of(Buffer::kRightLut));
+    return keys;
+  }
+
+  void check_image_size(const std::string& key, int value, const kernels::IntegerRule& rule) {
+    const std::vector<std::string> tables = keys_of_tables();
+    if (tables.empty() || value <= rule.max) return;
+    std::vector<std::string> involved = {key};
+    involved.insert(involved.end(), tables.begin(), tables.end());
+    if (!all_valid(involved)) return;
+    found_.push_back(
+        {fmt::format("{} = {}: at most {} with a look-up table; set {} to none, or a smaller image", key,
+                     value, rule.max, fmt::join(tables, " and ")),
+         involved});
+  }
+
+  void check_units() {
+    const MatcherConfig& matcher = board_.matcher;
+    const std::vector<std::string> involved = {"matcher.units", "matcher.disparities"};
+    if (!all_valid(involved) || !matcher.units || *matcher.units <= matcher.disparities) return;
+    found_.push_back({fmt::format("matcher.units = {}: 1..disparities, which is {}, or all", *matcher.units,
+                                  matcher.disparities),
+                      involved});
+  }
+
+  void check_rows() {
+    const MatcherConfig& matcher = board_.matcher;
+    const std::vector<std::string> with_fetch = {"matcher.rows", "matcher.fetch"};
+    if (matcher.rows != 1 && matcher.fetch == fpga::Fetch::kLineBuffer && all_valid(with_fetch)) {
+      found_.push_back({fmt::format("matcher.rows = {}: must be 1 where matcher.fetch is line_buffer; with "
+                                    "column it may be {}",
+                                    matcher.rows, fpga::kRowsRule.text()),
+                        with_fetch});
+    }
+    const std::vector<std::string> with_queue = {"fpga.result_fifo_words", "matcher.rows"};
+    if (board_.fpga.result_fifo_words < matcher.rows && all_valid(with_queue)) {
+      found_.push_back({fmt::format("fpga.result_fifo_words = {}: must hold a word of each of the rows "
+                                    "computed at once; matcher.rows is {}",
+                                    board_.fpga.result_fifo_words, matcher.rows),
+                        with_queue});
+    }
+  }
+
+  void check_joint_tables() {
+    const auto& left = board_.allocation.left_lut;
+    const auto& right = board_.allocation.right_lut;
+    const std::vector<std::string> involved = {key_of(Buffer::kRightLut), key_of(Buffer::kLeftLut),
+                                               "fpga.tables"};
+    if (!board_.fpga.joint_tables || (left && left == right) || !all_valid(involved)) return;
+    const std::string none = "none";
+    found_.push_back(
+        {fmt::format("allocation.right_lut = {}: must be the bank of left_lut, which is {}, "
+                     "because fpga.tables is joint{}",
+                     right.value_or(none), left.value_or(none), left ? "" : "; neither may be none"),
+         involved});
   }
 
   void check_bank_depths() {

@@ -46,6 +46,11 @@ std::string filter_flow_text(const kernels::FilterKernel& filter) {
   return fmt::format("{{kernel: {}, shift: {}}}", list_text(filter_rows(filter)), filter.shift);
 }
 
+std::string cost_text(const kernels::MatchingCost& cost) {
+  const char* const name = kernels::name_of(cost.kind);
+  return cost.kind == kernels::CostKind::kCensus ? fmt::format("{{{}: {}}}", name, cost.census_size) : name;
+}
+
 class BoardWriter {
  public:
   explicit BoardWriter(const BoardConfig& board) : board_(board), writable_(board) {}
@@ -57,8 +62,9 @@ class BoardWriter {
 
   std::vector<BoardValue> values() {
     for (const Key& key : board_keys()) {
-      if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0)
-        continue;  // not a value: a map, or a part of `matcher.filter`
+      if (key.path == "pci.load" || key.path.find("matcher.filter.") == 0 ||
+          key.path.find("matcher.cost.") == 0)
+        continue;  // not a value: a map, or a part of `matcher.filter` or `matcher.cost`
       if (key.path.find("pci.load.") == 0 && !board_.pci.load) continue;
       if (key.path.find("ssram.") == 0) continue;
       values_.push_back({key.path, std::visit([&](const auto& rule) { return value(key, rule); }, key.rule)});
@@ -88,6 +94,10 @@ class BoardWriter {
       if (const auto& tolerance = board_.matcher.lr_tolerance) return std::int64_t{*tolerance};
       return "off";
     }
+    if (key.path == "matcher.units") {
+      if (const auto& units = board_.matcher.units) return std::int64_t{*units};
+      return "all";
+    }
     return value_text(key, other);
   }
 
@@ -95,6 +105,7 @@ class BoardWriter {
     for (const std::string& name : child_keys(path)) {
       const std::string full = below(path, name);
       if (full == "pci.load" && !board_.pci.load) continue;
+      if (is_left_out(full)) continue;
       out_ += fmt::format("{}{}:", indent, name);
       if (full == "matcher.filter") {
         write_line(board_.matcher.filter ? filter_text(*board_.matcher.filter) : "\"none\"");
@@ -105,7 +116,7 @@ class BoardWriter {
         for (const BankConfig& bank : board_.banks) {
           out_ += fmt::format("{}  {}: {}\n", indent, scalar_text(bank.name), bank_text(bank));
         }
-      } else if (!child_keys(full).empty()) {
+      } else if (!child_keys(full).empty() && full != "matcher.cost") {
         out_ += '\n';
         write_children(full, indent + "  ");
       } else {
@@ -113,6 +124,19 @@ class BoardWriter {
         write_line(std::visit([&](const auto& rule) { return value_text(key, rule); }, key.rule));
       }
     }
+  }
+
+  // Optional keys are left out where they have no effect, so that the text of such a board stays what it was
+  // before there were these keys.
+  bool is_left_out(const std::string& path) const {
+    static const BoardConfig kDefaults;
+    const FpgaConfig& fpga = board_.fpga;
+    const MatcherConfig& matcher = board_.matcher;
+    return (path == "fpga.tables" && fpga.joint_tables == kDefaults.fpga.joint_tables) ||
+           (path == "fpga.pixel_cache" && fpga.pixel_cache == kDefaults.fpga.pixel_cache) ||
+           (path == "matcher.units" && matcher.units == kDefaults.matcher.units) ||
+           (path == "matcher.rows" && matcher.rows == kDefaults.matcher.rows) ||
+           (path == "matcher.cost" && matcher.cost == kDefaults.matcher.cost);
   }
 
   void write_line(const std::string& value) {
@@ -143,6 +167,9 @@ class BoardWriter {
       const auto& tolerance = board_.matcher.lr_tolerance;
       return tolerance ? std::to_string(*tolerance) : "\"off\"";
     }
+    if (key.path == "matcher.units")
+      return board_.matcher.units ? std::to_string(*board_.matcher.units) : "all";
+    if (key.path == "matcher.cost") return cost_text(board_.matcher.cost);
     throw std::logic_error(key.path + ": a key that the writer does not know");
   }
 

@@ -52,9 +52,8 @@ std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
   for (const auto* list : {&input.left_image, &input.right_image, &input.disparity}) {
     for (const int bank : *list) add(bank, table_words / 4);
   }
-  for (const auto& bank : {input.left_lut, input.right_lut}) {
-    if (bank) add(*bank, table_words);
-  }
+  if (input.left_lut) add(*input.left_lut, table_words);
+  if (input.right_lut && !input.joint_tables) add(*input.right_lut, table_words);
   for (platform::BankConfig& bank : banks) bank.words = std::max(bank.words, 1);
   return banks;
 }
@@ -67,10 +66,17 @@ std::optional<kernels::RectificationTable> table_of(
   return kernels::RectificationTable{input.width, input.height, *entries};
 }
 
-void check_knobs(const PlainCycleInput& input) {
-  const bool is_known = input.units == 0 && input.rows == 1 && !input.joint_tables && !input.word_cache &&
-                        input.cost_half == 0 && input.width <= 2048 && input.height <= 2048;
-  if (!is_known) throw std::invalid_argument("board_config: a knob that the models do not have");
+// A cost that looks as far ahead. The timing depends on nothing else of it.
+kernels::MatchingCost cost_of_half(int half) {
+  if (half == 0) return {};
+  return {kernels::CostKind::kCensus, 2 * half + 1};
+}
+
+kernels::MatchingCost cost_of(const ReferenceCost& cost) {
+  using kernels::CostKind;
+  static constexpr std::array<CostKind, 4> kKinds = {CostKind::kSad, CostKind::kSsd, CostKind::kZncc,
+                                                     CostKind::kCensus};
+  return {kKinds[static_cast<std::size_t>(cost.kind)], cost.census_size};
 }
 
 kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::uint8_t>& pixels) {
@@ -86,7 +92,6 @@ kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::u
 }  // namespace
 
 platform::BoardConfig board_config(const PlainCycleInput& input) {
-  check_knobs(input);
   platform::BoardConfig board;
   board.name = "plain";
   board.image = {input.width, input.height};
@@ -111,6 +116,11 @@ platform::BoardConfig board_config(const PlainCycleInput& input) {
     kernel.weights.back() = -3;
     board.matcher.filter = kernel;
   }
+  if (input.units != 0) board.matcher.units = input.units;
+  board.matcher.rows = input.rows;
+  board.matcher.cost = cost_of_half(input.cost_half);
+  board.fpga.joint_tables = input.joint_tables;
+  board.fpga.pixel_cache = input.word_cache ? fpga::PixelCache::kWord : fpga::PixelCache::kNone;
   board.matcher.fetch = input.fetch == PlainFetch::kColumn ? fpga::Fetch::kColumn : fpga::Fetch::kLineBuffer;
   return board;
 }
@@ -121,14 +131,13 @@ platform::Tables board_tables(const PlainCycleInput& input) {
 }
 
 platform::BoardConfig board_config(const RandomBoard& board) {
-  if (board.cost.kind != ReferenceCost::Kind::kSad)
-    throw std::invalid_argument("board_config: a cost function that the models do not have");
   platform::BoardConfig config = board_config(cycle_input(board));
   config.name = "random-" + std::to_string(board.seed);
   if (board.filter)
     config.matcher.filter =
         kernels::FilterKernel{board.filter->size, board.filter->weights, board.filter->shift};
   config.matcher.lr_tolerance = board.lr_tolerance;
+  config.matcher.cost = cost_of(board.cost);
   return config;
 }
 

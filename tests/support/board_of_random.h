@@ -18,7 +18,7 @@ inline constexpr RandomKnobs kKnobsOfTheModels = [] {
 }();
 
 // Bank i is called "bank<i>" and is as deep as its buffers need, at least one word. A filter of half h gets
-// some kernel of that size. Throws std::invalid_argument if the board has a knob that the models do not have.
+// some kernel of that size, and a cost that looks ahead becomes the census of that half.
 platform::BoardConfig board_config(const PlainCycleInput& input);
 // Throws std::invalid_argument if a side has a bank for its table, but no entries.
 platform::Tables board_tables(const PlainCycleInput& input);

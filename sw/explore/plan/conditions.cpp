@@ -22,7 +22,8 @@ const std::vector<std::string>& names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> all;
     for (const platform::Key& key : platform::board_keys()) {
-      if (key.path.find("ssram.") == 0 || key.path.find("matcher.filter.") == 0 || key.path == "pci.load")
+      if (key.path.find("ssram.") == 0 || key.path.find("matcher.filter.") == 0 ||
+          key.path.find("matcher.cost.") == 0 || key.path == "pci.load")
         continue;
       all.push_back(key.path == "name" ? "board.name" : key.path);
     }
