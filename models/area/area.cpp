@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "models/area/cost_arithmetic.h"
 #include "models/area/filter_arithmetic.h"
 #include "models/fpga/frame_geometry.h"
 
@@ -13,8 +14,10 @@ namespace {
 using fpga::CoreConfig;
 using fpga::Fetch;
 
-constexpr int kEntryBits = 11 + 11 + 1;  // contract 1.1: source row, source column, valid
-constexpr int kDisparityBits = 8;        // contract 1.5, 255 = invalid
+constexpr int kEntryBits = 11 + 11 + 1;     // contract 1.1: source row, source column, valid
+constexpr int kJointEntryBits = 7 + 8 + 1;  // contract 7.3, for one side: dy, dx, valid
+constexpr int kOffsetBits = 12;             // contract 7.3: X and Y are -2048..2047
+constexpr int kDisparityBits = 8;           // contract 1.5, 255 = invalid
 constexpr int kWordBits = 32;
 constexpr int kValidBit = 1;
 
@@ -24,18 +27,22 @@ struct Core {
       : config(core_config),
         geometry(config),
         columns_of_pixels(config.fetch == Fetch::kLineBuffer),
-        column_sum_bits(bits_of(kMostPixel * config.window)),
-        window_sum_bits(bits_of(kMostPixel * config.window * config.window)),
+        passes(fpga::passes_of(config)),
+        units(config.units.value_or(config.disparities)),
+        pair(pair_arithmetic(config.cost)),
         disparity_bits(bits_of(config.disparities - 1)) {}
 
   int valid_bit_of(bool left) const { return left && config.left_table ? kValidBit : 0; }
   int tables() const { return int{config.left_table} + int{config.right_table}; }
+  int column_sum_bits(std::int64_t most) const { return bits_of(most * config.window); }
+  int window_sum_bits(std::int64_t most) const { return bits_of(most * config.window * config.window); }
 
   const CoreConfig& config;
   fpga::FrameGeometry geometry;
   bool columns_of_pixels;  // the matcher takes a whole column per cycle, not one pixel
-  int column_sum_bits;
-  int window_sum_bits;
+  int passes;              // S
+  int units;               // U
+  PairArithmetic pair;
   int disparity_bits;  // bits of a disparity, 0..D-1
 };
 
@@ -45,20 +52,36 @@ void add(const char* name, std::int64_t count, const Resources& all, Items& item
   if (count > 0) items.push_back({name, count, all});
 }
 
+// Contract 7.4. For each slot of a column a lane keeps the address of the last word, with a bit that it is
+// valid, and the word itself: slots come in turn, so these are shift registers of K places. A slot without
+// access keeps the old address and word.
+Resources word_cache(const Core& core) {
+  const int places = core.geometry.slots_per_column;
+  const int address_bits = bits_of(std::int64_t{core.config.width} * core.config.height / 4 - 1) + kValidBit;
+  return shift_register(places, address_bits) + selector(address_bits) + equality(address_bits) +
+         shift_register(places, kWordBits) + selector(kWordBits);
+}
+
 // Contract section 2, "Lane": a slot waits as a table entry, then as a pixel, in queues of `lane_fifo_slots`
 // places. Of the valid bits only the left one is passed on, to the left-right check. Paper section 3.2: an
 // entry names a source pixel. The address of that pixel is row * W + column, and the pixel is one of four in
-// a word.
+// a word. The entries of joint tables (contract 7.3) are displacements. One reader takes both halves of an
+// entry, and each lane has its queue. The counters of a lane's position begin at the offsets X and Y, so that
+// one adder for the column and one for the row remain.
 void add_lanes(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   const int tables = core.tables();
-  add("table entry queues", tables, tables * shift_register(config.lane_fifo_slots, kEntryBits), items);
+  const int entry_bits = config.joint_tables ? kJointEntryBits : kEntryBits;
+  add("table entry queues", tables, tables * shift_register(config.lane_fifo_slots, entry_bits), items);
+  if (config.joint_tables) {
+    const Resources position =
+        adder(bits_of(config.width - 1)) + adder(bits_of(config.height - 1)) + registers(2 * kOffsetBits);
+    add("source positions", tables, tables * position, items);
+  }
   const int address_bits = bits_of(std::int64_t{config.width} * config.height - 1);
-  // If the width is a power of two, the row's bits and the column's bits are the address.
-  const bool is_power_of_two = bits_of(config.width) != bits_of(config.width - 1);
-  const Resources address = is_power_of_two ? Resources{} : Resources{0, 0, 0, 1} + adder(address_bits);
-  add("source addresses", tables, tables * address, items);
-  add("byte selectors", 2, 2 * (2 * selector(kPixelBits)), items);  // one of 4: two LUTs a bit, and MUXF5
+  add("source addresses", tables, tables * digits(config.width, address_bits), items);
+  if (config.pixel_cache == fpga::PixelCache::kWord) add("word caches", 2, 2 * word_cache(core), items);
+  add("byte selectors", 2, 2 * multiplexer(4, kPixelBits), items);
   Resources queues;
   for (const bool left : {true, false})
     queues += shift_register(config.lane_fifo_slots, kPixelBits + core.valid_bit_of(left));
@@ -66,9 +89,9 @@ void add_lanes(const Core& core, Items& items) {
 }
 
 // Paper section 2.4, contract 1.2. m is the size of the kernel. Beside the new pixel the filter reads the
-// pixels of the m - 1 columns before it in the same row; a column of slots has n rows. For each column of the
+// pixels of the m - 1 columns before it in the same row; a column of slots has K rows. For each column of the
 // image the line memories hold the partial sums of the rows above. They also hold as many valid bits as there
-// are rows from the middle of the window down to the newest n rows.
+// are rows from the middle of the first window down to the newest K rows.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
@@ -76,92 +99,188 @@ void add_filter(const Core& core, Items& items) {
   add("filters", 2, 2 * arithmetic.resources, items);
   const int before_bits = (config.filter->size - 1) * kPixelBits;
   const Resources columns_before =
-      core.columns_of_pixels ? registers(before_bits) : memory(config.window, before_bits);
+      core.columns_of_pixels ? registers(before_bits) : memory(core.geometry.slots_per_column, before_bits);
   add("filter columns", 2, 2 * columns_before, items);
+  const int rows_above = std::max(0, core.geometry.half - core.geometry.radius);
   Resources lines;
   for (const bool left : {true, false}) {
-    const int valid_bits = core.columns_of_pixels ? 0 : core.valid_bit_of(left) * core.geometry.lead_strips;
+    const int valid_bits = core.columns_of_pixels ? 0 : core.valid_bit_of(left) * rows_above;
     lines += memory(config.width, arithmetic.chain_bits + valid_bits);
   }
   add("filter line memories", 2, lines, items);
 }
 
-// Contract section 2, `line_buffer`: the row buffers hold the n - 1 filtered rows above the newest row, and
-// the left valid bits from the newest row up to the middle of the window.
+// Contract 7.6. c is the size of the neighbourhood. The stage behind the filter makes c * c - 1 bits of each
+// filtered pixel. It keeps c - 1 rows of filtered pixels as the filter keeps its sums, and the pixels of the
+// c - 1 columns before as the filter keeps its pixels. Without a filter these line memories also keep the
+// valid bits, at most 2, for which they have room.
+void add_census(const Core& core, Items& items) {
+  const CoreConfig& config = core.config;
+  if (config.cost.kind != kernels::CostKind::kCensus) return;
+  const int before_bits = (config.cost.census_size - 1) * kPixelBits;
+  add("census bits", 2, 2 * census_bits(config.cost.census_size, !core.columns_of_pixels), items);
+  if (!core.columns_of_pixels)
+    add("census columns", 2, 2 * memory(core.geometry.slots_per_column, before_bits), items);
+  add("census line memories", 2, 2 * memory(config.width, before_bits), items);
+}
+
+// Contract section 2, `line_buffer`: the row buffers hold the n - 1 rows above the newest row, as the modules
+// take them, and the left valid bits from the newest row up to the middle of the window.
 void add_row_buffers(const Core& core, Items& items) {
   if (!core.columns_of_pixels) return;
   Resources rows;
   for (const bool left : {true, false}) {
     const int valid_bits = core.valid_bit_of(left) * core.geometry.lead_strips;
-    rows += memory(core.config.width, (core.config.window - 1) * kPixelBits + valid_bits);
+    rows += memory(core.config.width, (core.config.window - 1) * core.pair.pixel_bits + valid_bits);
   }
   add("row buffers", 2, rows, items);
 }
 
-// A tree of adders that sums `count` pixel differences in one cycle.
-Resources sum_of_differences(int count) {
-  if (count == 1) return {};
-  const int half = count / 2;
-  return sum_of_differences(half) + sum_of_differences(count - half) + adder(bits_of(kMostPixel * count));
+// Contract 7.1: a module does the candidates u, u + U, u + 2U, .. in S passes. What it keeps of one candidate
+// from column to column is a shift register with a place for each pass (S = 1: registers).
+
+// The sum of the last n results of one pair a cycle, or of n pairs in one cycle. With one row of results the
+// sum begins anew with each column. With several (contract 7.2) it slides down the column: the result of the
+// new pair is added and that of n slots before is subtracted, so that the last R sums are those of the rows.
+Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int passes) {
+  const int n = core.config.window;
+  const int bits = core.column_sum_bits(most);
+  if (core.columns_of_pixels) return n * pair + adder_tree(n, most) + registers(bits);
+  Resources column = pair + adder(bits) + shift_register(passes, bits);
+  if (core.config.rows > 1) column += shift_register(n * passes, bits_of(most)) + adder(bits_of(most) + 1);
+  return column;
+}
+
+// The sum of the last n column sums: the new one is added and that of n columns before is subtracted.
+Resources window_sum(const Core& core, std::int64_t most, int passes) {
+  const int column_bits = core.column_sum_bits(most);
+  const int bits = core.window_sum_bits(most);
+  const Resources new_less_old = adder(column_bits + 1);  // signed
+  return shift_register(core.config.window * passes, column_bits) + new_less_old + adder(bits) +
+         shift_register(passes, bits);
+}
+
+// Delays a number of the right side from module to module, by `places` clock enables each: U - 1 delays. With
+// several passes the last module's number comes back to the first one, a pass later.
+struct Delays {
+  std::int64_t count;
+  Resources all;
+};
+Delays delays(const Core& core, int places, int bits) {
+  Delays chain{core.units - 1, (core.units - 1) * shift_register(places * core.passes, bits)};
+  if (core.passes > 1) {
+    ++chain.count;
+    chain.all += shift_register(places * core.passes + 1, bits) + selector(bits);
+  }
+  return chain;
 }
 
 // Paper figures 6 and 8. Left pixels go to all column modules. Right pixels go from module to module, one
-// column later in each. A column module adds up n absolute differences of two pixels, one a cycle. A window
-// module adds the output of its column module, and subtracts the output of n columns before. Each candidate
-// has a flip-flop that marks whether its window lies inside both images (contract 1.3). With each column of a
-// row, the window of one candidate more does.
+// column later in each. A column module adds up the results of n pixel pairs, one a cycle. A window module
+// adds the output of its column module, and subtracts the output of n columns before; R rows share the column
+// module. Each candidate has a flip-flop that marks whether its window lies inside both images (contract
+// 1.3). With each column of a row, the window of one candidate more does.
 void add_modules(const Core& core, Items& items) {
-  const int n = core.config.window;
-  const int disparities = core.config.disparities;
-  const Resources delay = core.columns_of_pixels ? registers(n * kPixelBits) : shift_register(n, kPixelBits);
-  add("right pixel delays", disparities - 1, (disparities - 1) * delay, items);
+  const PairArithmetic& pair = core.pair;
+  const Delays pixels = core.columns_of_pixels
+                            ? delays(core, 1, core.config.window * pair.pixel_bits)
+                            : delays(core, core.geometry.slots_per_column, pair.pixel_bits);
+  add("right pixel delays", pixels.count, pixels.all, items);
+  const std::int64_t units = core.units;
+  add("column modules", units, units * column_sum(core, pair.resources, pair.most, core.passes), items);
+  const std::int64_t windows = units * core.config.rows;
+  add("window modules", windows, windows * window_sum(core, pair.most, core.passes), items);
+  add("candidate marks", units, units * shift_register(core.passes, 1), items);
+}
 
-  const Resources difference = absolute_difference(kPixelBits);
-  const Resources column = core.columns_of_pixels ? n * difference + sum_of_differences(n)
-                                                  : difference + adder(core.column_sum_bits);
-  add("column modules", disparities, disparities * (column + registers(core.column_sum_bits)), items);
+// Contract 7.6, zncc. Each side has the sums of its pixels and of their squares, and the variance, for each
+// row of results. Those of the right side go from module to module, one column later in each. Each window
+// module has the arithmetic of its score.
+void add_scores(const Core& core, Items& items) {
+  if (core.config.cost.kind != kernels::CostKind::kZncc) return;
+  const std::int64_t rows = core.config.rows;
+  const ZnccArithmetic zncc(core.config.window);
+  const Resources side =
+      column_sum(core, {}, kMostPixel, 1) + column_sum(core, core.pair.resources, core.pair.most, 1) +
+      rows * (window_sum(core, kMostPixel, 1) + window_sum(core, core.pair.most, 1) + zncc.variance());
+  add("window statistics", 2 * rows, 2 * side, items);
+  const Delays right = delays(core, 1, zncc.sum_bits() + zncc.variance_bits());
+  add("right statistics delays", rows * right.count, rows * right.all, items);
+  add("scores", rows * core.units, rows * core.units * zncc.score(), items);
+}
 
-  const Resources new_less_old = adder(core.column_sum_bits + 1);  // signed
-  const Resources window = shift_register(n, core.column_sum_bits) + new_less_old +
-                           adder(core.window_sum_bits) + registers(core.window_sum_bits);
-  add("window modules", disparities, disparities * window, items);
-  add("candidate marks", disparities, disparities * registers(1), items);
+// What the select-min units compare: the bits of a candidate's sum or score, and the parts that compare two
+// of them and select one.
+struct Rank {
+  int bits;
+  Resources select;
+};
+
+Rank rank_of(const Core& core) {
+  if (core.config.cost.kind == kernels::CostKind::kZncc) {
+    const ZnccArithmetic zncc(core.config.window);
+    return {zncc.score_bits(), zncc.select()};
+  }
+  const int bits = core.window_sum_bits(core.pair.most);
+  return {bits, comparator(bits) + selector(bits)};
 }
 
 // One step of select-min unit A or B: compares two sums, and selects one of them with its disparity, if both
 // candidates are valid.
-Resources select_min(int sum_bits, int disparity_bits) {
-  return comparator(sum_bits) + Resources{1} + selector(sum_bits) + selector(disparity_bits);
+Resources select_min(const Rank& rank, int disparity_bits) {
+  return rank.select + Resources{1} + selector(disparity_bits);
 }
+
+// With several passes a disparity is held as its pass and its module, and is put together at the end.
+int split_disparity_bits(const Core& core) { return bits_of(core.passes - 1) + bits_of(core.units - 1); }
 
 // Paper section 3.3, figure 6: a chain. Module d keeps the smaller of its own sum and the sum that module d-1
-// held a column ago, whose disparity is at most d-1. Module 0 only holds its own sum.
+// held a column ago, whose disparity is at most d-1. Module 0 only holds its own sum. With several passes it
+// continues with what the last module held a pass and a column ago.
 void add_select_min_chain(const Core& core, Items& items) {
-  const int sum_bits = core.window_sum_bits;
-  Resources chain = registers(sum_bits + kValidBit);
-  for (int d = 1; d < core.config.disparities; ++d) {
-    const int disparity_bits = bits_of(d);
-    chain += select_min(sum_bits, disparity_bits) + registers(sum_bits + disparity_bits + kValidBit);
+  const Rank rank = rank_of(core);
+  Resources chain;
+  if (core.passes == 1) {
+    chain += registers(rank.bits + kValidBit);
+    for (int d = 1; d < core.units; ++d) {
+      const int disparity_bits = bits_of(d);
+      chain += select_min(rank, disparity_bits) + registers(rank.bits + disparity_bits + kValidBit);
+    }
+  } else {
+    const int disparity_bits = split_disparity_bits(core);
+    const int held_bits = rank.bits + disparity_bits + kValidBit;
+    chain += core.units * (select_min(rank, disparity_bits) + shift_register(core.passes, held_bits)) +
+             registers(held_bits) + digits(core.units, core.disparity_bits);
   }
-  add("select-min unit A", core.config.disparities, chain, items);
+  const std::int64_t rows = core.config.rows;
+  add("select-min unit A", rows * core.units, rows * chain, items);
 }
 
-// Paper section 3.3: a tree of D-1 comparators, registered at every level. The result of a comparison is the
+// Paper section 3.3: a tree of U-1 comparators, registered at every level. The result of a comparison is the
 // highest bit of the pair's disparity; the lower bits are those of the smaller sum. A sum without a partner
-// at its level waits in registers.
+// at its level waits in registers. With several passes a last comparator keeps the smallest sum of the passes
+// so far.
 void add_select_min_tree(const Core& core, Items& items) {
-  const int sum_bits = core.window_sum_bits;
+  const Rank rank = rank_of(core);
+  std::int64_t comparators = core.units - 1;
   Resources tree;
   int disparity_bits = 0;  // of the disparities at this level
-  for (int at_level = core.config.disparities; at_level > 1; ++disparity_bits) {
+  for (int at_level = core.units; at_level > 1; ++disparity_bits) {
     const int pairs = at_level / 2;
     const int left_over = at_level % 2;
     tree +=
-        pairs * (select_min(sum_bits, disparity_bits) + registers(sum_bits + disparity_bits + 1 + kValidBit));
-    tree += left_over * registers(sum_bits + disparity_bits + kValidBit);
+        pairs * (select_min(rank, disparity_bits) + registers(rank.bits + disparity_bits + 1 + kValidBit));
+    tree += left_over * registers(rank.bits + disparity_bits + kValidBit);
     at_level = pairs + left_over;
   }
-  add("select-min unit B", core.config.disparities - 1, tree, items);
+  if (core.passes > 1) {
+    ++comparators;
+    const int split_bits = split_disparity_bits(core);
+    tree += select_min(rank, split_bits) + registers(rank.bits + split_bits + kValidBit) +
+            digits(core.units, core.disparity_bits);
+  }
+  const std::int64_t rows = core.config.rows;
+  add("select-min unit B", rows * comparators, rows * tree, items);
 }
 
 // Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. A block RAM holds the
@@ -169,7 +288,7 @@ void add_select_min_tree(const Core& core, Items& items) {
 // comparison takes an absolute difference, LUTs that compare it with the tolerance (4 bits in the first LUT,
 // 3 more in each further one), and a LUT that joins the result with both valid bits. The valid bit of the
 // left pixel itself waits until its column is the middle of the window. Without a check only the delays and
-// the selector remain.
+// the selector remain. Each row of results has a check.
 void add_left_right_check(const Core& core, Items& items) {
   const int bits = core.disparity_bits;
   Resources check = shift_register(core.config.disparities - 1, bits + kValidBit);
@@ -179,13 +298,17 @@ void add_left_right_check(const Core& core, Items& items) {
              Resources{std::max(1, (bits + 1) / 3)} + Resources{1};
   }
   check += selector(kDisparityBits);  // the disparity or 255
-  add("left-right check", 1, check, items);
+  add("left-right check", core.config.rows, core.config.rows * check, items);
 }
 
 // Contract 1.5 and section 2, "Matcher": the first three disparities of a word wait for the fourth; words
-// wait in the queue.
+// wait in the queue. Of several rows the words are complete together: each waits as a whole until the queue,
+// which takes one a cycle, has taken it.
 void add_results(const Core& core, Items& items) {
-  add("result packer", 1, registers(kWordBits - kDisparityBits), items);
+  const int rows = core.config.rows;
+  const Resources packers = rows == 1 ? registers(kWordBits - kDisparityBits)
+                                      : rows * registers(kWordBits) + multiplexer(rows, kWordBits);
+  add("result packer", rows, packers, items);
   add("result queue", 1, shift_register(core.config.result_fifo_words, kWordBits), items);
 }
 
@@ -204,8 +327,10 @@ std::vector<Item> items(const CoreConfig& config) {
   Items found;
   add_lanes(core, found);
   add_filter(core, found);
+  add_census(core, found);
   add_row_buffers(core, found);
   add_modules(core, found);
+  add_scores(core, found);
   if (config.lr_tolerance) add_select_min_chain(core, found);  // only the check needs it
   add_select_min_tree(core, found);
   add_left_right_check(core, found);

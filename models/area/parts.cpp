@@ -13,6 +13,8 @@ struct Shape {
 constexpr std::array<Shape, 6> kBlockRamShapes = {
     {{512, 36}, {1024, 18}, {2048, 9}, {4096, 4}, {8192, 2}, {16384, 1}}};
 constexpr int kSrlLength = 16;
+constexpr int kMultiplierBits = 17;     // of a magnitude
+constexpr int kMultiplexerInputs = 32;  // of the largest that MUXF8 completes
 
 constexpr std::int64_t ceil_of(std::int64_t part, std::int64_t whole) { return (part + whole - 1) / whole; }
 
@@ -50,7 +52,31 @@ Resources comparator(int bits) { return {bits + 1}; }
 
 Resources selector(int bits) { return {bits}; }
 
+Resources multiplexer(int numbers, int bits) {
+  if (numbers == 1) return {};
+  const Resources groups{ceil_of(numbers, 2) * bits};
+  return groups + multiplexer(static_cast<int>(ceil_of(numbers, kMultiplexerInputs)), bits);
+}
+
+Resources equality(int bits) { return {ceil_of(bits, 2)}; }
+
 Resources absolute_difference(int bits) { return comparator(bits) + selector(bits); }
+
+Resources adder_tree(int count, std::int64_t most) {
+  if (count == 1) return {};
+  const int half = count / 2;
+  return adder_tree(half, most) + adder_tree(count - half, most) + adder(bits_of(most * count));
+}
+
+Resources product(int bits, int other_bits) {
+  const std::int64_t parts = ceil_of(bits, kMultiplierBits) * ceil_of(other_bits, kMultiplierBits);
+  return Resources{0, 0, 0, parts} + (parts - 1) * adder(bits + other_bits - kMultiplierBits);
+}
+
+Resources digits(int radix, int bits) {
+  const bool is_power_of_two = bits_of(radix) != bits_of(radix - 1);
+  return is_power_of_two ? Resources{} : Resources{0, 0, 0, 1} + adder(bits);
+}
 
 Resources registers(int bits) { return {0, bits}; }
 

@@ -38,8 +38,21 @@ Resources adder(int bits);
 Resources comparator(int bits);
 // Selects one of two numbers: one LUT a bit.
 Resources selector(int bits);
+// Selects one of several numbers: a LUT for two of them, a bit. The multiplexers of the slices (MUXF5 to
+// MUXF8) join up to 32 numbers; more take a selection among the groups of 32.
+Resources multiplexer(int numbers, int bits);
+// Tests whether two numbers are equal: a LUT compares two bits of each, the carry chain joins the LUTs.
+Resources equality(int bits);
 // |a - b|: the difference with its borrow, and one LUT a bit that negates it.
 Resources absolute_difference(int bits);
+// Sums `count` numbers of 0..most in one cycle, in a tree of adders.
+Resources adder_tree(int count, std::int64_t most);
+// Multiplies two magnitudes. A multiplier of the device takes 17 bits of each; longer numbers are multiplied
+// in parts, and the parts are added.
+Resources product(int bits, int other_bits);
+// radix * high + low, where low < radix: a multiplier and an adder. For a power of two the bits of both stand
+// side by side.
+Resources digits(int radix, int bits);
 // Holds a number until the next clock enable: one flip-flop a bit.
 Resources registers(int bits);
 // Delays a number by `length` clock enables, or queues up to `length` numbers. A length of 1 takes one

@@ -85,9 +85,10 @@ class FieldChecker {
     } else if (key.path == "matcher.units" && board_.matcher.units) {
       const int value = *board_.matcher.units;
       if (!fpga::kUnitsRule.allows(value)) report(key.path, value, key.rule_text);
-    } else if (key.path == "matcher.cost") {
-      for (const std::string& text : kernels::problems(board_.matcher.cost))
-        found.emplace(order_of(key.path), "matcher.cost." + text);
+    } else if (key.path == "matcher.cost.census" && !kernels::problems(board_.matcher.cost).empty()) {
+      const kernels::MatchingCost& cost = board_.matcher.cost;
+      const bool is_census = cost.kind == kernels::CostKind::kCensus;
+      report(key.path, cost.census_size, is_census ? key.rule_text : "0 unless the cost is census");
     }
   }
 

@@ -83,25 +83,32 @@ class RuleChecker {
     }
     const std::vector<std::string> with_queue = {"fpga.result_fifo_words", "matcher.rows"};
     if (board_.fpga.result_fifo_words < matcher.rows && all_valid(with_queue)) {
-      found_.push_back({fmt::format("fpga.result_fifo_words = {}: must hold a word of each of the rows "
-                                    "computed at once; matcher.rows is {}",
-                                    board_.fpga.result_fifo_words, matcher.rows),
-                        with_queue});
+      found_.push_back(
+          {fmt::format("fpga.result_fifo_words = {}: at least {}, a word for each of the rows that "
+                       "are computed at once; or fewer matcher.rows",
+                       board_.fpga.result_fifo_words, matcher.rows),
+           with_queue});
     }
   }
 
   void check_joint_tables() {
     const auto& left = board_.allocation.left_lut;
     const auto& right = board_.allocation.right_lut;
-    const std::vector<std::string> involved = {key_of(Buffer::kRightLut), key_of(Buffer::kLeftLut),
-                                               "fpga.tables"};
-    if (!board_.fpga.joint_tables || (left && left == right) || !all_valid(involved)) return;
-    const std::string none = "none";
-    found_.push_back(
-        {fmt::format("allocation.right_lut = {}: must be the bank of left_lut, which is {}, "
-                     "because fpga.tables is joint{}",
-                     right.value_or(none), left.value_or(none), left ? "" : "; neither may be none"),
-         involved});
+    if (!board_.fpga.joint_tables || (left && left == right)) return;
+    const bool none_on_left = !left;
+    const std::string left_key = key_of(Buffer::kLeftLut);
+    const std::string right_key = key_of(Buffer::kRightLut);
+    const std::vector<std::string> involved = {none_on_left ? left_key : right_key,
+                                               none_on_left ? right_key : left_key, "fpga.tables"};
+    if (!all_valid(involved)) return;
+    const std::string value = none_on_left ? "none" : right.value_or("none");
+    const std::string rule = left || right
+                                 ? fmt::format("must be {}, the bank of {}", left ? *left : *right,
+                                               left ? name_of(Buffer::kLeftLut) : name_of(Buffer::kRightLut))
+                                 : "must be a bank, and right_lut the same bank";
+    found_.push_back({fmt::format("{} = {}: {}, because fpga.tables is joint; or set fpga.tables to separate",
+                                  involved.front(), value, rule),
+                      involved});
   }
 
   void check_bank_depths() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
 #include <utility>
 #include <variant>
@@ -10,6 +11,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "platform/config/board_keys.h"
+#include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/store/bank_names.h"
 
@@ -23,11 +25,20 @@ using platform::Key;
 using platform::PlacedBuffer;
 
 constexpr int kTurnaroundCycles = 2;  // typical, contract section 2
+constexpr int kCensusSize = 5;        // of a board that gets the census cost
 
 bool begins_with(const std::string& text, const char* beginning) { return text.rfind(beginning, 0) == 0; }
 
 std::string counted(std::size_t buffers) {
   return fmt::format("{} buffer{}", buffers, buffers == 1 ? "" : "s");
+}
+
+// The value of `matcher.cost` as a board file has it.
+std::string cost_text(const BoardConfig& board) {
+  for (const platform::BoardValue& value : values_of(board)) {
+    if (value.path == "matcher.cost") return std::get<std::string>(value.value);
+  }
+  return "";
 }
 
 bool is_of_computer(const std::string& path) {
@@ -42,6 +53,7 @@ class Steps {
   void add_keys(bool camera) {
     for (const Key& key : platform::board_keys()) {
       const bool stays = begins_with(key.path, "image.") || key.path == "fpga.device" ||
+                         key.path == "fpga.tables" ||  // add_tables()
                          (begins_with(key.path, "pci.load") && !board_.pci.load);
       if (stays || (is_of_computer(key.path) && !camera)) continue;
       std::visit([&](const auto& rule) { add_key(key, rule); }, key.rule);
@@ -51,6 +63,64 @@ class Steps {
   void add_filters() {
     if (board_.matcher.filter) add_filter(std::nullopt, "none");
     if (!(board_.matcher.filter == kernels::log7())) add_filter(kernels::log7(), "log7");
+  }
+
+  void add_units() {
+    const auto& units = board_.matcher.units;
+    const int disparities = board_.matcher.disparities;
+    const auto add_to = [&](const std::optional<int>& other) {
+      const auto text = [](const std::optional<int>& value) {
+        return value ? std::to_string(*value) : "all";
+      };
+      BoardConfig changed = board_;
+      changed.matcher.units = other;
+      add({"matcher.units", text(units), text(other), std::move(changed)});
+    };
+    if (units) {
+      add_to(*units + 1);
+      add_to(*units - 1);
+      add_to(std::nullopt);
+    } else if (disparities > 1) {
+      add_to((disparities + 1) / 2);
+    }
+  }
+
+  // Joint tables are in the bank of the left one. Of separate tables the right one gets a bank without
+  // buffers, if there is one that can hold it.
+  void add_tables() {
+    BoardConfig changed = board_;
+    platform::AllocationConfig& allocation = changed.allocation;
+    if (!board_.fpga.joint_tables) {
+      if (!allocation.left_lut || !allocation.right_lut) return;
+      changed.fpga.joint_tables = true;
+      allocation.right_lut = allocation.left_lut;
+      return add({"fpga.tables", "separate", "joint", std::move(changed)});
+    }
+    changed.fpga.joint_tables = false;
+    const std::int64_t words = std::int64_t{board_.image.width} * board_.image.height;
+    const auto free = std::find_if(board_.banks.begin(), board_.banks.end(), [&](const BankConfig& bank) {
+      return buffers_in(bank.name) == 0 && bank.words >= words;
+    });
+    if (free != board_.banks.end()) allocation.right_lut = free->name;
+    add({"fpga.tables", "joint", "separate", std::move(changed)});
+  }
+
+  void add_costs() {
+    using kernels::CostKind;
+    using kernels::MatchingCost;
+    const MatchingCost& now = board_.matcher.cost;
+    const int size = now.kind == CostKind::kCensus ? now.census_size : kCensusSize;
+    for (const MatchingCost& cost :
+         {MatchingCost{CostKind::kSad, 0}, MatchingCost{CostKind::kSsd, 0}, MatchingCost{CostKind::kZncc, 0},
+          MatchingCost{CostKind::kCensus, size}, MatchingCost{CostKind::kCensus, size + 2},
+          MatchingCost{CostKind::kCensus, size - 2}}) {
+      const bool is_other_size = cost.kind == CostKind::kCensus && cost.census_size != size;
+      if (cost == now || (is_other_size && now.kind != CostKind::kCensus)) continue;
+      BoardConfig changed = board_;
+      changed.matcher.cost = cost;
+      const std::string to = cost_text(changed);
+      add({"matcher.cost", cost_text(board_), to, std::move(changed), true});
+    }
   }
 
   void add_priorities() {
@@ -175,7 +245,7 @@ class Steps {
       const int from = value;
       value += change;
       add({key.path, std::to_string(from), std::to_string(value), changed,
-           begins_with(key.path, "matcher.")});
+           begins_with(key.path, "matcher.") && key.path != "matcher.rows"});
     }
   }
   void add_key(const Key& key, const platform::DecimalKey& decimal) {
@@ -220,6 +290,7 @@ class Steps {
     return *std::find_if(board_.banks.begin(), board_.banks.end(),
                          [&](const BankConfig& bank) { return bank.name == name; });
   }
+
   const BoardConfig& board_;
   std::vector<KnobStep> steps_;
 };
@@ -229,6 +300,9 @@ class Steps {
 std::vector<KnobStep> knob_steps(const BoardConfig& board, bool camera) {
   Steps steps(board);
   steps.add_keys(camera);
+  steps.add_units();
+  steps.add_tables();
+  steps.add_costs();
   steps.add_filters();
   steps.add_priorities();
   steps.add_kinds();

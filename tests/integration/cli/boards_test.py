@@ -94,7 +94,7 @@ class Keys(ProgramTest):
             self.assertIn(key, keys)
         at = next(i for i, line in enumerate(lines) if line.startswith("image.width "))
         self.assertEqual(lines[at].split(), "image.width pixels width of the images".split())
-        self.assertEqual(lines[at + 1].strip(), "4..2048, a multiple of 4")
+        self.assertEqual(lines[at + 1].strip(), "4..8192, a multiple of 4")
 
 
 class Bounds(ProgramTest):

@@ -8,55 +8,12 @@
 #include <vector>
 
 #include "tests/support/scratch_folder.h"
-#include "tests/unit/area/resources.h"
+#include "tests/unit/area/cores.h"
 
 namespace stereotlm::area {
 namespace {
 
-using fpga::CoreConfig;
-using fpga::Fetch;
 using kernels::FilterKernel;
-
-constexpr auto kWidth = &CoreConfig::width;
-constexpr auto kHeight = &CoreConfig::height;
-constexpr auto kWindow = &CoreConfig::window;
-constexpr auto kDisparities = &CoreConfig::disparities;
-constexpr auto kFilter = &CoreConfig::filter;
-constexpr auto kFetch = &CoreConfig::fetch;
-constexpr auto kTolerance = &CoreConfig::lr_tolerance;
-constexpr auto kLeftTable = &CoreConfig::left_table;
-constexpr auto kRightTable = &CoreConfig::right_table;
-constexpr auto kLaneSlots = &CoreConfig::lane_fifo_slots;
-constexpr auto kResultWords = &CoreConfig::result_fifo_words;
-
-// The paper's core with other values in the fields that are named.
-CoreConfig core() { return {}; }
-template <class Field, class Value, class... More>
-CoreConfig core(Field CoreConfig::*field, const Value& value, const More&... more) {
-  CoreConfig config = core(more...);
-  config.*field = value;
-  return config;
-}
-
-// The parts of this name; a count of 0 if there are none.
-Item item_of(const CoreConfig& config, const std::string& name) {
-  for (const Item& item : items(config)) {
-    if (item.name == name) return item;
-  }
-  return {};
-}
-
-Resources all_of(const CoreConfig& config, const std::string& name) { return item_of(config, name).all; }
-
-using Cores = std::vector<std::pair<CoreConfig, Resources>>;
-
-// What all parts of this name take in each of the cores.
-void expect_all(const std::string& name, const Cores& cores) {
-  for (std::size_t number = 0; number < cores.size(); ++number)
-    EXPECT_EQ(all_of(cores[number].first, name), cores[number].second) << name << " of core " << number;
-}
-
-constexpr Resources block_rams(std::int64_t count) { return {0, 0, count, 0}; }
 
 TEST(AreaItems, ListThePartsOfThePapersBoard) {
   std::vector<std::pair<std::string, std::int64_t>> found;
@@ -232,8 +189,12 @@ TEST(FilterArea, KeepsEarlierColumnsInBlockRamOrRegisters) {
 
 TEST(FilterArea, HasLineMemoriesOfTheWidthOfTheImage) {
   // 94 bits.
-  for (const auto& [width, count] : {std::pair{512, 3}, {516, 6}, {1024, 6}, {1028, 11}, {2048, 11}})
-    expect_all("filter line memories", {{core(kWidth, width), block_rams(2 * count)}});
+  for (const auto& [width, count] :
+       {std::pair{512, 3}, {516, 6}, {1024, 6}, {1028, 11}, {2048, 11}, {2052, 24}, {8192, 47}}) {
+    const bool has_tables = width <= 2048;
+    expect_all("filter line memories", {{core(kWidth, width, kLeftTable, has_tables, kRightTable, has_tables),
+                                         block_rams(2 * count)}});
+  }
 }
 
 TEST(FilterArea, KeepsValidBitsOfRowsThatTheColumnNoLongerHas) {

@@ -29,6 +29,38 @@ TEST(Parts, TakeALutABit) {
   EXPECT_EQ(registers(12), (Resources{0, 12}));
 }
 
+TEST(Multiplexer, TakesALutForTwoNumbers) {
+  const std::pair<int, std::int64_t> cases[] = {{1, 0}, {2, 1}, {3, 2}, {4, 2}, {32, 16}, {33, 17 + 1}};
+  for (const auto& [numbers, luts] : cases)
+    EXPECT_EQ(multiplexer(numbers, 8), (Resources{8 * luts})) << numbers;
+}
+
+TEST(Equality, TakesALutForTwoBits) {
+  EXPECT_EQ(equality(1), (Resources{1}));
+  EXPECT_EQ(equality(2), (Resources{1}));
+  EXPECT_EQ(equality(3), (Resources{2}));
+}
+
+TEST(AdderTree, WidensWithEachLevel) {
+  EXPECT_EQ(adder_tree(1, 255), (Resources{}));
+  EXPECT_EQ(adder_tree(2, 255), (Resources{9}));
+  EXPECT_EQ(adder_tree(5, 255), (Resources{9 + (9 + 10) + 11}));  // 2 + (1 + 2)
+}
+
+TEST(Product, IsMadeInPartsOf17Bits) {
+  EXPECT_EQ(product(17, 17), (Resources{0, 0, 0, 1}));
+  EXPECT_EQ(product(18, 17), (Resources{18, 0, 0, 2}));
+  EXPECT_EQ(product(17, 18), (Resources{18, 0, 0, 2}));
+  EXPECT_EQ(product(34, 34), (Resources{3 * 51, 0, 0, 4}));
+  EXPECT_EQ(product(35, 34), (Resources{5 * 52, 0, 0, 6}));
+}
+
+TEST(Digits, StandSideBySideIfTheRadixIsAPowerOfTwo) {
+  EXPECT_EQ(digits(640, 19), (Resources{19, 0, 0, 1}));
+  EXPECT_EQ(digits(512, 19), (Resources{}));
+  EXPECT_EQ(digits(1, 7), (Resources{}));
+}
+
 TEST(ShiftRegister, IsAnSrl16UpToALengthOf16) {
   const std::pair<int, Resources> lengths[] = {{0, {}},    {1, {0, 9}}, {2, {9}},  {16, {9}},
                                                {17, {18}}, {64, {36}},  {65, {45}}};

@@ -40,6 +40,10 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   board.allocation.disparity = {};
   board.matcher.filter->shift = 32;
   board.matcher.lr_tolerance = 254;
+  board.matcher.units = 255;
+  board.matcher.rows = 17;
+  board.matcher.cost = {kernels::CostKind::kCensus, 4};
+  board.fpga.pixel_cache = static_cast<fpga::PixelCache>(2);
   const std::string name_problem =
       "name = a\nb: a text of one or more characters without control characters; quoted if it could be read "
       "as a "
@@ -47,21 +51,30 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   const std::string priority_problem =
       "fpga.priority = [result, result, left_pixel, right_pixel, left_lut, right_lut]: a list that names "
       "each port once: left_lut, right_lut, left_pixel, right_pixel, result, host";
-  EXPECT_EQ(
-      problems(board),
-      (Problems{name_problem, "image.width = 642: 4..2048, a multiple of 4",
-                "cameras.frame_rate_hz = nan: 0.1..1000",
-                "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140",
-                "pci.clock_mhz = inf: 1..1000", "pci.load.burst_words = 0: 1..1024",
-                "pci.load.interval_us = -0.5: 0..1000000000", "pci.load.first_us = nan: 0..1000000000",
-                "pci.load.access_us = 1000000.5: 0..1000000", "fpga.device = xc2v8000: xc2v6000",
-                priority_problem, "ssram.banks = bank0: repeated name",
-                "ssram.banks = none: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
-                "ssram.banks.bank3.words = 0: 1..67108864",
-                "ssram.banks.bank4.turnaround_cycles = 0: 1..16 for sync_burst",
-                "ssram.banks.bank5.turnaround_cycles = 3: 0 for zbt_pipelined",
-                "allocation.disparity = []: a bank, or a list of 1 to 3 banks",
-                "matcher.filter.shift = 32: must be 0..31", "matcher.lr_tolerance = 254: 0..253 or off"}));
+  EXPECT_EQ(problems(board),
+            (Problems{name_problem,
+                      "image.width = 642: 4..8192, a multiple of 4",
+                      "cameras.frame_rate_hz = nan: 0.1..1000",
+                      "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140",
+                      "pci.clock_mhz = inf: 1..1000",
+                      "pci.load.burst_words = 0: 1..1024",
+                      "pci.load.interval_us = -0.5: 0..1000000000",
+                      "pci.load.first_us = nan: 0..1000000000",
+                      "pci.load.access_us = 1000000.5: 0..1000000",
+                      "fpga.device = xc2v8000: xc2v6000",
+                      priority_problem,
+                      "fpga.pixel_cache = 2: none or word",
+                      "ssram.banks = bank0: repeated name",
+                      "ssram.banks = none: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
+                      "ssram.banks.bank3.words = 0: 1..67108864",
+                      "ssram.banks.bank4.turnaround_cycles = 0: 1..16 for sync_burst",
+                      "ssram.banks.bank5.turnaround_cycles = 3: 0 for zbt_pipelined",
+                      "allocation.disparity = []: a bank, or a list of 1 to 3 banks",
+                      "matcher.filter.shift = 32: must be 0..31",
+                      "matcher.lr_tolerance = 254: 0..253 or off",
+                      "matcher.units = 255: 1..254 or all",
+                      "matcher.rows = 17: 1..16",
+                      "matcher.cost.census = 4: 3, 5 or 7"}));
 }
 
 TEST(BoardConfig, DiffersInEachFieldOfALoad) {
@@ -97,6 +110,54 @@ TEST(BoardConfig, ChecksTheRulesBetweenKeys) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[6].words = 307200; }), Problems{});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks.clear(); }),
             Problems{"ssram.banks = 0 banks: a map of 1..64 banks"});
+}
+
+TEST(BoardConfig, ChecksTheRulesOfOptionalKeys) {
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.matcher.units = 81; }),
+            Problems{"matcher.units = 81: 1..disparities, which is 80, or all"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.matcher.units = 80; }), Problems{});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.matcher.rows = 9; }),
+      Problems{"fpga.result_fifo_words = 8: at least 9, a word for each of the rows that are computed at "
+               "once; or fewer matcher.rows"});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.fpga.joint_tables = true; }),
+      Problems{"allocation.right_lut = bank7: must be bank6, the bank of left_lut, because fpga.tables is "
+               "joint; or set fpga.tables to separate"});
+  EXPECT_EQ(problems_with([](BoardConfig& b) { b.matcher.cost.census_size = 3; }),
+            Problems{"matcher.cost.census = 3: 0 unless the cost is census"});
+}
+
+TEST(BoardConfig, DiffersInEachOptionalKey) {
+  const std::vector<std::function<void(BoardConfig&)>> changes = {
+      [](BoardConfig& b) { b.matcher.units = 80; }, [](BoardConfig& b) { b.matcher.rows = 2; },
+      [](BoardConfig& b) {
+        b.matcher.cost = {kernels::CostKind::kSsd, 0};
+      },
+      [](BoardConfig& b) { b.fpga.joint_tables = true; },
+      [](BoardConfig& b) { b.fpga.pixel_cache = fpga::PixelCache::kWord; }};
+  for (std::size_t number = 0; number < changes.size(); ++number) {
+    BoardConfig board;
+    changes[number](board);
+    EXPECT_NE(board, BoardConfig()) << number;
+  }
+}
+
+TEST(BoardConfig, HandsOptionalKeysToTheCore) {
+  BoardConfig board;
+  board.matcher.units = 40;
+  board.matcher.rows = 4;
+  board.matcher.cost = {kernels::CostKind::kCensus, 7};
+  board.allocation.right_lut = board.allocation.left_lut;
+  board.banks[6].words = 614400;
+  board.fpga.joint_tables = true;
+  board.fpga.pixel_cache = fpga::PixelCache::kWord;
+  const fpga::CoreConfig core = core_config(board);
+  EXPECT_EQ(core.units, 40);
+  EXPECT_EQ(core.rows, 4);
+  EXPECT_EQ(core.cost, board.matcher.cost);
+  EXPECT_TRUE(core.joint_tables);
+  EXPECT_EQ(core.pixel_cache, fpga::PixelCache::kWord);
 }
 
 TEST(BoardConfig, LaysBuffersOfOneBankOneBehindTheOther) {

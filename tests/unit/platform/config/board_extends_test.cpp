@@ -94,7 +94,7 @@ TEST(BoardExtends, NamesAPreset) {
   // Without its preset nothing is said about keys that it would have supplied.
   EXPECT_EQ(refusal_of("extends: fpl2003-tripel\nimage: {width: 5}\n"),
             "board.yaml:1:10: extends = fpl2003-tripel: not a preset; nearest: fpl2003-triple" + presets +
-                "\nboard.yaml:2:16: image.width = 5: 4..2048, a multiple of 4");
+                "\nboard.yaml:2:16: image.width = 5: 4..8192, a multiple of 4");
   EXPECT_EQ(refusal_of("extends: ./fpl2003.yaml\n"),
             "board.yaml:1:10: extends = ./fpl2003.yaml: not a preset" + presets);
   for (const std::string value : {"null", "[fpl2003]", "{a: b}"}) {
@@ -115,7 +115,7 @@ TEST(BoardExtends, IsAdvisedForAFileThatLacksMostKeys) {
   EXPECT_EQ(refusal_of("extend: fpl2003\nimage: {width: 5}\n", {"fpga.clock_mhz=0"}),
             line(34) +
                 "\nboard.yaml:1:1: extend = fpl2003: unknown key; nearest known key: extends\n"
-                "board.yaml:2:16: image.width = 5: 4..2048, a multiple of 4\n"
+                "board.yaml:2:16: image.width = 5: 4..8192, a multiple of 4\n"
                 "--set fpga.clock_mhz: fpga.clock_mhz = 0: 1..1000");
   EXPECT_EQ(refusal_of("extends: fpl2003\nmatcher: {filter: {}}\n").find("of a board are missing"),
             std::string::npos);

@@ -48,6 +48,9 @@ std::string block_board() {
 }
 
 ChangedBoard board_with(const std::string& path, const std::string& value) {
+  const std::size_t dot = path.rfind('.');
+  std::size_t section_end = std::string::npos;  // of the line that begins the section of the key
+  int section_line = 0;
   std::istringstream lines(block_board());
   std::vector<std::string> open;  // the keys above the line
   ChangedBoard changed;
@@ -65,6 +68,15 @@ ChangedBoard board_with(const std::string& path, const std::string& value) {
       line.replace(colon + 1, std::string::npos, ' ' + value);
     }
     changed.text += line + '\n';
+    if (here == path.substr(0, dot)) {
+      section_end = changed.text.size();
+      section_line = number;
+    }
+  }
+  if (changed.place.empty() && section_end != std::string::npos) {  // optional keys are not written
+    const std::string name = path.substr(dot + 1);
+    changed.text.insert(section_end, fmt::format("  {}: {}\n", name, value));
+    changed.place = fmt::format("board.yaml:{}:{}", section_line + 1, name.size() + 5);
   }
   if (changed.place.empty()) throw std::out_of_range(path);
   return changed;

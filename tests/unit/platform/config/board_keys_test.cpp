@@ -28,12 +28,18 @@ TEST(NearestKey, IsNamedWhereItCanBeMeant) {
       {"alocation", "allocation"},
       {"fpga.clock", "fpga.clock_mhz"},
       {"latency_timer", "pci.latency_timer_clocks"},
+      {"matcher.unit", "matcher.units"},
+      {"matcher.cots", "matcher.cost"},
+      {"cost", "matcher.cost"},
+      {"matcher.cost.cencus", "matcher.cost.census"},
+      {"fpga.table", "fpga.tables"},
+      {"fpga.cache", "fpga.pixel_cache"},
   };
   for (const auto& [typed, key] : meant)
     EXPECT_EQ(unknown_key_text(typed), "unknown key; nearest known key: " + key) << typed;
   for (const std::string typed :
-       {"matcher.cost", "matcher.size", "x", "", "image.x", "image.", "matcher.filter.x", "cost", "größe",
-        "<<", "ssram.banks.", "ssram.banks.b.size", "matcher.a_key_that_is_longer_than_any_other"})
+       {"matcher.size", "x", "", "image.x", "image.", "matcher.filter.x", "matcher.cost.x", "größe", "<<",
+        "ssram.banks.", "ssram.banks.b.size", "matcher.a_key_that_is_longer_than_any_other"})
     EXPECT_EQ(unknown_key_text(typed), "unknown key, and no known key is near") << typed;
 }
 
@@ -91,15 +97,23 @@ KeyCase microseconds_case(const std::string& path, const std::string& max) {
 std::vector<KeyCase> key_cases() {
   const std::string list = "a bank, or a list of 1 to 3 banks";
   const std::string images = list + "; left_image and right_image equally long";
-  KeyCase width = integer_case("image.width", 4, 2048);
-  width.refused = {"3", "0", "-4", "641", "642", "643", "2047", "2049", "2052", kTooLong};
-  width.rule = "4..2048, a multiple of 4";
+  KeyCase width = integer_case("image.width", 4, 2048);  // beyond: BoardImage of board_rules_test.cpp
+  width.refused = {"3", "0", "-4", "641", "642", "643", "8191", "8193", "8196", kTooLong};
+  width.rule = "4..8192, a multiple of 4";
   KeyCase window = integer_case("matcher.window", 3, 31);
   window.refused = {"1", "2", "4", "30", "32", "33", "-7", kTooLong};
   window.rule = "3..31, odd";
   KeyCase tolerance = integer_case("matcher.lr_tolerance", 0, 253);
   tolerance.accepted.insert(tolerance.accepted.end(), {"off", "\"off\"", "'off'", "-0"});
   tolerance.rule = "0..253 or off";
+  KeyCase units{"matcher.units",
+                {"1", "80", "0080", "all", "\"all\"", "'all'"},
+                {"0", "-1", "255", kTooLong},
+                "1..254 or all",
+                kNoInteger};
+  units.mistyped.insert(units.mistyped.end(), {"false", "none", "All"});
+  KeyCase rows = integer_case("matcher.rows", 1, 16);
+  rows.accepted = {"1", "8", "08"};  // more: BoardRows of board_rules_test.cpp
   tolerance.mistyped.insert(tolerance.mistyped.end(), {"false", "none", "Off"});
   return {
       {"name",
@@ -110,7 +124,7 @@ std::vector<KeyCase> key_cases() {
        "a text of one or more characters without control characters; quoted if it could be read as a number, "
        "a truth value or null"},
       width,
-      {"image.height", {"1", "480", "2048"}, {"0", "-1", "2049", kTooLong}, "1..2048", kNoInteger},
+      {"image.height", {"1", "480", "2048"}, {"0", "-1", "8193", kTooLong}, "1..8192", kNoInteger},
       decimal_case("cameras.frame_rate_hz", "0.1", "0.0999", "1000.0001"),
       {"cameras.trigger",
        {"free_running", "on_demand", "\"on_demand\""},
@@ -157,6 +171,14 @@ std::vector<KeyCase> key_cases() {
       integer_case("fpga.lane_fifo_slots", 1, 64),
       integer_case("fpga.result_fifo_words", 1, 64),
       integer_case("fpga.pipeline_latency_cycles", 0, 1024),
+      {"fpga.tables",
+       {"separate", "\"separate\""},
+       {"separated", "null", "[joint]", "true", "Joint"},
+       "separate or joint"},
+      {"fpga.pixel_cache",
+       {"none", "\"none\"", "word", "'word'"},
+       {"line", "off", "null", "[word]", "1", "None"},
+       "none or word"},
       {"allocation.left_image",
        {"[bank0, bank1]", "[bank7, bank7]", "['bank0', bank2]"},
        {"[]", "[bank0, bank1, bank2, bank3]", "null", "{bank0: bank1}"},
@@ -182,6 +204,12 @@ std::vector<KeyCase> key_cases() {
        "none, log7 or a map of kernel, shift"},
       {"matcher.fetch", {"column", "line_buffer"}, {"columns", "null", "[column]"}, "column or line_buffer"},
       tolerance,
+      units,
+      rows,
+      {"matcher.cost",
+       {"sad", "ssd", "zncc", "\"zncc\"", "{census: 3}", "{census: 5}", "{'census': 7}"},
+       {"census", "ncc", "null", "~", "[sad]", "[]", "5", "Sad"},
+       "sad, ssd, zncc or a map of census"},
   };
 }
 
@@ -233,10 +261,11 @@ std::string case_name(const ::testing::TestParamInfo<KeyCase>& key) {
 
 INSTANTIATE_TEST_SUITE_P(All, BoardKeys, ::testing::ValuesIn(key_cases()), case_name);
 
-TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksAndFilters) {
+TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksFiltersAndCosts) {
   std::set<std::string> expected = {"extends",
                                     "matcher.filter.kernel",
                                     "matcher.filter.shift",
+                                    "matcher.cost.census",
                                     "ssram.default.words",
                                     "ssram.default.kind",
                                     "ssram.default.turnaround_cycles",

@@ -223,6 +223,124 @@ TEST(BoardLoad, RequiresItsWordsAndItsIntervalAndRefusesOtherKeys) {
             "board.yaml:2:19: pci.load = none: repeated key, first at 2:7");
 }
 
+constexpr const char* kNoTables = "allocation: {left_lut: none, right_lut: none}\n";
+
+TEST(BoardImage, IsLargerThan2048OnlyWithoutTables) {
+  const std::string width = "image: {width: 2052, height: 1}\n";
+  const std::string height = "image: {width: 4, height: 2049}\n";
+  const std::string both = "allocation.left_lut and allocation.right_lut";
+  const std::string rule = " with a look-up table; set ";
+  const std::string end = " to none, or a smaller image";
+  EXPECT_EQ(refusal_of(kBase + width),
+            "board.yaml:2:16: image.width = 2052: at most 2048" + rule + both + end);
+  EXPECT_EQ(refusal_of(kBase + height),
+            "board.yaml:2:27: image.height = 2049: at most 2048" + rule + both + end);
+  EXPECT_EQ(refusal_of(kBase + width + "allocation: {left_lut: none}\n"),
+            "board.yaml:3:24: image.width = 2052: at most 2048" + rule + "allocation.right_lut" + end);
+  EXPECT_EQ(refusal_of(kBase + height + "allocation: {right_lut: none}\n"),
+            "board.yaml:3:25: image.height = 2049: at most 2048" + rule + "allocation.left_lut" + end);
+  for (const std::string size : {"{width: 2052, height: 1}", "{width: 4, height: 2049}",
+                                 "{width: 8192, height: 4}", "{width: 4, height: 8192}"})
+    EXPECT_EQ(refusal_of(kBase + "image: " + size + '\n' + kNoTables), "") << size;
+  EXPECT_EQ(refusal_of(kBase + "image: {width: 2048, height: 4}\n"), "");
+  EXPECT_EQ(refusal_of(kBase + "image: {width: 4, height: 2048}\n"), "");
+}
+
+TEST(BoardUnits, AreAtMostTheDisparities) {
+  const std::string head = kBase + "matcher: {disparities: 16, units: ";
+  EXPECT_EQ(load_text(head + "16}\n").matcher.units, 16);
+  EXPECT_EQ(load_text(head + "1}\n").matcher.units, 1);
+  EXPECT_EQ(load_text(head + "all}\n").matcher.units, std::nullopt);
+  EXPECT_EQ(load_board("fpl2003").matcher.units, std::nullopt);
+  EXPECT_EQ(refusal_of(head + "17}\n"),
+            "board.yaml:2:27: matcher.units = 17: 1..disparities, which is 16, or all");
+  EXPECT_EQ(refusal_of(kBase + "matcher: {units: 40}\n", {"matcher.disparities=39"}),
+            "--set matcher.disparities: matcher.units = 40: 1..disparities, which is 39, or all");
+}
+
+TEST(BoardRows, AreOneBehindALineBuffer) {
+  const std::string head = kBase + "matcher: {fetch: line_buffer, rows: ";
+  EXPECT_EQ(refusal_of(head + "1}\n"), "");
+  EXPECT_EQ(refusal_of(head + "2}\n"),
+            "board.yaml:2:18: matcher.rows = 2: must be 1 where matcher.fetch is line_buffer; with column it "
+            "may be 1..16");
+  EXPECT_EQ(refusal_of(kBase + "matcher: {rows: 2}\n"), "");
+}
+
+TEST(BoardRows, HaveAPlaceInTheResultQueueEach) {
+  const auto text = [](int rows, int words) {
+    return fmt::format("extends: fpl2003\nmatcher: {{rows: {}}}\nfpga: {{result_fifo_words: {}}}\n", rows,
+                       words);
+  };
+  EXPECT_EQ(refusal_of(text(16, 16)), "");
+  EXPECT_EQ(refusal_of(text(9, 8)),
+            "board.yaml:2:17: fpga.result_fifo_words = 8: at least 9, a word for each of the rows that are "
+            "computed at once; or fewer matcher.rows");
+  EXPECT_EQ(
+      refusal_of_board("fpl2003", {"matcher.rows=16"}),
+      "--set matcher.rows: fpga.result_fifo_words = 8: at least 16, a word for each of the rows that are "
+      "computed at once; or fewer matcher.rows");
+}
+
+TEST(BoardTables, AreInOneBankIfTheyAreJoint) {
+  const auto text = [](const std::string& left, const std::string& right) {
+    return fmt::format(
+        "extends: fpl2003\nfpga: {{tables: joint}}\nallocation: {{left_lut: {}, right_lut: {}}}\n", left,
+        right);
+  };
+  const BoardConfig joint = load_text(text("bank6", "bank6"));
+  EXPECT_TRUE(joint.fpga.joint_tables);
+  EXPECT_FALSE(load_board("fpl2003").fpga.joint_tables);
+  const std::string end = ", because fpga.tables is joint; or set fpga.tables to separate";
+  EXPECT_EQ(refusal_of(text("bank6", "bank7")),
+            "board.yaml:2:16: allocation.right_lut = bank7: must be bank6, the bank of left_lut" + end);
+  EXPECT_EQ(refusal_of(text("bank6", "none")),
+            "board.yaml:2:16: allocation.right_lut = none: must be bank6, the bank of left_lut" + end);
+  EXPECT_EQ(refusal_of(text("none", "bank7")),
+            "board.yaml:2:16: allocation.left_lut = none: must be bank7, the bank of right_lut" + end);
+  EXPECT_EQ(refusal_of(text("none", "none")),
+            "board.yaml:2:16: allocation.left_lut = none: must be a bank, and right_lut the same bank" + end);
+  EXPECT_EQ(refusal_of_board("fpl2003", {"fpga.tables=joint"}),
+            "--set fpga.tables: allocation.right_lut = bank7: must be bank6, the bank of left_lut" + end);
+}
+
+std::string cost_board(const std::string& cost) { return kBase + "matcher: {cost: " + cost + "}\n"; }
+
+TEST(BoardCost, IsAWordOrACensusOfItsSize) {
+  using kernels::CostKind;
+  using kernels::MatchingCost;
+  EXPECT_EQ(load_board("fpl2003").matcher.cost, MatchingCost());
+  EXPECT_EQ(load_text(cost_board("ssd")).matcher.cost, (MatchingCost{CostKind::kSsd, 0}));
+  EXPECT_EQ(load_text(cost_board("zncc")).matcher.cost, (MatchingCost{CostKind::kZncc, 0}));
+  for (const int size : {3, 5, 7}) {
+    EXPECT_EQ(load_text(cost_board(fmt::format("{{census: {}}}", size))).matcher.cost,
+              (MatchingCost{CostKind::kCensus, size}));
+  }
+  EXPECT_EQ(load_board("fpl2003", {"matcher.cost.census=5"}).matcher.cost,
+            (MatchingCost{CostKind::kCensus, 5}));
+  EXPECT_EQ(load_text(cost_board("{census: 5}"), {"matcher.cost=sad"}), load_board("fpl2003"));
+  EXPECT_EQ(load_text(cost_board("{census: 5}"), {"matcher.cost.census=7"}).matcher.cost.census_size, 7);
+}
+
+TEST(BoardCost, HasACensusOfAnOddSizeUpToBothLimits) {
+  for (const std::string value : {"1", "2", "4", "6", "8", "9", "-3", "99999999999999999999"}) {
+    EXPECT_EQ(refusal_of(cost_board("{census: " + value + "}")),
+              "board.yaml:2:26: matcher.cost.census = " + value + ": 3, 5 or 7");
+  }
+  EXPECT_EQ(
+      refusal_of(cost_board("{census: \"5\"}")),
+      "board.yaml:2:26: matcher.cost.census = \"5\": not an integer (decimal digits, not in quotes); 3, 5 "
+      "or 7");
+  EXPECT_EQ(refusal_of(cost_board("{}")), "board.yaml:2:11: matcher.cost.census: missing: 3, 5 or 7");
+  EXPECT_EQ(refusal_of(cost_board("{census: 5, ssd: 1}")),
+            "board.yaml:2:29: matcher.cost.ssd = 1: unknown key, and no known key is near");
+  EXPECT_EQ(refusal_of(cost_board("{census: 5, census: 7}")),
+            "board.yaml:2:29: matcher.cost.census = 7: repeated key, first at 2:18");
+  EXPECT_EQ(refusal_of(cost_board("sad"), {"matcher.cost.census=5"}),
+            "--set matcher.cost.census: matcher.cost.census = 5: matcher.cost is not a map here; set it as a "
+            "whole");
+}
+
 TEST(BoardFilter, HasRowsFromTheTop) {
   const BoardConfig board =
       load_text(kernel_board("{kernel: [[1, 2, 3], [4, -45, 6], [7, 8, 14]], shift: 31}"));

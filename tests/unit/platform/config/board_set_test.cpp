@@ -30,8 +30,8 @@ TEST(BoardSet, ReplacesAValueOfAPresetOrAFile) {
 TEST(BoardSet, ReplacesTheWholeValue) {
   EXPECT_EQ(load_board("fpl2003", {"image={width: 320, height: 240}"}).image.width, 320);
   EXPECT_EQ(refusal_of_board("fpl2003", {"image={width: 320}"}),
-            "--set image: image.height: missing: 1..2048");
-  EXPECT_EQ(refusal_of(block_board(), {"image={width: 320}"}), "--set image: image.height: missing: 1..2048");
+            "--set image: image.height: missing: 1..8192");
+  EXPECT_EQ(refusal_of(block_board(), {"image={width: 320}"}), "--set image: image.height: missing: 1..8192");
   EXPECT_EQ(load_board("fpl2003", {"ssram.banks={a: {}, b: {words: 9}}", "allocation.left_image=a",
                                    "allocation.right_image=a", "allocation.disparity=a",
                                    "allocation.left_lut=none", "allocation.right_lut=none"})
@@ -62,7 +62,7 @@ TEST(BoardSet, AddsValuesThatTheBoardDoesNotHave) {
   const std::size_t image = text.find("image:");
   text.erase(image, text.find("cameras:") - image);
   EXPECT_EQ(load_text(text, {"image.width=8", "image.height=9"}).image.height, 9);
-  EXPECT_EQ(refusal_of(text, {"image.width=8"}), "--set image.width: image.height: missing: 1..2048");
+  EXPECT_EQ(refusal_of(text, {"image.width=8"}), "--set image.width: image.height: missing: 1..8192");
 }
 
 TEST(BoardSet, IsAppliedInOrder) {
@@ -79,8 +79,8 @@ TEST(BoardSet, IsCheckedOnceAtTheEnd) {
       load_board("fpl2003", {"capture.fifo_words=8", "capture.fifo_trigger_words=8"}).capture.fifo_words, 8);
   EXPECT_EQ(load_text("extends: fpl2003\nimage: {width: 3}\n", {"image.width=4"}).image.width, 4);
   EXPECT_EQ(refusal_of("extends: fpl2003\nimage: {height: 0}\n", {"image.width=3", "pci.clock_mhz=0"}),
-            "board.yaml:2:17: image.height = 0: 1..2048\n"
-            "--set image.width: image.width = 3: 4..2048, a multiple of 4\n"
+            "board.yaml:2:17: image.height = 0: 1..8192\n"
+            "--set image.width: image.width = 3: 4..8192, a multiple of 4\n"
             "--set pci.clock_mhz: pci.clock_mhz = 0: 1..1000");
 }
 

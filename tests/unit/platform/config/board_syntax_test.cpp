@@ -26,7 +26,7 @@ matcher: {filter: {kernel: [[1, 2, 3], [1, 2], [1, 40000, x]]}, fetch: columns, 
 [a, b]: 3
 )";
   EXPECT_EQ(refusal_of(text),
-            R"(board.yaml:2:16: image.width = 641: 4..2048, a multiple of 4
+            R"(board.yaml:2:16: image.width = 641: 4..8192, a multiple of 4
 board.yaml:2:34: image.widht = 7: unknown key; nearest known key: image.width
 board.yaml:2:44: image.width = 640: repeated key, first at 2:9
 board.yaml:3:26: cameras.frame_rate_hz = 1001: 0.1..1000
@@ -77,7 +77,7 @@ TEST(BoardSyntax, ReportsAMissingKeyAtItsParentOrAtTheTop) {
                  "matcher: {window: 7, disparities: 80, filter: log7, fetch: column, lr_tolerance: 0}\n"),
       R"(board.yaml:1:1: pci: missing: a map of clock_mhz, latency_timer_clocks, bridge_wait_clocks, memory_wait_clocks, load
 board.yaml:1:1: bridge: missing: a map of local_clock_mhz, dma_burst_words, posted_words
-board.yaml:2:1: image.height: missing: 1..2048
+board.yaml:2:1: image.height: missing: 1..8192
 board.yaml:5:1: fpga.device: missing: xc2v6000
 board.yaml:5:1: fpga.clock_mhz: missing: 1..1000
 board.yaml:5:1: fpga.arbitration: missing: fixed_priority, round_robin or age
@@ -192,13 +192,13 @@ TEST(BoardSyntax, RefusesTextThatIsNotUtf8) {
 
 TEST(BoardSyntax, ReadsLinesThatEndInCarriageReturnAndLineFeed) {
   EXPECT_EQ(refusal_of("extends: fpl2003\r\nname: x\r\nimage: {width: 3}\r\n"),
-            "board.yaml:3:16: image.width = 3: 4..2048, a multiple of 4");
+            "board.yaml:3:16: image.width = 3: 4..8192, a multiple of 4");
 }
 
 TEST(BoardSyntax, RefusesAnchorsAliasesAndTags) {
   EXPECT_EQ(refusal_of("extends: fpl2003\nimage: &a {width: 3}\npci: *a\n"),
             "board.yaml:2:8: image = {..}: anchors and aliases are not allowed in a board\n"
-            "board.yaml:2:19: image.width = 3: 4..2048, a multiple of 4\n"
+            "board.yaml:2:19: image.width = 3: 4..8192, a multiple of 4\n"
             "board.yaml:3:6: pci = (anchor or alias): anchors and aliases are not allowed in a board");
   EXPECT_EQ(refusal_of("extends: fpl2003\nimage: {width: !!int \"640\"}\n"),
             "board.yaml:2:16: image.width = 640: tags are not allowed in a board");
@@ -239,7 +239,7 @@ TEST(BoardSyntax, GivesEachDiagnosticItsPlaceAndText) {
   } catch (const BoardError& error) {
     ASSERT_EQ(error.diagnostics().size(), 2U);
     EXPECT_EQ(error.diagnostics()[1].place, "--set image.height");
-    EXPECT_EQ(error.diagnostics()[1].text, "image.height = 0: 1..2048");
+    EXPECT_EQ(error.diagnostics()[1].text, "image.height = 0: 1..8192");
   }
 }
 

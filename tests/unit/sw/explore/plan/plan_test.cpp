@@ -150,6 +150,38 @@ TEST(Plan, GivesItsPointsTheBoardWithTheirValues) {
   EXPECT_THAT(plan_of(kinds).point(1).reason, HasSubstr("only where the kind is sync_burst"));
 }
 
+TEST(Plan, VariesKeysThatTakeWordsBesideNumbersOrMaps) {
+  const Plan plan = plan_of(
+      "vary:\n  matcher.units: [all, 40, 81]\n  matcher.cost: [sad, {census: 5}]\n"
+      "where: matcher.cost = 'sad' OR matcher.units = 'all'\n");
+  ASSERT_EQ(plan.size(), 6U);
+  const auto text_of = [&plan](std::uint64_t number, const std::string& path) {
+    for (const platform::BoardValue& value : plan.point(number).values) {
+      if (value.path == path && std::holds_alternative<std::string>(value.value))
+        return std::get<std::string>(value.value);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(text_of(0, "matcher.units"), "all");
+  EXPECT_EQ(text_of(0, "matcher.cost"), "sad");
+  EXPECT_EQ(text_of(1, "matcher.cost"), "{census: 5}");
+  EXPECT_EQ(value_of(plan.point(2), "matcher.units"), 40);
+  EXPECT_EQ(plan.point(2).board->matcher.units, 40);
+  EXPECT_THAT(plan.point(4).reason, HasSubstr("matcher.units = 81: 1..disparities, which is 80, or all"));
+}
+
+TEST(Plan, RefusesValuesOfOptionalKeysThatNoBoardHas) {
+  const auto refusal = [](const std::string& vary) {
+    return test::message_of([&vary] { plan_of("vary: {" + vary + "}\n"); });
+  };
+  EXPECT_THAT(refusal("matcher.units: [all, none]"), HasSubstr("matcher.units = none: not an integer"));
+  EXPECT_THAT(refusal("matcher.units: {from: 250, to: 256, step: 2}"), HasSubstr("1 of 4 values refused"));
+  EXPECT_THAT(refusal("matcher.cost: [sad, {census: 4}]"), HasSubstr("matcher.cost.census = 4: 3, 5 or 7"));
+  EXPECT_THAT(refusal("matcher.cost: [ncc]"),
+              HasSubstr("matcher.cost = ncc: sad, ssd, zncc or a map of census"));
+  EXPECT_THAT(refusal("matcher.rows: [1, 17]"), HasSubstr("matcher.rows = 17: 1..16"));
+}
+
 TEST(Plan, VariesTheRunOfItsPoints) {
   const Plan plan = plan_of("vary:\n  run.source: [preloaded, camera]\n  run.frames: [3, 4]\n");
   ASSERT_EQ(plan.size(), 4U);
@@ -338,7 +370,7 @@ TEST(PlanRefusals, NameThePlaceOfAWrongBoard) {
               ElementsAre(HasSubstr(":1:8: board = \"\": a preset, or the path of a board file")));
   const std::string board = test::write_file(file("board.yaml"), "extends: fpl2003\nimage: {width: 5}\n");
   EXPECT_THAT(refusal("board: " + board + "\n"),
-              ElementsAre(board + ":2:16: image.width = 5: 4..2048, a multiple of 4"));
+              ElementsAre(board + ":2:16: image.width = 5: 4..8192, a multiple of 4"));
   EXPECT_THAT(test::message_of([] { load(kBoard, "fpl2004"); }),
               HasSubstr("--board: board = fpl2004" + presets));
 }
