@@ -41,7 +41,8 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
   filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column);
   rows.columns = filter.columns;
   sums.columns = filter.columns;
-  sums.absolute_differences = sums.columns * static_cast<std::uint64_t>(config.window) *
+  // The rows of a strip share the differences of their windows.
+  sums.absolute_differences = sums.columns * static_cast<std::uint64_t>(config.window + config.rows - 1) *
                               static_cast<std::uint64_t>(config.disparities);
   const int rows_with_windows = std::max(0, geometry.height - 2 * geometry.radius);
   const int windows_in_row = std::max(0, geometry.width - 2 * geometry.radius);

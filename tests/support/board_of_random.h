@@ -13,6 +13,8 @@ namespace stereotlm::test {
 // The knobs that the models have.
 inline constexpr RandomKnobs kKnobsOfTheModels = [] {
   RandomKnobs knobs;
+  knobs.large_images = true;
+  knobs.units = true;
   knobs.qdr = true;
   return knobs;
 }();

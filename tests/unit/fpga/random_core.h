@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,15 @@ inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   config.result_fifo_words = random.mostly_small(1, 8, 64);
   config.pipeline_latency_cycles = random.between(0, 20);
   return config;
+}
+
+inline void draw_units(test::SplitMix64& random, CoreConfig& config) {
+  if (random.chance(50)) config.units = random.between(1, config.disparities);
+}
+inline void draw_rows(test::SplitMix64& random, CoreConfig& config) {
+  if (config.fetch == Fetch::kLineBuffer || random.chance(50)) return;
+  config.rows = random.mostly_small(2, 5, 16);
+  config.result_fifo_words = std::max(config.result_fifo_words, config.rows);
 }
 
 // Index of a pixel's entry in a table.
