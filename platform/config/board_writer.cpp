@@ -105,7 +105,8 @@ class BoardWriter {
     for (const std::string& name : child_keys(path)) {
       const std::string full = below(path, name);
       if (full == "pci.load" && !board_.pci.load) continue;
-      if (is_left_out(full)) continue;
+      const bool is_map = !child_keys(full).empty() && full != "matcher.cost";
+      if (!is_map && is_left_out(board_key(full))) continue;
       out_ += fmt::format("{}{}:", indent, name);
       if (full == "matcher.filter") {
         write_line(board_.matcher.filter ? filter_text(*board_.matcher.filter) : "\"none\"");
@@ -116,27 +117,25 @@ class BoardWriter {
         for (const BankConfig& bank : board_.banks) {
           out_ += fmt::format("{}  {}: {}\n", indent, scalar_text(bank.name), bank_text(bank));
         }
-      } else if (!child_keys(full).empty() && full != "matcher.cost") {
+      } else if (is_map) {
         out_ += '\n';
         write_children(full, indent + "  ");
       } else {
-        const Key& key = board_key(full);
-        write_line(std::visit([&](const auto& rule) { return value_text(key, rule); }, key.rule));
+        write_line(text_of(board_key(full)));
       }
     }
   }
 
-  // Optional keys are left out where they have no effect, so that the text of such a board stays what it was
-  // before there were these keys.
-  bool is_left_out(const std::string& path) const {
+  std::string text_of(const Key& key) {
+    return std::visit([&](const auto& rule) { return value_text(key, rule); }, key.rule);
+  }
+
+  // An optional key is left out where it has its default, so that the text of such a board stays what it was
+  // before there was the key. A load is written in full.
+  bool is_left_out(const Key& key) {
+    if (!key.is_optional || key.path.find("pci.load.") == 0) return false;
     static const BoardConfig kDefaults;
-    const FpgaConfig& fpga = board_.fpga;
-    const MatcherConfig& matcher = board_.matcher;
-    return (path == "fpga.tables" && fpga.joint_tables == kDefaults.fpga.joint_tables) ||
-           (path == "fpga.pixel_cache" && fpga.pixel_cache == kDefaults.fpga.pixel_cache) ||
-           (path == "matcher.units" && matcher.units == kDefaults.matcher.units) ||
-           (path == "matcher.rows" && matcher.rows == kDefaults.matcher.rows) ||
-           (path == "matcher.cost" && matcher.cost == kDefaults.matcher.cost);
+    return text_of(key) == BoardWriter(kDefaults).text_of(key);
   }
 
   void write_line(const std::string& value) {

@@ -13,9 +13,14 @@ PRESETS = [
     "fpl2003-qvga",
     "fpl2003-syncburst",
     "fpl2003-triple",
+    "four-rows",
+    "half-the-modules",
+    "two-banks",
+    "two-banks-four-rows",
 ]
 SHARED = sets("allocation.left_lut=bank0")  # the bank of every second left picture
-LISTS = ("fpga.priority", "allocation.disparity")
+# Knobs whose step is not a value of one key: lists, and tables that move to another bank.
+OTHERS = ("fpga.priority", "allocation.disparity", "fpga.tables")
 
 
 class Check(ProgramTest):
@@ -57,6 +62,21 @@ class Check(ProgramTest):
             (["check", "fpl2003", *sets("[a,b]")], "--set [a,b]: [a,b] = (nothing)"),
             (["check", "fpl2003", *sets(f"{words}=307199")], f"{words} = 307199: 1 words missing"),
             (["bounds", "fpl2003", *sets("image.width=3")], "image.width = 3"),
+            (["check", "fpl2003", *sets("image.width=4096")],
+             "image.width = 4096: at most 2048 with a look-up table; set allocation.left_lut and "
+             "allocation.right_lut to none, or a smaller image"),
+            (["check", "fpl2003", *sets("matcher.units=81")],
+             "matcher.units = 81: 1..disparities, which is 80, or all"),
+            (["check", "fpl2003", *sets("matcher.rows=2", "matcher.fetch=line_buffer")],
+             "matcher.rows = 2: must be 1 where matcher.fetch is line_buffer; with column it may be 1..16"),
+            (["check", "fpl2003", *sets("matcher.rows=9")],
+             "fpga.result_fifo_words = 8: at least 9, a word for each of the rows"),
+            (["check", "fpl2003", *sets("fpga.tables=joint")],
+             "allocation.right_lut = bank7: must be bank6, the bank of left_lut, because fpga.tables is joint; "
+             "or set fpga.tables to separate"),
+            (["check", "fpl2003", *sets("ssram.default={words: 524288, kind: qdr, turnaround_cycles: 2}")],
+             "turnaround_cycles = 2: only where the kind is sync_burst, and it is qdr"),
+            (["check", "fpl2003", *sets("matcher.cost={census: 4}")], "matcher.cost.census = 4: 3, 5 or 7"),
         ])
 
 
@@ -93,7 +113,8 @@ class Keys(ProgramTest):
         for key in ("extends", "image.width", "ssram.banks.NAME.turnaround_cycles", "matcher.lr_tolerance"):
             self.assertIn(key, keys)
         at = next(i for i, line in enumerate(lines) if line.startswith("image.width "))
-        self.assertEqual(lines[at].split(), "image.width pixels width of the images".split())
+        meaning = "image.width pixels width of the images, at most 2048 with a look-up table"
+        self.assertEqual(lines[at].split(), meaning.split())
         self.assertEqual(lines[at + 1].strip(), "4..8192, a multiple of 4")
 
 
@@ -207,7 +228,7 @@ class Explain(ProgramTest):
         compared = 0
         rows = self.rows(text)
         for rate, gained, knob, to in rows:
-            if not re.fullmatch(r"[a-z_]+\.[a-z_]+", knob) or knob in LISTS or f"{knob}=" in "".join(options):
+            if not re.fullmatch(r"[a-z_]+\.[a-z_]+", knob) or knob in OTHERS or f"{knob}=" in "".join(options):
                 continue
             found = self.rate(*options, *sets(f"{knob}={to}"))
             self.assertEqual(rate, f"{found:.3f}", knob)
@@ -267,7 +288,7 @@ class Explain(ProgramTest):
         self.assertGreater(len(keys), 20)
         no_knobs = {"image.width", "image.height", "fpga.device", "matcher.lr_tolerance"}
         for key in set(keys) - no_knobs:
-            if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "allocation.")):
+            if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "matcher.cost.", "allocation.")):
                 self.assertIn(key, text)
 
     def test_wrong_options_are_refused(self):

@@ -70,6 +70,14 @@ class Differences(DiffTest):
         self.assertEqual(lines[3:5], ["board A B", "cameras.frame_rate_hz 29.97 25"])
         self.assertEqual(lines[6:], ["no figure and no row differs", "", ONE_FRAME])
 
+    def test_keys_that_only_one_board_file_has_are_compared(self):
+        a, b = shared_run(*SCENE), shared_run(*SCENE, *sets("matcher.units=2", "fpga.pixel_cache=word"))
+        self.assertIn("units: 2", (b / "config.yaml").read_text())
+        self.assertNotIn("units", (a / "config.yaml").read_text())
+        lines = self.lines(a, b)
+        self.assertEqual(lines[3:6], ["board A B", "fpga.pixel_cache none word", "matcher.units all 2"])
+        self.assertIn(ONE_FRAME, lines)
+
     def test_fidelities_differ_in_their_names_only(self):
         lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *CYCLE))
         self.assertEqual(lines[3:5], ["run options A B", "fidelity fast cycle"])

@@ -322,11 +322,11 @@ class Columns(FigureTest):
         self.assertNotEqual(row[both], row[both + ".counted"])
         keys = set(row) - reader.ADMINISTRATION - (figures - {both}) - {both + ".counted"}
         self.assertEqual(set(reader.Points(store).keys), keys)
-        # All keys of boards, but those of loads, filters and banks.
+        # All keys of boards, but those of loads, filters, costs and banks.
         said = self.succeeds(run("keys")).splitlines()[1:]
         known = {line.split()[0] for line in said if line[0] != " " and not line.startswith("extends ")}
         self.assertGreater(len(known), 40)
-        others = ("pci.load", "ssram.", "matcher.filter.")
+        others = ("pci.load", "ssram.", "matcher.filter.", "matcher.cost.")
         known = {key for key in known if not key.startswith(others)} | {"run.source", "run.frames"}
         self.assertEqual({key for key in keys if not key.startswith(others)}, known)
 

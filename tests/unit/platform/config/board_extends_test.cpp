@@ -14,7 +14,8 @@ using Names = std::vector<std::string>;
 
 TEST(BoardPresets, AreTheBoardsOfThisProject) {
   EXPECT_EQ(preset_names(), (Names{"fpl2003", "fpl2003-no-calibration", "fpl2003-line-buffer", "fpl2003-qvga",
-                                   "fpl2003-syncburst", "fpl2003-triple"}));
+                                   "fpl2003-syncburst", "fpl2003-triple", "four-rows", "half-the-modules",
+                                   "two-banks", "two-banks-four-rows"}));
   for (const std::string& name : preset_names()) {
     EXPECT_EQ(load_board(name).name, name);
     EXPECT_NE(std::string(preset_text(name)).find("name: " + name + '\n'), std::string::npos);
@@ -45,6 +46,20 @@ TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
     board.banks.push_back({"bank9"});
     board.allocation.left_image = {"bank0", "bank1", "bank8"};
     board.allocation.right_image = {"bank2", "bank3", "bank9"};
+  });
+  expect_preset("four-rows", [](BoardConfig& board) { board.matcher.rows = 4; });
+  expect_preset("half-the-modules", [](BoardConfig& board) { board.matcher.units = 40; });
+  const auto use_two_banks = [](BoardConfig& board) {
+    board.fpga.joint_tables = true;
+    board.fpga.pixel_cache = fpga::PixelCache::kWord;
+    board.banks.resize(2);
+    const Names pictures = {"bank1", "bank1"};
+    board.allocation = {pictures, pictures, pictures, "bank0", "bank0"};
+  };
+  expect_preset("two-banks", use_two_banks);
+  expect_preset("two-banks-four-rows", [&](BoardConfig& board) {
+    use_two_banks(board);
+    board.matcher.rows = 4;
   });
 }
 
@@ -89,8 +104,8 @@ TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
 
 TEST(BoardExtends, NamesAPreset) {
   const std::string presets =
-      "; presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst or "
-      "fpl2003-triple";
+      "; presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst, "
+      "fpl2003-triple, four-rows, half-the-modules, two-banks or two-banks-four-rows";
   // Without its preset nothing is said about keys that it would have supplied.
   EXPECT_EQ(refusal_of("extends: fpl2003-tripel\nimage: {width: 5}\n"),
             "board.yaml:1:10: extends = fpl2003-tripel: not a preset; nearest: fpl2003-triple" + presets +

@@ -33,7 +33,6 @@ TEST(NearestKey, IsNamedWhereItCanBeMeant) {
       {"cost", "matcher.cost"},
       {"matcher.cost.cencus", "matcher.cost.census"},
       {"fpga.table", "fpga.tables"},
-      {"fpga.cache", "fpga.pixel_cache"},
   };
   for (const auto& [typed, key] : meant)
     EXPECT_EQ(unknown_key_text(typed), "unknown key; nearest known key: " + key) << typed;

@@ -122,8 +122,10 @@ BoardConfig any_board() {
                       std::nullopt};
   if (any_int(0, 1) == 1) board.allocation.left_lut = any_bank();
   if (any_int(0, 1) == 1) board.allocation.right_lut = any_bank();
-  board.matcher = {3 + 2 * any_int(0, 14), any_int(1, 254), kernels::log7(),
-                   static_cast<fpga::Fetch>(any_int(0, 1)), std::nullopt};
+  board.matcher.window = 3 + 2 * any_int(0, 14);
+  board.matcher.disparities = any_int(1, 254);
+  board.matcher.fetch = static_cast<fpga::Fetch>(any_int(0, 1));
+  board.matcher.lr_tolerance = std::nullopt;
   if (any_int(0, 2) == 0) board.matcher.filter = std::nullopt;
   if (any_int(0, 2) == 0) board.matcher.filter = any_kernel();
   if (any_int(0, 2) > 0) board.matcher.lr_tolerance = any_int(0, 253);

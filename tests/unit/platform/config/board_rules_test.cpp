@@ -257,9 +257,9 @@ TEST(BoardImage, IsLargerThan2048OnlyWithoutTables) {
   EXPECT_EQ(refusal_of(kBase + height),
             "board.yaml:2:27: image.height = 2049: at most 2048" + rule + both + end);
   EXPECT_EQ(refusal_of(kBase + width + "allocation: {left_lut: none}\n"),
-            "board.yaml:3:24: image.width = 2052: at most 2048" + rule + "allocation.right_lut" + end);
+            "board.yaml:2:16: image.width = 2052: at most 2048" + rule + "allocation.right_lut" + end);
   EXPECT_EQ(refusal_of(kBase + height + "allocation: {right_lut: none}\n"),
-            "board.yaml:3:25: image.height = 2049: at most 2048" + rule + "allocation.left_lut" + end);
+            "board.yaml:2:27: image.height = 2049: at most 2048" + rule + "allocation.left_lut" + end);
   for (const std::string size : {"{width: 2052, height: 1}", "{width: 4, height: 2049}",
                                  "{width: 8192, height: 4}", "{width: 4, height: 8192}"})
     EXPECT_EQ(refusal_of(kBase + "image: " + size + '\n' + kNoTables), "") << size;
@@ -274,7 +274,7 @@ TEST(BoardUnits, AreAtMostTheDisparities) {
   EXPECT_EQ(load_text(head + "all}\n").matcher.units, std::nullopt);
   EXPECT_EQ(load_board("fpl2003").matcher.units, std::nullopt);
   EXPECT_EQ(refusal_of(head + "17}\n"),
-            "board.yaml:2:27: matcher.units = 17: 1..disparities, which is 16, or all");
+            "board.yaml:2:35: matcher.units = 17: 1..disparities, which is 16, or all");
   EXPECT_EQ(refusal_of(kBase + "matcher: {units: 40}\n", {"matcher.disparities=39"}),
             "--set matcher.disparities: matcher.units = 40: 1..disparities, which is 39, or all");
 }
@@ -283,7 +283,7 @@ TEST(BoardRows, AreOneBehindALineBuffer) {
   const std::string head = kBase + "matcher: {fetch: line_buffer, rows: ";
   EXPECT_EQ(refusal_of(head + "1}\n"), "");
   EXPECT_EQ(refusal_of(head + "2}\n"),
-            "board.yaml:2:18: matcher.rows = 2: must be 1 where matcher.fetch is line_buffer; with column it "
+            "board.yaml:2:37: matcher.rows = 2: must be 1 where matcher.fetch is line_buffer; with column it "
             "may be 1..16");
   EXPECT_EQ(refusal_of(kBase + "matcher: {rows: 2}\n"), "");
 }
@@ -295,7 +295,7 @@ TEST(BoardRows, HaveAPlaceInTheResultQueueEach) {
   };
   EXPECT_EQ(refusal_of(text(16, 16)), "");
   EXPECT_EQ(refusal_of(text(9, 8)),
-            "board.yaml:2:17: fpga.result_fifo_words = 8: at least 9, a word for each of the rows that are "
+            "board.yaml:3:27: fpga.result_fifo_words = 8: at least 9, a word for each of the rows that are "
             "computed at once; or fewer matcher.rows");
   EXPECT_EQ(
       refusal_of_board("fpl2003", {"matcher.rows=16"}),
