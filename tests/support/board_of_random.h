@@ -13,6 +13,8 @@ namespace stereotlm::test {
 // The knobs that the models have.
 inline constexpr RandomKnobs kKnobsOfTheModels = [] {
   RandomKnobs knobs;
+  knobs.joint_tables = true;
+  knobs.word_cache = true;
   knobs.qdr = true;
   return knobs;
 }();
