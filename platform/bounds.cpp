@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "models/capture/camera_timing.h"
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/frame_geometry.h"
 
 namespace stereotlm::platform {
@@ -26,8 +27,16 @@ std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) 
   return fetches;
 }
 
-PortAccesses accesses_of(const fpga::FrameGeometry& geometry,
-                         const std::optional<RectificationTable>& table) {
+PortAccesses accesses_with_cache(const fpga::FrameGeometry& geometry,
+                                 const std::optional<RectificationTable>& table) {
+  fpga::AccessPattern pattern(geometry, fpga::PixelCache::kWord);
+  if (table) pattern.set_entries(table->entries.data());
+  return {table ? geometry.slots - pattern.empty_slots() : 0, pattern.pixel_accesses()};
+}
+
+PortAccesses accesses_of(const fpga::CoreConfig& core, const std::optional<RectificationTable>& table) {
+  const fpga::FrameGeometry geometry(core);
+  if (core.pixel_cache == fpga::PixelCache::kWord) return accesses_with_cache(geometry, table);
   const auto width = static_cast<std::uint64_t>(geometry.width);
   const std::vector<std::uint64_t> fetches = fetches_of_rows(geometry);
   PortAccesses accesses;
@@ -78,7 +87,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   struct SideOfFrame {
     const char* name;
     int image;
-    std::optional<int> lut;
+    std::optional<int> lut;  // bank of its table
     PortAccesses accesses;
   };
   const auto lut_bank = [](const std::optional<BufferPlace>& place) {
@@ -86,8 +95,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   };
   const std::array<SideOfFrame, 2> sides = {
       SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut), accesses.left},
-      SideOfFrame{"right", bank_in_turn(layout.right_image, frame), lut_bank(layout.right_lut),
-                  accesses.right}};
+      SideOfFrame{"right", bank_in_turn(layout.right_image, frame),
+                  lut_bank(board.fpga.joint_tables ? layout.left_lut : layout.right_lut), accesses.right}};
   const int disparity = bank_in_turn(layout.disparity, frame);
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const auto passes = static_cast<std::uint64_t>(geometry.passes);
@@ -120,7 +129,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     const std::uint64_t in_lane = lane_latency + passes;
     const std::uint64_t taking =
         std::max(slot_a_cycle, (geometry.slots - 1) / places * in_lane + in_lane + after_last_slot);
-    if (side.lut) luts.push_back({std::string("port ") + side.name + "_lut", taking});
+    if (side.lut && side.accesses.lut > 0) luts.push_back({std::string("port ") + side.name + "_lut", taking});
     pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
   }
   demands[disparity].writes += geometry.result_words;
@@ -145,8 +154,10 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
 }  // namespace
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
-  const fpga::FrameGeometry geometry(core_config(board));
-  return {accesses_of(geometry, tables.left), accesses_of(geometry, tables.right)};
+  const fpga::CoreConfig core = core_config(board);
+  FrameAccesses accesses = {accesses_of(core, tables.left), accesses_of(core, tables.right)};
+  if (core.joint_tables) accesses.right.lut = 0;  // they are those of the left side
+  return accesses;
 }
 
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame) {

@@ -49,7 +49,7 @@ Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
 
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
   std::vector<std::string> names;
-  for (const PlacedBuffer& buffer : buffers(config.allocation)) names.push_back(buffer.path());
+  for (const PlacedBuffer& buffer : buffers(config)) names.push_back(buffer.path());
   names.emplace_back("no buffer");
   for (std::size_t i = 0; i < names.size(); ++i) {
     audit.equal("bytes written into the bridge for " + names[i], 4 * words.into_bridge[i],

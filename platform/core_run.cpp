@@ -85,8 +85,8 @@ class CoreRun {
   std::uint64_t stall_timeout_cycles_;
   memory::Arbitration arbitration_;
   fpga::FrameRun frames_;
-  fpga::AccessPatterns patterns_{fpga::AccessPattern(frames_.control().geometry()),
-                                 fpga::AccessPattern(frames_.control().geometry())};
+  fpga::AccessPatterns patterns_{fpga::AccessPattern(frames_.control().geometry(), config_.pixel_cache),
+                                 fpga::AccessPattern(frames_.control().geometry(), config_.pixel_cache)};
   // Sums over all frames.
   std::vector<std::uint64_t> accesses_;    // [bank]
   std::array<std::uint64_t, 2> issued_{};  // [side]: slots

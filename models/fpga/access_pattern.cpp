@@ -3,21 +3,29 @@
 #include <algorithm>
 
 #include "models/kernels/rectification_table.h"
+#include "models/kernels/words.h"
 
 namespace stereotlm::fpga {
 
-AccessPattern::AccessPattern(const FrameGeometry& geometry)
+AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
     : geometry_(geometry),
+      has_cache_(cache == PixelCache::kWord),
       words_((static_cast<std::size_t>(geometry.width) + 63) / 64),
-      valid_(words_ * static_cast<std::size_t>(geometry.height)),
+      pixels_(words_ * static_cast<std::size_t>(geometry.height)),
+      counts_(static_cast<std::size_t>(geometry.height)),
+      needs_all_pixels_(!has_cache_),
       changes_(words_ * static_cast<std::size_t>(geometry.strips)),
-      invalid_before_strip_(static_cast<std::size_t>(geometry.strips)),
+      passes_before_strip_(static_cast<std::size_t>(geometry.strips)),
       next_change_(static_cast<std::size_t>(geometry.strips)) {
+  // A row is a sequence of words.
+  static_assert(kernels::kPixelsPerWord == 4);
   for (int row = 0; row < geometry.height; ++row) {
-    set_all(valid_.data() + static_cast<std::size_t>(row) * words_);
+    std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
+    set_all(bits);
+    for (std::size_t word = 0; has_cache_ && word < words_; ++word) bits[word] &= 0x1111'1111'1111'1111U;
+    counts_[static_cast<std::size_t>(row)] = {geometry.columns_per_strip() / (has_cache_ ? 4U : 1U), 0};
   }
   find_changes();
-  all_valid_ = true;
 }
 
 void AccessPattern::set_all(std::uint64_t* row_bits) const {
@@ -26,70 +34,96 @@ void AccessPattern::set_all(std::uint64_t* row_bits) const {
 }
 
 void AccessPattern::set_entries(const std::uint32_t* entries) {
-  const bool were_all_valid = all_valid_;
-  all_valid_ = true;
-  for (int row = 0; row < geometry_.height; ++row) {
-    std::uint64_t* const bits = valid_.data() + static_cast<std::size_t>(row) * words_;
-    std::uint32_t common = ~std::uint32_t{0};
-    for (int column = 0; column < geometry_.width; ++column) common &= entries[column];
-    if (kernels::entry_is_valid(common)) {
-      set_all(bits);
-      entries += geometry_.width;
+  const bool needed_all_pixels = needs_all_pixels_;
+  needs_all_pixels_ = true;
+  for (int row = 0; row < geometry_.height; ++row, entries += geometry_.width) {
+    if (!(has_cache_ ? set_row_cached(row, entries) : set_row(row, entries))) needs_all_pixels_ = false;
+  }
+  if (!(needs_all_pixels_ && needed_all_pixels)) find_changes();
+}
+
+// Returns whether all pixels of the row are accessed.
+bool AccessPattern::set_row(int row, const std::uint32_t* entries) {
+  std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
+  RowCounts& counts = counts_[static_cast<std::size_t>(row)];
+  std::uint32_t common = ~std::uint32_t{0};
+  for (int column = 0; column < geometry_.width; ++column) common &= entries[column];
+  if (kernels::entry_is_valid(common)) {
+    set_all(bits);
+    counts = {geometry_.columns_per_strip(), 0};
+    return true;
+  }
+  counts = {};
+  for (std::size_t word = 0; word < words_; ++word) {
+    const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
+    std::uint64_t found = 0;
+    for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
+    bits[word] = found;
+    counts.accesses += static_cast<std::uint64_t>(__builtin_popcountll(found));
+    entries += count;
+  }
+  counts.invalid = geometry_.columns_per_strip() - counts.accesses;
+  return false;
+}
+
+bool AccessPattern::set_row_cached(int row, const std::uint32_t* entries) {
+  constexpr std::uint32_t kNoWord = UINT32_MAX;
+  const auto width = static_cast<std::uint32_t>(geometry_.width);
+  std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
+  RowCounts& counts = counts_[static_cast<std::size_t>(row)];
+  std::fill_n(bits, words_, std::uint64_t{0});
+  counts = {};
+  std::uint32_t cached = kNoWord;
+  for (std::uint32_t column = 0; column < width; ++column) {
+    const std::uint32_t entry = entries[column];
+    if (!kernels::entry_is_valid(entry)) {
+      ++counts.invalid;
       continue;
     }
-    all_valid_ = false;
-    for (std::size_t word = 0; word < words_; ++word) {
-      const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
-      std::uint64_t found = 0;
-      for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
-      bits[word] = found;
-      entries += count;
-    }
+    const std::uint32_t word = (static_cast<std::uint32_t>(kernels::entry_row(entry)) * width +
+                                static_cast<std::uint32_t>(kernels::entry_column(entry))) /
+                               kernels::kPixelsPerWord;
+    if (word == cached) continue;
+    cached = word;
+    bits[column / 64] |= std::uint64_t{1} << column % 64;
+    ++counts.accesses;
   }
-  if (!(all_valid_ && were_all_valid)) find_changes();
+  return counts.accesses == width;
 }
 
 void AccessPattern::find_changes() {
   empty_slots_ = 0;
+  invalid_slots_ = 0;
   pixel_accesses_ = 0;
-  const std::vector<std::uint64_t> valid = valid_in_rows();
-  for (int strip = 0; strip < geometry_.strips; ++strip) find_changes_of_strip(strip, valid);
+  for (int strip = 0; strip < geometry_.strips; ++strip) find_changes_of_strip(strip);
   find_strips_with_changes();
 }
 
-std::vector<std::uint64_t> AccessPattern::valid_in_rows() const {
-  std::vector<std::uint64_t> valid(static_cast<std::size_t>(geometry_.height));
-  for (int row = 0; row < geometry_.height; ++row) {
-    for (std::size_t word = 0; word < words_; ++word)
-      valid[static_cast<std::size_t>(row)] +=
-          static_cast<std::uint64_t>(__builtin_popcountll(valid_row(row)[word]));
-  }
-  return valid;
-}
-
 // To be called for the strips in their order, because it adds to the counts of the strips before.
-void AccessPattern::find_changes_of_strip(int strip, const std::vector<std::uint64_t>& valid_in_rows) {
+void AccessPattern::find_changes_of_strip(int strip) {
   std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
   std::fill_n(changes, words_, std::uint64_t{0});
   const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
                                      static_cast<std::uint64_t>(geometry_.slots_per_column);
-  invalid_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
+  passes_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row_of(strip) + k;
     if (!inside(row)) {
       empty_slots_ += geometry_.columns_per_strip();
       continue;
     }
-    pixel_accesses_ += valid_in_rows[static_cast<std::size_t>(row)];
-    const std::uint64_t* const bits = valid_row(row);
-    std::uint64_t before = bits[0] & 1U;  // there is no column before the first one
+    pixel_accesses_ += counts_[static_cast<std::size_t>(row)].accesses;
+    invalid_slots_ += counts_[static_cast<std::size_t>(row)].invalid;
+    const std::uint64_t* const bits = pixels_of_row(row);
+    std::uint64_t before = bits[0] & 0xfU;  // see below for the first four columns
     for (std::size_t word = 0; word < words_; ++word) {
-      changes[word] |= bits[word] ^ (bits[word] << 1U | before);
-      before = bits[word] >> 63U;
+      changes[word] |= bits[word] ^ (bits[word] << 4U | before);
+      before = bits[word] >> 60U;
     }
   }
   if (geometry_.width % 64 != 0) changes[words_ - 1] &= (std::uint64_t{1} << geometry_.width % 64) - 1;
-  if (strip > 0 && !strip_begins_alike(strip)) changes[0] |= 1U;
+  for (int column = 0; strip > 0 && column < 4; ++column)
+    changes[0] |= std::uint64_t{!begins_alike(strip, column)} << column;
 }
 
 void AccessPattern::find_strips_with_changes() {
@@ -103,34 +137,36 @@ void AccessPattern::find_strips_with_changes() {
   }
 }
 
-// Whether the first column of a strip makes the same accesses as the last column of the strip before.
-bool AccessPattern::strip_begins_alike(int strip) const {
+// Whether one of the first four columns of a strip makes the same accesses as the fourth column before it, which
+// is in the strip before.
+bool AccessPattern::begins_alike(int strip, int column) const {
+  const int column_before = geometry_.width - 4 + column;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row_of(strip) + k;
     const int row_before = geometry_.first_row_of(strip - 1) + k;
     if (inside(row) != inside(row_before)) return false;
-    if (inside(row) && entry_valid(0, row) != entry_valid(geometry_.width - 1, row_before)) return false;
+    if (inside(row) && needs_pixel(column, row) != needs_pixel(column_before, row_before)) return false;
   }
   return true;
 }
 
-std::uint64_t AccessPattern::invalid_before(std::uint64_t slots) const {
+std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   const std::uint64_t slots_per_strip = geometry_.columns_per_strip() * slots_per_column;
   const std::uint64_t strip = slots / slots_per_strip;
   if (strip == static_cast<std::uint64_t>(geometry_.strips))
     return geometry_.slots - empty_slots_ - pixel_accesses_;
-  std::uint64_t invalid = invalid_before_strip_[strip];
+  std::uint64_t passes = passes_before_strip_[strip];
   for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot) {
     const Place place = place_of(slot);
-    if (inside(place.row) && !entry_valid(place.column, place.row)) ++invalid;
+    if (inside(place.row) && !needs_pixel(place.column, place.row)) ++passes;
   }
-  return invalid;
+  return passes;
 }
 
 bool AccessPattern::needs_pixel(std::uint64_t slot) const {
   const Place place = place_of(slot);
-  return inside(place.row) && entry_valid(place.column, place.row);
+  return inside(place.row) && needs_pixel(place.column, place.row);
 }
 
 AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
@@ -144,7 +180,7 @@ AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
 std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {
   const std::uint64_t width = geometry_.columns_per_strip();
   const auto strips = static_cast<std::size_t>(geometry_.strips);
-  const std::uint64_t next = frame_column + 1;
+  const std::uint64_t next = frame_column + 4;
   auto strip = static_cast<std::size_t>(next / width);
   std::size_t place = next % width;  // column in the strip
   while (strip < strips) {

@@ -14,8 +14,9 @@ struct BufferBases {
   std::vector<std::uint32_t> left_images;
   std::vector<std::uint32_t> right_images;  // as many as left_images
   std::vector<std::uint32_t> disparities;
-  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table
+  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table of its own
   std::optional<std::uint32_t> right_lut;
+  bool has_joint_tables = false;  // left_lut is one table for both sides; right_lut is nullopt
 
   // The base registers of frame number `frame`.
   FrameBases of_frame(std::uint64_t frame) const {

@@ -15,14 +15,15 @@ const CoreConfig& checked(const CoreConfig& config) {
 
 CoreControl::CoreControl(const CoreConfig& config)
     : geometry_(checked(config)),
-      lanes_{LaneControl(geometry_, config.left_table, config.lane_fifo_slots),
-             LaneControl(geometry_, config.right_table, config.lane_fifo_slots)},
+      has_joint_tables_(config.joint_tables),
+      lanes_{LaneControl(geometry_, config.left_table, config.pixel_cache, config.lane_fifo_slots),
+             LaneControl(geometry_, config.right_table, config.pixel_cache, config.lane_fifo_slots)},
       match_(geometry_),
       result_(geometry_, config.result_fifo_words) {}
 
 void CoreControl::start_frame(const FrameLatencies& latencies) {
   for (const Side side : kSides) {
-    lanes_[index_of(side)].start_frame(latencies[lut_port(side)], latencies[pixel_port(side)]);
+    lanes_[index_of(side)].start_frame(latencies[table_port(side)], latencies[pixel_port(side)]);
   }
   match_.start_frame();
   result_.start_frame();

@@ -18,8 +18,8 @@ namespace stereotlm::fpga {
 // for a port that writes, or that the core does not have.
 using FrameLatencies = std::array<int, kCorePortCount>;
 
-// [side]: whether the LUT port has read a valid table entry in a cycle.
-using EntriesRead = std::array<bool, 2>;
+// [side]: whether the slot whose table entry has been read in a cycle needs an access for its pixel.
+using PixelNeeds = std::array<bool, 2>;
 
 // Decides the timing of the whole core (contract section 2): what every port requests in a cycle, and what
 // follows from the grants. Plain C++ without data and without SystemC, used by StereoCore and by
@@ -53,7 +53,7 @@ class CoreControl {
   Decision decide() const;
   // Carries out the decision with these grants. Returns true if the matcher has completed a group of four
   // columns. Groups are counted from column result_delay_columns % 4 on.
-  bool commit(const Decision& decision, memory::PortMask granted, const EntriesRead& entries_valid);
+  bool commit(const Decision& decision, memory::PortMask granted, const PixelNeeds& needs_pixel);
 
   // Counts cycles of the host port, which commit() does not count.
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
@@ -94,6 +94,8 @@ class CoreControl {
   const MatchControl& match() const { return match_; }
   const ResultControl& result() const { return result_; }
   const LaneControl& lane(Side side) const { return lanes_[index_of(side)]; }
+  // The port that takes the slots of a side with table. With joint tables it is one port for both sides.
+  memory::Port table_port(Side side) const { return lut_port(has_joint_tables_ ? Side::kLeft : side); }
   const FrameGeometry& geometry() const { return geometry_; }
   // Whether the last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
@@ -110,6 +112,7 @@ class CoreControl {
   PortCycles& host_cycles() { return cycles_[kHostPort]; }
 
   FrameGeometry geometry_;
+  bool has_joint_tables_;
   std::array<LaneControl, 2> lanes_;  // [side]
   MatchControl match_;
   ResultControl result_;
@@ -125,6 +128,8 @@ inline CoreControl::Decision CoreControl::decide() const {
   };
   decide_lane(Side::kLeft);
   decide_lane(Side::kRight);
+  // With joint tables both lanes hold equally many slots, so that the left one decides for both.
+  if (has_joint_tables_) decision.intents[lut_port(Side::kRight)] = Intent::kIdle;
   decision.intents[kResultPort] = result_.decide();
   const bool slots_ready = lane(Side::kLeft).ready() && lane(Side::kRight).ready();
   decision.work = match_.decide(slots_ready, result_.has_room());
@@ -134,16 +139,16 @@ inline CoreControl::Decision CoreControl::decide() const {
 }
 
 inline bool CoreControl::commit(const Decision& decision, memory::PortMask granted,
-                                const EntriesRead& entries_valid) {
+                                const PixelNeeds& needs_pixel) {
   const auto is_granted = [granted](std::size_t port) { return (granted >> port & 1U) != 0; };
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     cycles_[port].add(decision.intents[port], is_granted(port));
   const bool consumes_slot = decision.consume && !decision.drain;
   const auto commit_lane = [&](Side side) {
-    const memory::Port lut = lut_port(side);
+    const memory::Port lut = table_port(side);
     const memory::Port pixel = pixel_port(side);
     lanes_[index_of(side)].commit({decision.intents[lut], decision.intents[pixel]}, is_granted(lut),
-                                  is_granted(pixel), entries_valid[index_of(side)], consumes_slot);
+                                  is_granted(pixel), needs_pixel[index_of(side)], consumes_slot);
   };
   commit_lane(Side::kLeft);
   commit_lane(Side::kRight);

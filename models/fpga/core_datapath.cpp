@@ -7,15 +7,22 @@ namespace {
 
 using memory::PortMask;
 
+std::string name_of(Side side) { return side == Side::kLeft ? "left" : "right"; }
+
 constexpr bool has(PortMask mask, memory::Port port) { return (mask & memory::mask_of(port)) != 0; }
 
 }  // namespace
 
-CoreDatapath::Lane::Lane(const std::string& side, const CoreConfig& config, bool has_table)
-    : pixel_reader((side + "_pixel").c_str(), config.width), filter((side + "_filter").c_str(), config) {
-  if (has_table) lut_reader = std::make_unique<LutReader>((side + "_lut").c_str(), config.width);
+CoreDatapath::Lane::Lane(const CoreConfig& config, Side side)
+    : has_table(fpga::has_table(config, side)),
+      pixel_reader((name_of(side) + "_pixel").c_str(), config),
+      filter((name_of(side) + "_filter").c_str(), config) {
+  if (has_port(config, lut_port(side))) {
+    lut_reader =
+        std::make_unique<LutReader>((name_of(side) + "_lut").c_str(), config.width, config.joint_tables);
+  }
   if (config.fetch == Fetch::kLineBuffer)
-    row_buffer = std::make_unique<RowBuffer>((side + "_rows").c_str(), config.width, config.window);
+    row_buffer = std::make_unique<RowBuffer>((name_of(side) + "_rows").c_str(), config.width, config.window);
 }
 
 CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder)
@@ -37,18 +44,21 @@ void CoreDatapath::bind_memory(Binder& binder) {
 }
 
 void CoreDatapath::bind_streams() {
-  const std::array<StreamOut<Slot>*, 2> slots_of = {&sequencer_.left_out, &sequencer_.right_out};
   const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&sad_array_.left_in,
                                                                                 &sad_array_.right_in};
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
-    StreamOut<Slot>& slots = *slots_of[index_of(side)];
+    const auto bind_slots = [this, side](auto& slots_in) {
+      side == Side::kLeft ? sequencer_.left_out.bind(slots_in) : sequencer_.right_out.bind(slots_in);
+    };
     auto& columns = *columns_of[index_of(side)];
     if (lane.lut_reader) {
-      slots.bind(lane.lut_reader->slots_in);
+      bind_slots(lane.lut_reader->slots_in);
       lane.lut_reader->entries_out.bind(lane.pixel_reader.entries_in);
+    } else if (lane.has_table) {
+      lanes_[0].lut_reader->right_entries_out.bind(lane.pixel_reader.entries_in);
     } else {
-      slots.bind(lane.pixel_reader.slots_in);
+      bind_slots(lane.pixel_reader.slots_in);
     }
     lane.pixel_reader.pixels_out.bind(lane.filter.pixels_in);
     if (lane.row_buffer) {
@@ -66,14 +76,14 @@ void CoreDatapath::bind_streams() {
   result_packer_.words_out.bind(result_writer_.words_in);
 }
 
-void CoreDatapath::start_frame(const FrameBases& bases) {
+void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffsets& offsets) {
   const auto aim = [this, &bases](memory::Port port) {
     crossbar_.aim(port, registers::bank_of(bases[port]), kPorts[port].write);
     return registers::base_address(bases[port]);
   };
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
-    if (lane.lut_reader) lane.lut_reader->start_frame(aim(lut_port(side)));
+    if (lane.lut_reader) lane.lut_reader->start_frame(aim(lut_port(side)), offsets);
     lane.pixel_reader.start_frame(aim(pixel_port(side)));
     lane.filter.start_frame();
     if (lane.row_buffer) lane.row_buffer->start_frame();
@@ -85,27 +95,25 @@ void CoreDatapath::start_frame(const FrameBases& bases) {
   result_packer_.start_frame();
 }
 
-EntriesRead CoreDatapath::move(const CoreControl& control, const CoreControl::Decision& decision,
+PixelNeeds CoreDatapath::move(const CoreControl& control, const CoreControl::Decision& decision,
                                PortMask granted, const sc_core::sc_time& at) {
   const auto moving = static_cast<PortMask>(granted | decision.passes());
-  EntriesRead entries_valid{};
-  const auto take_slot = [&](Side side, Lane& lane) {
-    if (!has(moving, lut_port(side))) return;
-    issue(side, control, at);
-    entries_valid[index_of(side)] = lane.lut_reader->entry_valid();
+  const auto take_slot = [&](Side side) {
+    if (has(moving, lut_port(side))) issue(side, control, at);
   };
   const auto handle_slot = [&](Side side, Lane& lane) {
     if (!has(moving, pixel_port(side))) return;
-    lane.lut_reader ? lane.pixel_reader.handle(at) : issue(side, control, at);
+    lane.has_table ? lane.pixel_reader.handle(at) : issue(side, control, at);
   };
   Lane& left = lanes_[0];
   Lane& right = lanes_[1];
-  take_slot(Side::kLeft, left);
-  take_slot(Side::kRight, right);
+  take_slot(Side::kLeft);
+  take_slot(Side::kRight);
+  const PixelNeeds needs_pixel = {left.pixel_reader.needs_access(), right.pixel_reader.needs_access()};
   handle_slot(Side::kLeft, left);
   handle_slot(Side::kRight, right);
   if (has(granted, kResultPort)) result_writer_.write(at);
-  if (!decision.consume) return entries_valid;
+  if (!decision.consume) return needs_pixel;
   if (decision.drain) {
     left.pixel_reader.release_blank();
     right.pixel_reader.release_blank();
@@ -113,7 +121,7 @@ EntriesRead CoreDatapath::move(const CoreControl& control, const CoreControl::De
     left.pixel_reader.release();
     right.pixel_reader.release();
   }
-  return entries_valid;
+  return needs_pixel;
 }
 
 std::uint64_t CoreDatapath::errors() const {
@@ -125,8 +133,10 @@ std::uint64_t CoreDatapath::errors() const {
   return errors;
 }
 
-DirectFrame::Memory CoreDatapath::direct_memory(const DirectFrame::Buffers& buffers) {
+DirectFrame::Memory CoreDatapath::direct_memory(const DirectFrame::Buffers& buffers,
+                                                const kernels::JointOffsets& offsets) {
   DirectFrame::Memory memory;
+  memory.joint_offsets = offsets;
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
     memory.images[index_of(side)] = lane.pixel_reader.image(config_.height);

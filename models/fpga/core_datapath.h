@@ -34,9 +34,10 @@ class CoreDatapath {
  public:
   // The stages of one side, up to the matcher.
   struct Lane {
-    Lane(const std::string& side, const CoreConfig& config, bool has_table);
+    Lane(const CoreConfig& config, Side side);
 
-    std::unique_ptr<LutReader> lut_reader;  // null if the side has no table
+    bool has_table;
+    std::unique_ptr<LutReader> lut_reader;  // null if the side has no table, or the left one reads for both
     PixelReader pixel_reader;
     LogFilter filter;
     std::unique_ptr<RowBuffer> row_buffer;  // null unless the fetch is kLineBuffer
@@ -45,17 +46,18 @@ class CoreDatapath {
   // `binder` binds the stages to the crossbar, which outlives this object.
   CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder);
 
-  // Starts a frame on these buffers, whose banks must exist.
-  void start_frame(const FrameBases& bases);
+  // Starts a frame on these buffers, whose banks must exist. `offsets`: of joint tables.
+  void start_frame(const FrameBases& bases, const kernels::JointOffsets& offsets);
   // Moves the data of one cycle, which begins `at` from now. `control` must be in the state in which it
   // decided, before commit().
-  EntriesRead move(const CoreControl& control, const CoreControl::Decision& decision,
+  PixelNeeds move(const CoreControl& control, const CoreControl::Decision& decision,
                    memory::PortMask granted, const sc_core::sc_time& at);
   // The number of accesses that memory has refused, over all frames.
   std::uint64_t errors() const;
 
   // Requests direct access to the frame's buffers.
-  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers);
+  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
+                                    const kernels::JointOffsets& offsets);
   // The disparity buffer of the frame; null if memory does not grant direct access.
   std::uint8_t* direct_disparities() { return result_writer_.buffer(geometry_.result_words); }
   // Adds what the stages count in a frame whose data they did not move.
@@ -75,15 +77,15 @@ class CoreDatapath {
   void bind_memory(Binder& binder);
   void bind_streams();
   void issue(Side side, const CoreControl& control, const sc_core::sc_time& at) {
-    sequencer_.issue(side, control.lane(side).next_slot(), at);
+    const SlotCursor& slot = control.lane(side).next_slot();
+    config_.joint_tables ? sequencer_.issue_to_both(slot, at) : sequencer_.issue(side, slot, at);
   }
 
   CoreConfig config_;
   FrameGeometry geometry_{config_};
   memory::Crossbar& crossbar_;
   Sequencer sequencer_{"sequencer"};
-  std::array<Lane, 2> lanes_{Lane("left", config_, config_.left_table),
-                             Lane("right", config_, config_.right_table)};  // [side]
+  std::array<Lane, 2> lanes_{Lane(config_, Side::kLeft), Lane(config_, Side::kRight)};  // [side]
   SadArray sad_array_{"sad_array", config_};
   SelectMinChain select_min_chain_{"select_min_chain", config_.disparities};
   SelectMinTree select_min_tree_{"select_min_tree"};

@@ -26,24 +26,26 @@ struct CorePort {
   std::uint64_t base_register;    // register_map.h: bank and first word of the buffer
   std::uint64_t bytes_per_pixel;  // of the buffer
   bool write;                     // direction of all accesses
-  bool CoreConfig::*needs;        // the port exists if this is true; null: always
+  bool (*exists)(const CoreConfig&);
 };
+
+constexpr bool always(const CoreConfig& /*config*/) { return true; }
 
 // All ports, in the order in which results list them. Masks, routes, buffers, blame, counts, board files and
 // reports follow from this table. The core's own ports come first; the last one is the host's, which has no
 // buffer of its own.
 inline constexpr std::array kPorts = {
     CorePort{"left_lut", PortStage::kLutReader, Side::kLeft, "left_lut", registers::kLeftLutBase, 4, false,
-             &CoreConfig::left_table},
+             [](const CoreConfig& config) { return config.left_table; }},
     CorePort{"right_lut", PortStage::kLutReader, Side::kRight, "right_lut", registers::kRightLutBase, 4,
-             false, &CoreConfig::right_table},
+             false, [](const CoreConfig& config) { return config.right_table && !config.joint_tables; }},
     CorePort{"left_pixel", PortStage::kPixelReader, Side::kLeft, "left_image", registers::kLeftImageBase, 1,
-             false, nullptr},
+             false, always},
     CorePort{"right_pixel", PortStage::kPixelReader, Side::kRight, "right_image", registers::kRightImageBase,
-             1, false, nullptr},
+             1, false, always},
     CorePort{"result", PortStage::kResultWriter, Side::kLeft, "disparity", registers::kDisparityBase, 1, true,
-             nullptr},
-    CorePort{"host", PortStage::kLocalBus, Side::kLeft, "", 0, 0, false, nullptr},
+             always},
+    CorePort{"host", PortStage::kLocalBus, Side::kLeft, "", 0, 0, false, always},
 };
 inline constexpr std::size_t kPortCount = kPorts.size();
 inline constexpr std::size_t kCorePortCount = kPortCount - 1;
@@ -66,7 +68,10 @@ static_assert(kHostPort == kCorePortCount, "the host's port is the last one");
 constexpr memory::Port lut_port(Side side) { return kLutPorts[index_of(side)]; }
 constexpr memory::Port pixel_port(Side side) { return kPixelPorts[index_of(side)]; }
 constexpr bool has_port(const CoreConfig& config, memory::Port port) {
-  return kPorts[port].needs == nullptr || config.*kPorts[port].needs;
+  return kPorts[port].exists(config);
+}
+constexpr bool has_table(const CoreConfig& config, Side side) {
+  return side == Side::kLeft ? config.left_table : config.right_table;
 }
 
 // The arbiters of the paper's board.

@@ -24,7 +24,7 @@ class CoreStepper {
   }
 
   // Runs `cycle`. `host_requests`: whether the host port requests in it. `move` moves the data of the cycle:
-  // it is called as move(decision, granted) and returns EntriesRead. Returns the ports granted.
+  // it is called as move(decision, granted) and returns PixelNeeds. Returns the ports granted.
   template <class Move>
   memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
     using memory::PortMask;

@@ -15,7 +15,9 @@ std::size_t pixels_of(const CoreConfig& config) {
 }  // namespace
 
 DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels)
-    : config_(config), patterns_{AccessPattern(FrameGeometry(config)), AccessPattern(FrameGeometry(config))} {
+    : config_(config),
+      patterns_{AccessPattern(FrameGeometry(config), config.pixel_cache),
+                AccessPattern(FrameGeometry(config), config.pixel_cache)} {
   if (!has_pixels) return;
   pipeline_ = std::make_unique<kernels::StereoPipeline>(
       config.width, config.height,
@@ -39,27 +41,55 @@ bool DirectFrame::disparities_are_apart() const {
 }
 
 bool DirectFrame::read(const Memory& memory) {
-  bool is_readable = memory.disparities != nullptr;
-  for (const Side side : kSides) {
-    const std::size_t index = index_of(side);
-    const bool has_table = has_port(config_, lut_port(side));
-    if (has_table && !read_table(side, memory.tables[index])) is_readable = false;
-    if (memory.images[index] == nullptr) is_readable = false;
+  bool is_readable = read_tables(memory) && memory.disparities != nullptr;
+  for (const std::uint8_t* image : memory.images) {
+    if (image == nullptr) is_readable = false;
   }
   if (is_readable && pipeline_) {
-    pipeline_->run(memory.images[0], memory.images[1], memory.tables[0].entries, memory.tables[1].entries,
-                   disparities_.data());
+    pipeline_->run(memory.images[0], memory.images[1], entries_[0], entries_[1], disparities_.data());
   }
   return is_readable;
 }
 
-bool DirectFrame::read_table(Side side, const Table& table) {
+// Reads both tables in any case: may_have_changed is not repeated in the next frame.
+bool DirectFrame::read_tables(const Memory& memory) {
+  if (config_.joint_tables) return read_joint_table(memory.tables[0], memory.joint_offsets);
+  bool is_readable = true;
+  for (const Side side : kSides) {
+    const Table& table = memory.tables[index_of(side)];
+    if (has_table(config_, side) && !read_table(side, table.entries, table.may_have_changed))
+      is_readable = false;
+  }
+  return is_readable;
+}
+
+bool DirectFrame::read_joint_table(const Table& table, const kernels::JointOffsets& offsets) {
   if (table.entries == nullptr) return false;
-  bool& is_valid = table_is_valid_[index_of(side)];
-  if (table.may_have_changed) {
-    is_valid =
-        kernels::entries_point_inside(table.entries, pixels_of(config_), config_.width, config_.height);
-    if (is_valid) patterns_[index_of(side)].set_entries(table.entries);
+  const bool may_have_changed =
+      table.may_have_changed || offsets != joint_offsets_ || joint_entries_[0].empty();
+  if (may_have_changed) {
+    joint_offsets_ = offsets;
+    for (std::vector<std::uint32_t>& entries : joint_entries_) entries.resize(pixels_of(config_));
+    std::size_t pixel = 0;
+    for (int row = 0; row < config_.height; ++row) {
+      for (int column = 0; column < config_.width; ++column, ++pixel) {
+        joint_entries_[0][pixel] = kernels::left_entry(table.entries[pixel], column, row, offsets);
+        joint_entries_[1][pixel] = kernels::right_entry(table.entries[pixel], column, row, offsets);
+      }
+    }
+  }
+  const bool left_is_readable = read_table(Side::kLeft, joint_entries_[0].data(), may_have_changed);
+  return read_table(Side::kRight, joint_entries_[1].data(), may_have_changed) && left_is_readable;
+}
+
+bool DirectFrame::read_table(Side side, const std::uint32_t* entries, bool may_have_changed) {
+  const std::size_t index = index_of(side);
+  entries_[index] = entries;
+  if (entries == nullptr) return false;
+  bool& is_valid = table_is_valid_[index];
+  if (may_have_changed) {
+    is_valid = kernels::entries_point_inside(entries, pixels_of(config_), config_.width, config_.height);
+    if (is_valid) patterns_[index].set_entries(entries);
   }
   return is_valid;
 }

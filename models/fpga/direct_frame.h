@@ -9,6 +9,7 @@
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
+#include "models/kernels/joint_table.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "models/words_by_range.h"
 
@@ -29,7 +30,8 @@ class DirectFrame {
     bool may_have_changed = true;  // since the last frame
   };
   struct Memory {
-    std::array<Table, 2> tables;                  // [side]; without meaning for a side without table
+    std::array<Table, 2> tables;  // [side]; without meaning for a side without table; [left]: joint tables
+    kernels::JointOffsets joint_offsets{};
     std::array<const std::uint8_t*, 2> images{};  // [side]
     std::uint8_t* disparities = nullptr;
   };
@@ -61,11 +63,17 @@ class DirectFrame {
   std::optional<std::uint64_t> answered() const;
 
  private:
-  bool read_table(Side side, const Table& table);
+  bool read_tables(const Memory& memory);
+  bool read_joint_table(const Table& table, const kernels::JointOffsets& offsets);
+  bool read_table(Side side, const std::uint32_t* entries, bool may_have_changed);
 
   CoreConfig config_;
   Buffers buffers_{};
   AccessPatterns patterns_;
+  // [side]: the entries of the frame; null if the side has no table.
+  std::array<const std::uint32_t*, 2> entries_{};
+  std::array<std::vector<std::uint32_t>, 2> joint_entries_;  // [side]: entries of joint tables
+  kernels::JointOffsets joint_offsets_{};                    // with which they were decoded
   std::array<bool, 2> table_is_valid_{true, true};  // [side]: no entry points outside the image
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
   std::vector<std::uint8_t> disparities_;

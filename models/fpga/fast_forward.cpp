@@ -12,13 +12,13 @@ void FastForward::forget() {
 
 void FastForward::settle() {
   stepped_.reset();
-  if (entries_.resolve()) forget();
+  if (accesses_.resolve()) forget();
 }
 
 memory::PortMask FastForward::step(std::uint64_t cycle, bool host_requests) {
   return stepper_.step(cycle, host_requests,
                        [this](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
-                         return entries_.read(granted);
+                         return accesses_.needs_pixel(granted);
                        });
 }
 
@@ -72,7 +72,7 @@ bool FastForward::has_uniform_slots() {
 
 // The number of slots of the frame up to the end of the run of uniform columns.
 std::uint64_t FastForward::uniform_slots(Side side) const {
-  return entries_.uniform_until(side) * static_cast<std::uint64_t>(control().geometry().slots_per_column);
+  return accesses_.uniform_until(side) * static_cast<std::uint64_t>(control().geometry().slots_per_column);
 }
 
 // Returns how far the core can run before a run of uniform columns ends, or a row of results is complete.

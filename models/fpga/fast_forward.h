@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "models/fpga/assumed_validity.h"
+#include "models/fpga/assumed_accesses.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/transition_cache.h"
 
@@ -18,17 +18,17 @@ class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
   FastForward(CoreStepper& stepper, std::size_t most_groups)
-      : stepper_(stepper), entries_(stepper), known_(most_groups) {}
+      : stepper_(stepper), accesses_(stepper), known_(most_groups) {}
 
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
   // and the stepper has started it. The patterns must outlive the frame.
   void start_direct_frame(const AccessPatterns& patterns) {
-    entries_.start_direct_frame(patterns);
+    accesses_.start_direct_frame(patterns);
     forget();
   }
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame() {
-    entries_.start_stepped_frame();
+    accesses_.start_stepped_frame();
     forget();
   }
   // To be called before the route of the host changes within a frame, and after the last cycle of a frame.
@@ -64,7 +64,7 @@ class FastForward {
   const CoreControl& control() const { return stepper_.control(); }
 
   CoreStepper& stepper_;
-  AssumedValidity entries_;
+  AssumedAccesses accesses_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   // [side]: the cached transitions hold for the slots of the frame before this one. 0: the cache is empty.

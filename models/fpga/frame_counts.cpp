@@ -7,17 +7,17 @@
 namespace stereotlm::fpga {
 namespace {
 
-FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const AccessPattern& pattern, bool has_table,
+FrameCounts::Lane lane_counts(const FrameGeometry& geometry, const AccessPattern& pattern, bool has_lut_port,
                               const LaneControl& control) {
   FrameCounts::Lane lane;
   lane.slots = {control.taken(), pattern.empty_slots()};
   const std::uint64_t inside = geometry.slots - pattern.empty_slots();
-  if (has_table) {
+  if (has_lut_port) {
     lane.table.reads = inside;
-    lane.table.invalid_entries = inside - pattern.pixel_accesses();
+    lane.table.invalid_entries = pattern.invalid_slots();
     lane.table.empty_slots = pattern.empty_slots();
   }
-  lane.image.reads = has_table ? pattern.pixel_accesses() : inside;
+  lane.image.reads = pattern.pixel_accesses();
   lane.image.passed_slots = geometry.slots - lane.image.reads;
   return lane;
 }
@@ -35,6 +35,7 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
     accesses[lut] = lanes[index].table.reads;
     accesses[pixel_port(side)] = lanes[index].image.reads;
   }
+  if (config.joint_tables) lanes[0].table.invalid_entries += patterns[1].invalid_slots();
   filter.pixels = geometry.slots + geometry.drain_cycles;
   // This includes the first columns, for which the filter has no output yet; their windows do not leave the
   // array.

@@ -4,6 +4,7 @@
 
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/port_cycles.h"
+#include "models/kernels/words.h"
 #include "models/memory/bank_traits.h"
 
 namespace stereotlm::fpga {
@@ -33,9 +34,10 @@ class LaneControl {
   };
 
   // `fifo_slots`: the most slots in the lane. Throws std::invalid_argument outside kLaneFifoRule.
-  LaneControl(const FrameGeometry& geometry, bool has_table, int fifo_slots)
+  LaneControl(const FrameGeometry& geometry, bool has_table, PixelCache cache, int fifo_slots)
       : geometry_(geometry),
         has_table_(has_table),
+        has_cache_(cache == PixelCache::kWord),
         fifo_slots_(static_cast<std::uint64_t>(kLaneFifoRule.required("lane_fifo_slots", fifo_slots))) {}
 
   // Read latencies of the banks that hold this frame's table and image; without a table the first has no
@@ -62,10 +64,10 @@ class LaneControl {
   // Whether the matcher can consume a slot of this lane.
   bool ready() const { return arrived_pixels_ > consumed_; }
 
-  // `lut_granted`, `pixel_granted`: whether the request of the port was granted. `entry_valid`: whether the
-  // table entry that the LUT port has just read is valid; without effect if it has read none. `consumes`:
-  // whether the matcher consumes a slot in this cycle.
-  void commit(Decision decision, bool lut_granted, bool pixel_granted, bool entry_valid, bool consumes) {
+  // `lut_granted`, `pixel_granted`: whether the request of the port was granted. `needs_pixel`: whether the
+  // slot whose table entry the LUT port has just read needs an access for its pixel; without effect if it has
+  // read none. `consumes`: whether the matcher consumes a slot in this cycle.
+  void commit(Decision decision, bool lut_granted, bool pixel_granted, bool needs_pixel, bool consumes) {
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
     const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
     // What is read in cycle c can be used from cycle c + latency on.
@@ -73,7 +75,7 @@ class LaneControl {
     const std::uint64_t handled_before = handled_;
     if (takes) {
       const std::uint64_t mark = std::uint64_t{1} << taken_ % kMostSlots;
-      marks_ = lut_granted && entry_valid ? marks_ | mark : marks_ & ~mark;
+      marks_ = lut_granted && needs_pixel ? marks_ | mark : marks_ & ~mark;
       next_slot_.advance();
       ++taken_;
     }
@@ -125,6 +127,7 @@ class LaneControl {
   // The number of slots of the frame that the lane has taken, and the number that the pixel port has handled.
   std::uint64_t taken() const { return taken_; }
   std::uint64_t handled() const { return handled_; }
+  bool has_table() const { return has_table_; }
   // The slot that the lane takes next.
   const SlotCursor& next_slot() const { return next_slot_; }
   // The number of slots that the matcher has consumed, over all frames.
@@ -141,8 +144,11 @@ class LaneControl {
   Intent take_intent() const {
     if (next_slot_.done()) return Intent::kIdle;
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;
-    return next_slot_.empty() ? Intent::kPass : Intent::kRequest;
+    return next_slot_.empty() || (!has_table_ && has_cached_word()) ? Intent::kPass : Intent::kRequest;
   }
+  // Whether the cache of a side without table has the word of the next slot: a strip begins with a word, and its
+  // columns follow one another.
+  bool has_cached_word() const { return has_cache_ && next_slot_.column() % kernels::kPixelsPerWord != 0; }
   Intent handle_intent() const {
     if (arrived_entries_ > handled_) {
       return (marks_ >> handled_ % kMostSlots & 1U) != 0 ? Intent::kRequest : Intent::kPass;
@@ -152,6 +158,7 @@ class LaneControl {
 
   FrameGeometry geometry_;
   bool has_table_;
+  bool has_cache_;
   std::uint64_t fifo_slots_;
   bool table_takes_two_cycles_ = false;
   bool image_takes_two_cycles_ = false;

@@ -5,24 +5,35 @@
 
 namespace stereotlm::fpga {
 
-LutReader::LutReader(const sc_core::sc_module_name& name, int width)
-    : sc_module(name), width_(static_cast<std::uint64_t>(width)) {}
+LutReader::LutReader(const sc_core::sc_module_name& name, int width, bool has_joint_tables)
+    : sc_module(name), width_(static_cast<std::uint64_t>(width)), has_joint_tables_(has_joint_tables) {}
 
 void LutReader::take(const Slot& slot) {
-  TableEntry entry;
   if (slot.empty) {
     ++stats_.empty_slots;
-  } else {
-    const std::uint64_t pixel =
-        static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
-    sc_core::sc_time delay = slot.at;
-    if (!access_.read(table_address_ + pixel * 4, delay)) ++stats_.errors;
-    ++stats_.reads;
-    entry.entry = access_.word();
-    stats_.invalid_entries += std::uint64_t{!kernels::entry_is_valid(entry.entry)};
+    push({}, {});
+    return;
   }
-  entry_valid_ = kernels::entry_is_valid(entry.entry);
-  entries_out->push(entry);
+  const std::uint64_t pixel =
+      static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
+  sc_core::sc_time delay = slot.at;
+  if (!access_.read(table_address_ + pixel * 4, delay)) ++stats_.errors;
+  ++stats_.reads;
+  const std::uint32_t word = access_.word();
+  TableEntry left{word};
+  TableEntry right;
+  if (has_joint_tables_) {
+    left.entry = kernels::left_entry(word, slot.column, slot.row, offsets_);
+    right.entry = kernels::right_entry(word, slot.column, slot.row, offsets_);
+    stats_.invalid_entries += std::uint64_t{!kernels::entry_is_valid(right.entry)};
+  }
+  stats_.invalid_entries += std::uint64_t{!kernels::entry_is_valid(left.entry)};
+  push(left, right);
+}
+
+void LutReader::push(const TableEntry& left, const TableEntry& right) {
+  entries_out->push(left);
+  if (has_joint_tables_) right_entries_out->push(right);
 }
 
 const std::uint32_t* LutReader::table(int height) {

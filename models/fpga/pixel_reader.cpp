@@ -1,52 +1,83 @@
 #include "models/fpga/pixel_reader.h"
 
+#include <algorithm>
+
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
 #include "models/memory/direct_memory.h"
 
 namespace stereotlm::fpga {
 
-PixelReader::PixelReader(const sc_core::sc_module_name& name, int width)
-    : sc_module(name), width_(static_cast<std::uint64_t>(width)) {}
+PixelReader::PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config)
+    : sc_module(name),
+      width_(static_cast<std::uint64_t>(config.width)),
+      slots_per_column_(static_cast<std::size_t>(FrameGeometry(config).slots_per_column)),
+      has_cache_(config.pixel_cache == PixelCache::kWord),
+      cached_(slots_per_column_),
+      words_(slots_per_column_) {}
 
 void PixelReader::start_frame(std::uint64_t image_address) {
   image_address_ = image_address;
-  entries_stored_ = 0;
-  entries_handled_ = 0;
+  slots_arrived_ = 0;
   pixels_stored_ = 0;
   pixels_released_ = 0;
 }
 
-void PixelReader::store_entry(const TableEntry& entry) { entries_[entries_stored_++ % kRing] = entry; }
+bool PixelReader::next_needs_access(bool is_valid, std::uint64_t pixel) {
+  const std::size_t slot = slots_arrived_++;
+  if (!has_cache_) return is_valid;
+  if (slot % (slots_per_column_ * width_) == 0) std::fill(cached_.begin(), cached_.end(), kNoWord);
+  if (!is_valid) return false;
+  std::uint64_t& cached = cached_[slot % slots_per_column_];
+  const std::uint64_t word = pixel / kernels::kPixelsPerWord;
+  if (cached == word) return false;
+  cached = word;
+  return true;
+}
+
+void PixelReader::store_entry(const TableEntry& entry) {
+  Waiting& waiting = entries_[slots_arrived_ % kRing];
+  needs_access_ =
+      next_needs_access(kernels::entry_is_valid(entry.entry),
+                        pixel_of(kernels::entry_column(entry.entry), kernels::entry_row(entry.entry)));
+  waiting = {entry.entry, needs_access_};
+}
 
 void PixelReader::handle(const sc_core::sc_time& at) {
-  if (entries_handled_ == entries_stored_) {
+  if (pixels_stored_ == slots_arrived_) {
     SC_REPORT_ERROR("/stereotlm/pixel_reader", "handle: no entry waits");
     return;
   }
-  const std::uint32_t entry = entries_[entries_handled_++ % kRing].entry;
-  if (!kernels::entry_is_valid(entry)) {
+  const Waiting& waiting = entries_[pixels_stored_ % kRing];
+  if (!kernels::entry_is_valid(waiting.entry)) {
     pass();
     return;
   }
-  read(static_cast<std::uint64_t>(kernels::entry_column(entry)),
-       static_cast<std::uint64_t>(kernels::entry_row(entry)), at);
+  deliver(pixel_of(kernels::entry_column(waiting.entry), kernels::entry_row(waiting.entry)),
+          waiting.needs_access, at);
 }
 
 void PixelReader::take(const Slot& slot) {
+  const std::uint64_t pixel = pixel_of(slot.column, slot.row);
+  const bool needs_access = next_needs_access(!slot.empty, pixel);
   if (slot.empty) {
     pass();
     return;
   }
-  read(static_cast<std::uint64_t>(slot.column), static_cast<std::uint64_t>(slot.row), slot.at);
+  deliver(pixel, needs_access, slot.at);
 }
 
-void PixelReader::read(std::uint64_t column, std::uint64_t row, const sc_core::sc_time& at) {
-  const std::uint64_t pixel = row * width_ + column;
-  sc_core::sc_time delay = at;
-  if (!access_.read(image_address_ + pixel / kernels::kPixelsPerWord * 4, delay)) ++stats_.errors;
-  ++stats_.reads;
-  pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(access_.word(), pixel), true};
+void PixelReader::deliver(std::uint64_t pixel, bool needs_access, const sc_core::sc_time& at) {
+  std::uint32_t& word = words_[has_cache_ ? pixels_stored_ % slots_per_column_ : 0];
+  if (needs_access) {
+    sc_core::sc_time delay = at;
+    if (!access_.read(image_address_ + pixel / kernels::kPixelsPerWord * 4, delay)) ++stats_.errors;
+    ++stats_.reads;
+    word = access_.word();
+  } else {
+    ++stats_.passed_slots;
+  }
+  pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(word, pixel), true};
 }
 
 void PixelReader::pass() {

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <systemc>
+#include <vector>
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
+#include "models/fpga/frame_geometry.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
 
@@ -17,11 +19,14 @@ namespace stereotlm::fpga {
 // matcher consumes it. With a table, an entry from the LUT reader waits until handle() is called. Without a
 // table, the pixel of a slot from the sequencer is read as soon as the slot arrives. CoreControl decides in
 // which cycle a pixel is read, and in which cycle release() is called.
+//
+// With the word cache it keeps, for each slot of a column, the last word that it has read. A pixel in that word
+// needs no access. All words are forgotten where a strip begins.
 class PixelReader : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t reads = 0;
-    std::uint64_t passed_slots = 0;  // slots without access: empty, or without valid entry
+    std::uint64_t passed_slots = 0;  // slots without access: empty, without valid entry, or in a word kept
     std::uint64_t errors = 0;        // refused accesses; the pixel is then 0
   };
 
@@ -36,11 +41,12 @@ class PixelReader : public sc_core::sc_module {
   StreamIn<TableEntry, PixelReader, &PixelReader::store_entry> entries_in{"entries_in", this};
   StreamIn<Slot, PixelReader, &PixelReader::take> slots_in{"slots_in", this};
 
-  // `width`: pixels of a row of the image.
-  PixelReader(const sc_core::sc_module_name& name, int width);
+  PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   // `image_address`: byte address on the port.
   void start_frame(std::uint64_t image_address);
+  // Whether the entry that arrived last needs an access for its pixel.
+  bool needs_access() const { return needs_access_; }
   // Reads or passes the oldest waiting entry, in the cycle that is `at` from now.
   void handle(const sc_core::sc_time& at);
   // Passes on the oldest pixel, which the matcher consumes.
@@ -61,18 +67,37 @@ class PixelReader : public sc_core::sc_module {
 
  private:
   static constexpr std::size_t kRing = kLaneFifoRule.max;
+  static constexpr std::uint64_t kNoWord = UINT64_MAX;
 
-  void read(std::uint64_t column, std::uint64_t row, const sc_core::sc_time& at);
+  struct Waiting {
+    std::uint32_t entry = 0;
+    bool needs_access = false;
+  };
+
+  // Whether the slot that comes next, whose pixel is `pixel` of the image, needs an access. To be called once
+  // for each slot, in their order.
+  bool next_needs_access(bool is_valid, std::uint64_t pixel);
+  // The next slot is handled.
+  void deliver(std::uint64_t pixel, bool needs_access, const sc_core::sc_time& at);
   void pass();
+  std::uint64_t pixel_of(int column, int row) const {
+    return static_cast<std::uint64_t>(row) * width_ + static_cast<std::uint64_t>(column);
+  }
 
   std::uint64_t width_;
+  std::size_t slots_per_column_;
+  bool has_cache_;
   std::uint64_t image_address_ = 0;
   memory::WordAccess access_{port};
-  std::array<TableEntry, kRing> entries_{};
+  std::array<Waiting, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};
-  // Numbers of entries and pixels since the start of the frame.
-  std::size_t entries_stored_ = 0;
-  std::size_t entries_handled_ = 0;
+  bool needs_access_ = false;
+  // [slot of a column]: the number in the image of the word that the slots before leave in the cache when they
+  // are handled, or kNoWord.
+  std::vector<std::uint64_t> cached_;
+  std::vector<std::uint32_t> words_;  // [slot of a column]: the last word read
+  // Numbers of slots since the start of the frame.
+  std::size_t slots_arrived_ = 0;
   std::size_t pixels_stored_ = 0;
   std::size_t pixels_released_ = 0;
   Stats stats_;

@@ -7,7 +7,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-std::size_t base_index(std::uint64_t address) {
+std::size_t frame_index(std::uint64_t address) {
   return static_cast<std::size_t>((address - registers::kLeftImageBase) / 4);
 }
 
@@ -70,13 +70,13 @@ std::uint32_t RegisterFile::read(std::uint64_t address) const {
     case registers::kFrameCyclesHigh:
       return static_cast<std::uint32_t>(frame_cycles_ >> 32U);
     default:
-      return bases_[base_index(address)];
+      return frame_[frame_index(address)];
   }
 }
 
 void RegisterFile::write(std::uint64_t address, std::uint32_t value, const sc_core::sc_time& delay) {
   if (address != registers::kControl) {
-    bases_[base_index(address)] = value;
+    frame_[frame_index(address)] = value;
     return;
   }
   if ((value & registers::kControlAcknowledge) != 0) {
@@ -93,9 +93,13 @@ void RegisterFile::start(const sc_core::sc_time& delay) {
     return;
   }
   busy_ = true;
-  FrameStart start{{}, delay};
+  FrameStart start;
+  start.delay = delay;
   for (std::size_t port = 0; port < kCorePortCount; ++port)
-    start.bases[port] = bases_[base_index(kPorts[port].base_register)];
+    start.bases[port] = frame_[frame_index(kPorts[port].base_register)];
+  const auto offset = [this](std::uint64_t address) { return static_cast<int>(frame_[frame_index(address)]); };
+  start.joint_offsets = {{{offset(registers::kLeftColumns), offset(registers::kLeftRows)},
+                          {offset(registers::kRightColumns), offset(registers::kRightRows)}}};
   start_out->push(start);
 }
 

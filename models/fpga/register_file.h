@@ -9,17 +9,19 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/register_map.h"
+#include "models/kernels/joint_table.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
-// A start strobe, with the values of the base registers at its time.
+// A start strobe, with the values of the registers at its time.
 struct FrameStart {
   FrameBases bases{};
+  kernels::JointOffsets joint_offsets{};
   sc_core::sc_time delay{};  // time of the strobe, from now
 };
 
-// The register file of register_map.h: start strobe, status, frame base addresses, done interrupt. An access
+// The register file of register_map.h: start strobe, status, bases and offsets of a frame, done interrupt. An access
 // takes no time; there is no DMI. A start strobe takes effect at the annotated time of its access. Debug
 // transport only reads.
 //
@@ -61,7 +63,8 @@ class RegisterFile : public sc_core::sc_module {
   void start(const sc_core::sc_time& delay);
   void drive_done();
 
-  std::array<std::uint32_t, 5> bases_{};  // [(address - kLeftImageBase) / 4]
+  // [(address - kLeftImageBase) / 4]: bases, then offsets
+  std::array<std::uint32_t, (registers::kEnd - registers::kLeftImageBase) / 4> frame_{};
   bool busy_ = false;
   bool done_ = false;
   sc_core::sc_event done_changed_{"done_changed"};

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+
+#include "models/kernels/joint_table.h"
 
 // The registers of the FPGA core, 32 bit each, at byte addresses on its `registers` socket. The paper does
 // not print its map; this one is ours.
@@ -17,8 +20,12 @@
 // | 0x18    | kDisparityBase   | both   | as kLeftImageBase                                            |
 // | 0x1c    | kLeftLutBase     | both   | as kLeftImageBase                                            |
 // | 0x20    | kRightLutBase    | both   | as kLeftImageBase                                            |
+// | 0x24    | kLeftColumns     | both   | the offsets of joint tables (contract 7.3), two's complement |
+// | 0x28    | kLeftRows        | both   | as kLeftColumns                                              |
+// | 0x2c    | kRightColumns    | both   | as kLeftColumns                                              |
+// | 0x30    | kRightRows       | both   | as kLeftColumns                                              |
 //
-// The core takes the bases at the start strobe. It ignores a strobe while it is busy, and a strobe with a
+// The core takes bases and offsets at the start strobe. It ignores a strobe while it is busy, and a strobe with a
 // base in a bank that the board does not have. Both raise error. Error is also raised if memory refuses an
 // access of the running frame, or if the frame works directly on memory and its result may differ from that
 // at Fidelity::kCycle. Error stays until it is acknowledged. One write may acknowledge and start.
@@ -33,13 +40,29 @@ inline constexpr std::uint64_t kRightImageBase = 0x14;
 inline constexpr std::uint64_t kDisparityBase = 0x18;
 inline constexpr std::uint64_t kLeftLutBase = 0x1c;
 inline constexpr std::uint64_t kRightLutBase = 0x20;
-inline constexpr std::uint64_t kEnd = 0x24;
+inline constexpr std::uint64_t kLeftColumns = 0x24;
+inline constexpr std::uint64_t kLeftRows = 0x28;
+inline constexpr std::uint64_t kRightColumns = 0x2c;
+inline constexpr std::uint64_t kRightRows = 0x30;
+inline constexpr std::uint64_t kEnd = 0x34;
 
 inline constexpr std::uint32_t kControlStart = 1U << 0U;
 inline constexpr std::uint32_t kControlAcknowledge = 1U << 1U;
 inline constexpr std::uint32_t kStatusBusy = 1U << 0U;
 inline constexpr std::uint32_t kStatusDone = 1U << 1U;
 inline constexpr std::uint32_t kStatusError = 1U << 2U;
+
+struct RegisterValue {
+  std::uint64_t address;
+  std::uint32_t value;
+};
+// The values of the registers for the offsets of joint tables.
+constexpr std::array<RegisterValue, 4> joint_offsets(const kernels::JointOffsets& offsets) {
+  return {{{kLeftColumns, static_cast<std::uint32_t>(offsets[0].columns)},
+           {kLeftRows, static_cast<std::uint32_t>(offsets[0].rows)},
+           {kRightColumns, static_cast<std::uint32_t>(offsets[1].columns)},
+           {kRightRows, static_cast<std::uint32_t>(offsets[1].rows)}}};
+}
 
 // The value of a base register, and the bank in it.
 constexpr std::uint32_t base(std::uint32_t bank, std::uint32_t first_word) {

@@ -20,7 +20,8 @@ class Sequencer : public sc_core::sc_module {
   };
 
   StreamOut<Slot> left_out{"left_out"};
-  StreamOut<Slot> right_out{"right_out"};
+  // Unbound with joint tables: their reader takes the slots of both sides from left_out.
+  sc_core::sc_port<StreamIf<Slot>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> right_out{"right_out"};
 
   explicit Sequencer(const sc_core::sc_module_name& name) : sc_module(name) {}
 
@@ -29,7 +30,13 @@ class Sequencer : public sc_core::sc_module {
     Stats& stats = stats_[static_cast<std::size_t>(side)];
     ++stats.slots;
     stats.empty_slots += std::uint64_t{place.empty()};
-    (side == Side::kLeft ? left_out : right_out)->push({place.column(), place.row(), place.empty(), at});
+    const Slot slot = {place.column(), place.row(), place.empty(), at};
+    side == Side::kLeft ? left_out->push(slot) : right_out->push(slot);
+  }
+  // Sends it to the reader of joint tables, for both sides.
+  void issue_to_both(const SlotCursor& place, const sc_core::sc_time& at) {
+    issue(Side::kLeft, place, at);
+    count(Side::kRight, {1, std::uint64_t{place.empty()}});
   }
   // Adds the counts of a frame whose slots were not sent.
   void count(Side side, const Stats& frame) {

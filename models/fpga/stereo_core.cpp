@@ -62,13 +62,13 @@ void StereoCore::start_frame(const FrameStart& start) {
     register_file_.refuse_start();
     return;
   }
-  datapath_.start_frame(start.bases);
+  datapath_.start_frame(start.bases, start.joint_offsets);
   errors_before_ = datapath_.errors();
   failed_ = false;
   next_check_ps_ = 0;
   // Cycle 0 is the first that begins at or after the strobe.
   const std::uint64_t cycle = clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay));
-  is_direct_ = config_.fidelity != Fidelity::kCycle && works_directly(start.bases);
+  is_direct_ = config_.fidelity != Fidelity::kCycle && works_directly(start);
   if (is_direct_) {
     frames_.start_direct(cycle, start.bases, direct_frame_.patterns());
   } else {
@@ -80,12 +80,12 @@ void StereoCore::start_frame(const FrameStart& start) {
 }
 
 // Reads the data of the frame. Returns false if the frame cannot work directly on memory.
-bool StereoCore::works_directly(const FrameBases& bases) {
-  direct_frame_.set_buffers(bases);
+bool StereoCore::works_directly(const FrameStart& start) {
+  direct_frame_.set_buffers(start.bases);
   const HostRoute& burst = host_port_.burst();
   if (burst.bank && direct_frame_.hazard_with(host_port_.words_left(), burst.write)) return false;
   return direct_frame_.disparities_are_apart() &&
-         direct_frame_.read(datapath_.direct_memory(direct_frame_.buffers()));
+         direct_frame_.read(datapath_.direct_memory(direct_frame_.buffers(), start.joint_offsets));
 }
 
 // Called after the cycle in which the last write of the frame was granted.

@@ -92,7 +92,7 @@ class StereoCore : public sc_core::sc_module {
   void end_of_elaboration() override { host_port_.set_only_master(registers.size() == 0); }
 
   void start_frame(const FrameStart& start);
-  bool works_directly(const FrameBases& bases);
+  bool works_directly(const FrameStart& start);
   void finish_frame();
   void write_directly();
   void end_frame();

@@ -40,7 +40,8 @@ IdealHost::IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig&
     : sc_module(name),
       config_(config),
       left_table_(checked(left_table, config.buffers.left_lut.has_value(), "left")),
-      right_table_(checked(right_table, config.buffers.right_lut.has_value(), "right")),
+      right_table_(checked(right_table,
+                           config.buffers.right_lut.has_value() || config.buffers.has_joint_tables, "right")),
       source_(source),
       sink_(sink),
       disparity_(config.pixels ? config.width : 0, config.pixels ? config.height : 0) {
@@ -49,6 +50,7 @@ IdealHost::IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig&
       config.buffers.disparities.empty()) {
     throw std::invalid_argument(std::string(this->name()) + ": a list of buffers is empty");
   }
+  if (config.buffers.has_joint_tables) joint_table_ = kernels::join_tables(*left_table_, *right_table_);
   SC_THREAD(run);
 }
 
@@ -62,14 +64,21 @@ void IdealHost::run() {
 }
 
 void IdealHost::load_tables() {
-  const auto load_table = [this](std::optional<std::uint32_t> base, const kernels::RectificationTable* table,
-                                 std::uint64_t base_register) {
-    if (!base) return;
-    preload(*base, table->entries.data(), table->entries.size() * sizeof(std::uint32_t));
-    write_register(base_register, *base);
-  };
-  load_table(config_.buffers.left_lut, left_table_, registers_of::kLeftLutBase);
-  load_table(config_.buffers.right_lut, right_table_, registers_of::kRightLutBase);
+  const fpga::BufferBases& buffers = config_.buffers;
+  if (joint_table_) {
+    for (const auto& [address, value] : registers_of::joint_offsets(joint_table_->offsets))
+      write_register(address, value);
+    load_table(*buffers.left_lut, joint_table_->words, registers_of::kLeftLutBase);
+    return;
+  }
+  if (buffers.left_lut) load_table(*buffers.left_lut, left_table_->entries, registers_of::kLeftLutBase);
+  if (buffers.right_lut) load_table(*buffers.right_lut, right_table_->entries, registers_of::kRightLutBase);
+}
+
+void IdealHost::load_table(std::uint32_t base, const std::vector<std::uint32_t>& words,
+                           std::uint64_t base_register) {
+  preload(base, words.data(), words.size() * sizeof(std::uint32_t));
+  write_register(base_register, base);
 }
 
 bool IdealHost::load_pictures(std::uint32_t left, std::uint32_t right) {

@@ -3,12 +3,14 @@
 #include <tlm_utils/simple_initiator_socket.h>
 
 #include <cstdint>
+#include <optional>
 #include <systemc>
 #include <vector>
 
 #include "models/fpga/buffer_bases.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
+#include "models/kernels/joint_table.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/word_access.h"
 
@@ -38,7 +40,8 @@ class IdealHost : public sc_core::sc_module {
 
   // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Throws
   // std::invalid_argument if a list of buffers is empty, or a side has a table without a buffer or a buffer
-  // without a table.
+  // without a table. With joint tables both tables are needed, which the host joins; it
+  // throws std::invalid_argument if they do not fit.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
@@ -49,6 +52,7 @@ class IdealHost : public sc_core::sc_module {
  private:
   void run();
   void load_tables();
+  void load_table(std::uint32_t base, const std::vector<std::uint32_t>& words, std::uint64_t base_register);
   bool load_pictures(std::uint32_t left, std::uint32_t right);
   // start_frame() and end_frame() return false if an error has been reported; the host then stops.
   bool start_frame();
@@ -63,6 +67,7 @@ class IdealHost : public sc_core::sc_module {
   IdealHostConfig config_;
   const kernels::RectificationTable* left_table_;
   const kernels::RectificationTable* right_table_;
+  std::optional<kernels::JointTable> joint_table_;
   FrameSource& source_;
   FrameSink& sink_;
   memory::WordAccess access_{registers};

@@ -189,7 +189,7 @@ BufferLayout layout_buffers(const BoardConfig& board) {
   require_valid(board);
   std::vector<std::uint64_t> used(board.banks.size(), 0);
   BufferLayout layout;
-  for (const PlacedBuffer& buffer : buffers(board.allocation)) {
+  for (const PlacedBuffer& buffer : buffers(board)) {
     const auto bank = std::find_if(board.banks.begin(), board.banks.end(), [&](const BankConfig& candidate) {
       return candidate.name == buffer.bank;
     });

@@ -129,7 +129,8 @@ struct BufferPlace {
 };
 
 // The places of all buffers (contract 1.5). Buffers that share a bank begin at word 0 and follow each other
-// in the order left_image, right_image, disparity (each in list order), left_lut, right_lut.
+// in the order left_image, right_image, disparity (each in list order), left_lut, right_lut. Joint tables are
+// left_lut; right_lut then has no place.
 struct BufferLayout {
   std::vector<BufferPlace> left_image;
   std::vector<BufferPlace> right_image;

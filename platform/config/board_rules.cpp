@@ -130,7 +130,7 @@ class RuleChecker {
 
   void check_bank_depths() {
     if (!all_valid({"image.width", "image.height", "ssram.banks"})) return;
-    std::vector<PlacedBuffer> known = buffers(board_.allocation);
+    std::vector<PlacedBuffer> known = buffers(board_);
     known.erase(
         std::remove_if(known.begin(), known.end(),
                        [this](const PlacedBuffer& buffer) { return !is_valid_(key_of(buffer.buffer)); }),
@@ -174,7 +174,7 @@ class RuleChecker {
     std::vector<std::string> names;
     names.reserve(board_.banks.size());
     for (const BankConfig& bank : board_.banks) names.push_back(bank.name);
-    for (const PlacedBuffer& buffer : buffers(board_.allocation)) {
+    for (const PlacedBuffer& buffer : buffers(board_)) {
       if (!is_valid_(key_of(buffer.buffer)) ||
           std::find(names.begin(), names.end(), buffer.bank) != names.end())
         continue;

@@ -45,15 +45,18 @@ std::string PlacedBuffer::label() const {
   return index < 0 ? name : name + '[' + std::to_string(index) + ']';
 }
 
-std::vector<PlacedBuffer> buffers(const AllocationConfig& allocation) {
+std::vector<PlacedBuffer> buffers(const BoardConfig& board) {
   std::vector<PlacedBuffer> all;
-  for (const BufferKey& known : kBufferKeys)
-    visit_buffer(allocation, known.buffer, [&](const auto& banks) { add(all, known.buffer, banks); });
+  for (const BufferKey& known : kBufferKeys) {
+    if (board.fpga.joint_tables && known.buffer == Buffer::kRightLut) continue;
+    visit_buffer(board.allocation, known.buffer, [&](const auto& banks) { add(all, known.buffer, banks); });
+  }
   return all;
 }
 
-void move_buffer(AllocationConfig& allocation, const PlacedBuffer& buffer, const std::string& bank) {
-  visit_buffer(allocation, buffer.buffer, [&](auto& banks) { bank_at(banks, buffer.index) = bank; });
+void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::string& bank) {
+  visit_buffer(board.allocation, buffer.buffer, [&](auto& banks) { bank_at(banks, buffer.index) = bank; });
+  if (board.fpga.joint_tables) board.allocation.right_lut = board.allocation.left_lut;
 }
 
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image) {
@@ -64,7 +67,7 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
 fpga::BufferBases buffer_bases(const BoardConfig& board) {
   const BufferLayout layout = layout_buffers(board);
   return {words_of(layout.left_image), words_of(layout.right_image), words_of(layout.disparity),
-          word_of(layout.left_lut), word_of(layout.right_lut)};
+          word_of(layout.left_lut), word_of(layout.right_lut), board.fpga.joint_tables};
 }
 
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
@@ -76,7 +79,7 @@ std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
     if (table) first_words.push_back(*table);
   }
   std::vector<AddressRange> ranges;
-  for (const PlacedBuffer& buffer : buffers(board.allocation)) {
+  for (const PlacedBuffer& buffer : buffers(board)) {
     const std::uint64_t first = fpga::registers::base_address(first_words[ranges.size()]);
     ranges.push_back({first, first + 4 * buffer_words(buffer, board.image)});
   }

@@ -68,11 +68,12 @@ struct PlacedBuffer {
   std::string path() const { return "allocation." + label(); }  // "allocation.left_image[0]"
 };
 
-// All buffers, in the order of Buffer, those of a list in the order of the list.
-std::vector<PlacedBuffer> buffers(const AllocationConfig& allocation);
+// All buffers, in the order of Buffer, those of a list in the order of the list. Joint tables are one buffer,
+// the one of kLeftLut.
+std::vector<PlacedBuffer> buffers(const BoardConfig& board);
 
-// Puts a buffer of the allocation into another bank.
-void move_buffer(AllocationConfig& allocation, const PlacedBuffer& buffer, const std::string& bank);
+// Puts a buffer of the board into another bank.
+void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::string& bank);
 
 // Size of a buffer in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "models/kernels/joint_table.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
@@ -40,9 +41,18 @@ std::optional<std::string> calibration_buffer_problem(const BoardConfig& board) 
                      key_of(allocation.left_lut ? Buffer::kRightLut : Buffer::kLeftLut));
 }
 
+std::optional<std::string> joint_tables_problem(const Tables& tables) {
+  const auto found = kernels::joint_problems(*tables.left, *tables.right);
+  if (found.empty()) return std::nullopt;
+  return fmt::format("{}", fmt::join(found, "; "));
+}
+
 void check_tables(const BoardConfig& board, const Tables& tables) {
   check(tables.left, board, board.allocation.left_lut.has_value(), "left");
   check(tables.right, board, board.allocation.right_lut.has_value(), "right");
+  if (board.fpga.joint_tables) {
+    if (const auto problem = joint_tables_problem(tables)) throw std::invalid_argument(*problem);
+  }
 }
 
 }  // namespace stereotlm::platform

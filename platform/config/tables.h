@@ -31,8 +31,13 @@ std::optional<std::string> calibration_size_problem(const BoardConfig& board, in
 // It is nullopt if both sides have one.
 std::optional<std::string> calibration_buffer_problem(const BoardConfig& board);
 
+// The reasons for which the tables of a calibration cannot be joined into one table for both sides, as text;
+// nullopt if they can. Both must be given.
+std::optional<std::string> joint_tables_problem(const Tables& tables);
+
 // Throws std::invalid_argument if a side has a table but no buffer for it, or a buffer but no table; if a
-// table has another size than the images; or if a table has problems.
+// table has another size than the images; if a table has problems; or if the board has joint tables, but these do
+// not fit into one.
 void check_tables(const BoardConfig& board, const Tables& tables);
 
 }  // namespace stereotlm::platform

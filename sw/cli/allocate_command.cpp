@@ -229,7 +229,7 @@ std::string space_text(const Context& context, int banks) {
   const AllocationSearch& search = context.search;
   std::string text =
       fmt::format("{}: {} buffers in at most {} of {} banks: {} different allocations, {} of them fit\n",
-                  context.board.name, platform::buffers(context.board.allocation).size(), banks,
+                  context.board.name, platform::buffers(context.board).size(), banks,
                   context.board.banks.size(), search.placements(), search.fitting());
   if (search.by_frames()) {
     return text +

@@ -53,7 +53,7 @@ struct Group {
 
 // The buffers that a frame uses.
 std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
-  std::vector<PlacedBuffer> all = platform::buffers(board.allocation);
+  std::vector<PlacedBuffer> all = platform::buffers(board);
   std::map<platform::Buffer, std::uint64_t> lengths;
   for (const PlacedBuffer& buffer : all) ++lengths[buffer.buffer];
   const auto is_of_another = [&](const PlacedBuffer& buffer) {

@@ -89,7 +89,8 @@ std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& 
   auto calibration = runs::load_calibration(path, nullptr, problems, named);
   if (calibration) {
     const calib::Rig& rig = calibration->calibration->rig;
-    const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height);
+    const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height,
+                                              platform::joint_tables_problem(calibration->tables));
     if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
   }
   problems.check();

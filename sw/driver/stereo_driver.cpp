@@ -7,6 +7,7 @@
 #include "models/capture/capture_registers.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/register_map.h"
+#include "models/kernels/joint_table.h"
 #include "models/pci/bridge_registers.h"
 
 namespace stereotlm::driver {
@@ -70,15 +71,27 @@ StereoDriver::StereoDriver(const DriverConfig& config, std::vector<std::uint32_t
       right_table_(std::move(right_table)),
       listener_(listener) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  const auto check = [this](const char* side, const std::optional<std::uint32_t>& lut, std::size_t entries) {
-    const std::uint64_t expected = lut ? table_bytes(config_) / 4 : 0;
+  const auto check = [this](const char* side, bool is_used, std::size_t entries) {
+    const std::uint64_t expected = is_used ? table_bytes(config_) / 4 : 0;
     if (entries != expected) {
       throw std::invalid_argument(std::string(side) + " table = " + std::to_string(entries) +
                                   " entries: must have " + std::to_string(expected));
     }
   };
-  check("left", config.buffers.left_lut, left_table_.size());
-  check("right", config.buffers.right_lut, right_table_.size());
+  const fpga::BufferBases& buffers = config.buffers;
+  check("left", buffers.left_lut.has_value(), left_table_.size());
+  check("right", buffers.right_lut.has_value() || buffers.has_joint_tables, right_table_.size());
+  if (buffers.has_joint_tables) join_tables();
+}
+
+void StereoDriver::join_tables() {
+  const auto table = [this](std::vector<std::uint32_t>& entries) {
+    return kernels::RectificationTable{config_.width, config_.height, std::move(entries)};
+  };
+  kernels::JointTable joint = kernels::join_tables(table(left_table_), table(right_table_));
+  left_table_ = std::move(joint.words);
+  right_table_.clear();
+  joint_offsets_ = joint.offsets;
 }
 
 void StereoDriver::run(host::HostBus& bus) {
@@ -117,6 +130,9 @@ void StereoDriver::upload_tables() {
     pieces.push_back({host, *lut, table.size(), false});
     host += table.size() * 4;
   };
+  if (config_.buffers.has_joint_tables) {
+    for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_)) core(address, value);
+  }
   add(config_.buffers.left_lut, left_table_);
   add(config_.buffers.right_lut, right_table_);
   if (pieces.empty()) return;

@@ -8,6 +8,7 @@
 
 #include "models/fpga/buffer_bases.h"
 #include "models/host/program.h"
+#include "models/kernels/joint_table.h"
 #include "platform/device_map.h"
 
 // The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
@@ -56,9 +57,9 @@ class FrameListener {
 // reports an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
-  // Entries of the tables, row by row (contract 1.1); empty for a side without table. `listener` outlives the
-  // driver. Throws std::invalid_argument if the configuration has problems or a table does not have one entry
-  // per pixel.
+  // Entries of the tables, row by row (contract 1.1); empty for a side without table. The driver joins those of
+  // joint tables. `listener` outlives the driver. Throws std::invalid_argument if the configuration has problems,
+  // a table does not have one entry per pixel, or joint tables do not fit.
   StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
                std::vector<std::uint32_t> right_table, FrameListener& listener);
 
@@ -88,6 +89,7 @@ class StereoDriver : public host::Program {
     bool to_host = false;
   };
 
+  void join_tables();
   void upload_tables();
   void handle_interrupts();
   void handle_captures();
@@ -109,8 +111,10 @@ class StereoDriver : public host::Program {
   std::uint64_t image_bytes() const;
 
   DriverConfig config_;
+  // The words of the tables; the left one is that of joint tables.
   std::vector<std::uint32_t> left_table_;
   std::vector<std::uint32_t> right_table_;
+  kernels::JointOffsets joint_offsets_{};
   FrameListener& listener_;
   host::HostBus* bus_ = nullptr;
 

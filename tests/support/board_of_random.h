@@ -15,6 +15,8 @@ inline constexpr RandomKnobs kKnobsOfTheModels = [] {
   RandomKnobs knobs;
   knobs.large_images = true;
   knobs.units = true;
+  knobs.joint_tables = true;
+  knobs.word_cache = true;
   knobs.qdr = true;
   return knobs;
 }();

@@ -202,12 +202,12 @@ class Steps {
       return bank.name == name || differ_in_case(bank.name, name);
     };
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
-    for (const PlacedBuffer& buffer : platform::buffers(board_.allocation)) {
+    for (const PlacedBuffer& buffer : platform::buffers(board_)) {
       if (buffers_in(buffer.bank) < 2) continue;
       BoardConfig changed = board_;
       changed.banks.push_back(bank_of(buffer.bank));
       changed.banks.back().name = name;
-      move_buffer(changed.allocation, buffer, name);
+      move_buffer(changed, buffer, name);
       KnobStep step{"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), "in one of its own",
                     std::move(changed)};
       step.only_best = true;
@@ -220,8 +220,8 @@ class Steps {
       for (const BankConfig& taking : board_.banks) {
         if (left.name == taking.name || buffers_in(left.name) == 0 || buffers_in(taking.name) == 0) continue;
         BoardConfig changed = board_;
-        for (const PlacedBuffer& buffer : platform::buffers(board_.allocation)) {
-          if (buffer.bank == left.name) move_buffer(changed.allocation, buffer, taking.name);
+        for (const PlacedBuffer& buffer : platform::buffers(board_)) {
+          if (buffer.bank == left.name) move_buffer(changed, buffer, taking.name);
         }
         KnobStep step{"a bank less", left.name, "into " + taking.name, std::move(changed)};
         step.only_best = true;
@@ -282,7 +282,7 @@ class Steps {
 
   std::size_t buffers_in(const std::string& bank) const {
     std::size_t count = 0;
-    for (const PlacedBuffer& buffer : platform::buffers(board_.allocation))
+    for (const PlacedBuffer& buffer : platform::buffers(board_))
       count += buffer.bank == bank ? 1 : 0;
     return count;
   }

@@ -39,18 +39,22 @@ Point Plan::point(std::uint64_t number) const {
   }
   auto problem = size_problem(reading.board);
   if (!problem) problem = buffer_problem(reading.board);
+  if (!problem) problem = joint_problem(reading.board);
   if (!problem) return make_point(number, reading.board, run);
   return impossible_point(number, to_yaml(reading.board), reading.board, run,
                           fmt::format("{}: {}", kCalibrationPath, *problem));
 }
 
-std::optional<std::string> Plan::use_calibration(const std::string& sha256, int width, int height) {
+std::optional<std::string> Plan::use_calibration(const std::string& sha256, int width, int height,
+                                                 const std::optional<std::string>& joint_problem) {
   run_.calibration = sha256;
   tables_width_ = width;
   tables_height_ = height;
-  const auto problem = varies("image") ? std::nullopt : size_problem(*base_board_);
-  if (problem || varies("allocation")) return problem;
-  return buffer_problem(*base_board_);
+  tables_joint_problem_ = joint_problem;
+  auto problem = varies("image") ? std::nullopt : size_problem(*base_board_);
+  if (!problem && !varies("allocation")) problem = buffer_problem(*base_board_);
+  if (!problem && !varies("fpga.tables")) problem = this->joint_problem(*base_board_);
+  return problem;
 }
 
 std::optional<std::string> Plan::size_problem(const platform::BoardConfig& board) const {
@@ -61,6 +65,10 @@ std::optional<std::string> Plan::size_problem(const platform::BoardConfig& board
 std::optional<std::string> Plan::buffer_problem(const platform::BoardConfig& board) const {
   if (run_.calibration.empty()) return std::nullopt;
   return platform::calibration_buffer_problem(board);
+}
+
+std::optional<std::string> Plan::joint_problem(const platform::BoardConfig& board) const {
+  return board.fpga.joint_tables ? tables_joint_problem_ : std::nullopt;
 }
 
 bool Plan::varies(const std::string& path) const {

@@ -48,7 +48,8 @@ class Plan : public Points {
   // Gives all points the tables of a calibration for images of width x height, in place of the identity. A
   // point whose board cannot have these tables becomes impossible. If that holds for all points, returns the
   // broken rule, else nullopt. `sha256`: of the tables.
-  std::optional<std::string> use_calibration(const std::string& sha256, int width, int height);
+  std::optional<std::string> use_calibration(const std::string& sha256, int width, int height,
+                                             const std::optional<std::string>& joint_problem = std::nullopt);
 
  private:
   friend class PlanReader;
@@ -77,6 +78,7 @@ class Plan : public Points {
   // a buffer for a table. Nullopt if there is no such reason, or no calibration.
   std::optional<std::string> size_problem(const platform::BoardConfig& board) const;
   std::optional<std::string> buffer_problem(const platform::BoardConfig& board) const;
+  std::optional<std::string> joint_problem(const platform::BoardConfig& board) const;
   bool varies(const std::string& path) const;  // whether the key or a key below it varies
 
   std::string path_;
@@ -85,6 +87,7 @@ class Plan : public Points {
   std::string calibration_place_;
   int tables_width_ = 0;   // pixels
   int tables_height_ = 0;  // pixels
+  std::optional<std::string> tables_joint_problem_;  // why they cannot be joined
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
   std::vector<std::string> banks_;

@@ -22,7 +22,7 @@ constexpr double kRounding = 1e-9;
 // The banks of all buffers in one text, as a key of frame_numbers_.
 std::string key_of(const platform::BoardConfig& board) {
   std::string key;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board.allocation)) key += buffer.bank + ' ';
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) key += buffer.bank + ' ';
   return key;
 }
 

@@ -27,7 +27,7 @@ class Placements {
       : board_(board),
         most_banks_(most_banks),
         visit_(visit),
-        buffers_(platform::buffers(board.allocation).size()),
+        buffers_(platform::buffers(board).size()),
         used_(board.banks.size()) {}
 
   void place_next() {
@@ -93,7 +93,7 @@ int banks_used(const Placement& placement) {
 
 bool fits(const BoardConfig& board, const Placement& placement) {
   std::vector<std::uint64_t> words(board.banks.size());
-  const std::vector<PlacedBuffer> buffers = platform::buffers(board.allocation);
+  const std::vector<PlacedBuffer> buffers = platform::buffers(board);
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     words[static_cast<std::size_t>(placement[i])] += platform::buffer_words(buffers[i], board.image);
   }
@@ -110,10 +110,10 @@ void for_each_placement(const BoardConfig& board, int most_banks,
 
 BoardConfig placed(const BoardConfig& board, const Placement& placement) {
   BoardConfig result = board;
-  const std::vector<PlacedBuffer> buffers = platform::buffers(board.allocation);
+  const std::vector<PlacedBuffer> buffers = platform::buffers(board);
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const BankConfig& bank = board.banks[static_cast<std::size_t>(placement[i])];
-    platform::move_buffer(result.allocation, buffers[i], bank.name);
+    platform::move_buffer(result, buffers[i], bank.name);
   }
   return result;
 }
@@ -135,15 +135,16 @@ BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement,
     first += length;
   }
   for (auto* table : {&allocation.left_lut, &allocation.right_lut}) {
-    if (*table) *table = banks.name(placement[first++]);
+    if (*table && first < placement.size()) *table = banks.name(placement[first++]);
   }
+  if (board.fpga.joint_tables) allocation.right_lut = allocation.left_lut;
   return result;
 }
 
 std::string allocation_text(const platform::BoardConfig& board) {
   std::string text;
   std::optional<platform::Buffer> last;
-  for (const PlacedBuffer& buffer : platform::buffers(board.allocation)) {
+  for (const PlacedBuffer& buffer : platform::buffers(board)) {
     if (buffer.buffer != last) text += (text.empty() ? "" : ", ") + std::string(name_of(buffer.buffer));
     text += ' ' + buffer.bank;
     last = buffer.buffer;

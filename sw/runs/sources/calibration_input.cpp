@@ -91,6 +91,8 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
                               calibration.rectification, calibration.disparity_offset)) {
       throw at_path("matrices and disparity_offset: must be those that its tables were made with");
     }
+    if (board == nullptr || !board->fpga.joint_tables) return;
+    if (const auto problem = platform::joint_tables_problem(input.tables)) throw at_path(*problem);
   });
   if (!is_right) return std::nullopt;
   return input;

@@ -41,7 +41,7 @@ std::vector<Placement> fitting_placements() {
 
 int banks_of(const BoardConfig& board) {
   std::set<std::string> names;
-  for (const auto& buffer : platform::buffers(board.allocation)) names.insert(buffer.bank);
+  for (const auto& buffer : platform::buffers(board)) names.insert(buffer.bank);
   return static_cast<int>(names.size());
 }
 
@@ -69,7 +69,7 @@ TEST(Placements, AreVisitedOnceForEachExchangeOfEqualBanks) {
     const BoardConfig board = fpl2003({std::string("ssram.banks=") + banks,
                                        "allocation={left_image: a, right_image: a, disparity: [a, b], "
                                        "left_lut: c, right_lut: none}"});
-    ASSERT_EQ(platform::buffers(board.allocation).size(), 5U);
+    ASSERT_EQ(platform::buffers(board).size(), 5U);
     for (int most_banks = 1; most_banks <= 4; ++most_banks) {
       std::set<Placement> expected;
       for (int code = 0; code < 1024; ++code) {
