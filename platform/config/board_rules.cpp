@@ -112,19 +112,15 @@ class RuleChecker {
     const auto& left = board_.allocation.left_lut;
     const auto& right = board_.allocation.right_lut;
     if (!board_.fpga.joint_tables || (left && left == right)) return;
-    const bool none_on_left = !left;
-    const std::string left_key = key_of(Buffer::kLeftLut);
-    const std::string right_key = key_of(Buffer::kRightLut);
-    const std::vector<std::string> involved = {none_on_left ? left_key : right_key,
-                                               none_on_left ? right_key : left_key, "fpga.tables"};
+    const Buffer wrong = left ? Buffer::kRightLut : Buffer::kLeftLut;
+    const Buffer other = left ? Buffer::kLeftLut : Buffer::kRightLut;
+    const std::vector<std::string> involved = {key_of(wrong), key_of(other), "fpga.tables"};
     if (!all_valid(involved)) return;
-    const std::string value = none_on_left ? "none" : right.value_or("none");
-    const std::string rule = left || right
-                                 ? fmt::format("must be {}, the bank of {}", left ? *left : *right,
-                                               left ? name_of(Buffer::kLeftLut) : name_of(Buffer::kRightLut))
-                                 : "must be a bank, and right_lut the same bank";
+    const std::optional<std::string>& bank = left ? left : right;
+    const std::string rule = bank ? fmt::format("must be {}, the bank of {}", *bank, name_of(other))
+                                  : "must be a bank, and right_lut the same bank";
     found_.push_back({fmt::format("{} = {}: {}, because fpga.tables is joint; or set fpga.tables to separate",
-                                  involved.front(), value, rule),
+                                  key_of(wrong), left ? right.value_or("none") : "none", rule),
                       involved});
   }
 

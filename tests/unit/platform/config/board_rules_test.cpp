@@ -314,13 +314,13 @@ TEST(BoardTables, AreInOneBankIfTheyAreJoint) {
   EXPECT_FALSE(load_board("fpl2003").fpga.joint_tables);
   const std::string end = ", because fpga.tables is joint; or set fpga.tables to separate";
   EXPECT_EQ(refusal_of(text("bank6", "bank7")),
-            "board.yaml:2:16: allocation.right_lut = bank7: must be bank6, the bank of left_lut" + end);
+            "board.yaml:3:42: allocation.right_lut = bank7: must be bank6, the bank of left_lut" + end);
   EXPECT_EQ(refusal_of(text("bank6", "none")),
-            "board.yaml:2:16: allocation.right_lut = none: must be bank6, the bank of left_lut" + end);
+            "board.yaml:3:42: allocation.right_lut = none: must be bank6, the bank of left_lut" + end);
   EXPECT_EQ(refusal_of(text("none", "bank7")),
-            "board.yaml:2:16: allocation.left_lut = none: must be bank7, the bank of right_lut" + end);
+            "board.yaml:3:24: allocation.left_lut = none: must be bank7, the bank of right_lut" + end);
   EXPECT_EQ(refusal_of(text("none", "none")),
-            "board.yaml:2:16: allocation.left_lut = none: must be a bank, and right_lut the same bank" + end);
+            "board.yaml:3:24: allocation.left_lut = none: must be a bank, and right_lut the same bank" + end);
   EXPECT_EQ(refusal_of_board("fpl2003", {"fpga.tables=joint"}),
             "--set fpga.tables: allocation.right_lut = bank7: must be bank6, the bank of left_lut" + end);
 }
