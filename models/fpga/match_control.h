@@ -14,6 +14,7 @@ class MatchControl {
   explicit MatchControl(const FrameGeometry& geometry) : geometry_(geometry) {}
 
   void start_frame() {
+    worked_before_frame_ = worked();
     slots_left_ = geometry_.slots;
     drain_left_ = geometry_.drain_cycles;
     pass_ = 0;
@@ -33,11 +34,7 @@ class MatchControl {
   // Works for a cycle. Returns true if this completes a group of four columns. Groups are counted from column
   // result_delay_columns % 4 on.
   bool work() {
-    ++worked_;
-    if (!consumes()) {
-      ++pass_;
-      return false;
-    }
+    if (++pass_ < geometry_.passes) return false;
     pass_ = 0;
     --(draining() ? drain_left_ : slots_left_);
     if (++k_ < geometry_.slots_per_column) return false;
@@ -78,10 +75,9 @@ class MatchControl {
   }
   // Skips columns, at most uniform_columns().
   void skip_columns(std::uint64_t columns) {
-    const std::uint64_t consumed = columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
-    (draining() ? drain_left_ : slots_left_) -= consumed;
+    (draining() ? drain_left_ : slots_left_) -=
+        columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
     columns_ += columns;
-    worked_ += consumed * static_cast<std::uint64_t>(geometry_.passes);
   }
   // The number of cycles of the frame in which the matcher has still to work.
   std::uint64_t cycles_left() const {
@@ -89,19 +85,23 @@ class MatchControl {
            static_cast<std::uint64_t>(pass_);
   }
   // The number of cycles in which the matcher has worked, over all frames.
-  std::uint64_t worked() const { return worked_; }
+  std::uint64_t worked() const {
+    return worked_before_frame_ +
+           (geometry_.slots + geometry_.drain_cycles) * static_cast<std::uint64_t>(geometry_.passes) -
+           cycles_left();
+  }
 
  private:
   FrameGeometry geometry_;
   // The column from which on fewer rows of a strip lie inside the image; never reached if all strips lie inside.
   std::uint64_t fewer_rows_column_ =
       geometry_.last_rows == geometry_.rows ? UINT64_MAX : geometry_.last_strip_column;
-  std::uint64_t slots_left_ = 0;
-  std::uint64_t drain_left_ = 0;
+  std::uint64_t slots_left_ = geometry_.slots;
+  std::uint64_t drain_left_ = geometry_.drain_cycles;
   int pass_ = 0;               // cycles worked on the slot, or the consume-cycle, that is being worked on
   int k_ = 0;                  // slots of the current column that have been consumed
   std::uint64_t columns_ = 0;  // columns consumed
-  std::uint64_t worked_ = 0;
+  std::uint64_t worked_before_frame_ = 0;
 };
 
 }  // namespace stereotlm::fpga
