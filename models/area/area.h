@@ -9,7 +9,7 @@
 #include "models/fpga/core_config.h"
 
 // Estimates the FPGA resources that the stereo core takes, part by part. The paper's figures 5, 6 and 8 and
-// sections 1 and 2 of the contract give the adders, comparators, shift registers and memories. Their widths
+// sections 1, 2 and 7 of the contract give the adders, comparators, shift registers and memories. Their widths
 // follow from the 8 bits of a pixel, the window and the number of disparities. Only one constant, the number
 // of slices per LUT, is fitted to the paper's Table 2 (sw/paper/area_fit.h).
 //

@@ -31,19 +31,19 @@ def compared(point, row):
     ms = row["unit"] == "ms"
     hertz = point["clock_mhz"] * 1e6
     simple = pixels * passes / hertz
-    modelled = point["cycles"] / hertz
+    modelled = 1 / point["rate"]
+    cycles = round(hertz * modelled)
     figure = (lambda seconds: 1000 * seconds) if ms else (lambda seconds: 1 / seconds)
     # The clock at which the printed figure is W * H * S cycles a frame, for the largest and the smallest number that
     # is printed so.
     half = half_unit(row["value"])
     rates = sorted(1000 / value if ms else value for value in (printed - half, printed + half))
     clocks = [pixels * passes * rate / 1e6 for rate in rates]
-    border = point["cycles"] / (pixels * passes) - 1
     return {"row": row["row"], "design": row["design"], "kind": row["kind"], "unit": row["unit"],
             "passes": passes, "clock_mhz": point["clock_mhz"], "printed": row["value"],
             "pixels_times_passes": round(figure(simple), 3), "model": round(figure(modelled), 3),
             "deviation_percent": round(100 * (figure(modelled) / printed - 1), 2),
-            "cycles": point["cycles"], "more_cycles_percent": round(100 * border, 2),
+            "cycles": cycles, "more_cycles_percent": round(100 * (cycles / (pixels * passes) - 1), 2),
             "clock_from_mhz": round(clocks[0], 1), "clock_to_mhz": round(clocks[1], 1),
             "window": point["window"], "line_block_rams": point["block_rams"],
             "printed_block_rams": (re.findall(r"BRAM18 (\d+)", row["note"]) or [""])[0]}
@@ -53,7 +53,7 @@ def table(found):
     header = ["design", "row", "passes", "clock, MHz", "printed", "W * H * S / f", "model", "model against printed, %",
               "cycles more than W * H * S, %", "clock that the print needs, MHz"]
     return study.markdown(header, [
-        [row["design"], row["row"], row["passes"], row["clock_mhz"], f"{row['printed']} {row['unit']}",
+        [row["design"], row["row"], row["passes"], f"{row['clock_mhz']:g}", f"{row['printed']} {row['unit']}",
          f"{row['pixels_times_passes']:.2f}", f"{row['model']:.2f}", f"{row['deviation_percent']:+.2f}",
          f"{row['more_cycles_percent']:+.2f}", f"{row['clock_from_mhz']:.1f}..{row['clock_to_mhz']:.1f}"] for row in found])
 
@@ -89,8 +89,8 @@ smallest number that is printed so.
 
 - **Vitis, estimates.** All six are W * H * S / f to the last digit. So they leave out the border: a window of n rows
   needs (n-1)/2 rows more than the image has before the last result can leave, and the pipeline has to empty. The
-  model has both and takes 0.2 % (5x5) to 0.9 % (21x21) longer. The printed figure is the time from frame to frame of
-  a design that begins the next frame at once; as the latency of one frame, which it is called, it is too short.
+  model has both and takes 0.2 % (5x5) to 0.9 % (21x21) longer. The printed figure can be the time from frame to frame
+  of a design that begins the next frame at once; as the latency of one frame, which it is called, it is too short.
 - **Vitis, measured on the U200.** 11x11 with 32 disparities on 32 units is the same design as the row HD_11_32_32,
   whose estimate is 144.7 frames/s. Measured are 135. The model, whose memories never stall, gives 144.0. Both sizes
   miss the model by about the same part, 6 %: what is lost is lost for each pixel, as when memory does not deliver one
@@ -108,12 +108,12 @@ smallest number that is printed so.
 
 {block_rams}
 
-Vitis takes 2 block RAMs for each row of the window: one line of 1920 pixels for each side, 8 of the 9 bits of a
-2K x 9. The model packs the rows side by side and uses the ninth bit. What it lacks in all rows are the parts that it
+Vitis takes 2 block RAMs more for each row of the window. That is one for each line of 1920 pixels of each side, if 8
+of the 9 bits of a 2K x 9 are used. The model packs the rows side by side and uses the ninth bit. What it lacks in all rows are the parts that it
 does not have: another filter, queues, interfaces to memory.
 
-**Limits.** Only sizes, passes and clocks are compared: these designs compute other things (semi-global matching,
-census with adaptive windows), and the model counts no resources of their FPGAs but block RAM. A row that agrees shows
+**Limits.** Only sizes, passes and clocks are compared, not what the designs compute, and no resources of their FPGAs
+but block RAM. A row that agrees shows
 that the design takes one pixel a clock and pass; it does not show that the model would run at that clock.
 """
 
@@ -121,7 +121,7 @@ that the design takes one pixel a clock and pass; it does not show that the mode
 def main():
     rows = published()
     points = study.points(sys.argv[1], name="name", disparities="matcher.disparities", units="matcher.units",
-                          window="matcher.window", clock_mhz="fpga.clock_mhz", cycles="cycles",
+                          window="matcher.window", clock_mhz="fpga.clock_mhz", rate="frames_per_second.core",
                           block_rams="area.block_rams")
     by_name = {point["name"]: point for point in points}
     if set(by_name) != set(rows):
