@@ -85,24 +85,30 @@ class Steps {
     }
   }
 
-  // Joint tables are in the bank of the left one. Of separate tables the right one gets a bank without
-  // buffers, if there is one that can hold it.
+  // Joint tables go into the bank of either table. Of separate ones the right one goes into the first bank
+  // without buffers that can hold it.
   void add_tables() {
-    BoardConfig changed = board_;
-    platform::AllocationConfig& allocation = changed.allocation;
+    const auto& left = board_.allocation.left_lut;
+    const auto& right = board_.allocation.right_lut;
+    if (!left || !right) return;
     if (!board_.fpga.joint_tables) {
-      if (!allocation.left_lut || !allocation.right_lut) return;
-      changed.fpga.joint_tables = true;
-      allocation.right_lut = allocation.left_lut;
-      return add({"fpga.tables", "separate", "joint", std::move(changed)});
+      for (const std::string& bank : std::set<std::string>{*left, *right}) {
+        BoardConfig changed = board_;
+        changed.fpga.joint_tables = true;
+        changed.allocation.left_lut = changed.allocation.right_lut = bank;
+        add_best({"fpga.tables", "separate", "joint in " + bank, std::move(changed)});
+      }
+      return;
     }
+    BoardConfig changed = board_;
     changed.fpga.joint_tables = false;
     const std::int64_t words = std::int64_t{board_.image.width} * board_.image.height;
     const auto free = std::find_if(board_.banks.begin(), board_.banks.end(), [&](const BankConfig& bank) {
       return buffers_in(bank.name) == 0 && bank.words >= words;
     });
-    if (free != board_.banks.end()) allocation.right_lut = free->name;
-    add({"fpga.tables", "joint", "separate", std::move(changed)});
+    if (free != board_.banks.end()) changed.allocation.right_lut = free->name;
+    std::string to = "separate, right_lut in " + *changed.allocation.right_lut;
+    add_best({"fpga.tables", "joint", std::move(to), std::move(changed)});
   }
 
   void add_costs() {
@@ -208,10 +214,8 @@ class Steps {
       changed.banks.push_back(bank_of(buffer.bank));
       changed.banks.back().name = name;
       move_buffer(changed, buffer, name);
-      KnobStep step{"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), "in one of its own",
-                    std::move(changed)};
-      step.only_best = true;
-      add(std::move(step));
+      add_best({"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), "in one of its own",
+                std::move(changed)});
     }
   }
 
@@ -223,9 +227,7 @@ class Steps {
         for (const PlacedBuffer& buffer : platform::buffers(board_)) {
           if (buffer.bank == left.name) move_buffer(changed, buffer, taking.name);
         }
-        KnobStep step{"a bank less", left.name, "into " + taking.name, std::move(changed)};
-        step.only_best = true;
-        add(std::move(step));
+        add_best({"a bank less", left.name, "into " + taking.name, std::move(changed)});
       }
     }
   }
@@ -235,6 +237,11 @@ class Steps {
  private:
   void add(KnobStep step) {
     if (platform::problems(step.board).empty()) steps_.push_back(std::move(step));
+  }
+  // One of several alternatives.
+  void add_best(KnobStep step) {
+    step.only_best = true;
+    add(std::move(step));
   }
 
   void add_key(const Key& key, const platform::IntegerKey& integer) {
@@ -282,8 +289,7 @@ class Steps {
 
   std::size_t buffers_in(const std::string& bank) const {
     std::size_t count = 0;
-    for (const PlacedBuffer& buffer : platform::buffers(board_))
-      count += buffer.bank == bank ? 1 : 0;
+    for (const PlacedBuffer& buffer : platform::buffers(board_)) count += buffer.bank == bank ? 1 : 0;
     return count;
   }
   const BankConfig& bank_of(const std::string& name) const {

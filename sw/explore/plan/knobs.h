@@ -23,7 +23,7 @@ struct KnobStep {
 // One step of every knob of a board, as long as the changed board is valid:
 //   a number: up and down by one (the window by two); a word: each other one
 //   matcher.units: from all to half of them; from a number up and down by one, and back to all
-//   fpga.tables: joint tables are in the bank of the left one; of separate ones the right one gets a bank
+//   fpga.tables: joint tables are in the bank of either table; of separate ones the right one gets a bank
 //   without buffers, if there is one that can hold it
 //   matcher.cost: each other one (census with 5 x 5 pixels); census also with the next sizes
 //   fpga.priority: two neighbours exchanged

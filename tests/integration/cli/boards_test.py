@@ -62,8 +62,8 @@ class Check(ProgramTest):
             (["check", "fpl2003", *sets("[a,b]")], "--set [a,b]: [a,b] = (nothing)"),
             (["check", "fpl2003", *sets(f"{words}=307199")], f"{words} = 307199: 1 words missing"),
             (["bounds", "fpl2003", *sets("image.width=3")], "image.width = 3"),
-            (["check", "fpl2003", *sets("image.width=4096")],
-             "image.width = 4096: at most 2048 with a look-up table; set allocation.left_lut and "
+            (["check", "fpl2003", *sets("image.width=2052", "image.height=4")],
+             "image.width = 2052: at most 2048 with a look-up table; set allocation.left_lut and "
              "allocation.right_lut to none, or a smaller image"),
             (["check", "fpl2003", *sets("matcher.units=81")],
              "matcher.units = 81: 1..disparities, which is 80, or all"),

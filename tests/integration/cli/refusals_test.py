@@ -174,7 +174,7 @@ class Pictures(ProgramTest):
             (self.file("empty.png"), "an empty file"),
             (self.file("cut.pgm", self.left.read_bytes()[:-1]), "truncated"),
             (self.file("text.png", "This is a text.\n" * 10), "not a picture"),
-            (self.file("comment.pgm", comment), "30000x30000 pixels: a board's images are 2048x2048 at most"),
+            (self.file("comment.pgm", comment), "30000x30000 pixels: a board's images are 8192x8192 at most"),
             *((self.picture(*wrong), f"{wrong[0]}x{wrong[1]} {size}") for wrong in sizes),
         ):
             with self.subTest(reason=reason):
