@@ -259,7 +259,7 @@ class RefusedCalibrations(CalibrateTest):
 
 class RefusedPictures(CalibrateTest):
     def test_each_reason_is_named_and_nothing_is_written(self):
-        large = self.file("large.pgm", "P5\n2052 2052\n255\n")
+        large = self.file("large.pgm", b"P5\n2052 2052\n255\n" + bytes(2052 * 2052))
         text = self.file("text.png", "no picture")
         twice = shutil.copy(self.pictures / "left_02.png", self.folder / "twice.png")
         later = max(str(twice), str(self.pictures / "left_02.png"))
@@ -272,7 +272,8 @@ class RefusedPictures(CalibrateTest):
             ([none], "right_00.png", f"--left '{none}': no such file"),
             ("left_*.png", "right_0[0-4].png", "9 left pictures", "5 right ones", "must be as many"),
             (sizes, "right_0[01].png", f"'{sizes[1]}': 32x24 pixels: must be as large as", "640x480"),
-            ([large], "right_00.png", f"--left '{large}': 2052x2052 pixels: a board's images are 2048x2048"),
+            ([large], "right_00.png",
+             f"--left '{large}': 2052x2052 pixels: a board's images with a look-up table are 4..2048"),
             ([text], "right_00.png", f"--left '{text}'", "not a picture"),
             ("left_0[01].png", "right_0[01].png", "in both pictures = 2 of 2: must be 3 or more"),
             ([*lefts, twice], "right_0[0-4].png", f"'{later}': the same picture as"),
