@@ -129,7 +129,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     const std::uint64_t in_lane = lane_latency + passes;
     const std::uint64_t taking =
         std::max(slot_a_cycle, (geometry.slots - 1) / places * in_lane + in_lane + after_last_slot);
-    if (side.lut && side.accesses.lut > 0) luts.push_back({std::string("port ") + side.name + "_lut", taking});
+    if (side.lut && side.accesses.lut > 0)
+      luts.push_back({std::string("port ") + side.name + "_lut", taking});
     pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
   }
   demands[disparity].writes += geometry.result_words;
