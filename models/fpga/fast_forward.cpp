@@ -44,6 +44,10 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64
   routes_ = routes;
   strips_ = 0;
   for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
+  const std::array<std::uint64_t, 2> versions = {patterns[0].version(), patterns[1].version()};
+  if (&patterns != patterns_ || versions != versions_) followed_.clear();
+  patterns_ = &patterns;
+  versions_ = versions;
 }
 
 void FastForward::start_stepped_frame() {
@@ -82,7 +86,10 @@ std::uint64_t FastForward::skip_known(std::uint64_t cycle, std::uint64_t end) {
   if (!find_strips()) return cycle;
   const Progress room = this->room(cycle, end);
   if (!holds_group(room)) return cycle;
-  if (known_.is_full()) known_.clear();
+  if (known_.is_full()) {
+    known_.clear();
+    followed_.clear();
+  }
   const StateNumber first = state(cycle);
   Progress left = room;
   const StateNumber last = walk(first, left);
@@ -106,30 +113,53 @@ std::uint64_t FastForward::skip_known(std::uint64_t cycle, std::uint64_t end) {
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
 FastForward::StateNumber FastForward::walk(StateNumber state, Progress& room) {
   const bool varies = !control().match().draining() && (varying_[0] != nullptr || varying_[1] != nullptr);
-  if (!varies) return known_.walk(state, {}, room);
-  std::uint64_t consumed = this->consumed();
-  TransitionCache::Accesses before{};
-  int alike = 0;
-  for (;;) {
-    const TransitionCache::Accesses accesses = accesses_from(consumed);
-    const auto transition = known_.find(state, accesses);
-    if (!transition || !known_.progress(*transition).fits(room)) return state;
-    known_.follow(*transition);
-    room.subtract(known_.progress(*transition));
-    state = transition->next;
-    consumed += slots_of_group();
-    alike = accesses == before ? alike + 1 : 0;
-    before = accesses;
-    if (alike < kManyAlike) continue;
-    alike = 0;
-    Progress uniform = room;
-    uniform.columns = std::min(uniform.columns, uniform_columns(consumed));
-    Progress left = uniform;
-    state = known_.walk(state, accesses_from(consumed), left);
-    consumed += (uniform.columns - left.columns) / 4 * slots_of_group();
-    uniform.subtract(left);
-    room.subtract(uniform);
+  return varies ? walk_varying(state, room) : known_.walk(state, {}, room);
+}
+
+FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
+  const std::uint64_t slots = slots_of_group();
+  if (followed_.empty()) followed_.resize(control().geometry().slots / slots + 1);
+  int alike = 0;  // groups with the accesses of the group before
+  for (std::uint64_t consumed = this->consumed();;) {
+    Followed& followed = followed_[consumed / slots];
+    TransitionCache::Transition transition;
+    if (followed.state == state) {
+      transition = followed.transition;
+      alike = 0;
+    } else {
+      const TransitionCache::Accesses accesses = accesses_from(consumed);
+      const bool is_alike = consumed >= slots && accesses == accesses_from(consumed - slots);
+      alike = is_alike ? alike + 1 : 0;
+      if (alike == kManyAlike) {
+        alike = 0;
+        const std::uint64_t columns = room.columns;
+        state = walk_uniform(state, consumed, room);
+        consumed += (columns - room.columns) / 4 * slots;
+        if (columns != room.columns) continue;
+      }
+      const auto found = known_.find(state, accesses);
+      if (!found) return state;
+      transition = *found;
+      if (!is_alike) followed = {state, transition};
+    }
+    const Progress& progress = known_.progress(transition);
+    if (!progress.fits(room)) return state;
+    known_.follow(transition);
+    room.subtract(progress);
+    state = transition.next;
+    consumed += slots;
   }
+}
+
+// Walks over groups with the same accesses. `consumed`: slots of the frame that are consumed before.
+FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room) {
+  Progress uniform = room;
+  uniform.columns = std::min(uniform.columns, uniform_columns(consumed));
+  Progress left = uniform;
+  const StateNumber last = known_.walk(state, accesses_from(consumed), left);
+  uniform.subtract(left);
+  room.subtract(uniform);
+  return last;
 }
 
 // Finds the strips in which both lanes handle and take their next slots. Returns false if there are none.

@@ -53,7 +53,16 @@ class FastForward {
   };
 
   std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
+  // A transition that was followed at some group of the frame. It is followed there again, if the state is the
+  // same: frame after frame the slots make the same accesses.
+  struct Followed {
+    StateNumber state = UINT32_MAX;
+    TransitionCache::Transition transition;
+  };
+
   StateNumber walk(StateNumber state, Progress& room);
+  StateNumber walk_varying(StateNumber state, Progress& room);
+  StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
   bool find_strips();
   Progress room(std::uint64_t cycle, std::uint64_t end) const;
   bool holds_group(const Progress& room) const;
@@ -81,6 +90,10 @@ class FastForward {
   std::size_t strips_ = 0;  // index of the strips in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.
   std::array<const AccessPattern*, 2> varying_{};
+  std::vector<Followed> followed_;               // [group of the frame]; empty until it is used
+  // The patterns for which followed_ holds, and their versions.
+  const AccessPatterns* patterns_ = nullptr;
+  std::array<std::uint64_t, 2> versions_{};  // [side]
 };
 
 }  // namespace stereotlm::fpga
