@@ -14,9 +14,7 @@ AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
       pixels_(words_ * static_cast<std::size_t>(geometry.height)),
       counts_(static_cast<std::size_t>(geometry.height)),
       needs_all_pixels_(!has_cache_),
-      changes_(words_ * static_cast<std::size_t>(geometry.strips)),
-      passes_before_strip_(static_cast<std::size_t>(geometry.strips)),
-      next_change_(static_cast<std::size_t>(geometry.strips)) {
+      passes_before_strip_(static_cast<std::size_t>(geometry.strips)) {
   // A row is a sequence of words.
   static_assert(kernels::kPixelsPerWord == 4);
   for (int row = 0; row < geometry.height; ++row) {
@@ -25,7 +23,7 @@ AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
     for (std::size_t word = 0; has_cache_ && word < words_; ++word) bits[word] &= 0x1111'1111'1111'1111U;
     counts_[static_cast<std::size_t>(row)] = {geometry.columns_per_strip() / (has_cache_ ? 4U : 1U), 0};
   }
-  find_changes();
+  count();
 }
 
 void AccessPattern::set_all(std::uint64_t* row_bits) const {
@@ -34,12 +32,16 @@ void AccessPattern::set_all(std::uint64_t* row_bits) const {
 }
 
 void AccessPattern::set_entries(const std::uint32_t* entries) {
+  ++version_;
   const bool needed_all_pixels = needs_all_pixels_;
   needs_all_pixels_ = true;
   for (int row = 0; row < geometry_.height; ++row, entries += geometry_.width) {
     if (!(has_cache_ ? set_row_cached(row, entries) : set_row(row, entries))) needs_all_pixels_ = false;
   }
-  if (!(needs_all_pixels_ && needed_all_pixels)) find_changes();
+  if (needs_all_pixels_ && needed_all_pixels) return;
+  slots_.clear();
+  changes_.clear();
+  count();
 }
 
 // Returns whether all pixels of the row are accessed.
@@ -91,29 +93,62 @@ bool AccessPattern::set_row_cached(int row, const std::uint32_t* entries) {
   return counts.accesses == width;
 }
 
-void AccessPattern::find_changes() {
+void AccessPattern::count() {
   empty_slots_ = 0;
   invalid_slots_ = 0;
   pixel_accesses_ = 0;
+  for (int strip = 0; strip < geometry_.strips; ++strip) {
+    const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
+                                       static_cast<std::uint64_t>(geometry_.slots_per_column);
+    passes_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
+    for (int k = 0; k < geometry_.slots_per_column; ++k) {
+      const int row = geometry_.first_row_of(strip) + k;
+      if (!inside(row)) {
+        empty_slots_ += geometry_.columns_per_strip();
+        continue;
+      }
+      pixel_accesses_ += counts_[static_cast<std::size_t>(row)].accesses;
+      invalid_slots_ += counts_[static_cast<std::size_t>(row)].invalid;
+    }
+  }
+}
+
+void AccessPattern::set_slots() const {
+  // A query reads the word after the last one, and up to kMostSlots beyond the end of the frame.
+  constexpr std::size_t kMostSlots = 512;
+  slots_.resize((geometry_.slots + kMostSlots) / 64);
+  const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
+  for (int strip = 0; strip < geometry_.strips; ++strip) {
+    const std::uint64_t first_slot =
+        static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() * slots_per_column;
+    for (int k = 0; k < geometry_.slots_per_column; ++k) {
+      const int row = geometry_.first_row_of(strip) + k;
+      if (!inside(row)) continue;
+      const std::uint64_t* const bits = pixels_of_row(row);
+      for (std::size_t word = 0; word < words_; ++word) {
+        const std::uint64_t first = first_slot + word * 64 * slots_per_column + static_cast<std::uint64_t>(k);
+        for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
+          const auto column = static_cast<std::uint64_t>(__builtin_ctzll(left));
+          const std::uint64_t slot = first + column * slots_per_column;
+          slots_[slot / 64] |= std::uint64_t{1} << slot % 64;
+        }
+      }
+    }
+  }
+}
+
+void AccessPattern::find_changes() const {
+  changes_.assign(words_ * static_cast<std::size_t>(geometry_.strips), 0);
+  next_change_.resize(static_cast<std::size_t>(geometry_.strips));
   for (int strip = 0; strip < geometry_.strips; ++strip) find_changes_of_strip(strip);
   find_strips_with_changes();
 }
 
-// To be called for the strips in their order, because it adds to the counts of the strips before.
-void AccessPattern::find_changes_of_strip(int strip) {
+void AccessPattern::find_changes_of_strip(int strip) const {
   std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
-  std::fill_n(changes, words_, std::uint64_t{0});
-  const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
-                                     static_cast<std::uint64_t>(geometry_.slots_per_column);
-  passes_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row_of(strip) + k;
-    if (!inside(row)) {
-      empty_slots_ += geometry_.columns_per_strip();
-      continue;
-    }
-    pixel_accesses_ += counts_[static_cast<std::size_t>(row)].accesses;
-    invalid_slots_ += counts_[static_cast<std::size_t>(row)].invalid;
+    if (!inside(row)) continue;
     const std::uint64_t* const bits = pixels_of_row(row);
     std::uint64_t before = bits[0] & 0xfU;  // see below for the first four columns
     for (std::size_t word = 0; word < words_; ++word) {
@@ -126,7 +161,7 @@ void AccessPattern::find_changes_of_strip(int strip) {
     changes[0] |= std::uint64_t{!begins_alike(strip, column)} << column;
 }
 
-void AccessPattern::find_strips_with_changes() {
+void AccessPattern::find_strips_with_changes() const {
   auto next = static_cast<std::uint32_t>(geometry_.strips);
   for (int strip = geometry_.strips - 1; strip >= 0; --strip) {
     const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(words_) * strip;
@@ -164,11 +199,6 @@ std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
   return passes;
 }
 
-bool AccessPattern::needs_pixel(std::uint64_t slot) const {
-  const Place place = place_of(slot);
-  return inside(place.row) && needs_pixel(place.column, place.row);
-}
-
 AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   const std::uint64_t column = slot / slots_per_column;
@@ -178,6 +208,7 @@ AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
 }
 
 std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {
+  if (changes_.empty()) find_changes();
   const std::uint64_t width = geometry_.columns_per_strip();
   const auto strips = static_cast<std::size_t>(geometry_.strips);
   const std::uint64_t next = frame_column + 4;

@@ -13,8 +13,8 @@ namespace stereotlm::fpga {
 // Computes, before a frame that works directly on memory, which accesses each slot of one side makes: none if
 // the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid and
 // the word cache does not have its word. Columns are uniform if each makes the same accesses as the fourth
-// column before it, slot for slot: with a word cache the accesses repeat every four columns at best. Runs of
-// uniform columns are found when the entries are set, so that queries are cheap.
+// column before it, slot for slot: with a word cache the accesses repeat every four columns at best. What
+// only some frames ask for is computed when it is asked for.
 class AccessPattern {
  public:
   // At first every entry is its own source, as on a side without table.
@@ -22,6 +22,8 @@ class AccessPattern {
 
   // Takes width * height entries, row-major.
   void set_entries(const std::uint32_t* entries);
+  // How often set_entries() has been called.
+  std::uint64_t version() const { return version_; }
 
   // Whether a slot for this pixel accesses the image. A pixel has the same word before it in each strip.
   bool needs_pixel(int column, int row) const {
@@ -34,12 +36,17 @@ class AccessPattern {
   // column that differs from the fourth column before it, or the number of columns. Columns are counted over the
   // whole frame, strip after strip.
   std::uint64_t uniform_until(std::uint64_t frame_column) const;
+  // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the end of
+  // the frame.
+  std::uint64_t pixels_of_slots(std::uint64_t slot) const {
+    if (slots_.empty()) set_slots();
+    const std::uint64_t* const words = slots_.data() + slot / 64;
+    const std::uint64_t shift = slot % 64;
+    return shift == 0 ? words[0] : words[0] >> shift | words[1] << (64 - shift);
+  }
 
   // The number of slots inside the image that do not access it, among the first `slots` slots of a frame.
   std::uint64_t passes_before(std::uint64_t slots) const;
-  // Whether this slot makes an access for its pixel.
-  bool needs_pixel(std::uint64_t slot) const;
-
   // Numbers of slots of a frame that are empty, that have an invalid entry, and that access their pixel.
   std::uint64_t empty_slots() const { return empty_slots_; }
   std::uint64_t invalid_slots() const { return invalid_slots_; }
@@ -63,9 +70,11 @@ class AccessPattern {
   void set_all(std::uint64_t* row_bits) const;
   bool set_row(int row, const std::uint32_t* entries);
   bool set_row_cached(int row, const std::uint32_t* entries);
-  void find_changes();
-  void find_changes_of_strip(int strip);
-  void find_strips_with_changes();
+  void count();
+  void set_slots() const;
+  void find_changes() const;
+  void find_changes_of_strip(int strip) const;
+  void find_strips_with_changes() const;
   bool begins_alike(int strip, int column) const;
 
   FrameGeometry geometry_;
@@ -74,10 +83,13 @@ class AccessPattern {
   std::vector<std::uint64_t> pixels_;  // [row][word]: pixels that are accessed
   std::vector<RowCounts> counts_;      // [row]
   bool needs_all_pixels_ = false;
-  std::vector<std::uint64_t> changes_;  // [strip][word]: columns that differ from the fourth column before
+  std::uint64_t version_ = 0;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
+  // These are empty until they are asked for.
+  mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
+  mutable std::vector<std::uint64_t> changes_;  // [strip][word]: columns that differ from the fourth one before
   // [strip]: the first strip, from this one on, in which changes_ has a bit set; or the number of strips.
-  std::vector<std::uint32_t> next_change_;
+  mutable std::vector<std::uint32_t> next_change_;
   std::uint64_t empty_slots_ = 0;
   std::uint64_t invalid_slots_ = 0;
   std::uint64_t pixel_accesses_ = 0;

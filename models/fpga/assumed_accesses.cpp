@@ -2,9 +2,6 @@
 
 namespace stereotlm::fpga {
 
-AssumedAccesses::AssumedAccesses(CoreStepper& stepper)
-    : stepper_(stepper), all_(stepper.control().geometry(), PixelCache::kNone) {}
-
 void AssumedAccesses::start_direct_frame(const AccessPatterns& patterns) {
   for (const Side side : kSides) {
     const AccessPattern& pattern = patterns[index_of(side)];
@@ -14,10 +11,20 @@ void AssumedAccesses::start_direct_frame(const AccessPatterns& patterns) {
   }
 }
 
-std::uint64_t AssumedAccesses::uniform_until(Side side) const {
+std::uint64_t AssumedAccesses::marks(Side side) const {
   const SideAccesses& accesses = sides_[index_of(side)];
-  const AccessPattern& pattern = accesses.are_all ? all_ : *accesses.pattern;
-  return pattern.uniform_until(stepper_.control().lane(side).next_slot().frame_column());
+  const LaneControl& lane = stepper_.control().lane(side);
+  if (!lane.has_table() || lane.handled() == lane.taken()) return 0;
+  std::uint64_t marks = 0;
+  SlotCursor slot(stepper_.control().geometry());
+  slot.advance(lane.handled());
+  for (std::uint64_t mark = 1, left = lane.taken() - lane.handled(); left > 0; --left, mark <<= 1U) {
+    const bool needs_pixel =
+        !slot.empty() && (accesses.are_all || accesses.pattern->needs_pixel(slot.column(), slot.row()));
+    if (needs_pixel) marks |= mark;
+    slot.advance();
+  }
+  return marks;
 }
 
 bool AssumedAccesses::resolve() {
@@ -32,10 +39,8 @@ bool AssumedAccesses::resolve(Side side) {
   accesses.are_all = false;
   const LaneControl& lane = stepper_.control().lane(side);
   const std::uint64_t passed = accesses.pattern->passes_before(lane.handled());
-  std::uint64_t marks = 0;
-  for (std::uint64_t slot = lane.handled(); slot < lane.taken(); ++slot)
-    marks |= std::uint64_t{accesses.pattern->needs_pixel(slot)} << (slot - lane.handled());
-  stepper_.control().correct_passes(side, passed, marks);
+  stepper_.control().correct_passes(side, passed);
+  stepper_.control().correct_marks(side, marks(side));
   stepper_.arbitration().retract_grants(pixel_port(side), passed);
   return true;
 }

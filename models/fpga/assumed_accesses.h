@@ -18,7 +18,7 @@ namespace stereotlm::fpga {
 class AssumedAccesses {
  public:
   // `stepper` outlives this object.
-  explicit AssumedAccesses(CoreStepper& stepper);
+  explicit AssumedAccesses(CoreStepper& stepper) : stepper_(stepper) {}
 
   // To be called when a frame with these accesses starts, after its ports have been routed. The patterns must
   // outlive the frame.
@@ -30,9 +30,14 @@ class AssumedAccesses {
   PixelNeeds needs_pixel(memory::PortMask granted) const {
     return {needs_pixel(Side::kLeft, granted), needs_pixel(Side::kRight, granted)};
   }
-  // The end of the run of uniform columns that begins with the column of the next slot of a side. See
-  // AccessPattern::uniform_until().
-  std::uint64_t uniform_until(Side side) const;
+  // The pattern by which the accesses of a side vary. Null if all its slots inside the image access their pixels,
+  // or are assumed to, or if its port itself finds them in the cache (a side without table).
+  const AccessPattern* varying(Side side) const {
+    const SideAccesses& accesses = sides_[index_of(side)];
+    return accesses.are_all || !stepper_.control().lane(side).has_table() ? nullptr : accesses.pattern;
+  }
+  // LaneControl::correct_marks() of a side.
+  std::uint64_t marks(Side side) const;
 
   // To be called before a route changes, and after the last cycle of a frame. Corrects the counts. From now
   // on the patterns determine which slots need their pixels. Returns whether a pass may have been taken for an
@@ -55,7 +60,6 @@ class AssumedAccesses {
   }
 
   CoreStepper& stepper_;
-  AccessPattern all_;
   std::array<SideAccesses, 2> sides_{};  // [side]
 };
 

@@ -29,11 +29,10 @@ void CoreControl::start_frame(const FrameLatencies& latencies) {
   result_.start_frame();
 }
 
-void CoreControl::correct_passes(Side side, std::uint64_t cycles, std::uint64_t marks) {
+void CoreControl::correct_passes(Side side, std::uint64_t cycles) {
   PortCycles& pixel = cycles_[pixel_port(side)];
   pixel.subtract(Intent::kRequest, true, cycles);
   pixel.add(Intent::kPass, false, cycles);
-  lanes_[index_of(side)].correct_marks(marks);
 }
 
 CoreControl::Counts CoreControl::counts() const {

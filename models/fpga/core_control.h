@@ -66,11 +66,13 @@ class CoreControl {
     host_cycles().add(Intent::kRequest, granted, cycles);
   }
   // Recounts `cycles` cycles of this frame in which the pixel port of a side was counted as granted, but
-  // passed a slot. `marks`: see LaneControl::correct_marks().
-  void correct_passes(Side side, std::uint64_t cycles, std::uint64_t marks);
+  // passed a slot.
+  void correct_passes(Side side, std::uint64_t cycles);
+  // See LaneControl.
+  void correct_marks(Side side, std::uint64_t marks) { lanes_[index_of(side)].correct_marks(marks); }
 
   // After a group of four columns: the state that determines the next cycles, together with the arbiters'
-  // state and the slots not yet taken.
+  // state and the slots that the pixel ports have not handled.
   struct State {
     std::array<LaneControl::State, 2> lanes{};  // [side]
     std::uint64_t rest = 0;                     // state of the matcher, and above it that of the result queue
@@ -81,8 +83,8 @@ class CoreControl {
     return {{lane(Side::kLeft).state(), lane(Side::kRight).state()}, match_.state() | result_.state() << 8U};
   }
   // Skips the cycles in which the matcher consumes `columns` columns and `words` words of results are
-  // written. Afterwards the lanes and the result queue are in `state`. `columns` is at most
-  // MatchControl::uniform_columns().
+  // written. Afterwards the lanes and the result queue are in `state`; the caller corrects the marks of the lanes.
+  // `columns` is at most MatchControl::uniform_columns().
   void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;

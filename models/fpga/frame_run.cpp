@@ -9,7 +9,7 @@ FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBank
                    std::size_t most_groups)
     : config_(config),
       stepper_(config, arbitration),
-      fast_forward_(stepper_, most_groups),
+      fast_forward_(stepper_, config.lane_fifo_slots, most_groups),
       watchdog_(stall_timeout_cycles) {
   for (const memory::SsramBankConfig& bank : banks)
     latencies_.push_back(memory::read_latency_cycles(bank.kind));
@@ -22,7 +22,7 @@ void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
 
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
   begin(cycle, bases);
-  fast_forward_.start_direct_frame(patterns);
+  fast_forward_.start_direct_frame(patterns, number_of_routes(bases));
 }
 
 void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
@@ -44,6 +44,16 @@ FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
     latencies[port] = latencies_[bank];
   }
   return latencies;
+}
+
+// Frames with the same number have each port on the same bank.
+std::uint64_t FrameRun::number_of_routes(const FrameBases& bases) {
+  std::array<std::uint32_t, kCorePortCount> banks{};
+  std::transform(bases.begin(), bases.end(), banks.begin(), registers::bank_of);
+  const auto known = std::find(routes_.begin(), routes_.end(), banks);
+  const auto number = static_cast<std::uint64_t>(known - routes_.begin());
+  if (known == routes_.end()) routes_.push_back(banks);
+  return number;
 }
 
 void FrameRun::finish() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -83,6 +84,7 @@ class FrameRun {
   enum class State { kIdle, kRunning, kFinishing };
 
   FrameLatencies route_ports(const FrameBases& bases);
+  std::uint64_t number_of_routes(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
   std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
 
@@ -91,6 +93,7 @@ class FrameRun {
   CoreStepper stepper_;
   FastForward fast_forward_;
   StallWatchdog watchdog_;
+  std::vector<std::array<std::uint32_t, kCorePortCount>> routes_;  // [number]: bank of each port, in direct frames
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;

@@ -87,40 +87,34 @@ class LaneControl {
 
   // Corrects, for each slot that is taken but not handled, whether it needs an access: bit i of `marks` is
   // for slot handled() + i.
-  void correct_marks(std::uint64_t marks) { marks_ = from_handled_on(marks); }
+  void correct_marks(std::uint64_t marks) {
+    const std::uint64_t place = handled_ % kMostSlots;
+    marks_ = place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
+  }
 
-  // The state that determines the lane's next cycles, together with the slots that it has not taken yet.
-  struct State {
-    std::uint64_t counts = 0;
-    std::uint64_t marks = 0;  // bit i: slot handled() + i, which has been taken, needs an access
-
-    friend bool operator==(const State& a, const State& b) {
-      return a.counts == b.counts && a.marks == b.marks;
-    }
-  };
+  // The state that determines the lane's next cycles, together with the slots that the pixel port has not
+  // handled yet.
+  using State = std::uint64_t;
   // To be called after a cycle in which the matcher has consumed: the lane then holds fewer than kMostSlots
   // slots.
   State state() const {
-    const std::uint64_t place = handled_ % kMostSlots;
-    const std::uint64_t waiting = taken_ - handled_;
-    const std::uint64_t rotated = place == 0 ? marks_ : marks_ >> place | marks_ << (kMostSlots - place);
-    const std::uint64_t kept = (std::uint64_t{1} << waiting) - 1;
-    return {(taken_ - consumed_) | (handled_ - consumed_) << 8U | (arrived_entries_ - consumed_) << 16U |
-                (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |
-                std::uint64_t{arrived_entries_ != 0} << 33U,
-            rotated & kept};
+    return (taken_ - consumed_) | (handled_ - consumed_) << 8U | (arrived_entries_ - consumed_) << 16U |
+           (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |
+           std::uint64_t{arrived_entries_ != 0} << 33U;
   }
-  // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards.
-  void skip_to(const State& state, std::uint64_t slots) {
+  // The number of slots in the lane in this state that are handled.
+  static std::uint64_t handled_slots(State state) { return state >> 8U & 0xffU; }
+  // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The caller
+  // corrects the marks.
+  void skip_to(State state, std::uint64_t slots) {
     static_assert(kMostSlots <= 0xff);
-    const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state.counts >> bit & 0xffU); };
+    const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state >> bit & 0xffU); };
     const std::uint64_t taken_before = taken_;
     consumed_ += slots;
     taken_ = behind_consumed(0);
     handled_ = behind_consumed(8);
     arrived_entries_ = behind_consumed(16);
     arrived_pixels_ = behind_consumed(24);
-    marks_ = from_handled_on(state.marks);
     next_slot_.advance(taken_ - taken_before);
   }
 
@@ -136,11 +130,6 @@ class LaneControl {
  private:
   static constexpr std::uint64_t kMostSlots = kLaneFifoRule.max;
 
-  // Rotates marks to their places in marks_. Bit 0 of `marks` belongs to slot handled().
-  std::uint64_t from_handled_on(std::uint64_t marks) const {
-    const std::uint64_t place = handled_ % kMostSlots;
-    return place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
-  }
   Intent take_intent() const {
     if (next_slot_.done()) return Intent::kIdle;
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;

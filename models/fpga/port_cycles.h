@@ -31,6 +31,8 @@ class PortCycles {
     return since;
   }
 
+  friend bool operator==(const PortCycles& a, const PortCycles& b) { return a.cycles_ == b.cycles_; }
+
   std::uint64_t granted() const { return cycles_[kGranted]; }
   std::uint64_t stalled() const { return of(Intent::kRequest); }
   std::uint64_t passed() const { return of(Intent::kPass); }

@@ -3,6 +3,24 @@
 #include <algorithm>
 
 namespace stereotlm::fpga {
+namespace {
+
+// Mixes words into a hash.
+class Hash {
+ public:
+  void mix(std::uint64_t word) {
+    hash_ = (hash_ ^ word) * 0x9e3779b97f4a7c15U;
+    hash_ ^= hash_ >> 32U;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0;
+};
+
+constexpr std::size_t kFirstPlaces = 1024;
+
+}  // namespace
 
 std::uint64_t Progress::times_in(const Progress& room) const {
   std::uint64_t times = room.cycles / cycles;
@@ -29,69 +47,172 @@ void Progress::subtract(const Progress& other, std::uint64_t times) {
   words -= other.words * times;
 }
 
-std::size_t TransitionCache::Hash::operator()(const State& state) const {
-  std::uint64_t hash = 0;
-  const auto mix = [&hash](std::uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15U;
-    hash ^= hash >> 32U;
-  };
-  for (const LaneControl::State& lane : state.control.lanes) {
-    mix(lane.counts);
-    mix(lane.marks);
-  }
-  mix(state.control.rest);
-  for (const std::uint64_t word : state.arbitration) mix(word);
-  return hash;
+std::size_t TransitionCache::StateHash::operator()(const State& state) const {
+  Hash hash;
+  for (const LaneControl::State lane : state.control.lanes) hash.mix(lane);
+  hash.mix(state.control.rest);
+  for (const std::uint64_t word : state.arbitration) hash.mix(word);
+  hash.mix(state.empty);
+  hash.mix(state.frame);
+  return hash.value();
 }
 
-TransitionCache::Group& TransitionCache::at(const State& state) {
-  const auto [entry, is_new] = groups_.try_emplace(state);
-  if (is_new) entry->second.begin = &entry->first;
+std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const {
+  Hash hash;
+  const Progress& progress = effect.progress;
+  for (const std::uint64_t word : {progress.cycles, progress.left_slots, progress.right_slots, progress.words})
+    hash.mix(word);
+  for (const PortCycles& port : effect.counts) {
+    hash.mix(port.granted() << 32U | port.stalled());
+    hash.mix(port.passed() << 32U | port.starved());
+  }
+  for (const auto& shared : effect.decided.shared) hash.mix(shared.outcome * shared.cycles);
+  for (const auto& alone : effect.decided.alone) hash.mix(alone.ports * alone.cycles);
+  return hash.value();
+}
+
+TransitionCache::TransitionCache(std::size_t slots, std::size_t most)
+    : words_(2 * ((slots + 63) / 64)), most_(most) {
+  clear();
+}
+
+void TransitionCache::clear() {
+  states_.clear();
+  unhandled_.clear();
+  state_numbers_.clear();
+  effects_.clear();
+  effect_numbers_.clear();
+  progress_.clear();
+  followed_.clear();
+  transitions_ = 0;
+  mask_ = kFirstPlaces - 1;
+  places_.assign(kFirstPlaces * words_of_place(), 0);
+}
+
+TransitionCache::StateNumber TransitionCache::number_of(const State& state) {
+  const auto [entry, is_new] = state_numbers_.try_emplace(state, static_cast<StateNumber>(states_.size()));
+  if (is_new) {
+    states_.push_back(&entry->first);
+    Accesses unhandled;
+    unhandled.fill(~std::uint64_t{0});
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::uint64_t handled = LaneControl::handled_slots(state.control.lanes[side]);
+      std::uint64_t& first_word = unhandled[side * words_of_side()];
+      first_word = handled < 64 ? first_word << handled : 0;
+    }
+    unhandled_.push_back(unhandled);
+  }
   return entry->second;
 }
 
-void TransitionCache::follow(Group& group, std::uint64_t times) {
-  if (group.times == 0) walked_.push_back(&group);
-  group.times += times;
+std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
+  const auto [entry, is_new] =
+      effect_numbers_.try_emplace(effect, static_cast<std::uint32_t>(effects_.size()));
+  if (is_new) {
+    effects_.push_back(&entry->first);
+    progress_.push_back(effect.progress);
+    followed_.push_back(0);
+  }
+  return entry->second;
 }
 
-// Loops are found as by Brent (1980): the mark moves to the current group after 1, 2, 4, .. steps, so that a
-// loop of any length is found. When the walk returns to the marked group, it repeats the loop as often as
-// there is room.
-TransitionCache::Group& TransitionCache::walk(Group& first, Progress room, Progress& progress,
-                                              CoreControl& control, memory::Arbitration& arbitration) {
-  Group* group = &first;
-  const Group* mark = group;
+TransitionCache::Accesses TransitionCache::key_of(StateNumber from, const Accesses& accesses) const {
+  const Accesses& unhandled = unhandled_[from];
+  Accesses key;
+  for (std::size_t word = 0; word < words_; ++word) key[word] = accesses[word] & unhandled[word];
+  return key;
+}
+
+// Returns the first word of the place of this key, or of the free place where it belongs.
+std::size_t TransitionCache::place_of(StateNumber from, const Accesses& key) const {
+  const std::uint64_t first = std::uint64_t{from} + 1;
+  Hash hash;
+  hash.mix(first);
+  for (std::size_t word = 0; word < words_; ++word) hash.mix(key[word]);
+  for (std::size_t number = hash.value();; ++number) {
+    const std::size_t place = (number & mask_) * words_of_place();
+    const std::uint64_t* const words = places_.data() + place;
+    if (words[0] == 0) return place;
+    if (words[0] == first && std::equal(words + 1, words + 1 + words_, key.begin())) return place;
+  }
+}
+
+std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from,
+                                                                 const Accesses& accesses) const {
+  const std::size_t place = place_of(from, key_of(from, accesses));
+  if (places_[place] == 0) return std::nullopt;
+  const std::uint64_t transition = places_[place + 1 + words_];
+  return Transition{static_cast<StateNumber>(transition), static_cast<std::uint32_t>(transition >> 32U)};
+}
+
+void TransitionCache::record(StateNumber from, const Accesses& accesses, StateNumber next,
+                             const Effect& effect) {
+  if (2 * (transitions_ + 1) > mask_) double_places();
+  const Accesses key = key_of(from, accesses);
+  std::uint64_t* const words = places_.data() + place_of(from, key);
+  if (words[0] == 0) ++transitions_;
+  words[0] = std::uint64_t{from} + 1;
+  std::copy_n(key.begin(), words_, words + 1);
+  words[1 + words_] = std::uint64_t{number_of_effect(effect)} << 32U | next;
+}
+
+void TransitionCache::double_places() {
+  std::vector<std::uint64_t> old(2 * places_.size(), 0);
+  old.swap(places_);
+  mask_ = 2 * mask_ + 1;
+  Accesses key{};
+  for (std::size_t place = 0; place < old.size(); place += words_of_place()) {
+    if (old[place] == 0) continue;
+    const auto first = old.begin() + static_cast<std::ptrdiff_t>(place);
+    std::copy_n(first + 1, words_, key.begin());
+    const std::size_t to = place_of(static_cast<StateNumber>(old[place] - 1), key);
+    std::copy_n(first, words_of_place(), places_.begin() + static_cast<std::ptrdiff_t>(to));
+  }
+}
+
+// Loops are found as by Brent (1980): the mark moves to the current state after 1, 2, 4, .. steps, so that a
+// loop of any length is found. When the walk returns to the marked state, it repeats the loop as often as there
+// is room.
+TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Accesses& accesses,
+                                                   Progress& room) {
+  StateNumber state = first;
+  StateNumber mark = state;
   Progress since_mark;
   std::uint64_t steps = 0;
   std::uint64_t mark_after = 1;
-  while (group->next != nullptr && group->progress.fits(room)) {
-    follow(*group, 1);
-    room.subtract(group->progress);
-    progress.add(group->progress);
-    since_mark.add(group->progress);
-    group = group->next;
+  for (auto transition = find(state, accesses); transition && progress(*transition).fits(room);
+       transition = find(state, accesses)) {
+    follow(*transition);
+    room.subtract(progress(*transition));
+    since_mark.add(progress(*transition));
+    state = transition->next;
     ++steps;
-    if (group == mark) {
+    if (state == mark) {
       const std::uint64_t times = since_mark.times_in(room);
       if (times == 0) continue;
-      for (std::uint64_t step = 0; step < steps; ++step, group = group->next) follow(*group, times);
+      for (std::uint64_t step = 0; step < steps; ++step) {
+        transition = find(state, accesses);
+        follow(*transition, times);
+        state = transition->next;
+      }
       room.subtract(since_mark, times);
-      progress.add(since_mark, times);
     } else if (steps == mark_after) {
-      mark = group;
+      mark = state;
       since_mark = {};
       steps = 0;
       mark_after *= 2;
     }
   }
-  for (Group* const walked : walked_) {
-    control.add(walked->counts, walked->times);
-    arbitration.count_skipped(walked->decided, walked->times);
-    walked->times = 0;
+  return state;
+}
+
+void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {
+  for (const std::uint32_t number : effects_followed_) {
+    control.add(effects_[number]->counts, followed_[number]);
+    arbitration.count_skipped(effects_[number]->decided, followed_[number]);
+    followed_[number] = 0;
   }
-  walked_.clear();
-  return *group;
+  effects_followed_.clear();
 }
 
 }  // namespace stereotlm::fpga

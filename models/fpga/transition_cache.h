@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -26,61 +28,113 @@ struct Progress {
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other, std::uint64_t times = 1);
   void subtract(const Progress& other, std::uint64_t times = 1);
+
+  friend bool operator==(const Progress& a, const Progress& b) {
+    return a.cycles == b.cycles && a.columns == b.columns && a.left_slots == b.left_slots &&
+           a.right_slots == b.right_slots && a.words == b.words;
+  }
 };
 
-// Memo of state transitions for FastForward, one per group of four columns of the matcher. The state of the
-// control objects and the arbiters before a group determines the group's cycles, counts and next state, as
-// long as the slots to come make the same accesses. A transition is recorded when its group is stepped; after
-// that it is skipped. The caller clears the memo where the accesses of the slots or the routes of the ports
-// change.
+// Memo of state transitions for FastForward, one per group of four columns of the matcher. The state before a
+// group, and the accesses of the slots that the group can handle, determine the group's cycles, counts and next
+// state. A transition is recorded when its group is stepped; after that it is skipped.
+//
+// States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step along
+// the memo is one look-up in a small table.
 class TransitionCache {
  public:
   // Cap: a frame that never repeats would otherwise fill memory.
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMost = std::size_t{1} << 17U;
 
   struct State {
     CoreControl::State control;
     memory::Arbitration::State arbitration{};
+    std::uint64_t empty = 0;  // bit k: slot k of each column is empty
+    std::uint64_t frame = 0;  // of FastForward: what else the frames of the memo may differ in
 
     friend bool operator==(const State& a, const State& b) {
-      return a.control == b.control && a.arbitration == b.arbitration;
+      return a.control == b.control && a.arbitration == b.arbitration && a.empty == b.empty &&
+             a.frame == b.frame;
     }
   };
-  struct Group {
-    const State* begin = nullptr;
-    Group* next = nullptr;  // group that follows; null until the transition is recorded
+  using StateNumber = std::uint32_t;
+
+  // The slots in the lanes during a group, from the first one that is not consumed before it: a bit for each, which
+  // is 1 if the slot accesses its pixel. words_of_side() words for the left lane, then as many for the right lane.
+  // Slots that are handled before the group have no effect.
+  static constexpr std::size_t kMostWordsOfSide = 4;
+  using Accesses = std::array<std::uint64_t, 2 * kMostWordsOfSide>;
+  std::size_t words_of_side() const { return words_ / 2; }
+
+  struct Effect {
     Progress progress;
     CoreControl::Counts counts{};
     memory::Arbitration::Decided decided;
-    std::uint64_t times = 0;  // how often walk() has followed the transition, not counted yet
+
+    friend bool operator==(const Effect& a, const Effect& b) {
+      return a.progress == b.progress && a.counts == b.counts && a.decided == b.decided;
+    }
+  };
+  struct Transition {
+    StateNumber next = 0;
+    std::uint32_t effect = 0;
   };
 
-  explicit TransitionCache(std::size_t most = kMost) : most_(most) {}
-  TransitionCache(const TransitionCache&) = delete;  // groups point to each other
+  // `slots`: the most slots that are in a lane during a group.
+  TransitionCache(std::size_t slots, std::size_t most);
+  TransitionCache(const TransitionCache&) = delete;  // effects are referred to
   TransitionCache& operator=(const TransitionCache&) = delete;
 
-  // Returns the group that begins in a state, which is added if there is none. References stay valid until
-  // clear().
-  Group& at(const State& state);
-  void clear() { groups_.clear(); }
-  bool is_full() const { return groups_.size() >= most_; }
+  StateNumber number_of(const State& state);
+  const State& state(StateNumber number) const { return *states_[number]; }
+  // The transition from this state with these accesses, if it is recorded.
+  std::optional<Transition> find(StateNumber from, const Accesses& accesses) const;
+  void record(StateNumber from, const Accesses& accesses, StateNumber next, const Effect& effect);
+  void clear();
+  bool is_full() const { return transitions_ >= most_; }
 
-  // Follows the recorded transitions from a group as far as there is room. A loop of transitions is repeated
-  // in one step. Adds the progress made to `progress`, and the counts to `control` and `arbitration`. Returns
-  // the group that comes next. The caller must set `control` and `arbitration` to its state.
-  Group& walk(Group& first, Progress room, Progress& progress, CoreControl& control,
-              memory::Arbitration& arbitration);
+  const Progress& progress(const Transition& transition) const { return progress_[transition.effect]; }
+  // Notes that a transition has been followed.
+  void follow(const Transition& transition, std::uint64_t times = 1) {
+    std::uint64_t& followed = followed_[transition.effect];
+    if (followed == 0) effects_followed_.push_back(transition.effect);
+    followed += times;
+  }
+  // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
+  // transitions is repeated in one step. Returns the state that comes next.
+  StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room);
+  // Adds the counts of the transitions that were followed since the last call.
+  void count_followed(CoreControl& control, memory::Arbitration& arbitration);
 
  private:
-  struct Hash {
+  struct StateHash {
     std::size_t operator()(const State& state) const;
   };
+  struct EffectHash {
+    std::size_t operator()(const Effect& effect) const;
+  };
 
-  void follow(Group& group, std::uint64_t times);
+  // A place in the table of transitions: the number of the state plus one (0: the place is free), the accesses
+  // of key_of(), the transition.
+  std::size_t words_of_place() const { return words_ + 2; }
+  Accesses key_of(StateNumber from, const Accesses& accesses) const;
+  std::size_t place_of(StateNumber from, const Accesses& key) const;
+  std::uint32_t number_of_effect(const Effect& effect);
+  void double_places();
 
+  std::size_t words_;  // of the accesses
   std::size_t most_;
-  std::unordered_map<State, Group, Hash> groups_;
-  std::vector<Group*> walked_;  // groups whose `times` is not 0
+  std::unordered_map<State, StateNumber, StateHash> state_numbers_;
+  std::vector<const State*> states_;  // [number]
+  std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
+  std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
+  std::vector<const Effect*> effects_;  // [number]
+  std::vector<Progress> progress_;      // [number of the effect]
+  std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
+  std::vector<std::uint32_t> effects_followed_;
+  std::vector<std::uint64_t> places_;
+  std::size_t mask_ = 0;  // number of places - 1; they are a power of two
+  std::size_t transitions_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -66,13 +66,25 @@ class Arbitration {
       std::size_t bank;  // index in shared_banks_
       BankArbiter::Outcome outcome;
       std::uint64_t cycles;  // number of cycles with this outcome
+
+      friend bool operator==(const Shared& a, const Shared& b) {
+        return a.bank == b.bank && a.outcome == b.outcome && a.cycles == b.cycles;
+      }
     };
     struct Alone {
       std::size_t ports;     // mask of the uncontended ports granted
       std::uint64_t cycles;  // number of cycles with exactly these grants
+
+      friend bool operator==(const Alone& a, const Alone& b) {
+        return a.ports == b.ports && a.cycles == b.cycles;
+      }
     };
     std::vector<Shared> shared;
     std::vector<Alone> alone;
+
+    friend bool operator==(const Decided& a, const Decided& b) {
+      return a.shared == b.shared && a.alone == b.alone;
+    }
   };
   // For FastForward, which steps a group of columns, records its decisions, and skips the groups that repeat
   // it. Records decisions until take_recorded(). A change of routes drops the record.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,13 +13,14 @@ namespace stereotlm::fpga {
 namespace {
 
 // The accesses of a slot.
-enum class Access : std::uint8_t { kNone, kTable, kTableAndImage };
+enum class Access : std::uint8_t { kNone, kTable, kTableAndCache, kTableAndImage };
 
 // Every column of slots of a frame, by a literal walk over all of them.
 std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
                                             const std::vector<std::uint32_t>& entries) {
   const FrameGeometry geometry(config);
   std::vector<std::vector<Access>> columns;
+  std::map<int, int> cached;  // slot of a column -> word
   for (SlotCursor slot(geometry); !slot.done();) {
     columns.emplace_back();
     for (int k = 0; k < geometry.slots_per_column; ++k, slot.advance()) {
@@ -25,11 +28,28 @@ std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
         columns.back().push_back(Access::kNone);
         continue;
       }
-      const bool valid = kernels::entry_is_valid(entries[place_of(config, slot.column(), slot.row())]);
-      columns.back().push_back(valid ? Access::kTableAndImage : Access::kTable);
+      const std::uint32_t entry = entries[place_of(config, slot.column(), slot.row())];
+      if (slot.column() == 0) cached.erase(k);
+      const int word = (kernels::entry_row(entry) * config.width + kernels::entry_column(entry)) / 4;
+      if (!kernels::entry_is_valid(entry)) {
+        columns.back().push_back(Access::kTable);
+      } else if (config.pixel_cache == PixelCache::kWord && cached.count(k) != 0 && cached[k] == word) {
+        columns.back().push_back(Access::kTableAndCache);
+      } else {
+        columns.back().push_back(Access::kTableAndImage);
+        cached[k] = word;
+      }
     }
   }
   return columns;
+}
+
+// Entries without pixel access are alike, whatever the reason.
+bool make_equal_accesses(const std::vector<Access>& a, const std::vector<Access>& b) {
+  const auto without_reason = [](Access access) { return access == Access::kTableAndCache ? Access::kTable : access; };
+  return std::equal(a.begin(), a.end(), b.begin(), [&](Access x, Access y) {
+    return without_reason(x) == without_reason(y);
+  });
 }
 
 std::uint64_t count(const std::vector<std::vector<Access>>& columns, Access what) {
@@ -45,7 +65,7 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::SplitMix64 random(seed);
     const CoreConfig config = random_core(random, 140);
-    AccessPattern pattern{FrameGeometry(config)};
+    AccessPattern pattern(FrameGeometry(config), config.pixel_cache);
     std::vector<std::uint32_t> entries;
     // A table before this one has no effect.
     for (int table = random.between(1, 2); table > 0; --table) {
@@ -54,18 +74,29 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
     }
     const auto columns = columns_of(config, entries);
     ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
+    ASSERT_EQ(pattern.invalid_slots(), count(columns, Access::kTable));
     ASSERT_EQ(pattern.pixel_accesses(), count(columns, Access::kTableAndImage));
     std::size_t next = columns.size();
     for (std::size_t column = columns.size(); column-- > 0;) {
-      if (column + 1 < columns.size() && columns[column + 1] != columns[column]) next = column + 1;
+      const std::size_t last = column + 4;
+      if (last < columns.size() && !make_equal_accesses(columns[last], columns[column])) next = last;
       ASSERT_EQ(pattern.uniform_until(column), next) << column;
     }
-    for (int row = 0; row < config.height; ++row) {
-      for (int column = 0; column < config.width; ++column) {
-        ASSERT_EQ(pattern.entry_valid(column, row),
-                  kernels::entry_is_valid(entries[place_of(config, column, row)]));
+    const FrameGeometry geometry(config);
+    std::uint64_t passes = 0;
+    std::uint64_t slot = 0;
+    for (SlotCursor place(geometry); !place.done(); place.advance(), ++slot) {
+      const Access access = columns[place.frame_column()][slot % columns.front().size()];
+      if (access != Access::kNone) {
+        ASSERT_EQ(pattern.needs_pixel(place.column(), place.row()), access == Access::kTableAndImage);
       }
+      ASSERT_EQ(pattern.pixels_of_slots(slot) & 1U, access == Access::kTableAndImage ? 1U : 0U) << slot;
+      if (slot % 7 == 0) {
+        ASSERT_EQ(pattern.passes_before(slot), passes) << slot;
+      }
+      if (access == Access::kTable || access == Access::kTableAndCache) ++passes;
     }
+    ASSERT_EQ(pattern.passes_before(geometry.slots), passes);
   }
 }
 

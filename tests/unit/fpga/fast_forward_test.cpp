@@ -101,7 +101,7 @@ class Core {
         way_ == Way::kAhead
             ? frames_.step(host_requests)
             : frames_.step(host_requests, [this](const auto& /*decision*/, memory::PortMask grants) {
-                return EntriesRead{reads_valid(Side::kLeft, grants), reads_valid(Side::kRight, grants)};
+                return PixelNeeds{needs_pixel(Side::kLeft, grants), needs_pixel(Side::kRight, grants)};
               });
     return (granted & memory::mask_of(kHostPort)) != 0;
   }
@@ -135,18 +135,18 @@ class Core {
   }
 
  private:
-  bool reads_valid(Side side, memory::PortMask grants) const {
+  bool needs_pixel(Side side, memory::PortMask grants) const {
     const SlotCursor& slot = frames_.control().lane(side).next_slot();
-    return (grants & memory::mask_of(lut_port(side))) != 0 &&
-           patterns_[index_of(side)].entry_valid(slot.column(), slot.row());
+    return (grants & memory::mask_of(frames_.control().table_port(side))) != 0 &&
+           patterns_[index_of(side)].needs_pixel(slot.column(), slot.row());
   }
 
   const Setting& setting_;
   Way way_;
   memory::Arbitration arbitration_;
   FrameRun frames_;
-  AccessPatterns patterns_{AccessPattern(FrameGeometry(setting_.core)),
-                           AccessPattern(FrameGeometry(setting_.core))};
+  AccessPatterns patterns_{AccessPattern(FrameGeometry(setting_.core), setting_.core.pixel_cache),
+                           AccessPattern(FrameGeometry(setting_.core), setting_.core.pixel_cache)};
   RowProfile rows_;
 };
 

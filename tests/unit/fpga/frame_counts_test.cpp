@@ -28,7 +28,8 @@ class FrameCountsTest : public testing::Test {
   std::vector<memory::SsramBankConfig> banks_ = std::vector<memory::SsramBankConfig>(kPortCount);
   memory::Arbitration arbitration_{core_arbiter(), banks_};
   FrameRun run_{config_, banks_, arbitration_, UINT64_MAX};
-  AccessPatterns patterns_{AccessPattern(geometry()), AccessPattern(geometry())};
+  AccessPatterns patterns_{AccessPattern(geometry(), PixelCache::kNone),
+                           AccessPattern(geometry(), PixelCache::kNone)};
 };
 
 // A control that has not done what it should is found: its counts are not those of the geometry.

@@ -22,6 +22,7 @@ struct LaneSetting {
   int image_latency = 2;
   bool has_table = true;
   int height = 2;
+  PixelCache cache = PixelCache::kNone;
 };
 
 // Cycles of a lane, one character a cycle.
@@ -36,7 +37,7 @@ struct Cycles {
   // Given: 1 or 0; the last one holds for the later cycles.
   std::string grants_lut = "1";
   std::string grants_pixel = "1";
-  std::string entry_valid = "1";
+  std::string needs_pixel = "1";
   std::string consumes = "1";  // if the lane is ready
 };
 
@@ -62,7 +63,7 @@ void expect_cycles(LaneControl& lane, const Cycles& cycles) {
     consumed += consumes ? '1' : '0';
     lane.commit(decision, at(cycles.grants_lut, cycle) && decision.lut == Intent::kRequest,
                 at(cycles.grants_pixel, cycle) && decision.pixel == Intent::kRequest,
-                at(cycles.entry_valid, cycle), consumes);
+                at(cycles.needs_pixel, cycle), consumes);
   }
   EXPECT_EQ(lut.substr(0, cycles.lut.size()), cycles.lut);
   EXPECT_EQ(pixel.substr(0, cycles.pixel.size()), cycles.pixel);
@@ -73,7 +74,7 @@ class LaneCycles : public testing::TestWithParam<Cycles> {};
 
 TEST_P(LaneCycles, AreThoseOfTheContract) {
   const LaneSetting& setting = GetParam().setting;
-  LaneControl lane(geometry_of(setting.height), setting.has_table, setting.fifo_slots);
+  LaneControl lane(geometry_of(setting.height), setting.has_table, setting.cache, setting.fifo_slots);
   lane.start_frame(setting.table_latency, setting.image_latency);
   expect_cycles(lane, GetParam());
 }
@@ -85,7 +86,7 @@ std::string in_64_slots(char valid, char invalid) {
   return slots;
 }
 
-// Claim and setting; expected lut, pixel, consumed; given grants_lut, grants_pixel, entry_valid, consumes.
+// Claim and setting; expected lut, pixel, consumed; given grants_lut, grants_pixel, needs_pixel, consumes.
 const std::vector<Cycles> kCycles = {
     {"TakeASlotWithOnePlaceLeftAndNoneWithout", {3}, "RRRBB", "", "", "1", "0"},
     {"CountASlotThatIsConsumedAsStillInTheLane", {1, 1, 1}, "RBBR", "", "0010"},
@@ -121,6 +122,12 @@ const std::vector<Cycles> kCycles = {
     {"BlockOnlyAPortThatTakesSlots", {2, 1, 1}, "RRBBB", "IRRSS", "", "1", "1", "1", "0"},
     {"LetThePixelPortTakeTheSlotsOfASideWithoutTable", {2, 2, 2, false}, "IIII", "RRBR", "0011"},
     {"NeedOnlyTheImagesLatencyOnASideWithoutTable", {16, 2, 2, false, 1}, "", "RRRRPPPPI", "001111111"},
+    // The first pixel of each of two words.
+    {"PassThePixelsOfACachedWordOnASideWithoutTable",
+     {16, 2, 2, false, 2, PixelCache::kWord},
+     "",
+     "RPPPRPPPPPPPI",
+     "001111"},
     {"NeedOnlyAShortImageLatencyOnASideWithoutTable", {16, 2, 1, false, 1}, "", "RRRRPPPPI", "011111111"},
 };
 
@@ -128,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(LaneControl, LaneCycles, testing::ValuesIn(kCycles),
                          [](const auto& suite) { return std::string(suite.param.claim); });
 
 TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
-  LaneControl lane(geometry_of(1), true, 16);
+  LaneControl lane(geometry_of(1), true, PixelCache::kNone, 16);
   lane.start_frame(2, 2);
   Cycles cycles{""};
   cycles.consumed = "00001111111100000000";
@@ -143,10 +150,10 @@ TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
 
 TEST(LaneControl, RefusesADepthOrAReadLatencyOutsideItsRange) {
   const FrameGeometry geometry = geometry_of(2);
-  for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, slots));
-  for (const int slots : {0, 65}) EXPECT_THROW(LaneControl(geometry, true, slots), std::invalid_argument);
-  LaneControl lane(geometry, true, 1);
-  LaneControl lane_without_table(geometry, false, 1);
+  for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, PixelCache::kNone, slots));
+  for (const int slots : {0, 65}) EXPECT_THROW(LaneControl(geometry, true, PixelCache::kNone, slots), std::invalid_argument);
+  LaneControl lane(geometry, true, PixelCache::kNone, 1);
+  LaneControl lane_without_table(geometry, false, PixelCache::kNone, 1);
   for (const int latency : {1, 2}) EXPECT_NO_THROW(lane.start_frame(latency, latency));
   for (const int latency : {0, 3}) {
     EXPECT_THROW(lane.start_frame(latency, 2), std::invalid_argument);

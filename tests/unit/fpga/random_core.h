@@ -39,6 +39,8 @@ inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   config.left_table = random.chance(80);
   config.right_table = random.chance(80);
   config.lane_fifo_slots = random.mostly_small(1, 16, 64);
+  config.joint_tables = config.left_table && config.right_table && random.chance(30);
+  if (random.chance(50)) config.pixel_cache = PixelCache::kWord;
   config.result_fifo_words = random.mostly_small(1, 8, 64);
   config.pipeline_latency_cycles = random.between(0, 20);
   return config;
@@ -59,9 +61,22 @@ inline std::size_t place_of(const CoreConfig& config, int column, int row) {
          static_cast<std::size_t>(column);
 }
 
-// The table entries of one side: all valid, valid but for a block or some columns, or some anywhere.
+// The table entries of one side: all valid, valid but for a block or some columns, or some anywhere. The sources
+// are the pixels themselves, or lie on slanted lines.
 inline std::vector<std::uint32_t> random_entries(test::SplitMix64& random, const CoreConfig& config) {
   auto entries = kernels::identity_table(config.width, config.height).entries;
+  if (random.chance(50)) {
+    const int slope = random.between(-16, 16);
+    const int slant = random.between(-16, 16);
+    const auto wrapped = [](int place, int size) { return (place % size + size) % size; };
+    for (int row = 0; row < config.height; ++row) {
+      for (int column = 0; column < config.width; ++column) {
+        entries[place_of(config, column, row)] =
+            kernels::make_entry(wrapped(column + (column * slope + row * slant) / 16, config.width),
+                                wrapped(row + column * slant / 32, config.height));
+      }
+    }
+  }
   const auto invalidate = [&](int column, int row) { entries[place_of(config, column, row)] = 0; };
   const int kind = random.between(0, 3);
   const int percent = random.between(1, 99);

@@ -71,32 +71,65 @@ TEST(Sequencer, SendsTheSlotsOfItsSideWithTheTimesOfTheirCycles) {
 
 class LutReaderTest : public StageTest<LutReader> {
  protected:
-  LutReaderTest() : StageTest(8) {
+  explicit LutReaderTest(bool has_joint_tables = false) : StageTest(8, has_joint_tables) {
     stage.entries_out.bind(entries);
+    if (has_joint_tables) stage.right_entries_out.bind(right_entries);
     elaborate();
   }
   Collected<TableEntry> entries;
+  Collected<TableEntry> right_entries;
 };
 
 TEST_F(LutReaderTest, TakesARefusedAccessForAnEntryThatIsNotValid) {
   preload(9, kernels::make_entry(5, 1));
-  stage.start_frame(0);
+  stage.start_frame(0, {});
   stage.slots_in->push({1, 1, false, kAt});  // the last word of the bank
-  EXPECT_TRUE(stage.entry_valid());
   EXPECT_EQ(entries.beats.back().entry, kernels::make_entry(5, 1));
   EXPECT_EQ(stage.stats().errors, 0U);
   stage.slots_in->push({2, 1, false, kAt});
-  EXPECT_FALSE(stage.entry_valid());
   EXPECT_EQ(entries.beats.back().entry, 0U);
+  EXPECT_EQ(stage.stats().errors, 1U);
+}
+
+class JointLutReaderTest : public LutReaderTest {
+ protected:
+  JointLutReaderTest() : LutReaderTest(true) {}
+};
+
+TEST_F(JointLutReaderTest, GivesBothSidesTheirEntriesOfAWord) {
+  preload(9, 0x8000'0000U | 70U << 24U | 130U << 16U);  // left: 6 rows and 2 columns; right: not valid
+  preload(8, 0x8000U | 60U << 8U | 120U);               // right: -4 rows and -8 columns; left: not valid
+  stage.start_frame(0, {{{-1, 20}, {10, 5}}});
+  stage.slots_in->push({1, 1, false, kAt});
+  EXPECT_EQ(entries.beats.back().entry, kernels::make_entry(1 + 2 - 1, 1 + 6 + 20));
+  EXPECT_EQ(right_entries.beats.back().entry, 0U);
+  stage.slots_in->push({0, 1, false, kAt});
+  EXPECT_EQ(entries.beats.back().entry, 0U);
+  EXPECT_EQ(right_entries.beats.back().entry, kernels::make_entry(0 - 8 + 10, 1 - 4 + 5));
+  EXPECT_EQ(stage.stats().reads, 2U);
+  EXPECT_EQ(stage.stats().invalid_entries, 2U);
+  stage.slots_in->push({2, -1, true, kAt});
+  stage.slots_in->push({2, 1, false, kAt});  // refused
+  for (const auto* side : {&entries, &right_entries}) {
+    EXPECT_EQ(side->beats.size(), 4U);
+    EXPECT_EQ(side->beats.back().entry, 0U);
+  }
+  EXPECT_EQ(stage.stats().empty_slots, 1U);
   EXPECT_EQ(stage.stats().errors, 1U);
 }
 
 class PixelReaderTest : public StageTest<PixelReader> {
  protected:
-  PixelReaderTest() : StageTest(8) {
+  explicit PixelReaderTest(PixelCache cache = PixelCache::kNone) : StageTest(core_of(cache)) {
     stage.pixels_out.bind(pixels);
     elaborate();
     stage.start_frame(8);
+  }
+  // Three slots a column.
+  static CoreConfig core_of(PixelCache cache) {
+    CoreConfig config = small_core(8, 4);
+    config.pixel_cache = cache;
+    return config;
   }
   void expect_pixel(std::uint8_t value) {
     stage.release();
@@ -110,6 +143,57 @@ TEST_F(PixelReaderTest, KeepsAFullLaneInOrder) {
   for (int slot = 0; slot < 64; ++slot) stage.entries_in->push({kernels::make_entry(slot % 8, slot / 8 % 4)});
   for (int slot = 0; slot < 64; ++slot) stage.handle(kAt);
   for (int slot = 0; slot < 64; ++slot) expect_pixel(static_cast<std::uint8_t>(slot / 8 % 4 * 10 + slot % 8));
+}
+
+class CachedPixelReaderTest : public PixelReaderTest {
+ protected:
+  CachedPixelReaderTest() : PixelReaderTest(PixelCache::kWord) {}
+  // The entry of the next slot; 0: not valid.
+  bool reads(std::uint32_t entry) {
+    const std::uint64_t reads = stage.stats().reads;
+    stage.entries_in->push({entry});
+    const bool needs_access = stage.needs_access();
+    stage.handle(kAt);
+    EXPECT_EQ(stage.stats().reads - reads, needs_access ? 1U : 0U);
+    return needs_access;
+  }
+};
+
+TEST_F(CachedPixelReaderTest, ReadsAWordOfASlotOfTheColumnOnlyOnce) {
+  EXPECT_TRUE(reads(kernels::make_entry(0, 0)));
+  EXPECT_TRUE(reads(kernels::make_entry(1, 0)));  // another slot of the column
+  EXPECT_TRUE(reads(kernels::make_entry(5, 3)));
+  EXPECT_FALSE(reads(kernels::make_entry(3, 0)));  // the next column
+  EXPECT_FALSE(reads(0));
+  EXPECT_TRUE(reads(kernels::make_entry(3, 3)));
+  EXPECT_TRUE(reads(kernels::make_entry(4, 0)));
+  EXPECT_FALSE(reads(kernels::make_entry(2, 0)));  // kept over a slot without valid entry
+  EXPECT_TRUE(reads(kernels::make_entry(5, 3)));   // no longer kept
+  for (const int value : {0, 1, 35, 3}) expect_pixel(static_cast<std::uint8_t>(value));
+  stage.release();
+  for (const int value : {33, 4, 2, 35}) expect_pixel(static_cast<std::uint8_t>(value));
+  EXPECT_EQ(stage.stats().passed_slots, 3U);
+}
+
+TEST_F(CachedPixelReaderTest, ForgetsItsWordsWhereAStripBegins) {
+  for (int slot = 0; slot < 3 * 8; ++slot) {
+    EXPECT_EQ(reads(kernels::make_entry(0, 0)), slot < 3) << slot;
+    expect_pixel(0);
+  }
+  for (int slot = 0; slot < 6; ++slot) EXPECT_EQ(reads(kernels::make_entry(1, 0)), slot < 3) << slot;
+  stage.start_frame(8);
+  EXPECT_TRUE(reads(kernels::make_entry(1, 0)));
+}
+
+TEST_F(CachedPixelReaderTest, HandlesAWordThatItHasNotReadYet) {
+  for (int slot = 0; slot < 6; ++slot) {
+    stage.entries_in->push({kernels::make_entry(slot, slot % 3)});
+    EXPECT_EQ(stage.needs_access(), slot < 3 || slot > 3) << slot;
+  }
+  for (int slot = 0; slot < 6; ++slot) {
+    stage.handle(kAt);
+    expect_pixel(static_cast<std::uint8_t>(slot % 3 * 10 + slot));
+  }
 }
 
 TEST_F(PixelReaderTest, ReadsZeroWhereAnAccessIsRefused) {

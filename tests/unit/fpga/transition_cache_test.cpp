@@ -8,35 +8,40 @@
 namespace stereotlm::fpga {
 namespace {
 
-// Groups of 10, 11, 12, .. cycles with a word each, one behind the other; in each of them the result port is
+// Groups of 10, 11, 12, .. cycles with a word each, one after the other; in each of them the result port is
 // granted once more than in the one before.
 class TransitionCacheTest : public testing::Test {
  protected:
   static constexpr std::uint64_t kMuch = UINT64_MAX / 2;
+  static constexpr std::size_t kMost = 3000;
 
-  TransitionCache::Group& group(std::size_t number) {
+  static TransitionCache::State state(std::uint64_t number) {
     TransitionCache::State state;
     state.control.rest = number;
-    return groups_.at(state);
+    return state;
   }
-  // Of so many groups, the last of which goes on with group number `back_to`.
+  static TransitionCache::Effect effect(std::size_t number) {
+    TransitionCache::Effect effect;
+    effect.progress = {10 + number, 4, 8, 8, 1};
+    effect.counts[kResultPort].add(Intent::kRequest, true, number + 1);
+    return effect;
+  }
+  void record(std::size_t from, std::size_t next, const TransitionCache::Accesses& accesses = {}) {
+    groups_.record(groups_.number_of(state(from)), accesses, groups_.number_of(state(next)), effect(from));
+  }
+  // Of so many groups, the last of which continues with group number `back_to`.
   void make_ring(std::size_t groups, std::size_t back_to) {
-    for (std::size_t i = 0; i < groups; ++i) {
-      TransitionCache::Group& one = group(i);
-      one.progress = {10 + i, 4, 8, 8, 1};
-      one.counts[kResultPort].add(Intent::kRequest, true, i + 1);
-      one.next = &group(i + 1 < groups ? i + 1 : back_to);
-    }
+    for (std::size_t i = 0; i < groups; ++i) record(i, i + 1 < groups ? i + 1 : back_to);
   }
-  // The number of the group that comes next.
-  std::uint64_t walk(std::size_t from, const Progress& room) {
-    progress_ = {};
-    return groups_.walk(group(from), room, progress_, control_, arbitration_).begin->control.rest;
+  // The number of the group that comes next. Reduces `room`.
+  std::uint64_t walk(std::size_t from, Progress& room) {
+    const auto last = groups_.walk(groups_.number_of(state(from)), {}, room);
+    groups_.count_followed(control_, arbitration_);
+    return groups_.state(last).control.rest;
   }
   std::uint64_t granted() const { return control_.port_cycles(kResultPort).granted(); }
 
-  TransitionCache groups_;
-  Progress progress_;
+  TransitionCache groups_{128, kMost};
   CoreControl control_{CoreConfig{}};
   memory::Arbitration arbitration_{core_arbiter(), std::vector<memory::SsramBankConfig>(6)};
 };
@@ -56,24 +61,52 @@ TEST_F(TransitionCacheTest, WalksARingAsIfGroupByGroup) {
           grants += at + 1;
           at = at + 1 < length ? at + 1 : back_to;
         }
-        ASSERT_EQ(walk(0, {kMuch, kMuch, kMuch, kMuch, words}), at)
-            << length << ' ' << back_to << ' ' << words;
-        ASSERT_EQ(progress_.cycles, cycles);
-        ASSERT_EQ(progress_.words, words);
+        Progress room = {kMuch, kMuch, kMuch, kMuch, words};
+        ASSERT_EQ(walk(0, room), at) << length << ' ' << back_to << ' ' << words;
+        ASSERT_EQ(room.cycles, kMuch - cycles);
+        ASSERT_EQ(room.words, 0U);
         ASSERT_EQ(granted(), grants);
       }
     }
   }
 }
 
-TEST_F(TransitionCacheTest, IsFullAtItsCap) {
-  for (std::size_t number = 0; number < TransitionCache::kMost; ++number) {
+// Of 128 slots: the two words of each side.
+TEST_F(TransitionCacheTest, DistinguishesTheSlotsThatAreNotHandled) {
+  TransitionCache::State from = state(0);
+  from.control.lanes = {3U << 8U, 64U << 8U};  // slots handled
+  const auto number = groups_.number_of(from);
+  groups_.record(number, {}, number, effect(0));
+  const auto finds = [&](std::size_t word, unsigned bit) {
+    TransitionCache::Accesses accesses{};
+    accesses[word] = std::uint64_t{1} << bit;
+    return groups_.find(number, accesses).has_value();
+  };
+  EXPECT_EQ(groups_.words_of_side(), 2U);
+  EXPECT_TRUE(finds(0, 2));
+  EXPECT_FALSE(finds(0, 3));
+  EXPECT_FALSE(finds(0, 63));
+  EXPECT_FALSE(finds(1, 0));
+  EXPECT_TRUE(finds(2, 63));
+  EXPECT_FALSE(finds(3, 0));
+  EXPECT_FALSE(finds(3, 63));
+}
+
+TEST_F(TransitionCacheTest, FindsEachTransitionAndIsFullAtItsCap) {
+  for (std::size_t number = 0; number < kMost; ++number) {
     ASSERT_FALSE(groups_.is_full()) << number;
-    group(number);
+    record(number % 50, number % 30, {number, 0, 7, number});
   }
   EXPECT_TRUE(groups_.is_full());
+  for (std::size_t number = 0; number < kMost; ++number) {
+    const auto found = groups_.find(groups_.number_of(state(number % 50)), {number, 0, 7, number});
+    ASSERT_TRUE(found) << number;
+    EXPECT_EQ(groups_.state(found->next).control.rest, number % 30);
+    EXPECT_EQ(groups_.progress(*found), effect(number % 50).progress);
+  }
   groups_.clear();
   EXPECT_FALSE(groups_.is_full());
+  EXPECT_FALSE(groups_.find(groups_.number_of(state(0)), {0, 0, 7, 0}));
 }
 
 }  // namespace
