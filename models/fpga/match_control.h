@@ -26,8 +26,7 @@ class MatchControl {
   // Whether the matcher works in this cycle. The arguments matter only for the first cycle of a slot, or of a
   // consume-cycle of the drain.
   bool decide(bool slots_ready, bool result_queue_has_room) const {
-    if (pass_ != 0) return true;
-    return result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready);
+    return pass_ != 0 || (result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready));
   }
   // Whether the matcher consumes in this cycle. To be called only if it works.
   bool consumes() const { return pass_ + 1 == geometry_.passes; }

@@ -53,6 +53,20 @@ TEST(CoreRun, GivesTheWorkedValuesOfUnitsAndRows) {
   EXPECT_THAT(first_frame({"matcher.units=40", "matcher.fetch=line_buffer"}), ElementsAre(618425));
 }
 
+// Uncontended: the latency of the first slot, the slots and the drain, the last writes, the pipeline.
+TEST(CoreRun, RunsTheLargestImageWithTheLongestColumns) {
+  const BoardConfig board =
+      load_board("fpl2003-no-calibration", {"image={width: 8192, height: 8192}",
+                                            "ssram.default.words=67108864", "fpga.result_fifo_words=64",
+                                            "matcher={window: 31, disparities: 254, units: 127, rows: 16, "
+                                            "filter: none, fetch: column, lr_tolerance: 0}"});
+  const Statistics statistics = run_core(board, {}, 1);
+  const std::uint64_t columns = std::uint64_t{8192} * 8192 / 16 + 254 - 1 + 15;
+  EXPECT_THAT(statistics.frame_cycles, ElementsAre(2 + columns * (31 + 15) * 2 + 16 + 16));
+  EXPECT_THAT(statistics.failed, ElementsAre());
+  EXPECT_EQ(statistics.ports[fpga::kResultPort].grants, std::uint64_t{1} << 24U);
+}
+
 TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {
   BoardConfig board = small_board();
   Tables tables = identity_tables(board);
