@@ -14,8 +14,12 @@ constexpr bool has(PortMask mask, memory::Port port) { return (mask & memory::ma
 CoreDatapath::Lane::Lane(const std::string& side, const CoreConfig& config, bool has_table)
     : pixel_reader((side + "_pixel").c_str(), config.width), filter((side + "_filter").c_str(), config) {
   if (has_table) lut_reader = std::make_unique<LutReader>((side + "_lut").c_str(), config.width);
-  if (config.fetch == Fetch::kLineBuffer)
-    row_buffer = std::make_unique<RowBuffer>((side + "_rows").c_str(), config.width, config.window);
+  if (config.cost.kind == kernels::CostKind::kCensus)
+    census = std::make_unique<Census>((side + "_census").c_str(), config);
+  if (config.fetch == Fetch::kLineBuffer) {
+    row_buffer = std::make_unique<RowBuffer>((side + "_rows").c_str(), config.width, config.window,
+                                             config.cost.pixel_bytes());
+  }
 }
 
 CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder)
@@ -38,8 +42,8 @@ void CoreDatapath::bind_memory(Binder& binder) {
 
 void CoreDatapath::bind_streams() {
   const std::array<StreamOut<Slot>*, 2> slots_of = {&sequencer_.left_out, &sequencer_.right_out};
-  const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&sad_array_.left_in,
-                                                                                &sad_array_.right_in};
+  const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&cost_array_.left_in,
+                                                                                &cost_array_.right_in};
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
     StreamOut<Slot>& slots = *slots_of[index_of(side)];
@@ -51,15 +55,19 @@ void CoreDatapath::bind_streams() {
       slots.bind(lane.pixel_reader.slots_in);
     }
     lane.pixel_reader.pixels_out.bind(lane.filter.pixels_in);
-    if (lane.row_buffer) {
-      lane.filter.columns_out.bind(lane.row_buffer->columns_in);
-      lane.row_buffer->columns_out.bind(columns);
-    } else {
-      lane.filter.columns_out.bind(columns);
+    StreamOut<PixelColumn>* last_out = &lane.filter.columns_out;
+    if (lane.census) {
+      last_out->bind(lane.census->columns_in);
+      last_out = &lane.census->columns_out;
     }
+    if (lane.row_buffer) {
+      last_out->bind(lane.row_buffer->columns_in);
+      last_out = &lane.row_buffer->columns_out;
+    }
+    last_out->bind(columns);
   }
-  sad_array_.chain_out.bind(select_min_chain_.sums_in);
-  sad_array_.tree_out.bind(select_min_tree_.sums_in);
+  cost_array_.chain_out.bind(select_min_chain_.sums_in);
+  cost_array_.tree_out.bind(select_min_tree_.sums_in);
   select_min_chain_.matches_out.bind(lr_check_.right_in);
   select_min_tree_.matches_out.bind(lr_check_.left_in);
   lr_check_.disparities_out.bind(result_packer_.disparities_in);
@@ -76,10 +84,11 @@ void CoreDatapath::start_frame(const FrameBases& bases) {
     if (lane.lut_reader) lane.lut_reader->start_frame(aim(lut_port(side)));
     lane.pixel_reader.start_frame(aim(pixel_port(side)));
     lane.filter.start_frame();
+    if (lane.census) lane.census->start_frame();
     if (lane.row_buffer) lane.row_buffer->start_frame();
   }
   result_writer_.start_frame(aim(kResultPort));
-  sad_array_.start_frame();
+  cost_array_.start_frame();
   select_min_chain_.start_frame();
   lr_check_.start_frame();
   result_packer_.start_frame();
@@ -149,9 +158,10 @@ void CoreDatapath::count(const FrameCounts& frame) {
     if (lane.lut_reader) lane.lut_reader->count(counts.table);
     lane.pixel_reader.count(counts.image);
     lane.filter.count(frame.filter);
+    if (lane.census) lane.census->count(frame.census);
     if (lane.row_buffer) lane.row_buffer->count(frame.rows);
   }
-  sad_array_.count(frame.sums);
+  cost_array_.count(frame.sums);
   select_min_chain_.count(frame.chain);
   select_min_tree_.count(frame.tree);
   if (frame.check) lr_check_.count(*frame.check);

@@ -14,6 +14,7 @@ namespace stereotlm::test {
 inline constexpr RandomKnobs kKnobsOfTheModels = [] {
   RandomKnobs knobs;
   knobs.qdr = true;
+  knobs.cost = true;
   return knobs;
 }();
 
