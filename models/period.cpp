@@ -51,4 +51,15 @@ Period::Period(Wide numerator, Wide denominator)
       denominator_ > kNarrow ? 0 : static_cast<std::uint64_t>(kNarrow / std::max(Wide{1}, 2 * rest_));
 }
 
+// Returns 2 * rest_ * count / denominator_, whose dividend may have more than 128 bits: divides the upper bits of
+// the count first.
+std::uint64_t Period::doubled_rest_of(std::uint64_t count) const {
+  constexpr unsigned kLowerBits = 20;
+  const Wide upper = 2 * rest_ * (count >> kLowerBits);
+  const Wide lower = 2 * rest_ * (count & ((std::uint64_t{1} << kLowerBits) - 1));
+  const Wide remainder = upper % denominator_ << kLowerBits;
+  return static_cast<std::uint64_t>(((upper / denominator_) << kLowerBits) +
+                                    (remainder + lower) / denominator_);
+}
+
 }  // namespace stereotlm

@@ -22,7 +22,8 @@ DecimalNumber decimal_of(double value);
 // value, so that rounding errors do not add up.
 class Period {
  public:
-  // A period of numerator / denominator ps. Both are below 2^127.
+  // A period of numerator / denominator ps. Both are below 2^106. The denominator times the largest count is
+  // below 2^146.
   Period(Wide numerator, Wide denominator);
 
   // The time of `count` periods, in ps.
@@ -33,7 +34,7 @@ class Period {
     const std::uint64_t doubled_rest =
         count <= narrow_counts_
             ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)
-            : static_cast<std::uint64_t>(2 * rest_ * count / denominator_);
+            : doubled_rest_of(count);
     return whole_ * count + (doubled_rest + 1) / 2;
   }
 
@@ -42,6 +43,8 @@ class Period {
   }
 
  private:
+  std::uint64_t doubled_rest_of(std::uint64_t count) const;
+
   double approximate_;   // ps, rounded to a double
   std::uint64_t whole_;  // whole ps
   Wide rest_;            // the rest is rest_ / denominator_ ps, in lowest terms

@@ -90,7 +90,9 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
                   accesses.right}};
   const int disparity = bank_in_turn(layout.disparity, frame);
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
-  const std::uint64_t after_last_slot = geometry.drain_cycles + 1 + pipeline;  // 1: the last write
+  const auto passes = static_cast<std::uint64_t>(geometry.passes);
+  const std::uint64_t after_last_slot =
+      geometry.drain_cycles * passes + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
 
   struct BankDemand {
     std::uint64_t reads = 0;
@@ -115,8 +117,9 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     if (side.accesses.pixel > 0) read(side.image, side.accesses.pixel, image_latency);
     const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
     const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
-    const std::uint64_t taking = std::max(slot_a_cycle, (geometry.slots - 1) / places * (lane_latency + 1) +
-                                                            lane_latency + 1 + after_last_slot);
+    const std::uint64_t in_lane = lane_latency + passes;
+    const std::uint64_t taking =
+        std::max(slot_a_cycle, (geometry.slots - 1) / places * in_lane + in_lane + after_last_slot);
     if (side.lut) luts.push_back({std::string("port ") + side.name + "_lut", taking});
     pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
   }
@@ -129,12 +132,13 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     // With separate ports the writes are made beside the reads.
     const bool is_beside = has_separate_ports(board, bank);
     std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
-    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher consumes its slot
-    // at least `after_last_read` cycles later.
-    if (demand.reads > 0) cycles = std::max(cycles, demand.reads + demand.after_last_read + after_last_slot);
+    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on its
+    // slot at least `after_last_read` cycles later.
+    if (demand.reads > 0)
+      cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + passes + after_last_slot);
     bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});
   }
-  bounds.push_back({"matcher", first_slot + geometry.slots + after_last_slot});
+  bounds.push_back({"matcher", first_slot + geometry.slots * passes + after_last_slot});
   return bounds;
 }
 

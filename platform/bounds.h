@@ -31,11 +31,14 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 // |----------|--------------------------------------------------------------------------------------------|
 // | port P   | One cycle per slot or word. The first port of a lane (its LUT port, or its pixel port if   |
 // |          | the side has no table) also waits for a place in the lane, which has F places: slot s+F is |
-// |          | taken after slot s was consumed, at least the read latencies of the lane after s was taken.|
+// |          | taken after slot s was consumed. That is at least the read latencies of the lane and the   |
+// |          | passes of the matcher after s was taken.                                                   |
 // | bank B   | One cycle per access, no turnaround; with separate ports one cycle per read or one per     |
 // |          | write, whichever are more. After the last read: the latencies of its slot up to the        |
-// |          | matcher, the drain and the last write.                                                     |
-// | matcher  | The read latencies of the first slot, one cycle per slot, the drain, the last write.       |
+// |          | matcher, the passes on it, the drain and the last writes.                                  |
+// | matcher  | The read latencies of the first slot, the passes on each slot, the drain, the last writes. |
+//
+// The last writes are those of the words that the last column completes, one for each row of the last strip.
 struct ResourceBound {
   std::string resource;  // "port left_lut", "bank bank0", "matcher"
   std::uint64_t cycles = 0;

@@ -14,8 +14,8 @@ namespace stereotlm::platform {
 // sweeps do.
 //
 // Throws std::invalid_argument if the board has problems, the tables do not fit the board, or `frames` is 0.
-// Throws std::runtime_error if no slot is consumed and no result written for stall_timeout_cycles, because
-// the frame would never end.
+// Throws std::runtime_error if the matcher does not work and no result is written for stall_timeout_cycles,
+// because the frame would never end.
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
                     std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
 

@@ -14,15 +14,15 @@ namespace stereotlm::platform {
 // | from        | holds                                                    | described in                |
 // |-------------|----------------------------------------------------------|-----------------------------|
 // | 0x0000'0000 | host memory                                              |                             |
-// | 0xD000'0000 | the bridge's window to the board: four apertures of      | pci/bridge_registers.h      |
-// |             | 4 MiB onto the banks, then the registers of the core     | fpga/register_map.h         |
+// | 0xC000'0000 | the bridge's window to the board: four apertures of      | pci/bridge_registers.h      |
+// |             | 64 MiB onto the banks, then the registers of the core    | fpga/register_map.h         |
 // | 0xE000'0000 | the bridge's own registers: pages, interrupts, DMA       | pci/bridge_registers.h      |
 // | 0xE100'0000 | the left capture board                                   | capture/capture_registers.h |
 // | 0xE100'1000 | the right capture board                                  | capture/capture_registers.h |
 // | 0xE200'0000 | the traffic generator (board key `pci.load`)             |                             |
 struct DeviceMap {
   std::uint64_t host_memory = 0x0000'0000;
-  std::uint64_t bridge_slave = 0xD000'0000;
+  std::uint64_t bridge_slave = 0xC000'0000;
   std::uint64_t bridge_registers = 0xE000'0000;
   std::uint64_t left_capture = 0xE100'0000;
   std::uint64_t right_capture = 0xE100'1000;

@@ -9,8 +9,8 @@ namespace stereotlm::capture {
 CameraTiming::CameraTiming(const CameraConfig& config)
     : CameraTiming(config, decimal_of(checked("camera", config).frame_rate_hz)) {}
 
-// A frame has 525/480 = 35/32 line times per row. With a frame rate of 17 digits all numbers stay below
-// 2^127.
+// A frame has 525/480 = 35/32 line times per row. With a frame rate of 17 digits the step is a fraction of
+// numbers below 2^102, and a time has fewer than 2^36 steps.
 CameraTiming::CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz)
     : width_(config.width),
       height_(config.height),

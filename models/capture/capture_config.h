@@ -8,8 +8,8 @@
 
 namespace stereotlm::capture {
 
-inline constexpr kernels::IntegerRule kWidthRule{4, 2048, 4};
-inline constexpr kernels::IntegerRule kHeightRule{1, 2048};
+inline constexpr kernels::IntegerRule kWidthRule{4, 8192, 4};
+inline constexpr kernels::IntegerRule kHeightRule{1, 8192};
 inline constexpr double kMinFrameRateHz = 0.1;
 inline constexpr double kMaxFrameRateHz = 1000;
 inline constexpr kernels::IntegerRule kFifoWordsRule{1, 4096};

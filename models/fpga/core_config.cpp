@@ -24,7 +24,8 @@ std::vector<std::string> problems(const CoreConfig& config) {
   if (config.lr_tolerance) kernels::kLrToleranceRule.check("lr_tolerance", *config.lr_tolerance, found);
   kLaneFifoRule.check("lane_fifo_slots", config.lane_fifo_slots, found);
   kResultFifoRule.check("result_fifo_words", config.result_fifo_words, found);
-  if (config.result_fifo_words < config.rows)
+  if (kResultFifoRule.allows(config.result_fifo_words) && kRowsRule.allows(config.rows) &&
+      config.result_fifo_words < config.rows)
     found.push_back("result_fifo_words = " + std::to_string(config.result_fifo_words) +
                     ": must be at least rows, which is " + std::to_string(config.rows));
   kPipelineLatencyRule.check("pipeline_latency_cycles", config.pipeline_latency_cycles, found);

@@ -61,9 +61,9 @@ void CoreControl::skip_to(const State& state, std::uint64_t columns, std::uint64
 }
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {
-  const std::uint64_t consumes = match_.cycles_left();
-  // The last word enters the queue when the matcher has consumed all, and is written in a later cycle.
-  if (consumes > 0) return cycle + consumes;
+  // The last words enter the queue together when the matcher has consumed all, and are written in later cycles.
+  if (const std::uint64_t works = match_.cycles_left(); works > 0)
+    return cycle + works + static_cast<std::uint64_t>(geometry_.last_rows) - 1;
   return cycle + result_.words_left() - 1;
 }
 

@@ -30,7 +30,8 @@ class CoreControl {
  public:
   struct Decision {
     std::array<Intent, kCorePortCount> intents;  // [port]
-    bool consume;  // the matcher consumes a slot of both lanes, or a cycle of the drain
+    bool work;     // the matcher works on a slot of both lanes, or on a consume-cycle of the drain
+    bool consume;  // the matcher consumes it in this cycle
     bool drain;
 
     memory::PortMask requests() const { return ports_with(Intent::kRequest); }
@@ -101,8 +102,9 @@ class CoreControl {
   std::uint64_t earliest_last_write(std::uint64_t cycle) const;
   // The cycles of a port, from the start of each frame to its last write, over all frames.
   const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }
-  // Slots consumed plus words written, over all frames. The sum grows as long as frames make progress.
-  std::uint64_t work() const { return lane(Side::kLeft).consumed() + port_cycles(kResultPort).granted(); }
+  // Cycles in which the matcher worked plus words written, over all frames. The sum grows as long as frames
+  // make progress.
+  std::uint64_t work() const { return match_.worked() + port_cycles(kResultPort).granted(); }
 
  private:
   PortCycles& host_cycles() { return cycles_[kHostPort]; }
@@ -125,7 +127,8 @@ inline CoreControl::Decision CoreControl::decide() const {
   decide_lane(Side::kRight);
   decision.intents[kResultPort] = result_.decide();
   const bool slots_ready = lane(Side::kLeft).ready() && lane(Side::kRight).ready();
-  decision.consume = match_.decide(slots_ready, result_.has_room());
+  decision.work = match_.decide(slots_ready, result_.has_room());
+  decision.consume = decision.work && match_.consumes();
   decision.drain = match_.draining();
   return decision;
 }
@@ -144,8 +147,8 @@ inline bool CoreControl::commit(const Decision& decision, memory::PortMask grant
   };
   commit_lane(Side::kLeft);
   commit_lane(Side::kRight);
-  const bool four_columns = decision.consume && match_.consume();
-  result_.commit(is_granted(kResultPort), four_columns && match_.word_leaves());
+  const bool four_columns = decision.work && match_.work();
+  result_.commit(is_granted(kResultPort), four_columns ? match_.words_leaving() : 0);
   return four_columns;
 }
 

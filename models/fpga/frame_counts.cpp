@@ -42,6 +42,7 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
   census.columns = filter.columns;
   rows.columns = filter.columns;
   sums.columns = filter.columns;
+  // The rows of a strip share the costs of their windows.
   sums.pixel_costs = sums.columns * static_cast<std::uint64_t>(config.window + config.rows - 1) *
                      static_cast<std::uint64_t>(config.disparities);
   const int rows_with_windows = std::max(0, geometry.height - 2 * geometry.radius);

@@ -16,6 +16,8 @@ struct FrameGeometry {
         radius((config.window - 1) / 2),
         half((config.filter ? config.filter->half() : 0) + config.cost.half()),
         rows(config.rows),
+        last_rows((height - 1) % rows + 1),
+        passes(passes_of(config)),
         slots_per_column(config.fetch == Fetch::kColumn ? config.window + rows - 1 : 1),
         lead_strips(config.fetch == Fetch::kColumn ? (std::max(0, half - radius) + rows - 1) / rows
                                                    : radius + half),
@@ -28,6 +30,8 @@ struct FrameGeometry {
                      static_cast<std::uint64_t>(slots_per_column)),
         result_delay_columns(static_cast<std::uint64_t>(drain_columns) +
                              static_cast<std::uint64_t>(lead_strips) * columns_per_strip()),
+        last_strip_column(result_delay_columns +
+                          static_cast<std::uint64_t>((height - 1) / rows) * columns_per_strip()),
         result_words(columns_per_strip() * static_cast<std::uint64_t>(height) / 4) {}
 
   int width;
@@ -35,14 +39,18 @@ struct FrameGeometry {
   int radius;            // r
   int half;              // h: of the filter and of the cost together
   int rows;              // R: rows of results of a strip
+  int last_rows;         // of them, those of the last strip that lie inside the image
+  int passes;            // S: cycles of the matcher for a slot, or for a consume-cycle of the drain
   int slots_per_column;  // also the number of consume-cycles of a column of the drain
   int lead_strips;       // strips before the first row of results can begin
   int strips;
   int first_row;      // of the first strip; may lie above the image. Each strip begins `rows` further down
   int drain_columns;  // C_d of the contract
   std::uint64_t slots;
-  std::uint64_t drain_cycles;
-  std::uint64_t result_delay_columns;  // C of the contract: the result of pixel i leaves with column i + C
+  std::uint64_t drain_cycles;  // consume-cycles, each of `passes` cycles
+  // C of the contract: the results of column i leave with column i + C, both counted over all strips.
+  std::uint64_t result_delay_columns;
+  std::uint64_t last_strip_column;  // with which the first results of the last strip leave
   std::uint64_t result_words;
 
   // The row of the first slot of each column of a strip; may lie outside the image.

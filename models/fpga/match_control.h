@@ -7,53 +7,71 @@
 
 namespace stereotlm::fpga {
 
-// Decides when the matcher consumes slots, and which of its cycles completes a word of results.
+// Decides when the matcher works, and which of its cycles complete words of results. It works on a slot, or
+// on a consume-cycle of the drain, for `passes` cycles, and consumes it in the last of them (contract 7.1).
 class MatchControl {
  public:
   explicit MatchControl(const FrameGeometry& geometry) : geometry_(geometry) {}
 
   void start_frame() {
+    worked_before_frame_ = worked();
     slots_left_ = geometry_.slots;
     drain_left_ = geometry_.drain_cycles;
+    pass_ = 0;
     k_ = 0;
     columns_ = 0;
   }
   // After the last slot the matcher consumes the columns of the drain, which need no slots.
   bool draining() const { return slots_left_ == 0; }
-  // Whether the matcher consumes in this cycle.
+  // Whether the matcher works in this cycle. The arguments matter only for the first cycle of a slot, or of a
+  // consume-cycle of the drain.
   bool decide(bool slots_ready, bool result_queue_has_room) const {
+    if (pass_ != 0) return true;
     return result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready);
   }
-  // Consumes a slot, or a cycle of the drain. Returns true if this completes a group of four columns. Groups
-  // are counted from column result_delay_columns % 4 on.
-  bool consume() {
+  // Whether the matcher consumes in this cycle. To be called only if it works.
+  bool consumes() const { return pass_ + 1 == geometry_.passes; }
+  // Works for a cycle. Returns true if this completes a group of four columns. Groups are counted from column
+  // result_delay_columns % 4 on.
+  bool work() {
+    if (++pass_ < geometry_.passes) return false;
+    pass_ = 0;
     --(draining() ? drain_left_ : slots_left_);
     if (++k_ < geometry_.slots_per_column) return false;
     k_ = 0;
     ++columns_;
     return (columns_ - geometry_.result_delay_columns) % 4 == 0;
   }
-  // Whether the group of four columns completes a word of results. To be called when consume() has returned
-  // true. The column just consumed is number columns_ - 1, so columns_ - result_delay_columns results have
-  // left.
-  bool word_leaves() const { return columns_ > geometry_.result_delay_columns; }
+  // The number of words of results that the group of four columns completes: one for each row of the strip
+  // that lies inside the image. To be called when work() has returned true. The column just consumed is number
+  // columns_ - 1.
+  int words_leaving() const {
+    if (columns_ <= geometry_.result_delay_columns) return 0;
+    return columns_ <= geometry_.last_strip_column ? geometry_.rows : geometry_.last_rows;
+  }
 
   // The matcher's part of the state that determines the next cycles. To be called between two columns.
   std::uint64_t state() const {
-    return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U;
+    return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U |
+           std::uint64_t{columns_ >= fewer_rows_column_} << 2U;
   }
   std::uint64_t columns() const { return columns_; }
   // The number of words of results that have left in this frame.
   std::uint64_t words() const {
-    return columns_ > geometry_.result_delay_columns ? (columns_ - geometry_.result_delay_columns) / 4 : 0;
+    if (columns_ <= geometry_.result_delay_columns) return 0;
+    const std::uint64_t before_last_strip = std::min(columns_, geometry_.last_strip_column);
+    return (before_last_strip - geometry_.result_delay_columns) / 4 *
+               static_cast<std::uint64_t>(geometry_.rows) +
+           (columns_ - before_last_strip) / 4 * static_cast<std::uint64_t>(geometry_.last_rows);
   }
   // The number of columns up to and including the one after which state() changes. To be called between two
   // columns.
   std::uint64_t uniform_columns() const {
     const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
     const std::uint64_t left = (draining() ? drain_left_ : slots_left_) / slots_per_column;
-    if (columns_ >= geometry_.result_delay_columns) return left;
-    return std::min(left, geometry_.result_delay_columns - columns_);
+    if (columns_ < geometry_.result_delay_columns)
+      return std::min(left, geometry_.result_delay_columns - columns_);
+    return columns_ < fewer_rows_column_ ? std::min(left, fewer_rows_column_ - columns_) : left;
   }
   // Skips columns, at most uniform_columns().
   void skip_columns(std::uint64_t columns) {
@@ -61,15 +79,29 @@ class MatchControl {
         columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
     columns_ += columns;
   }
-  // The number of cycles of the frame in which the matcher has still to consume.
-  std::uint64_t cycles_left() const { return slots_left_ + drain_left_; }
+  // The number of cycles of the frame in which the matcher has still to work.
+  std::uint64_t cycles_left() const {
+    return (slots_left_ + drain_left_) * static_cast<std::uint64_t>(geometry_.passes) -
+           static_cast<std::uint64_t>(pass_);
+  }
+  // The number of cycles in which the matcher has worked, over all frames.
+  std::uint64_t worked() const {
+    return worked_before_frame_ +
+           (geometry_.slots + geometry_.drain_cycles) * static_cast<std::uint64_t>(geometry_.passes) -
+           cycles_left();
+  }
 
  private:
   FrameGeometry geometry_;
-  std::uint64_t slots_left_ = 0;
-  std::uint64_t drain_left_ = 0;
+  // The column from which on fewer rows of a strip lie inside the image; never reached if all strips lie inside.
+  std::uint64_t fewer_rows_column_ =
+      geometry_.last_rows == geometry_.rows ? UINT64_MAX : geometry_.last_strip_column;
+  std::uint64_t slots_left_ = geometry_.slots;
+  std::uint64_t drain_left_ = geometry_.drain_cycles;
+  int pass_ = 0;               // cycles worked on the slot, or the consume-cycle, that is being worked on
   int k_ = 0;                  // slots of the current column that have been consumed
   std::uint64_t columns_ = 0;  // columns consumed
+  std::uint64_t worked_before_frame_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -13,20 +13,21 @@ namespace stereotlm::fpga {
 class ResultControl {
  public:
   ResultControl(const FrameGeometry& geometry, int fifo_words)
-      : words_per_frame_(geometry.result_words), fifo_words_(fifo_words) {}
+      : words_per_frame_(geometry.result_words), most_before_work_(fifo_words - geometry.rows) {}
 
   void start_frame() {
     queued_ = 0;
     written_ = 0;
   }
-  bool has_room() const { return queued_ < fifo_words_; }
+  // Whether the matcher may begin: the queue has a place for a word of each row of a strip.
+  bool has_room() const { return queued_ <= most_before_work_; }
   bool frame_done() const { return written_ == words_per_frame_; }
   Intent decide() const {
     if (queued_ > 0) return Intent::kRequest;
     return written_ == 0 || frame_done() ? Intent::kIdle : Intent::kStarved;
   }
-  void commit(bool granted, bool word_enters) {
-    queued_ += int{word_enters} - int{granted};
+  void commit(bool granted, int words_entering) {
+    queued_ += words_entering - int{granted};
     written_ += std::uint64_t{granted};
     most_queued_ = std::max(most_queued_, queued_);
   }
@@ -49,7 +50,7 @@ class ResultControl {
 
  private:
   std::uint64_t words_per_frame_;
-  int fifo_words_;
+  int most_before_work_;  // words in the queue beside which there is room
   int queued_ = 0;
   std::uint64_t written_ = 0;
   int most_queued_ = 0;

@@ -1,10 +1,12 @@
 #include "models/fpga/row_recorder.h"
 
+#include <algorithm>
+
 namespace stereotlm::fpga {
 
 void RowRecorder::start_frame(const CoreControl& control) {
   if (!is_on_) return;
-  next_words_ = row_words_;
+  next_words_ = words_up_to(0);
   rows_complete_ = 0;
   stalls_before_ = stalls_of(control);
 }
@@ -13,7 +15,17 @@ void RowRecorder::note(std::uint64_t cycle, const CoreControl& control) {
   RowEnd& row = rows_[rows_complete_++];
   row = {cycle + 1, stalls_of(control)};
   for (std::size_t port = 0; port < kCorePortCount; ++port) row.stalls[port] -= stalls_before_[port];
-  next_words_ = rows_complete_ == rows_.size() ? kNever : next_words_ + row_words_;
+  next_words_ = rows_complete_ == rows_.size() ? kNever : words_up_to(rows_complete_);
+}
+
+// The number of words of a frame up to the last one of a row, this one included. The words of a strip leave in
+// groups, which have a word for each row of the strip that lies inside the image.
+std::uint64_t RowRecorder::words_up_to(std::size_t row) const {
+  const auto rows = static_cast<std::size_t>(geometry_.rows);
+  const std::size_t strip_row = row / rows * rows;
+  const std::uint64_t row_words = geometry_.columns_per_strip() / 4;
+  const std::size_t rows_inside = std::min(rows, rows_.size() - strip_row);
+  return strip_row * row_words + (row_words - 1) * rows_inside + (row - strip_row) + 1;
 }
 
 RowProfile RowRecorder::profile(std::uint64_t first_cycle) const {

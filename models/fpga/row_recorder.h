@@ -13,7 +13,7 @@ namespace stereotlm::fpga {
 class RowRecorder {
  public:
   explicit RowRecorder(const FrameGeometry& geometry)
-      : row_words_(geometry.columns_per_strip() / 4), rows_(static_cast<std::size_t>(geometry.height)) {}
+      : geometry_(geometry), rows_(static_cast<std::size_t>(geometry.height)) {}
 
   void turn_on() { is_on_ = true; }  // from the next frame on
   bool is_on() const { return is_on_; }
@@ -33,8 +33,9 @@ class RowRecorder {
   static constexpr std::uint64_t kNever = UINT64_MAX;
   using Stalls = std::array<std::uint64_t, kCorePortCount>;
   static Stalls stalls_of(const CoreControl& control);
+  std::uint64_t words_up_to(std::size_t row) const;
 
-  std::uint64_t row_words_;
+  FrameGeometry geometry_;
   bool is_on_ = false;
   std::uint64_t next_words_ = kNever;
   Stalls stalls_before_{};  // [port]: stalls before the frame

@@ -8,8 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// Finds frames that make no progress: no slot is consumed and no result is written, because the arbiters
-// never grant one of the core's ports. Plain C++.
+// Finds frames that make no progress: the matcher does not work and no result is written, because the
+// arbiters never grant one of the core's ports. Plain C++.
 class StallWatchdog {
  public:
   explicit StallWatchdog(std::uint64_t timeout_cycles) : timeout_cycles_(timeout_cycles) {}

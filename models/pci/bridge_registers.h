@@ -39,7 +39,7 @@
 namespace stereotlm::pci::bridge {
 
 inline constexpr int kApertures = 4;
-inline constexpr std::uint64_t kApertureBytes = std::uint64_t{1} << 22U;  // holds the largest picture
+inline constexpr std::uint64_t kApertureBytes = std::uint64_t{1} << 26U;  // holds the largest picture
 inline constexpr std::uint64_t kCoreRegisters = kApertures * kApertureBytes;
 inline constexpr std::uint64_t kSlaveWindowBytes = kCoreRegisters + 4096;
 

@@ -31,7 +31,7 @@ struct CamerasConfig {
 
 struct CaptureConfig {
   CaptureDestination destination = CaptureDestination::kBoard;
-  int host_frames = 3;          // pairs in the ring in host memory, 1..64
+  int host_frames = 3;          // pairs in the ring in host memory, 1..64; the ring holds at most 1 GiB
   int fifo_words = 140;         // 32-bit words, 1..4096
   int fifo_trigger_words = 32;  // 32-bit words, 1..fifo_words
 };

@@ -18,6 +18,7 @@ class RuleChecker {
 
   std::vector<BrokenRule> check() {
     check_trigger();
+    check_host_ring();
     check_image_size("image.width", board_.image.width, fpga::kWidthWithTableRule);
     check_image_size("image.height", board_.image.height, fpga::kHeightWithTableRule);
     check_units();
@@ -41,6 +42,22 @@ class RuleChecker {
     found_.push_back({fmt::format("capture.fifo_trigger_words = {}: 1..fifo_words, which is {}",
                                   capture.fifo_trigger_words, capture.fifo_words),
                       involved});
+  }
+
+  // Host memory holds tables and results beside the ring.
+  void check_host_ring() {
+    const std::vector<std::string> involved = {"capture.host_frames", "capture.destination", "image.width",
+                                               "image.height"};
+    if (!all_valid(involved) || board_.capture.destination != CaptureDestination::kHostMemory) return;
+    constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
+    const ImageConfig& image = board_.image;
+    const std::int64_t most_pairs = kMostBytes / (std::int64_t{2} * image.width * image.height);
+    if (board_.capture.host_frames <= most_pairs) return;
+    found_.push_back(
+        {fmt::format("capture.host_frames = {}: the ring in host memory has {} MiB, which hold {} "
+                     "pairs of {}x{} pixels",
+                     board_.capture.host_frames, kMostBytes >> 20, most_pairs, image.width, image.height),
+         involved});
   }
 
   // The keys of both tables that the board has.

@@ -115,9 +115,12 @@ class Loader {
       first_ = path;
       width_ = image.width;
       height_ = image.height;
-      if (!fpga::kWidthRule.allows(width_) || !fpga::kHeightRule.allows(height_)) {
-        problems_.add(fmt::format("{} '{}': {}x{} pixels: a board's images are {} wide and {} high", option,
-                                  path, width_, height_, fpga::kWidthRule.text(), fpga::kHeightRule.text()));
+      const kernels::IntegerRule& width = fpga::kWidthWithTableRule;
+      const kernels::IntegerRule& height = fpga::kHeightWithTableRule;
+      if (!width.allows(width_) || !height.allows(height_)) {
+        problems_.add(fmt::format(
+            "{} '{}': {}x{} pixels: a board's images with a look-up table are {} wide and {} high", option,
+            path, width_, height_, width.text(), height.text()));
       }
     } else if (image.width != width_ || image.height != height_) {
       problems_.add(fmt::format("{} '{}': {}x{} pixels: must be as large as '{}', {}x{}", option, path,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "models/capture/capture_registers.h"
+#include "models/fpga/core_config.h"
 #include "models/fpga/register_map.h"
 #include "models/pci/bridge_registers.h"
 
@@ -20,6 +21,9 @@ constexpr int kToHost = 1;
 constexpr std::uint64_t kDescriptorBytes = 16;
 constexpr std::uint64_t kChainBytes = 16 * kDescriptorBytes;  // bytes of one channel's chain
 constexpr std::uint64_t kDataStart = 4096;                    // address of the tables, after both chains
+
+// A capture writes through an aperture, whose page stays as it is.
+static_assert(fpga::kWidthRule.max * fpga::kHeightRule.max <= std::int64_t{bridge_map::kApertureBytes});
 
 std::uint64_t table_bytes(const DriverConfig& config) {
   return static_cast<std::uint64_t>(config.width) * static_cast<std::uint64_t>(config.height) * 4;

@@ -13,6 +13,9 @@ namespace stereotlm::test {
 // The knobs that the models have.
 inline constexpr RandomKnobs kKnobsOfTheModels = [] {
   RandomKnobs knobs;
+  knobs.large_images = true;
+  knobs.units = true;
+  knobs.rows = true;
   knobs.qdr = true;
   knobs.cost = true;
   return knobs;

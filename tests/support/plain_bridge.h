@@ -36,8 +36,8 @@ enum class PlainCoreRegister : std::uint64_t {
 };
 inline constexpr std::uint32_t kPlainStart = 1;
 
-// Addresses in the bridge's slave window, in words.
-inline constexpr std::uint64_t kPlainApertureWords = std::uint64_t{1} << 20U;
+// Addresses in the bridge's slave window, in words. An aperture holds the largest picture.
+inline constexpr std::uint64_t kPlainApertureWords = std::uint64_t{1} << 24U;
 inline constexpr std::uint64_t kPlainCoreWindow = 4 * kPlainApertureWords;
 
 // The bridge's registers, in words of its register window.

@@ -67,6 +67,17 @@ class Figures(CameraTest):
         self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
         self.assertIn("\nlatency      capture to host, ms: min ", table)
 
+    @program.slow
+    def test_a_picture_of_more_than_4_mib_reaches_the_board_and_comes_back(self):
+        size = sets("image.width=2056", "image.height=2048", "ssram.default.words=4194304",
+                    "matcher.fetch=line_buffer", "matcher.disparities=8", "cameras.frame_rate_hz=1")
+        for destination in ("board", "host_memory"):
+            process = run("run", "fpl2003-no-calibration", *size, *sets(f"capture.destination={destination}"),
+                          "--synthetic", "1", "--out", self.out)
+            table = self.succeeds(process)
+            self.assertEqual([camera["dropped_pixels"] for camera in self.stats()["cameras"]], [0, 0])
+            self.assertRegex(table, r"answered: 9\d\.\d\d %")
+
     def test_cameras_on_demand_drop_no_frame(self):
         self.camera(*sets("cameras.trigger=on_demand"), "--frames", "6")
         self.assertEqual([camera["dropped_frames"] for camera in self.stats()["cameras"]], [0, 0])

@@ -28,6 +28,7 @@ INSTANTIATE_TEST_SUITE_P(
         plain("Window13", {"matcher.window=13"}, 3'994'726),
         plain("Window15", {"matcher.window=15"}, 4'609'311), WorkedFrame{"Log7", "fpl2003", {}, 2'151'016},
         WorkedFrame{"Window5WithLog7", "fpl2003", {"matcher.window=5"}, 1'539'641},
+        plain("Units40", {"matcher.units=40"}, 4'301'969), plain("Units27", {"matcher.units=27"}, 6'452'943),
         plain("TableInABankOfItsImage", {"allocation.left_lut=bank0"}, 4'288'597,
               {"left_lut in bank0 by left_pixel: 2137602"}),
         plain("TableInABankOfItsImageByAge", {"allocation.left_lut=bank0", "fpga.arbitration=age"}, 4'287'317,

@@ -14,6 +14,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WorkedFrame{"LineBuffer", "fpl2003-line-buffer", {"matcher.filter=none"}, 309'223},
         WorkedFrame{"LineBufferWithLog7", "fpl2003-line-buffer", {}, 311'146},
+        WorkedFrame{"Units40WithLineBuffer",
+                    "fpl2003-line-buffer",
+                    {"matcher.filter=none", "matcher.units=40"},
+                    618'425},
         WorkedFrame{"Window5", "fpl2003", {"matcher.filter=none", "matcher.window=5"}, 1'536'426},
         WorkedFrame{"AllInAQdrBank",
                     "fpl2003",

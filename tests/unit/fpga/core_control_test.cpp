@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/unit/fpga/random_core.h"
 
@@ -23,37 +25,111 @@ TEST(MatchControl, NeedsSlotsUpToTheLastOneAndNoneInTheDrain) {
     EXPECT_TRUE(match.decide(true, true));
     EXPECT_FALSE(match.decide(false, true));
     EXPECT_FALSE(match.decide(true, false));
-    match.consume();
+    EXPECT_TRUE(match.consumes());
+    match.work();
   }
   for (std::uint64_t cycle = 0; cycle < geometry.drain_cycles; ++cycle) {
     EXPECT_TRUE(match.draining());
     EXPECT_TRUE(match.decide(false, true));
     EXPECT_FALSE(match.decide(false, false));
-    match.consume();
+    EXPECT_TRUE(match.consumes());
+    match.work();
   }
   EXPECT_FALSE(match.decide(true, true));
 }
 
-TEST(MatchControl, CompletesAWordWithTheColumnOfItsLastResult) {
-  for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
-    CoreConfig config = core_of_two_rows(fetch);
-    config.filter = kernels::log7();
+// Two passes and the rest: S = 3 of contract 7.1.
+CoreConfig core_of_three_passes() {
+  CoreConfig config = small_core(8, 2, 8);
+  config.units = 3;
+  return config;
+}
+
+TEST(MatchControl, ChecksSlotsAndQueueOnlyInTheFirstPassAndConsumesInTheLast) {
+  const FrameGeometry geometry(core_of_three_passes());
+  MatchControl match(geometry);
+  for (int frame = 0; frame < 2; ++frame) {
+    match.start_frame();
+    const std::uint64_t worked_before = match.worked();
+    const std::uint64_t cycles = 3 * (geometry.slots + geometry.drain_cycles);
+    for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
+      EXPECT_EQ(match.draining(), cycle >= 3 * geometry.slots);
+      EXPECT_EQ(match.cycles_left(), cycles - cycle);
+      EXPECT_EQ(match.worked() - worked_before, cycle);
+      EXPECT_TRUE(match.decide(true, true));
+      EXPECT_EQ(match.decide(true, false), cycle % 3 != 0);
+      EXPECT_EQ(match.decide(false, false), cycle % 3 != 0);
+      EXPECT_EQ(match.decide(false, true), cycle % 3 != 0 || match.draining());
+      EXPECT_EQ(match.consumes(), cycle % 3 == 2);
+      EXPECT_EQ(match.work() && match.words_leaving() > 0,
+                cycle + 1 == cycles - 3 * 3 * 12 || cycle + 1 == cycles - 3 * 3 * 8 ||
+                    cycle + 1 == cycles - 3 * 3 * 4 || cycle + 1 == cycles)
+          << cycle;
+    }
+    EXPECT_FALSE(match.decide(true, true));
+  }
+}
+
+// Contract section 2 and 7.2: fetch and filter, passes, rows, and heights that are a multiple of the rows or not.
+std::vector<CoreConfig> cores_with_words() {
+  std::vector<CoreConfig> cores;
+  for (const int height : {1, 2, 5, 6, 8}) {
+    for (const int rows : {1, 2, 3, 4, 16}) {
+      for (const int units : {2, 1}) {
+        CoreConfig config = small_core(8, height, 2);
+        config.filter = kernels::log7();
+        config.units = units;
+        config.rows = rows;
+        config.result_fifo_words = 16;
+        cores.push_back(config);
+      }
+    }
+    cores.push_back(small_core(8, height, 2, Fetch::kLineBuffer));
+  }
+  return cores;
+}
+
+TEST(MatchControl, CompletesAWordOfEachRowInsideTheImageWithEveryFourthResultOfAStrip) {
+  for (const CoreConfig& config : cores_with_words()) {
     const FrameGeometry geometry(config);
     MatchControl match(geometry);
     for (int frame = 0; frame < 2; ++frame) {
       match.start_frame();
-      std::uint64_t words = 0;
-      const auto per_column = static_cast<std::uint64_t>(geometry.slots_per_column);
-      for (std::uint64_t cycle = 0; cycle < geometry.slots + geometry.drain_cycles; ++cycle) {
-        // Result i leaves when column i + C is complete; i mod 4 = 3 completes a word.
-        const std::uint64_t column = cycle / per_column;
-        const bool last_of_column = cycle % per_column == per_column - 1;
-        const bool word = last_of_column && column >= geometry.result_delay_columns &&
-                          (column - geometry.result_delay_columns) % 4 == 3;
-        EXPECT_EQ(match.consume() && match.word_leaves(), word) << cycle;
-        words += std::uint64_t{word};
+      int words = 0;
+      for (std::uint64_t cycle = 0; match.cycles_left() > 0; ++cycle) {
+        const auto per_column = static_cast<std::uint64_t>(geometry.slots_per_column * geometry.passes);
+        const auto result = static_cast<std::int64_t>(cycle / per_column) -
+                            static_cast<std::int64_t>(geometry.result_delay_columns);
+        const bool completes = cycle % per_column == per_column - 1 && result >= 0 && result % 4 == 3;
+        int expected = 0;
+        for (int row = 0; completes && row < config.rows; ++row)
+          expected += int{result / config.width * config.rows + row < config.height};
+        ASSERT_EQ(match.work() ? match.words_leaving() : 0, expected) << cycle;
+        words += expected;
+        ASSERT_EQ(match.words(), static_cast<std::uint64_t>(words)) << cycle;
       }
-      EXPECT_EQ(words, geometry.result_words);
+      EXPECT_EQ(words, config.width * config.height / 4);
+    }
+  }
+}
+
+// A group of four columns repeats one before it only if it completes as many words.
+TEST(MatchControl, ChangesItsStateWhereTheWordsOfAGroupChangeAndIsUniformUpToThere) {
+  for (const CoreConfig& config : cores_with_words()) {
+    MatchControl match{FrameGeometry(config)};
+    match.start_frame();
+    std::map<std::uint64_t, int> words_from;  // [state]
+    std::uint64_t state = match.state();
+    std::uint64_t change = match.columns() + match.uniform_columns();
+    while (match.cycles_left() > 0) {
+      while (!match.work()) continue;
+      const int words = match.words_leaving();
+      if (match.columns() < change) {
+        EXPECT_EQ(match.state(), state);
+        EXPECT_EQ(words_from.emplace(state, words).first->second, words);
+      }
+      state = match.state();
+      if (match.columns() >= change) change = match.columns() + match.uniform_columns();
     }
   }
 }
@@ -66,16 +142,42 @@ TEST(ResultControl, RequestsAndHasRoomByTheWordsInItsQueue) {
     EXPECT_EQ(result.has_room(), has_room);
   };
   expect(Intent::kIdle, true);
-  result.commit(false, true);  // the first word enters: requested from the next cycle on
+  result.commit(false, 1);  // the first word enters: requested from the next cycle on
   expect(Intent::kRequest, true);
-  result.commit(false, true);
+  result.commit(false, 1);
   expect(Intent::kRequest, false);
-  result.commit(true, true);  // a word enters and one leaves
+  result.commit(true, 1);  // a word enters and one leaves
   expect(Intent::kRequest, false);
-  result.commit(true, false);
+  result.commit(true, 0);
   expect(Intent::kRequest, true);
-  result.commit(true, false);
+  result.commit(true, 0);
   expect(Intent::kStarved, true);
+}
+
+TEST(ResultControl, HasRoomForAWordOfEachRowOnly) {
+  CoreConfig config = core_of_two_rows();
+  config.rows = 3;
+  for (const int places : {3, 4, 6}) {
+    ResultControl result(FrameGeometry(config), places);
+    result.start_frame();
+    for (int words = 0; words < places; ++words) {
+      EXPECT_EQ(result.has_room(), places - words >= 3) << words;
+      result.commit(false, 1);
+    }
+    EXPECT_FALSE(result.has_room());
+    EXPECT_EQ(result.most_queued(), places);
+  }
+  ResultControl result(FrameGeometry(config), 6);
+  result.start_frame();
+  result.commit(false, 3);
+  EXPECT_TRUE(result.has_room());
+  result.commit(true, 3);  // three words enter and one leaves
+  EXPECT_FALSE(result.has_room());
+  EXPECT_EQ(result.most_queued(), 5);
+  result.commit(true, 0);
+  EXPECT_FALSE(result.has_room());
+  result.commit(true, 0);
+  EXPECT_TRUE(result.has_room());
 }
 
 TEST(ResultControl, IsDoneWithTheLastWordAndIdleThen) {
@@ -84,9 +186,9 @@ TEST(ResultControl, IsDoneWithTheLastWordAndIdleThen) {
   for (int frame = 0; frame < 2; ++frame) {
     result.start_frame();
     for (std::uint64_t word = 0; word < geometry.result_words; ++word) {
-      result.commit(false, true);
+      result.commit(false, 1);
       EXPECT_FALSE(result.frame_done());
-      result.commit(true, false);
+      result.commit(true, 0);
     }
     EXPECT_TRUE(result.frame_done());
     EXPECT_EQ(result.decide(), Intent::kIdle);
@@ -108,9 +210,11 @@ std::uint64_t run_frame(CoreControl& core, PortMask refused = 0, std::uint64_t r
   return cycles;
 }
 
-// Cycles of an uncontended frame without the latencies.
+// Cycles of an uncontended frame without the latencies: the passes, and the writes of the last column's words.
 std::uint64_t work_of(const CoreControl& core) {
-  return core.geometry().slots + core.geometry().drain_cycles + 1;
+  const FrameGeometry& geometry = core.geometry();
+  return (geometry.slots + geometry.drain_cycles) * static_cast<std::uint64_t>(geometry.passes) +
+         static_cast<std::uint64_t>(geometry.last_rows);
 }
 
 TEST(CoreControl, TakesTheLatenciesTheSlotsTheDrainAndTheLastWrite) {
@@ -122,6 +226,41 @@ TEST(CoreControl, TakesTheLatenciesTheSlotsTheDrainAndTheLastWrite) {
     EXPECT_EQ(run_frame(core), 3 + work_of(core));
     core.start_frame({1, 1, 1, 1});
     EXPECT_EQ(run_frame(core), 2 + work_of(core));
+  }
+}
+
+TEST(CoreControl, TakesItsPassesAndTheWritesOfTheLastStrip) {
+  for (const int units : {8, 7, 4, 3, 1}) {
+    for (const int rows : {1, 2, 3, 5}) {
+      CoreConfig config = small_core(8, 5, 8);
+      config.units = units;
+      config.rows = rows;
+      config.result_fifo_words = 2 * rows;
+      CoreControl core(config);
+      EXPECT_EQ(core.geometry().passes, units == 8 ? 1 : units == 1 ? 8 : units == 3 ? 3 : 2);
+      EXPECT_EQ(core.geometry().last_rows, rows == 3 ? 2 : rows == 5 ? 5 : 1);
+      for (int frame = 0; frame < 2; ++frame) {
+        core.start_frame({2, 2, 2, 2});
+        EXPECT_EQ(run_frame(core), 4 + work_of(core)) << units << ' ' << rows;
+      }
+    }
+  }
+}
+
+// R words leave the matcher at once. With F places it begins again when F - R of them are left, after 2 R - F
+// writes.
+TEST(CoreControl, WaitsUntilTheQueueHasAPlaceForEachRow) {
+  for (const int rows : {1, 2, 4}) {
+    for (int places = rows; places <= 2 * rows; ++places) {
+      CoreConfig config = small_core(8, 4 * rows, 8);
+      config.rows = rows;
+      config.result_fifo_words = places;
+      CoreControl core(config);
+      core.start_frame({1, 1, 1, 1});
+      const std::uint64_t groups = core.geometry().result_words / static_cast<std::uint64_t>(rows);
+      const auto waits = static_cast<std::uint64_t>(2 * rows - places);
+      EXPECT_EQ(run_frame(core), 2 + work_of(core) + (groups - 1) * waits) << rows << ' ' << places;
+    }
   }
 }
 

@@ -53,6 +53,8 @@ Setting random_setting(test::SplitMix64& random) {
   setting.right_entries = random_entries(random, setting.core);
   setting.frames = random.between(1, 3);
   if (random.chance(30)) setting.most_groups = static_cast<std::size_t>(random.between(1, 16));
+  draw_units(random, setting.core);
+  draw_rows(random, setting.core);
   return setting;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,22 @@ inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   config.result_fifo_words = random.mostly_small(1, 8, 64);
   config.pipeline_latency_cycles = random.between(0, 20);
   return config;
+}
+
+inline void draw_units(test::SplitMix64& random, CoreConfig& config) {
+  if (random.chance(50)) config.units = random.between(1, config.disparities);
+}
+inline void draw_rows(test::SplitMix64& random, CoreConfig& config) {
+  if (config.fetch == Fetch::kLineBuffer || random.chance(50)) return;
+  config.rows = random.mostly_small(2, 5, 16);
+  config.result_fifo_words = std::max(config.result_fifo_words, config.rows);
+}
+
+inline void draw_cost(test::SplitMix64& random, CoreConfig& config) {
+  using kernels::CostKind;
+  constexpr CostKind kKinds[] = {CostKind::kSad, CostKind::kSsd, CostKind::kZncc, CostKind::kCensus};
+  config.cost.kind = kKinds[random.between(0, 3)];
+  if (config.cost.kind == CostKind::kCensus) config.cost.census_size = 2 * random.between(1, 3) + 1;
 }
 
 // Index of a pixel's entry in a table.

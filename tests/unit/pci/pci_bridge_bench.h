@@ -99,7 +99,7 @@ class LocalTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>
 class PciBridgeBench : public testing::Test {
  protected:
   static constexpr std::uint32_t kMemoryBytes = 0x1'0000;  // at address 0
-  static constexpr std::uint32_t kSlave = 0xD000'0000;
+  static constexpr std::uint32_t kSlave = 0xC000'0000;
   static constexpr std::uint32_t kRegisters = 0xE000'0000;
   static constexpr std::uint64_t kCore = std::uint64_t{1} << 34U;
 

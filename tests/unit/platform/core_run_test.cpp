@@ -36,6 +36,23 @@ TEST(CoreRun, GivesTheWorkedValues) {
               ElementsAre(2534153));
 }
 
+// Contract section 7, worked values.
+TEST(CoreRun, GivesTheWorkedValuesOfUnitsAndRows) {
+  const auto first_frame = [](std::vector<std::string> sets, const char* filter = "none") {
+    sets.push_back(std::string("matcher.filter=") + filter);
+    const BoardConfig board = load_board("fpl2003", sets);
+    return run_core(board, identity_tables(board), 1).frame_cycles;
+  };
+  EXPECT_THAT(first_frame({"matcher.rows=2"}), ElementsAre(1229478));
+  EXPECT_THAT(first_frame({"matcher.rows=2"}, "log7"), ElementsAre(1229502));
+  EXPECT_THAT(first_frame({"matcher.rows=4"}), ElementsAre(768844));
+  EXPECT_THAT(first_frame({"matcher.rows=8"}), ElementsAre(615568));
+  EXPECT_THAT(first_frame({"matcher.units=80"}), ElementsAre(2150995));
+  EXPECT_THAT(first_frame({"matcher.units=40"}), ElementsAre(4301969));
+  EXPECT_THAT(first_frame({"matcher.units=27"}), ElementsAre(6452943));
+  EXPECT_THAT(first_frame({"matcher.units=40", "matcher.fetch=line_buffer"}), ElementsAre(618425));
+}
+
 TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {
   BoardConfig board = small_board();
   Tables tables = identity_tables(board);
@@ -60,6 +77,19 @@ TEST(CoreRun, EndsAFrameThatMakesNoProgress) {
   const BoardConfig board = small_board();
   EXPECT_THAT(message_of([&] { run_core(board, identity_tables(board), 1, 1); }),
               HasSubstr("frame 0 of the core: no slot consumed and no result written for 1 cycles"));
+}
+
+// Without tables and with latencies of one cycle, the matcher works in every cycle from the second one on.
+TEST(CoreRun, TakesALongPassOrDrainForNoStall) {
+  BoardConfig board = small_board();
+  board.allocation.left_lut.reset();
+  board.allocation.right_lut.reset();
+  for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kZbtFlowThrough;
+  board.matcher.disparities = 254;
+  board.matcher.units = 1;
+  const Statistics statistics = run_core(board, {}, 2, 2);
+  EXPECT_EQ(statistics.frame_cycles.size(), 2U);
+  EXPECT_THAT(message_of([&] { run_core(board, {}, 2, 1); }), HasSubstr("frame 0 of the core: "));
 }
 
 }  // namespace

@@ -40,6 +40,27 @@ std::string square_kernel(int m) {
   return '[' + rows + ']';
 }
 
+TEST(BoardHostRing, HasAtMostAGibibyte) {
+  const auto ring = [](const std::string& destination, int pairs, const std::string& size) {
+    return refusal_of(
+        kBase + fmt::format("capture: {{destination: {}, host_frames: {}}}\n", destination, pairs) +
+        "image: {" + size + "}\n" +
+        "ssram: {default: {words: 67108864}, banks: {a: {}}}\n"
+        "allocation: {left_image: a, right_image: a, disparity: a, left_lut: none, right_lut: none}\n");
+  };
+  EXPECT_EQ(ring("host_memory", 8, "width: 8192, height: 8192"), "");
+  EXPECT_EQ(
+      ring("host_memory", 9, "width: 8192, height: 8192"),
+      "board.yaml:2:46: capture.host_frames = 9: the ring in host memory has 1024 MiB, which hold 8 pairs of "
+      "8192x8192 pixels");
+  EXPECT_EQ(ring("board", 64, "width: 8192, height: 8192"), "");
+  EXPECT_EQ(ring("host_memory", 64, "width: 4096, height: 2048"), "");
+  EXPECT_EQ(ring("host_memory", 64, "width: 4096, height: 2049"),
+            "board.yaml:2:46: capture.host_frames = 64: the ring in host memory has 1024 MiB, which hold 63 "
+            "pairs of "
+            "4096x2049 pixels");
+}
+
 TEST(BoardBanks, TakeTheirWordsUpToBothLimits) {
   const std::string rule = "1..67108864";
   for (const std::string value : {"0", "-1", "67108865", "4294967296", "99999999999999999999"}) {

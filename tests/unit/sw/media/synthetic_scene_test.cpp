@@ -154,15 +154,15 @@ TEST(SyntheticScene, IsNeverFlat) {
 TEST(SyntheticScene, RefusesSizesThatNoBoardHas) {
   for (const auto& [width, height, disparities] : {std::array{66, 48, 16},
                                                    {0, 48, 16},
-                                                   {2052, 48, 16},
+                                                   {8196, 48, 16},
                                                    {64, 0, 16},
-                                                   {64, 2049, 16},
+                                                   {64, 8193, 16},
                                                    {64, 48, 0},
                                                    {64, 48, 255}})
     EXPECT_THROW(SyntheticScene(0, width, height, disparities), std::invalid_argument)
         << width << ' ' << height;
   EXPECT_NO_THROW(SyntheticScene(0, 4, 1, 1));
-  EXPECT_NO_THROW(SyntheticScene(0, 2048, 2048, 254));
+  EXPECT_NO_THROW(SyntheticScene(0, 8192, 8192, 254));
 }
 
 }  // namespace
