@@ -10,17 +10,6 @@
 // Converts the boards of the references to boards of the platform.
 namespace stereotlm::test {
 
-// The knobs that the models have.
-inline constexpr RandomKnobs kKnobsOfTheModels = [] {
-  RandomKnobs knobs;
-  knobs.large_images = true;
-  knobs.units = true;
-  knobs.joint_tables = true;
-  knobs.word_cache = true;
-  knobs.qdr = true;
-  return knobs;
-}();
-
 // Bank i is called "bank<i>" and is as deep as its buffers need, at least one word. A filter of half h gets
 // some kernel of that size, and a cost that looks ahead becomes the census of that half.
 platform::BoardConfig board_config(const PlainCycleInput& input);

@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Drawn, RandomBoards, testing::Bool(),
                          [](const auto& suite) { return suite.param ? "WithKnobs" : "WithoutKnobs"; });
 
 RandomBoard board_of(std::uint64_t seed, bool with_knobs) {
-  return make_random_board(seed, with_knobs ? kKnobsOfTheModels : RandomKnobs{});
+  return make_random_board(seed, with_knobs ? RandomKnobs::all() : RandomKnobs{});
 }
 
 void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uint64_t boards,

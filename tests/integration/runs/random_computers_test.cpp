@@ -245,7 +245,7 @@ class RandomComputers : public testing::TestWithParam<std::tuple<Fidelity, bool>
 
 TEST_P(RandomComputers, EqualThePlainLoopOverEvents) {
   const auto [fidelity, with_knobs] = GetParam();
-  const test::RandomKnobs knobs = with_knobs ? test::kKnobsOfTheModels : test::RandomKnobs{};
+  const test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
   std::vector<test::ChildWork> jobs;
   for (std::uint64_t seed = 0; seed < computers(); ++seed)
     jobs.push_back([seed, knobs, fidelity = fidelity] { return problems_of(seed, knobs, fidelity); });
