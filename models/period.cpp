@@ -51,8 +51,8 @@ Period::Period(Wide numerator, Wide denominator)
       denominator_ > kNarrow ? 0 : static_cast<std::uint64_t>(kNarrow / std::max(Wide{1}, 2 * rest_));
 }
 
-// Returns 2 * rest_ * count / denominator_, whose dividend may have more than 128 bits: divides the upper bits of
-// the count first.
+// Returns 2 * rest_ * count / denominator_. The dividend may have more than 128 bits, so the product with the
+// upper bits of the count is divided first.
 std::uint64_t Period::doubled_rest_of(std::uint64_t count) const {
   constexpr unsigned kLowerBits = 20;
   const Wide upper = 2 * rest_ * (count >> kLowerBits);

@@ -142,8 +142,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     // With separate ports the writes are made beside the reads.
     const bool is_beside = has_separate_ports(board, bank);
     std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
-    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on its
-    // slot at least `after_last_read` cycles later.
+    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on
+    // its slot at least `after_last_read` cycles later.
     if (demand.reads > 0)
       cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + passes + after_last_slot);
     bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});

@@ -61,7 +61,7 @@ void CoreControl::skip_to(const State& state, std::uint64_t columns, std::uint64
 }
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {
-  // The last words enter the queue together when the matcher has consumed all, and are written in later cycles.
+  // The last words enter the queue together when the matcher has consumed all. They are written later.
   if (const std::uint64_t works = match_.cycles_left(); works > 0)
     return cycle + works + static_cast<std::uint64_t>(geometry_.last_rows) - 1;
   return cycle + result_.words_left() - 1;

@@ -27,6 +27,9 @@ namespace stereotlm::fpga {
 // not move. The slots issued and the words packed and written are taken from the control, so that an audit
 // can compare them with the geometry. All other counts follow from the geometry, the accesses of the slots
 // and the number of disparities.
+//
+// With several rows at once a column is counted once for all rows of its strip, and the absolute differences
+// that the rows share are counted once. Candidates, matches and disparities are counted for each row.
 struct FrameCounts {
   // `run` has run the frame up to its last write. `answered`: the number of pixels that have a disparity;
   // nothing if no disparities were computed.

@@ -42,8 +42,8 @@ class MatchControl {
     return (columns_ - geometry_.result_delay_columns) % 4 == 0;
   }
   // The number of words of results that the group of four columns completes: one for each row of the strip
-  // that lies inside the image. To be called when work() has returned true. The column just consumed is number
-  // columns_ - 1.
+  // that lies inside the image. To be called when work() has returned true. The column just consumed is
+  // number columns_ - 1.
   int words_leaving() const {
     if (columns_ <= geometry_.result_delay_columns) return 0;
     return columns_ <= geometry_.last_strip_column ? geometry_.rows : geometry_.last_rows;
@@ -92,7 +92,7 @@ class MatchControl {
 
  private:
   FrameGeometry geometry_;
-  // The column from which on fewer rows of a strip lie inside the image; never reached if all strips lie inside.
+  // From this column on, fewer rows of a strip lie inside the image. Never reached if all strips lie inside.
   std::uint64_t fewer_rows_column_ =
       geometry_.last_rows == geometry_.rows ? UINT64_MAX : geometry_.last_strip_column;
   std::uint64_t slots_left_ = geometry_.slots;

@@ -18,8 +18,8 @@ void RowRecorder::note(std::uint64_t cycle, const CoreControl& control) {
   next_words_ = rows_complete_ == rows_.size() ? kNever : words_up_to(rows_complete_);
 }
 
-// The number of words of a frame up to the last one of a row, this one included. The words of a strip leave in
-// groups, which have a word for each row of the strip that lies inside the image.
+// The number of words of a frame up to the last one of a row, this one included. The words of a strip leave
+// in groups, which have a word for each row of the strip that lies inside the image.
 std::uint64_t RowRecorder::words_up_to(std::size_t row) const {
   const auto rows = static_cast<std::size_t>(geometry_.rows);
   const std::size_t strip_row = row / rows * rows;

@@ -51,8 +51,8 @@ struct StereoCoreConfig {
 //   can start a frame, all words of a burst are in place with the first one.
 //
 // A frame stalls if the matcher does not work and no result is written for stall_timeout_cycles: the arbiters
-// never grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core), at most 8192
-// cycles late at Fidelity::kCycle, at most 2^22 at the others.
+// never grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core), at most
+// 8192 cycles late at Fidelity::kCycle, at most 2^22 at the others.
 class StereoCore : public sc_core::sc_module {
  public:
   // The registers of register_map.h, accessed without the local bus and without its time; may stay unbound.

@@ -70,7 +70,7 @@ TEST(MatchControl, ChecksSlotsAndQueueOnlyInTheFirstPassAndConsumesInTheLast) {
   }
 }
 
-// Contract section 2 and 7.2: fetch and filter, passes, rows, and heights that are a multiple of the rows or not.
+// Both ways to fetch, passes, rows, and heights that are a multiple of the rows or not.
 std::vector<CoreConfig> cores_with_words() {
   std::vector<CoreConfig> cores;
   for (const int height : {1, 2, 5, 6, 8}) {
@@ -210,7 +210,7 @@ std::uint64_t run_frame(CoreControl& core, PortMask refused = 0, std::uint64_t r
   return cycles;
 }
 
-// Cycles of an uncontended frame without the latencies: the passes, and the writes of the last column's words.
+// Cycles of an uncontended frame without the latencies: the passes, and the writes of the last words.
 std::uint64_t work_of(const CoreControl& core) {
   const FrameGeometry& geometry = core.geometry();
   return (geometry.slots + geometry.drain_cycles) * static_cast<std::uint64_t>(geometry.passes) +

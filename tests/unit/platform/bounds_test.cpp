@@ -156,7 +156,8 @@ TEST_F(FrameBounds, CountThePassesOnEachSlot) {
   EXPECT_EQ(bound_of("port left_lut"), (kSlots - 1) / 2 * 7 + 7 + after);
 }
 
-// The strips of four rows begin at rows -1 and 3, and have columns of six slots. Two rows of the last are inside.
+// The strips of four rows begin at rows -1 and 3, and have columns of six slots. Two rows of the last strip
+// are inside.
 TEST_F(FrameBounds, CountTheSlotsOfSeveralRowsAndTheWordsOfTheLastColumn) {
   board.matcher.rows = 4;
   const uint64_t after = 6 * (3 - 1 + 1) + 2 + kPipeline;
