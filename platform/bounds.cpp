@@ -126,7 +126,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
     const std::uint64_t taking = std::max(slot_a_cycle, (geometry.slots - 1) / places * (lane_latency + 1) +
                                                             lane_latency + 1 + after_last_slot);
-    if (side.lut && side.accesses.lut > 0) luts.push_back({std::string("port ") + side.name + "_lut", taking});
+    if (side.lut && side.accesses.lut > 0)
+      luts.push_back({std::string("port ") + side.name + "_lut", taking});
     pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
   }
   demands[disparity].writes += geometry.result_words;

@@ -96,7 +96,7 @@ void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffs
 }
 
 PixelNeeds CoreDatapath::move(const CoreControl& control, const CoreControl::Decision& decision,
-                               PortMask granted, const sc_core::sc_time& at) {
+                              PortMask granted, const sc_core::sc_time& at) {
   const auto moving = static_cast<PortMask>(granted | decision.passes());
   const auto take_slot = [&](Side side) {
     if (has(moving, lut_port(side))) issue(side, control, at);

@@ -50,8 +50,8 @@ class CoreDatapath {
   void start_frame(const FrameBases& bases, const kernels::JointOffsets& offsets);
   // Moves the data of one cycle, which begins `at` from now. `control` must be in the state in which it
   // decided, before commit().
-  PixelNeeds move(const CoreControl& control, const CoreControl::Decision& decision,
-                   memory::PortMask granted, const sc_core::sc_time& at);
+  PixelNeeds move(const CoreControl& control, const CoreControl::Decision& decision, memory::PortMask granted,
+                  const sc_core::sc_time& at);
   // The number of accesses that memory has refused, over all frames.
   std::uint64_t errors() const;
 

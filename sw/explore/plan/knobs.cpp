@@ -212,8 +212,7 @@ class Steps {
 
   std::size_t buffers_in(const std::string& bank) const {
     std::size_t count = 0;
-    for (const PlacedBuffer& buffer : platform::buffers(board_))
-      count += buffer.bank == bank ? 1 : 0;
+    for (const PlacedBuffer& buffer : platform::buffers(board_)) count += buffer.bank == bank ? 1 : 0;
     return count;
   }
   const BankConfig& bank_of(const std::string& name) const {
