@@ -2,9 +2,7 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -60,27 +58,6 @@ kernels::FilterKernel any_kernel() {
   return kernel;
 }
 
-void set_optional_keys(BoardConfig& board) {
-  auto& left_lut = board.allocation.left_lut;
-  auto& right_lut = board.allocation.right_lut;
-  if (left_lut && right_lut && any_int(0, 1) == 1) {
-    right_lut = left_lut;
-    board.fpga.joint_tables = true;
-  }
-  if (!left_lut && !right_lut && any_int(0, 1) == 1) {
-    board.image = {4 * any_int(513, 2048), any_int(1, 64)};
-    if (any_int(0, 1) == 1) board.image = {4 * any_int(1, 16), any_int(2049, 8192)};
-  }
-  board.fpga.pixel_cache = static_cast<fpga::PixelCache>(any_int(0, 1));
-  MatcherConfig& matcher = board.matcher;
-  if (any_int(0, 1) == 1) matcher.units = any_int(1, matcher.disparities);
-  if (matcher.fetch == fpga::Fetch::kColumn)
-    matcher.rows = any_int(1, std::min(16, board.fpga.result_fifo_words));
-  using kernels::CostKind;
-  matcher.cost = {*rc::gen::element(CostKind::kSad, CostKind::kSsd, CostKind::kZncc, CostKind::kCensus), 0};
-  if (matcher.cost.kind == CostKind::kCensus) matcher.cost.census_size = 3 + 2 * any_int(0, 2);
-}
-
 BoardConfig any_board() {
   BoardConfig board;
   board.name = *rc::gen::element<std::string>("x", "7", "1e3", "off", "null", "größe", "a: b", "# no",
@@ -122,14 +99,11 @@ BoardConfig any_board() {
                       std::nullopt};
   if (any_int(0, 1) == 1) board.allocation.left_lut = any_bank();
   if (any_int(0, 1) == 1) board.allocation.right_lut = any_bank();
-  board.matcher.window = 3 + 2 * any_int(0, 14);
-  board.matcher.disparities = any_int(1, 254);
-  board.matcher.fetch = static_cast<fpga::Fetch>(any_int(0, 1));
-  board.matcher.lr_tolerance = std::nullopt;
+  board.matcher = {3 + 2 * any_int(0, 14), any_int(1, 254), kernels::log7(),
+                   static_cast<fpga::Fetch>(any_int(0, 1)), std::nullopt};
   if (any_int(0, 2) == 0) board.matcher.filter = std::nullopt;
   if (any_int(0, 2) == 0) board.matcher.filter = any_kernel();
   if (any_int(0, 2) > 0) board.matcher.lr_tolerance = any_int(0, 253);
-  set_optional_keys(board);
   return board;
 }
 
@@ -164,41 +138,6 @@ TEST(BoardRoundTrip, WritesALoadInFullAndNoneNotAtAll) {
                       "    access_us: 0\n"
                       "bridge:\n"),
             std::string::npos);
-}
-
-TEST(BoardRoundTrip, WritesOptionalKeysOnlyWhereTheyHaveAnEffect) {
-  const std::string usual = to_yaml(load_board("fpl2003"));
-  for (const char* const name : {"tables", "pixel_cache", "units", "rows", "cost"})
-    EXPECT_EQ(usual.find(std::string("  ") + name + ":"), std::string::npos) << name;
-  EXPECT_EQ(to_yaml(load_board("fpl2003", {"fpga.tables=separate", "fpga.pixel_cache=none",
-                                           "matcher.units=all", "matcher.rows=1", "matcher.cost=sad"})),
-            usual);
-  const std::string text =
-      to_yaml(load_board("fpl2003", {"fpga.tables=joint", "allocation.right_lut=bank6",
-                                     "fpga.pixel_cache=word", "ssram.banks.bank6.words=614400",
-                                     "matcher.units=40", "matcher.rows=4", "matcher.cost={census: 5}"}));
-  EXPECT_NE(text.find("  pipeline_latency_cycles: 16\n  tables: joint\n  pixel_cache: word\nssram:"),
-            std::string::npos);
-  EXPECT_NE(text.find("  lr_tolerance: 0\n  units: 40\n  rows: 4\n  cost: {census: 5}\n"), std::string::npos);
-  EXPECT_NE(to_yaml(load_board("fpl2003", {"matcher.cost=zncc"})).find("  cost: zncc\n"), std::string::npos);
-}
-
-TEST(BoardRoundTrip, ListsTheValuesOfAllKeys) {
-  using Values = std::map<std::string, decltype(BoardValue::value)>;
-  const auto values = [](const std::vector<std::string>& sets) {
-    Values found;
-    for (const BoardValue& value : values_of(load_board("fpl2003", sets))) found[value.path] = value.value;
-    return found;
-  };
-  Values usual = values({});
-  EXPECT_EQ(usual.at("matcher.units"), Values::mapped_type("all"));
-  EXPECT_EQ(usual.at("matcher.rows"), Values::mapped_type(std::int64_t{1}));
-  EXPECT_EQ(usual.at("matcher.cost"), Values::mapped_type("sad"));
-  EXPECT_EQ(usual.at("fpga.tables"), Values::mapped_type("separate"));
-  EXPECT_EQ(usual.at("fpga.pixel_cache"), Values::mapped_type("none"));
-  usual["matcher.units"] = std::int64_t{40};
-  usual["matcher.cost"] = "{census: 5}";
-  EXPECT_EQ(values({"matcher.units=40", "matcher.cost={census: 5}"}), usual);
 }
 
 TEST(BoardRoundTrip, WritesTheShortestDecimals) {
