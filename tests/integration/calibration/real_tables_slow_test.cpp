@@ -160,7 +160,7 @@ TEST_F(RealTables, GiveTheSameDisparitiesJointAndSeparate) {
       return text;
     }));
   }
-  EXPECT_EQ(disparities[0].size(), pairs.size() * kWidth * kHeight);
+  EXPECT_GE(disparities[0].size(), pairs.size() * kWidth * kHeight);
   EXPECT_EQ(disparities[0], disparities[1]);
 }
 

@@ -102,6 +102,7 @@ TEST(CoreRun, RefusesJointTablesThatDoNotFit) {
   tables.right->entries[0] = kernels::make_entry(0, 127);
   EXPECT_NO_THROW(run_core(board, tables, 1));
   board.fpga.joint_tables = false;
+  board.allocation.right_lut = "bank7";
   tables.left->entries[0] = kernels::make_entry(256, 0);
   EXPECT_NO_THROW(run_core(board, tables, 1));
 }
