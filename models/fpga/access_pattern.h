@@ -86,8 +86,9 @@ class AccessPattern {
   std::uint64_t version_ = 0;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
   // These are empty until they are asked for.
-  mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
-  mutable std::vector<std::uint64_t> changes_;  // [strip][word]: columns that differ from the fourth one before
+  mutable std::vector<std::uint64_t> slots_;  // bit i of the sequence: slot i accesses its pixel
+  mutable std::vector<std::uint64_t>
+      changes_;  // [strip][word]: columns that differ from the fourth one before
   // [strip]: the first strip, from this one on, in which changes_ has a bit set; or the number of strips.
   mutable std::vector<std::uint32_t> next_change_;
   std::uint64_t empty_slots_ = 0;

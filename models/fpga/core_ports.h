@@ -67,9 +67,7 @@ static_assert(kHostPort == kCorePortCount, "the host's port is the last one");
 
 constexpr memory::Port lut_port(Side side) { return kLutPorts[index_of(side)]; }
 constexpr memory::Port pixel_port(Side side) { return kPixelPorts[index_of(side)]; }
-constexpr bool has_port(const CoreConfig& config, memory::Port port) {
-  return kPorts[port].exists(config);
-}
+constexpr bool has_port(const CoreConfig& config, memory::Port port) { return kPorts[port].exists(config); }
 constexpr bool has_table(const CoreConfig& config, Side side) {
   return side == Side::kLeft ? config.left_table : config.right_table;
 }

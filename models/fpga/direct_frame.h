@@ -74,7 +74,7 @@ class DirectFrame {
   std::array<const std::uint32_t*, 2> entries_{};
   std::array<std::vector<std::uint32_t>, 2> joint_entries_;  // [side]: entries of joint tables
   kernels::JointOffsets joint_offsets_{};                    // with which they were decoded
-  std::array<bool, 2> table_is_valid_{true, true};  // [side]: no entry points outside the image
+  std::array<bool, 2> table_is_valid_{true, true};           // [side]: no entry points outside the image
   std::unique_ptr<kernels::StereoPipeline> pipeline_;
   std::vector<std::uint8_t> disparities_;
 };

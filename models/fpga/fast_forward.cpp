@@ -152,7 +152,8 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
 }
 
 // Walks over groups with the same accesses. `consumed`: slots of the frame that are consumed before.
-FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room) {
+FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint64_t consumed,
+                                                   Progress& room) {
   Progress uniform = room;
   uniform.columns = std::min(uniform.columns, uniform_columns(consumed));
   Progress left = uniform;
@@ -248,7 +249,8 @@ Progress FastForward::progress(std::uint64_t cycle) const {
 }
 
 FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
-  const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr} << 1U;
+  const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr}
+                                                                           << 1U;
   return known_.number_of({control().state(), stepper_.arbitration().state(cycle),
                            control().match().draining() ? 0 : all_strips_[strips_].empty,
                            routes_ << 2U | varies});

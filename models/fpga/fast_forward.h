@@ -90,7 +90,7 @@ class FastForward {
   std::size_t strips_ = 0;  // index of the strips in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.
   std::array<const AccessPattern*, 2> varying_{};
-  std::vector<Followed> followed_;               // [group of the frame]; empty until it is used
+  std::vector<Followed> followed_;  // [group of the frame]; empty until it is used
   // The patterns for which followed_ holds, and their versions.
   const AccessPatterns* patterns_ = nullptr;
   std::array<std::uint64_t, 2> versions_{};  // [side]

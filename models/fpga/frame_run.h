@@ -93,7 +93,8 @@ class FrameRun {
   CoreStepper stepper_;
   FastForward fast_forward_;
   StallWatchdog watchdog_;
-  std::vector<std::array<std::uint32_t, kCorePortCount>> routes_;  // [number]: bank of each port, in direct frames
+  std::vector<std::array<std::uint32_t, kCorePortCount>>
+      routes_;  // [number]: bank of each port, in direct frames
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;

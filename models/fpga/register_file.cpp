@@ -97,7 +97,9 @@ void RegisterFile::start(const sc_core::sc_time& delay) {
   start.delay = delay;
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     start.bases[port] = frame_[frame_index(kPorts[port].base_register)];
-  const auto offset = [this](std::uint64_t address) { return static_cast<int>(frame_[frame_index(address)]); };
+  const auto offset = [this](std::uint64_t address) {
+    return static_cast<int>(frame_[frame_index(address)]);
+  };
   start.joint_offsets = {{{offset(registers::kLeftColumns), offset(registers::kLeftRows)},
                           {offset(registers::kRightColumns), offset(registers::kRightRows)}}};
   start_out->push(start);

@@ -31,22 +31,6 @@ std::uint64_t Progress::times_in(const Progress& room) const {
   return times;
 }
 
-void Progress::add(const Progress& other, std::uint64_t times) {
-  cycles += other.cycles * times;
-  columns += other.columns * times;
-  left_slots += other.left_slots * times;
-  right_slots += other.right_slots * times;
-  words += other.words * times;
-}
-
-void Progress::subtract(const Progress& other, std::uint64_t times) {
-  cycles -= other.cycles * times;
-  columns -= other.columns * times;
-  left_slots -= other.left_slots * times;
-  right_slots -= other.right_slots * times;
-  words -= other.words * times;
-}
-
 std::size_t TransitionCache::StateHash::operator()(const State& state) const {
   Hash hash;
   for (const LaneControl::State lane : state.control.lanes) hash.mix(lane);
@@ -60,7 +44,8 @@ std::size_t TransitionCache::StateHash::operator()(const State& state) const {
 std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const {
   Hash hash;
   const Progress& progress = effect.progress;
-  for (const std::uint64_t word : {progress.cycles, progress.left_slots, progress.right_slots, progress.words})
+  for (const std::uint64_t word :
+       {progress.cycles, progress.left_slots, progress.right_slots, progress.words})
     hash.mix(word);
   for (const PortCycles& port : effect.counts) {
     hash.mix(port.granted() << 32U | port.stalled());

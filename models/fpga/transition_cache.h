@@ -26,8 +26,20 @@ struct Progress {
   }
   // How many times this progress fits into the limit `room`. `cycles` must not be 0.
   std::uint64_t times_in(const Progress& room) const;
-  void add(const Progress& other, std::uint64_t times = 1);
-  void subtract(const Progress& other, std::uint64_t times = 1);
+  void add(const Progress& other) {
+    cycles += other.cycles;
+    columns += other.columns;
+    left_slots += other.left_slots;
+    right_slots += other.right_slots;
+    words += other.words;
+  }
+  void subtract(const Progress& other, std::uint64_t times = 1) {
+    cycles -= other.cycles * times;
+    columns -= other.columns * times;
+    left_slots -= other.left_slots * times;
+    right_slots -= other.right_slots * times;
+    words -= other.words * times;
+  }
 
   friend bool operator==(const Progress& a, const Progress& b) {
     return a.cycles == b.cycles && a.columns == b.columns && a.left_slots == b.left_slots &&
@@ -128,8 +140,8 @@ class TransitionCache {
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
-  std::vector<const Effect*> effects_;  // [number]
-  std::vector<Progress> progress_;      // [number of the effect]
+  std::vector<const Effect*> effects_;   // [number]
+  std::vector<Progress> progress_;       // [number of the effect]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
   std::vector<std::uint64_t> places_;

@@ -67,7 +67,7 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
 fpga::BufferBases buffer_bases(const BoardConfig& board) {
   const BufferLayout layout = layout_buffers(board);
   return {words_of(layout.left_image), words_of(layout.right_image), words_of(layout.disparity),
-          word_of(layout.left_lut), word_of(layout.right_lut), board.fpga.joint_tables};
+          word_of(layout.left_lut),    word_of(layout.right_lut),    board.fpga.joint_tables};
 }
 
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {

@@ -26,8 +26,7 @@ bool reaches(double rate, double best) { return rate >= best * (1 - kRounding); 
 
 int banks_of(const BoardConfig& board) {
   std::vector<std::string> names;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board))
-    names.push_back(buffer.bank);
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) names.push_back(buffer.bank);
   std::sort(names.begin(), names.end());
   return static_cast<int>(std::unique(names.begin(), names.end()) - names.begin());
 }

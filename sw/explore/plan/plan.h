@@ -85,8 +85,8 @@ class Plan : public Points {
   std::string board_;
   std::string calibration_;
   std::string calibration_place_;
-  int tables_width_ = 0;   // pixels
-  int tables_height_ = 0;  // pixels
+  int tables_width_ = 0;                             // pixels
+  int tables_height_ = 0;                            // pixels
   std::optional<std::string> tables_joint_problem_;  // why they cannot be joined
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;

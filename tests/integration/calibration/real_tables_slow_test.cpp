@@ -12,9 +12,11 @@
 #include "calib/rig_fit.h"
 #include "calib/tables.h"
 #include "models/kernels/stereo.h"
+#include "platform/core_run.h"
 #include "sw/media/load.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"
+#include "tests/support/fork.h"
 
 namespace stereotlm::test {
 namespace {
@@ -108,6 +110,58 @@ TEST_F(RealTables, HoldWithATableInABankOfItsImage) {
   input.left_lut = 0;
   expect_as_the_plain_loop(input);
   EXPECT_GT(blame_, 0U);
+}
+
+void put_into_two_banks(PlainCycleInput& input) {
+  input.banks.resize(2);
+  input.left_lut = input.right_lut = 0;
+  input.left_image = input.right_image = input.disparity = {1};
+  input.joint_tables = true;
+  input.word_cache = true;
+}
+
+TEST_F(RealTables, HoldInTwoBanksWithJointTablesAndWordCache) {
+  PlainCycleInput input = fpl2003(tables_);
+  put_into_two_banks(input);
+  expect_as_the_plain_loop(input);
+  EXPECT_GT(blame_, 0U);
+}
+
+// The timing alone, frame after frame: the transitions of the first frame are followed again.
+TEST_F(RealTables, HoldFrameAfterFrameInTwoBanks) {
+  for (const PlainFetch fetch : {PlainFetch::kColumn, PlainFetch::kLineBuffer}) {
+    PlainCycleInput input = fpl2003(tables_);
+    input.fetch = fetch;
+    input.filter_half = 3;
+    put_into_two_banks(input);
+    EXPECT_EQ(differences(figures(platform::run_core(board_config(input), board_tables(input), 3)),
+                          figures(run_plain_cycle_loop(input, 3))),
+              "");
+  }
+}
+
+TEST_F(RealTables, GiveTheSameDisparitiesJointAndSeparate) {
+  PlainCycleInput joint = fpl2003(tables_);
+  put_into_two_banks(joint);
+  const platform::BoardConfig boards[] = {board_config(fpl2003(tables_)), board_config(joint)};
+  std::vector<host::StereoPair> pairs;
+  for (const std::string number :
+       {"01", "02", "03", "04", "05", "06", "07", "08", "09", "11", "12", "13", "14"})
+    pairs.push_back({picture("left" + number + ".jpg"), picture("right" + number + ".jpg")});
+  std::vector<std::string> disparities;
+  for (const platform::BoardConfig& board : boards) {
+    disparities.push_back(run_for_text([&] {
+      const PreloadedRun run =
+          run_preloaded(board, board_tables(joint), pairs, pairs.size(), fpga::Fidelity::kFast);
+      EXPECT_EQ(run.statistics.failed, std::vector<std::string>());
+      std::string text;
+      for (const kernels::GrayImage& image : run.disparity)
+        text.append(image.pixels.begin(), image.pixels.end());
+      return text;
+    }));
+  }
+  EXPECT_GE(disparities[0].size(), pairs.size() * kWidth * kHeight);
+  EXPECT_EQ(disparities[0], disparities[1]);
 }
 
 TEST_F(RealTables, HoldInSyncBurstBanksInTurn) {

@@ -8,6 +8,7 @@
 #include "calib/rectification.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
+#include "models/kernels/joint_table.h"
 #include "models/kernels/stereo.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/computer.h"
@@ -50,11 +51,16 @@ class DriverAndReadBack : public host::Program {
   void run(host::HostBus& bus) override {
     driver_.run(bus);
     left = read(bus, *buffers_.left_lut);
-    right = read(bus, *buffers_.right_lut);
+    if (buffers_.right_lut) right = read(bus, *buffers_.right_lut);
+    for (std::uint64_t address = fpga::registers::kLeftColumns; address <= fpga::registers::kRightRows;
+         address += 4)
+      offsets.push_back(
+          static_cast<int>(bus.read(devices_.bridge_slave + pci::bridge::kCoreRegisters + address)));
   }
 
   std::vector<std::uint32_t> left;
   std::vector<std::uint32_t> right;
+  std::vector<int> offsets;  // of joint tables
 
  private:
   std::vector<std::uint32_t> read(host::HostBus& bus, std::uint32_t buffer) const {
@@ -72,7 +78,12 @@ class DriverAndReadBack : public host::Program {
   platform::DeviceMap devices_;
 };
 
-TEST(UploadedTables, AreWhatTheirBanksHold) {
+class UploadedTables : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(Uploaded, UploadedTables, testing::Bool(),
+                         [](const auto& suite) { return suite.param ? "Joint" : "Separate"; });
+
+TEST_P(UploadedTables, AreWhatTheirBanksHold) {
   const calib::SyntheticRig rig(1, kWidth, kHeight);
   const calib::TablePair tables = calib::tables(rig.rig(), calib::rectify(rig.rig()), 5);
   const auto invalid = [](const kernels::RectificationTable& table) {
@@ -80,9 +91,13 @@ TEST(UploadedTables, AreWhatTheirBanksHold) {
   };
   ASSERT_GT(invalid(tables.left), 0);
 
-  const platform::BoardConfig board = platform::load_board(
-      "fpl2003",
-      {"image.width=64", "image.height=48", "matcher.disparities=16", "cameras.frame_rate_hz=1000"});
+  std::vector<std::string> sets = {"image.width=64", "image.height=48", "matcher.disparities=16",
+                                   "cameras.frame_rate_hz=1000"};
+  if (GetParam()) {
+    for (const char* set : {"fpga.tables=joint", "allocation.right_lut=bank6", "fpga.pixel_cache=word"})
+      sets.emplace_back(set);
+  }
+  const platform::BoardConfig board = platform::load_board("fpl2003", sets);
   const auto scene = rig.scene();
   Pictures left(scene.left);
   Pictures right(scene.right);
@@ -95,8 +110,21 @@ TEST(UploadedTables, AreWhatTheirBanksHold) {
                               binder);
   for (int ms = 0; ms < 100 && !computer.cpu.finished(); ++ms) sc_core::sc_start(1, sc_core::SC_MS);
   ASSERT_TRUE(computer.cpu.finished());
-  EXPECT_EQ(program.left, tables.left.entries);
-  EXPECT_EQ(program.right, tables.right.entries);
+  if (GetParam()) {
+    const std::vector<int>& read = program.offsets;
+    const kernels::JointOffsets offsets = {{{read.at(0), read.at(1)}, {read.at(2), read.at(3)}}};
+    EXPECT_NE(offsets, kernels::JointOffsets());
+    for (std::size_t pixel = 0; pixel < program.left.size(); ++pixel) {
+      const int column = static_cast<int>(pixel) % kWidth;
+      const int row = static_cast<int>(pixel) / kWidth;
+      const std::uint32_t word = program.left[pixel];
+      ASSERT_EQ(kernels::left_entry(word, column, row, offsets), tables.left.entries[pixel]) << pixel;
+      ASSERT_EQ(kernels::right_entry(word, column, row, offsets), tables.right.entries[pixel]) << pixel;
+    }
+  } else {
+    EXPECT_EQ(program.left, tables.left.entries);
+    EXPECT_EQ(program.right, tables.right.entries);
+  }
   const platform::MatcherConfig& matcher = board.matcher;
   EXPECT_EQ(
       deliveries.disparity,

@@ -48,7 +48,8 @@ PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::T
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
   // Two of the host, three to five from the ports of the core, one to each bank.
-  const std::size_t tables_bound = (tables.left ? 1U : 0U) + (tables.right && !board.fpga.joint_tables ? 1U : 0U);
+  const std::size_t tables_bound =
+      (tables.left ? 1U : 0U) + (tables.right && !board.fpga.joint_tables ? 1U : 0U);
   EXPECT_EQ(binder.monitors().size(), 7 + tables_bound + board.banks.size());
   return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities),
           system.board.core.take_rows()};

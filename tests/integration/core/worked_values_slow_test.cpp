@@ -20,6 +20,14 @@ WorkedFrame plain(const std::string& name, std::vector<std::string> sets, std::u
   return {name, "fpl2003", sets, frame_cycles, std::move(blame)};
 }
 
+// Joint tables in bank0, all else in bank1, and the word cache.
+std::vector<std::string> in_two_banks() {
+  return {
+      "allocation={left_image: bank1, right_image: bank1, disparity: bank1, left_lut: bank0, right_lut: "
+      "bank0}",
+      "fpga.tables=joint", "fpga.pixel_cache=word"};
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Contract, CoreWorkedValues,
     testing::Values(
@@ -35,6 +43,15 @@ INSTANTIATE_TEST_SUITE_P(
               {"left_lut in bank0 by left_pixel: 2136322", "left_pixel in bank0 by left_lut: 2135042"}),
         plain("ResultInABankOfAnImage", {"allocation.disparity=[bank0, bank0]"}, 2'227'635,
               {"left_pixel in bank0 by result: 76640"}),
+        plain("TablesInTheBanksOfTheirImagesWithWordCache",
+              {"allocation.left_lut=bank0", "allocation.right_lut=bank2", "fpga.pixel_cache=word"}, 2'685'395,
+              {"left_lut in bank0 by left_pixel: 534400", "right_lut in bank2 by right_pixel: 534400"}),
+        plain("TwoBanks", in_two_banks(), 2'151'002, {"right_pixel in bank1 by left_pixel: 7"}),
+        WorkedFrame{"TwoBanksWithLog7",
+                    "fpl2003",
+                    in_two_banks(),
+                    2'151'023,
+                    {"right_pixel in bank1 by left_pixel: 7"}},
         plain("ResultInAQdrBankOfAnImage",
               {"allocation.disparity=[bank0, bank0]", "ssram.banks.bank0.kind=qdr"}, 2'150'995),
         WorkedFrame{"ResultInASyncBurstBankOfAnImage",
@@ -44,6 +61,16 @@ INSTANTIATE_TEST_SUITE_P(
                     {"left_pixel in bank0 by result: 76640", "left_pixel in bank0 by turnaround: 306518",
                      "result in bank0 by turnaround: 152960"}}),
     name_of);
+
+TEST(CoreWorkedValuesOfTwoBanks, HoldWithThePassesOfThePixelPort) {
+  const auto statistics = expect_worked_values(
+      plain("TwoBanks", in_two_banks(), 2'151'002, {"right_pixel in bank1 by left_pixel: 7"}));
+  EXPECT_EQ(statistics.ports[2].name, "left_pixel");
+  EXPECT_EQ(statistics.ports[2].grants, 535'680U);
+  EXPECT_EQ(statistics.ports[2].passed_cycles, 1'614'720U);
+  EXPECT_EQ(statistics.ports[1].name, "right_lut");
+  EXPECT_EQ(statistics.ports[1].idle_cycles, statistics.cycles);
+}
 
 TEST(CoreWorkedValues7x7, HoldWithThePortStatesOfTheTablePort) {
   const auto statistics = expect_worked_values(plain("Window7", {}, 2'150'995));

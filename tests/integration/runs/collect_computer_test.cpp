@@ -78,8 +78,7 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
     EXPECT_THAT(statistics().failed, ElementsAre(fmt::format("{} = {}, but {} = {}", left, is, right, but)));
   };
   std::vector<std::string> names;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board))
-    names.push_back(buffer.path());
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) names.push_back(buffer.path());
   names.emplace_back("no buffer");
   ASSERT_EQ(valid.words.into_bridge.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -46,10 +46,11 @@ std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
 
 // Entries without pixel access are alike, whatever the reason.
 bool make_equal_accesses(const std::vector<Access>& a, const std::vector<Access>& b) {
-  const auto without_reason = [](Access access) { return access == Access::kTableAndCache ? Access::kTable : access; };
-  return std::equal(a.begin(), a.end(), b.begin(), [&](Access x, Access y) {
-    return without_reason(x) == without_reason(y);
-  });
+  const auto without_reason = [](Access access) {
+    return access == Access::kTableAndCache ? Access::kTable : access;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [&](Access x, Access y) { return without_reason(x) == without_reason(y); });
 }
 
 std::uint64_t count(const std::vector<std::vector<Access>>& columns, Access what) {

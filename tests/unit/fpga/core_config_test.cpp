@@ -102,6 +102,14 @@ TEST(CorePorts, HaveThePriorityListOfTheContract) {
   EXPECT_EQ(core_arbiter().policy, "fixed_priority");
 }
 
+TEST(CorePorts, AreOneForJointTables) {
+  CoreConfig config;
+  config.joint_tables = true;
+  EXPECT_TRUE(has_port(config, lut_port(Side::kLeft)));
+  EXPECT_FALSE(has_port(config, lut_port(Side::kRight)));
+  for (const Side side : kSides) EXPECT_TRUE(has_table(config, side));
+}
+
 TEST(CorePorts, ExistForATableOnlyIfTheCoreHasOne) {
   CoreConfig config;
   config.right_table = false;

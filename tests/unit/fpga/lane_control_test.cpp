@@ -151,7 +151,8 @@ TEST(LaneControl, StartsTheNextFrameFromTheFirstSlotWithItsOwnLatencies) {
 TEST(LaneControl, RefusesADepthOrAReadLatencyOutsideItsRange) {
   const FrameGeometry geometry = geometry_of(2);
   for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, PixelCache::kNone, slots));
-  for (const int slots : {0, 65}) EXPECT_THROW(LaneControl(geometry, true, PixelCache::kNone, slots), std::invalid_argument);
+  for (const int slots : {0, 65})
+    EXPECT_THROW(LaneControl(geometry, true, PixelCache::kNone, slots), std::invalid_argument);
   LaneControl lane(geometry, true, PixelCache::kNone, 1);
   LaneControl lane_without_table(geometry, false, PixelCache::kNone, 1);
   for (const int latency : {1, 2}) EXPECT_NO_THROW(lane.start_frame(latency, latency));

@@ -23,6 +23,8 @@ using test::TestHost;
 const std::vector<std::uint64_t> kBases = {registers::kLeftImageBase, registers::kRightImageBase,
                                            registers::kDisparityBase, registers::kLeftLutBase,
                                            registers::kRightLutBase};
+const std::vector<std::uint64_t> kOffsets = {registers::kLeftColumns, registers::kLeftRows,
+                                             registers::kRightColumns, registers::kRightRows};
 
 class RegisterFileTest : public testing::Test {
  protected:
@@ -69,6 +71,17 @@ TEST_F(RegisterFileTest, HandsTheBasesToTheCoreWithTheStrobe) {
   ASSERT_EQ(starts.beats.size(), 1U);
   EXPECT_EQ(starts.beats[0].bases, (FrameBases{13, 14, 10, 11, 12}));  // by ports
   EXPECT_EQ(status(), kStatusBusy);
+}
+
+TEST_F(RegisterFileTest, HandsTheOffsetsOfJointTablesToTheCoreWithTheStrobe) {
+  EXPECT_EQ(kOffsets, (std::vector<std::uint64_t>{0x24, 0x28, 0x2c, 0x30}));
+  for (std::uint32_t i = 0; i < kOffsets.size(); ++i) {
+    host.write(kOffsets[i], 5 - 4 * i);  // two's complement
+    EXPECT_EQ(host.read(kOffsets[i]).word, 5 - 4 * i);
+  }
+  control(kControlStart);
+  EXPECT_EQ(starts.beats[0].joint_offsets, (kernels::JointOffsets{{{5, 1}, {-3, -7}}}));
+  EXPECT_EQ(starts.beats[0].bases, FrameBases{});
 }
 
 TEST_F(RegisterFileTest, RaisesTheInterruptWithTheEndOfAFrameUntilItIsAcknowledged) {

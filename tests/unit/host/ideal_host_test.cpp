@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -235,6 +236,41 @@ INSTANTIATE_TEST_SUITE_P(
             [](auto& test) { test.status_of_done = registers_of::kStatusDone | registers_of::kStatusError; },
             "frame 0: the core reports an error", false}),
     [](const auto& tested) { return tested.param.name; });
+
+TEST_F(IdealHostTest, LoadsJointTablesAsOneWithItsOffsets) {
+  IdealHostConfig joint = config(2);
+  joint.buffers.left_lut = registers_of::base(3, 0);
+  joint.buffers.has_joint_tables = true;
+  kernels::RectificationTable left = kernels::identity_table(kWidth, kHeight);
+  kernels::RectificationTable right = left;
+  for (std::uint32_t& entry : left.entries) entry = kernels::make_entry(3, 0);
+  right.entries.front() = 0;
+  build(joint, &left, &right);
+  sc_core::sc_start();
+  EXPECT_TRUE(host->finished());
+  const kernels::JointTable expected = kernels::join_tables(left, right);
+  std::vector<std::uint32_t> words(kPixels);
+  std::memcpy(words.data(), banks.at(3).data(), kPixels * 4);
+  EXPECT_EQ(words, expected.words);
+  EXPECT_EQ(expected.offsets, (kernels::JointOffsets{{{2, 0}, {0, 0}}}));
+  EXPECT_EQ(written[registers_of::kLeftColumns], std::vector<std::uint32_t>{2});
+  EXPECT_EQ(written[registers_of::kLeftRows], std::vector<std::uint32_t>{0});
+  EXPECT_EQ(written[registers_of::kRightColumns], std::vector<std::uint32_t>{0});
+  EXPECT_EQ(written[registers_of::kRightRows], std::vector<std::uint32_t>{0});
+  EXPECT_EQ(written[registers_of::kLeftLutBase], std::vector<std::uint32_t>{registers_of::base(3, 0)});
+  EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
+}
+
+TEST_F(IdealHostTest, RefusesJointTablesThatDoNotFitOrOfOneSideOnly) {
+  IdealHostConfig joint = config(1);
+  joint.buffers.left_lut = registers_of::base(3, 0);
+  joint.buffers.has_joint_tables = true;
+  const kernels::RectificationTable table = kernels::identity_table(kWidth, kHeight);
+  kernels::RectificationTable wide = table;
+  wide.entries.front() = kernels::make_entry(256, 0);
+  EXPECT_THROW(IdealHost("a", joint, &table, &wide, source, sink), std::invalid_argument);
+  EXPECT_THROW(IdealHost("b", joint, &table, nullptr, source, sink), std::invalid_argument);
+}
 
 TEST_F(IdealHostTest, ReportsACoreThatDoesNotStartASecondTime) {
   IdealHostConfig lists = config(2);

@@ -113,6 +113,28 @@ TEST_F(FrameBounds, LeaveOutThePixelsOfEntriesThatAreNotValid) {
   EXPECT_EQ(bound_of(tables, "bank bank0"), std::nullopt);
 }
 
+// An identity table has one word for four pixels of a row.
+TEST_F(FrameBounds, LeaveOutThePixelsOfWordsThatAreCached) {
+  board.fpga.pixel_cache = fpga::PixelCache::kWord;
+  Tables tables = identity_tables(board);
+  EXPECT_EQ(bound_of(tables, "bank bank0"), kReads / 4 + 2 + kAfter);
+  EXPECT_EQ(bound_of(tables, "bank bank6"), kReads + 4 + kAfter);
+  tables.left->entries[16 * 3 + 5] = 0;                           // within a word
+  tables.left->entries[16 * 3 + 10] = kernels::make_entry(0, 0);  // another word, and back again
+  EXPECT_EQ(bound_of(tables, "bank bank0"), kReads / 4 + 2 * 3 + 2 + kAfter);
+  board.allocation.left_lut.reset();
+  EXPECT_EQ(bound_of("bank bank0"), kReads / 4 + 2 + kAfter);
+}
+
+TEST_F(FrameBounds, ReadJointTablesOnce) {
+  board.fpga.joint_tables = true;
+  board.allocation.right_lut = board.allocation.left_lut;
+  EXPECT_EQ(bound_of("bank bank6"), kReads + 4 + kAfter);
+  EXPECT_EQ(bound_of("bank bank7"), std::nullopt);
+  EXPECT_EQ(bound_of("port right_lut"), std::nullopt);
+  EXPECT_EQ(bound_of("matcher"), 4 + kSlots + kAfter);
+}
+
 TEST_F(FrameBounds, LeaveOutATableThatDoesNotExist) {
   board.allocation.left_lut.reset();
   EXPECT_EQ(bound_of("port left_lut"), std::nullopt);
@@ -302,6 +324,13 @@ INSTANTIATE_TEST_SUITE_P(
              }},
         Case{"no_tables", [](auto& b) { b.allocation.left_lut.reset(), b.allocation.right_lut.reset(); }},
         Case{"no_left_table", [](auto& b) { b.allocation.left_lut.reset(); }},
+        Case{"joint_tables_and_word_cache",
+             [](auto& b) {
+               b.fpga.joint_tables = true;
+               b.fpga.pixel_cache = fpga::PixelCache::kWord;
+               b.allocation.right_lut = b.allocation.left_lut;
+             },
+             true},
         Case{"one_row",
              [](auto& b) {
                b.image = {16, 1};

@@ -67,6 +67,39 @@ TEST(CoreRun, RunsTheLargestImageWithTheLongestColumns) {
   EXPECT_EQ(statistics.ports[fpga::kResultPort].grants, std::uint64_t{1} << 24U);
 }
 
+TEST(CoreRun, GivesTheWorkedValuesOfJointTablesAndTheWordCache) {
+  const auto first_frame = [](std::vector<std::string> sets) {
+    sets.emplace_back("fpga.pixel_cache=word");
+    const BoardConfig board = load_board("fpl2003", sets);
+    return run_core(board, identity_tables(board), 1).frame_cycles;
+  };
+  EXPECT_THAT(first_frame({"matcher.filter=none", "allocation.left_lut=bank0", "allocation.right_lut=bank2"}),
+              ElementsAre(2685395));
+  const std::string two_banks =
+      "allocation={left_image: bank1, right_image: bank1, disparity: bank1, left_lut: bank0, right_lut: "
+      "bank0}";
+  EXPECT_THAT(first_frame({"matcher.filter=none", two_banks, "fpga.tables=joint"}), ElementsAre(2151002));
+  EXPECT_THAT(first_frame({two_banks, "fpga.tables=joint"}), ElementsAre(2151023));
+  EXPECT_THAT(
+      first_frame({"matcher.filter=none", "matcher.fetch=line_buffer", two_banks, "fpga.tables=joint"}),
+      ElementsAre(461811));
+}
+
+TEST(CoreRun, GivesTheWorkedValueOfOddTables) {
+  const BoardConfig board = load_board(
+      "fpl2003", {"image={width: 8, height: 48}",
+                  "matcher={window: 5, disparities: 16, filter: none, fetch: column, lr_tolerance: 0}",
+                  "fpga.pixel_cache=word", "allocation.left_lut=bank0"});
+  kernels::RectificationTable table{8, 48, {}};
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      const bool is_valid = (3 * x + 5 * y) % 11 != 0;
+      table.entries.push_back(is_valid ? kernels::make_entry(x / 2, 3 * (y / 3)) : 0);
+    }
+  }
+  EXPECT_THAT(run_core(board, {table, table}, 1).frame_cycles, ElementsAre(2257));
+}
+
 TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {
   BoardConfig board = small_board();
   Tables tables = identity_tables(board);
@@ -85,6 +118,23 @@ TEST(CoreRun, RefusesTablesAndBoardsThatDoNotFit) {
   EXPECT_THAT(message_of([&] { run_core(board, tables, 1); }), HasSubstr("left table given, but no buffer"));
   board.matcher.window = 4;
   EXPECT_THROW(run_core(board, {}, 1), std::invalid_argument);
+}
+
+TEST(CoreRun, RefusesJointTablesThatDoNotFit) {
+  BoardConfig board = load_board("fpl2003", {"fpga.tables=joint", "allocation.right_lut=bank6"});
+  Tables tables = identity_tables(board);
+  tables.left->entries[0] = kernels::make_entry(256, 0);
+  tables.right->entries[0] = kernels::make_entry(0, 128);
+  EXPECT_EQ(message_of([&] { run_core(board, tables, 1); }),
+            "left table: its displacements in x are 0..256, a range of 257: joint tables have 256; right "
+            "table: its displacements in y are 0..128, a range of 129: joint tables have 128");
+  tables.left->entries[0] = kernels::make_entry(255, 0);
+  tables.right->entries[0] = kernels::make_entry(0, 127);
+  EXPECT_NO_THROW(run_core(board, tables, 1));
+  board.fpga.joint_tables = false;
+  board.allocation.right_lut = "bank7";
+  tables.left->entries[0] = kernels::make_entry(256, 0);
+  EXPECT_NO_THROW(run_core(board, tables, 1));
 }
 
 TEST(CoreRun, EndsAFrameThatMakesNoProgress) {

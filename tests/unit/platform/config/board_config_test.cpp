@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "platform/config/buffer_layout.h"
+
 namespace stereotlm::platform {
 namespace {
 
@@ -186,6 +188,26 @@ TEST(BoardConfig, LaysBuffersOfOneBankOneBehindTheOther) {
   expect_place(layout.disparity[1], 1, 24);
   expect_place(layout.left_lut.value(), 1, 30);
   expect_place(layout.right_lut.value(), 1, 54);
+}
+
+TEST(BoardConfig, LaysOutJointTablesAsOneBuffer) {
+  BoardConfig board;
+  board.fpga.joint_tables = true;
+  board.allocation.right_lut = board.allocation.left_lut;
+  EXPECT_EQ(buffers(board).size(), 7U);
+  const BufferLayout layout = layout_buffers(board);
+  EXPECT_EQ(layout.left_lut.value().bank, 6);
+  EXPECT_FALSE(layout.right_lut.has_value());
+  EXPECT_TRUE(core_config(board).right_table);
+  const fpga::BufferBases bases = buffer_bases(board);
+  EXPECT_TRUE(bases.has_joint_tables);
+  EXPECT_FALSE(bases.right_lut.has_value());
+  EXPECT_EQ(buffer_ranges(board).size(), 7U);
+  move_buffer(board, buffers(board).back(), "bank7");
+  EXPECT_EQ(board.allocation.left_lut, "bank7");
+  EXPECT_EQ(board.allocation.right_lut, "bank7");
+  board.banks[7].words = 307199;
+  EXPECT_THROW(layout_buffers(board), std::invalid_argument);
 }
 
 TEST(BoardConfig, LaysOutNoTableThatDoesNotExist) {

@@ -43,6 +43,7 @@ class FakeMachine : public host::HostBus {
   bool failing_write = false;                      // the board refuses one that was posted
   bool failing_core = false;
   std::optional<std::uint32_t> failing_channel;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> writes;   // address, value
   std::vector<std::pair<std::uint32_t, std::uint32_t>> uploads;  // board word, words; of DMA to the board
 
   std::uint32_t read(std::uint64_t address) override {
@@ -65,6 +66,7 @@ class FakeMachine : public host::HostBus {
   }
 
   void write(std::uint64_t address, std::uint32_t value) override {
+    writes.emplace_back(address, value);
     if (address >= map_.left_capture) return write_capture(address, value);
     if (address >= map_.bridge_registers) return write_bridge(address - map_.bridge_registers, value);
     if (address >= core_register(0)) return write_core(address - core_register(0), value);

@@ -111,6 +111,31 @@ TEST(StereoDriver, UploadsItsTablesFirst) {
   EXPECT_EQ(other.words.size(), 3U);
 }
 
+TEST(StereoDriver, UploadsJointTablesAsOneAndWritesTheirOffsetsFirst) {
+  DriverConfig config = small(2, 2, 3);
+  config.buffers.right_lut = std::nullopt;
+  config.buffers.has_joint_tables = true;
+  const auto entry = [](int column) { return kernels::make_entry(column, 0); };
+  const std::vector<std::uint32_t> left = {entry(3), entry(3), 0, 0};
+  const std::vector<std::uint32_t> right = {entry(0), entry(0), entry(0), entry(0)};
+  const kernels::JointTable joint = kernels::join_tables({4, 1, left}, {4, 1, right});
+  Listener listener;
+  FakeMachine machine(1);
+  StereoDriver(config, left, right, listener).run(machine);
+  EXPECT_EQ(listener.words.size(), 3U);
+  EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{word_of_bank(30), 4}}));
+  for (std::uint32_t word = 0; word < 4; ++word)
+    EXPECT_EQ(machine.board.at(word_of_bank(30) + word), joint.words[word]);
+  const std::uint64_t core = platform::DeviceMap().bridge_slave + pci::bridge::kCoreRegisters;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> expected;
+  for (const auto& [address, value] : fpga::registers::joint_offsets({{{3, 0}, {-1, 0}}}))
+    expected.emplace_back(core + address, value);
+  ASSERT_GT(machine.writes.size(), 4U);
+  EXPECT_EQ(std::vector(machine.writes.begin(), machine.writes.begin() + 4), expected);
+  for (const auto& [address, value] : machine.writes)
+    EXPECT_NE(address, core + fpga::registers::kRightLutBase) << value;
+}
+
 TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
   for (const bool on_demand : {false, true}) {
     DriverConfig config = small(2, 2, 5);

@@ -86,6 +86,18 @@ TEST(Plan, MakesPointsImpossibleThatCannotHaveTheTables) {
             to_yaml(platform::load_board("fpl2003", {"image.width=320", "image.height=240"})));
 }
 
+TEST(Plan, MakesPointsImpossibleWhoseJointTablesDoNotFit) {
+  const std::string joint = "set: {allocation.right_lut: bank6}\nvary: {fpga.tables: [separate, joint]}\n";
+  Plan plan = plan_of(joint);
+  EXPECT_EQ(plan.use_calibration("5a", 640, 480, "too wide"), std::nullopt);
+  EXPECT_EQ(plan.point(0).reason, "");
+  EXPECT_EQ(plan.point(1).reason, "run.calibration: too wide");
+  EXPECT_EQ(plan.use_calibration("5a", 640, 480), std::nullopt);
+  EXPECT_EQ(plan.point(1).reason, "");
+  Plan all_joint = plan_of("set: {allocation.right_lut: bank6, fpga.tables: joint}\n");
+  EXPECT_EQ(all_joint.use_calibration("5a", 640, 480, "too wide"), "too wide");
+}
+
 TEST(Plan, NamesTheRuleIfNoPointCanHaveTheTables) {
   const std::string size = "image size = 320x240: must be that of the board's images, 640x480";
   const std::string vary = "vary: {allocation.left_lut: [bank6, none]}\n";

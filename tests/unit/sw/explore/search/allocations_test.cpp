@@ -95,6 +95,17 @@ TEST(Placements, AreWrittenIntoTheBoard) {
             "left_image bank0 bank1, right_image bank2 bank2, disparity bank3 bank4, right_lut bank0");
 }
 
+TEST(Placements, HaveOneBufferForJointTables) {
+  const BoardConfig board = fpl2003({"fpga.tables=joint", "allocation.right_lut=bank6"});
+  const std::string text =
+      "left_image bank0 bank1, right_image bank2 bank2, disparity bank3 bank4, left_lut bank5";
+  EXPECT_EQ(allocation_text(placed(board, {0, 1, 2, 2, 3, 4, 5})), text);
+  EXPECT_EQ(placed(board, {0, 1, 2, 2, 3, 4, 5}).allocation.right_lut, "bank5");
+  const BoardConfig frame = board_of_frame(board, {6, 7, 6, 5, 4, 4, 3}, 1);
+  EXPECT_EQ(allocation_text(frame), "left_image bank0, right_image bank1, disparity bank2, left_lut bank3");
+  EXPECT_TRUE(platform::problems(frame).empty());
+}
+
 TEST(BoardOfFrame, HasTheBuffersOfTheFrameInTheFirstBanksThatAreEqual) {
   const Placement placement = {6, 7, 6, 5, 4, 4, 3, 7};
   const auto text_of = [&placement](const BoardConfig& board, std::uint64_t frame) {
