@@ -136,9 +136,10 @@ TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
   rows.columns_out.bind(columns);
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
   PixelColumn pixel;
-  for (const std::uint8_t value : std::vector<std::uint8_t>{99, 1}) {
+  const std::vector<std::uint8_t> values = {99, 1};
+  for (const std::uint8_t& value : values) {
     rows.start_frame();
-    pixel.values[0] = value;
+    pixel.values = &value;
     rows.columns_in->push(pixel);
   }
   EXPECT_EQ(columns.beats.back().values[1], 99);
