@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <systemc>
 
 #include "models/fpga/core_ports.h"
-#include "models/kernels/column_filter.h"
+#include "models/kernels/column_scores.h"
+#include "models/kernels/pixel_column.h"
 #include "models/kernels/words.h"
 
 // The beats of the streams between the stages of the FPGA.
@@ -26,31 +28,39 @@ struct TableEntry {
 using kernels::MaskedPixel;
 using kernels::PixelColumn;
 
+// From here on a beat belongs to one of the R rows of results of a strip: `row`, 0..R-1.
+
 // The outputs of the window modules for one column.
 struct WindowSums {
+  int row = 0;
   const std::int32_t* sums = nullptr;  // padded lanes, valid during the push
   int lanes = 0;
-  int candidates = 0;       // lanes 0..candidates-1 have windows inside both images
-  bool left_valid = false;  // valid bit of the left pixel in the middle of the window
+  std::optional<kernels::ColumnScores> scores;  // compared in place of the sums, if there are any
+  int candidates = 0;                           // lanes 0..candidates-1 have windows inside both images
+  bool left_valid = false;                      // valid bit of the left pixel in the middle of the window
 };
 
 // Unit A's result for a right pixel.
 struct RightMatch {
+  int row = 0;
   std::uint8_t disparity = kernels::kInvalidDisparity;
 };
 
 // Unit B's result for a left pixel.
 struct LeftMatch {
+  int row = 0;
   std::uint8_t disparity = kernels::kInvalidDisparity;
   bool left_valid = false;
 };
 
 struct Disparity {
+  int row = 0;
   std::uint8_t value = kernels::kInvalidDisparity;
 };
 
 struct ResultWord {
   std::uint32_t word = 0;
+  std::uint64_t place = 0;  // in the disparity buffer, in words
 };
 
 }  // namespace stereotlm::fpga

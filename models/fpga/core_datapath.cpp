@@ -21,8 +21,12 @@ CoreDatapath::Lane::Lane(const CoreConfig& config, Side side)
     lut_reader =
         std::make_unique<LutReader>((name_of(side) + "_lut").c_str(), config.width, config.joint_tables);
   }
-  if (config.fetch == Fetch::kLineBuffer)
-    row_buffer = std::make_unique<RowBuffer>((name_of(side) + "_rows").c_str(), config.width, config.window);
+  if (config.cost.kind == kernels::CostKind::kCensus)
+    census = std::make_unique<Census>((name_of(side) + "_census").c_str(), config);
+  if (config.fetch == Fetch::kLineBuffer) {
+    row_buffer = std::make_unique<RowBuffer>((name_of(side) + "_rows").c_str(), config.width, config.window,
+                                             config.cost.pixel_bytes());
+  }
 }
 
 CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder)
@@ -44,8 +48,8 @@ void CoreDatapath::bind_memory(Binder& binder) {
 }
 
 void CoreDatapath::bind_streams() {
-  const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&sad_array_.left_in,
-                                                                                &sad_array_.right_in};
+  const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&cost_array_.left_in,
+                                                                                &cost_array_.right_in};
   for (const Side side : kSides) {
     Lane& lane = lanes_[index_of(side)];
     const auto bind_slots = [this, side](auto& slots_in) {
@@ -61,15 +65,19 @@ void CoreDatapath::bind_streams() {
       bind_slots(lane.pixel_reader.slots_in);
     }
     lane.pixel_reader.pixels_out.bind(lane.filter.pixels_in);
-    if (lane.row_buffer) {
-      lane.filter.columns_out.bind(lane.row_buffer->columns_in);
-      lane.row_buffer->columns_out.bind(columns);
-    } else {
-      lane.filter.columns_out.bind(columns);
+    StreamOut<PixelColumn>* last_out = &lane.filter.columns_out;
+    if (lane.census) {
+      last_out->bind(lane.census->columns_in);
+      last_out = &lane.census->columns_out;
     }
+    if (lane.row_buffer) {
+      last_out->bind(lane.row_buffer->columns_in);
+      last_out = &lane.row_buffer->columns_out;
+    }
+    last_out->bind(columns);
   }
-  sad_array_.chain_out.bind(select_min_chain_.sums_in);
-  sad_array_.tree_out.bind(select_min_tree_.sums_in);
+  cost_array_.chain_out.bind(select_min_chain_.sums_in);
+  cost_array_.tree_out.bind(select_min_tree_.sums_in);
   select_min_chain_.matches_out.bind(lr_check_.right_in);
   select_min_tree_.matches_out.bind(lr_check_.left_in);
   lr_check_.disparities_out.bind(result_packer_.disparities_in);
@@ -86,10 +94,11 @@ void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffs
     if (lane.lut_reader) lane.lut_reader->start_frame(aim(lut_port(side)), offsets);
     lane.pixel_reader.start_frame(aim(pixel_port(side)));
     lane.filter.start_frame();
+    if (lane.census) lane.census->start_frame();
     if (lane.row_buffer) lane.row_buffer->start_frame();
   }
   result_writer_.start_frame(aim(kResultPort));
-  sad_array_.start_frame();
+  cost_array_.start_frame();
   select_min_chain_.start_frame();
   lr_check_.start_frame();
   result_packer_.start_frame();
@@ -159,9 +168,10 @@ void CoreDatapath::count(const FrameCounts& frame) {
     if (lane.lut_reader) lane.lut_reader->count(counts.table);
     lane.pixel_reader.count(counts.image);
     lane.filter.count(frame.filter);
+    if (lane.census) lane.census->count(frame.census);
     if (lane.row_buffer) lane.row_buffer->count(frame.rows);
   }
-  sad_array_.count(frame.sums);
+  cost_array_.count(frame.sums);
   select_min_chain_.count(frame.chain);
   select_min_tree_.count(frame.tree);
   if (frame.check) lr_check_.count(*frame.check);

@@ -7,9 +7,11 @@
 #include <systemc>
 
 #include "models/binder.h"
+#include "models/fpga/census.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/cost_array.h"
 #include "models/fpga/direct_frame.h"
 #include "models/fpga/frame_counts.h"
 #include "models/fpga/log_filter.h"
@@ -19,7 +21,6 @@
 #include "models/fpga/result_packer.h"
 #include "models/fpga/result_writer.h"
 #include "models/fpga/row_buffer.h"
-#include "models/fpga/sad_array.h"
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
 #include "models/fpga/sequencer.h"
@@ -40,6 +41,7 @@ class CoreDatapath {
     std::unique_ptr<LutReader> lut_reader;  // null if the side has no table, or the left one reads for both
     PixelReader pixel_reader;
     LogFilter filter;
+    std::unique_ptr<Census> census;         // null unless the cost is kCensus
     std::unique_ptr<RowBuffer> row_buffer;  // null unless the fetch is kLineBuffer
   };
 
@@ -66,7 +68,7 @@ class CoreDatapath {
   // The stages, for their statistics.
   const Sequencer& sequencer() const { return sequencer_; }
   const Lane& lane(Side side) const { return lanes_[index_of(side)]; }
-  const SadArray& sad_array() const { return sad_array_; }
+  const CostArray& cost_array() const { return cost_array_; }
   const SelectMinChain& select_min_chain() const { return select_min_chain_; }
   const SelectMinTree& select_min_tree() const { return select_min_tree_; }
   const LrCheck& lr_check() const { return lr_check_; }
@@ -86,11 +88,11 @@ class CoreDatapath {
   memory::Crossbar& crossbar_;
   Sequencer sequencer_{"sequencer"};
   std::array<Lane, 2> lanes_{Lane(config_, Side::kLeft), Lane(config_, Side::kRight)};  // [side]
-  SadArray sad_array_{"sad_array", config_};
-  SelectMinChain select_min_chain_{"select_min_chain", config_.disparities};
+  CostArray cost_array_{"cost_array", config_};
+  SelectMinChain select_min_chain_{"select_min_chain", config_};
   SelectMinTree select_min_tree_{"select_min_tree"};
   LrCheck lr_check_{"lr_check", config_};
-  ResultPacker result_packer_{"result_packer"};
+  ResultPacker result_packer_{"result_packer", config_};
   ResultWriter result_writer_{"result_writer", config_.result_fifo_words};
 };
 

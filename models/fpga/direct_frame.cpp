@@ -21,7 +21,8 @@ DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels)
   if (!has_pixels) return;
   pipeline_ = std::make_unique<kernels::StereoPipeline>(
       config.width, config.height,
-      kernels::StereoConfig{config.window, config.disparities, config.filter, config.lr_tolerance});
+      kernels::StereoConfig{config.window, config.disparities, config.filter, config.lr_tolerance,
+                            config.cost});
   disparities_.resize(pixels_of(config));
 }
 

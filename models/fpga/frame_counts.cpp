@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "models/kernels/sad_columns.h"
+#include "models/kernels/cost_columns.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -40,11 +40,12 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
   // This includes the first columns, for which the filter has no output yet; their windows do not leave the
   // array.
   filter.columns = filter.pixels / static_cast<std::uint64_t>(geometry.slots_per_column);
+  census.columns = filter.columns;
   rows.columns = filter.columns;
   sums.columns = filter.columns;
-  // The rows of a strip share the differences of their windows.
-  sums.absolute_differences = sums.columns * static_cast<std::uint64_t>(config.window + config.rows - 1) *
-                              static_cast<std::uint64_t>(config.disparities);
+  // The rows of a strip share the costs of their windows.
+  sums.pixel_costs = sums.columns * static_cast<std::uint64_t>(config.window + config.rows - 1) *
+                     static_cast<std::uint64_t>(config.disparities);
   const int rows_with_windows = std::max(0, geometry.height - 2 * geometry.radius);
   const int windows_in_row = std::max(0, geometry.width - 2 * geometry.radius);
   const auto matches =
@@ -55,7 +56,8 @@ FrameCounts::FrameCounts(const CoreConfig& config, const AccessPatterns& pattern
         static_cast<std::uint64_t>(kernels::candidate_count(
             column, geometry.radius, geometry.width, geometry.height, config.window, config.disparities));
   }
-  chain.columns = sums.columns - static_cast<std::uint64_t>(geometry.half + geometry.radius);
+  chain.columns = (sums.columns - static_cast<std::uint64_t>(geometry.half + geometry.radius)) *
+                  static_cast<std::uint64_t>(config.rows);
   chain.matches = matches;
   tree.columns = chain.columns;
   tree.matches = matches;

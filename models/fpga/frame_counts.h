@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "models/fpga/access_pattern.h"
+#include "models/fpga/census.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/cost_array.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
@@ -15,7 +17,6 @@
 #include "models/fpga/result_packer.h"
 #include "models/fpga/result_writer.h"
 #include "models/fpga/row_buffer.h"
-#include "models/fpga/sad_array.h"
 #include "models/fpga/select_min_chain.h"
 #include "models/fpga/select_min_tree.h"
 #include "models/fpga/sequencer.h"
@@ -39,8 +40,9 @@ struct FrameCounts {
   };
   std::array<Lane, 2> lanes;  // [side]
   LogFilter::Stats filter;
+  Census::Stats census;
   RowBuffer::Stats rows;
-  SadArray::Stats sums;
+  CostArray::Stats sums;
   SelectMinChain::Stats chain;
   SelectMinTree::Stats tree;
   std::optional<LrCheck::Stats> check;  // nothing if no disparities were computed

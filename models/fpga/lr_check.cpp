@@ -1,46 +1,59 @@
 #include "models/fpga/lr_check.h"
 
-#include "models/fpga/frame_geometry.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::fpga {
 
 LrCheck::LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)
-    : sc_module(name), columns_before_frame_(0), check_(config.disparities, config.lr_tolerance) {
-  const FrameGeometry geometry(config);
-  // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
-  // before this stage, cause a part of that delay.
-  columns_before_frame_ =
-      geometry.result_delay_columns - static_cast<std::uint64_t>(geometry.half + geometry.radius);
-}
+    : sc_module(name),
+      geometry_(config),
+      rows_(static_cast<std::size_t>(config.rows),
+            Row{kernels::LrCheck(config.disparities, config.lr_tolerance)}) {}
 
 void LrCheck::start_frame() {
-  check_.start_frame();
-  columns_to_skip_ = columns_before_frame_;
-  have_right_ = false;
-  have_left_ = false;
+  for (std::size_t index = 0; index < rows_.size(); ++index) {
+    Row& row = rows_[index];
+    row.check.start_frame();
+    // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
+    // before this stage, cause a part of that delay.
+    row.columns_to_skip =
+        geometry_.result_delay_columns - static_cast<std::uint64_t>(geometry_.half + geometry_.radius);
+    row.column = 0;
+    row.image_row = static_cast<int>(index);
+    row.have_right = false;
+    row.have_left = false;
+  }
 }
 
 void LrCheck::take_right(const RightMatch& match) {
-  right_ = match;
-  have_right_ = true;
-  if (have_left_) finish_column();
+  Row& row = rows_[static_cast<std::size_t>(match.row)];
+  row.right = match;
+  row.have_right = true;
+  if (row.have_left) finish_column(row);
 }
 
 void LrCheck::take_left(const LeftMatch& match) {
-  left_ = match;
-  have_left_ = true;
-  if (have_right_) finish_column();
+  Row& row = rows_[static_cast<std::size_t>(match.row)];
+  row.left = match;
+  row.have_left = true;
+  if (row.have_right) finish_column(row);
 }
 
-void LrCheck::finish_column() {
-  have_right_ = false;
-  have_left_ = false;
-  const Disparity checked{check_.step(left_.disparity, left_.left_valid, right_.disparity)};
-  if (columns_to_skip_ > 0) {
-    --columns_to_skip_;
+void LrCheck::finish_column(Row& row) {
+  row.have_right = false;
+  row.have_left = false;
+  const Disparity checked{row.left.row,
+                          row.check.step(row.left.disparity, row.left.left_valid, row.right.disparity)};
+  if (row.columns_to_skip > 0) {
+    --row.columns_to_skip;
     return;
   }
+  const bool is_inside = row.image_row < geometry_.height;
+  if (++row.column == geometry_.width) {
+    row.column = 0;
+    row.image_row += geometry_.rows;
+  }
+  if (!is_inside) return;
   ++(checked.value == kernels::kInvalidDisparity ? stats_.invalid : stats_.answered);
   disparities_out->push(checked);
 }

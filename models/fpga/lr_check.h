@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <systemc>
+#include <vector>
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
+#include "models/fpga/frame_geometry.h"
 #include "models/kernels/lr_check.h"
 #include "models/stream.h"
 
@@ -12,7 +14,7 @@ namespace stereotlm::fpga {
 
 // The left-right check (paper section 2.3; contract 1.4). For each column it takes the matches of unit A and
 // unit B, in either order. It passes on the checked disparity of the left pixel D-1 columns back, from the
-// first pixel of the frame on.
+// first pixel of the frame on. Each of the R rows has a check of its own; rows outside the image end here.
 class LrCheck : public sc_core::sc_module {
  public:
   struct Stats {
@@ -41,15 +43,21 @@ class LrCheck : public sc_core::sc_module {
   const Stats& stats() const { return stats_; }
 
  private:
-  void finish_column();
+  struct Row {
+    kernels::LrCheck check;
+    std::uint64_t columns_to_skip = 0;
+    int column = 0;  // position of the next result
+    int image_row = 0;
+    RightMatch right{};
+    LeftMatch left{};
+    bool have_right = false;
+    bool have_left = false;
+  };
 
-  std::uint64_t columns_before_frame_;
-  std::uint64_t columns_to_skip_ = 0;
-  kernels::LrCheck check_;
-  RightMatch right_;
-  LeftMatch left_;
-  bool have_right_ = false;
-  bool have_left_ = false;
+  void finish_column(Row& row);
+
+  FrameGeometry geometry_;
+  std::vector<Row> rows_;
   Stats stats_;
 };
 

@@ -2,13 +2,15 @@
 
 #include <cstdint>
 #include <systemc>
+#include <vector>
 
 #include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
-// Packs four disparities to a word, the lowest column in the lowest byte (contract 1.5).
+// Packs four disparities of a row to a word, the lowest column in the lowest byte (contract 1.5).
 class ResultPacker : public sc_core::sc_module {
  public:
   struct Stats {
@@ -23,7 +25,7 @@ class ResultPacker : public sc_core::sc_module {
  public:
   StreamIn<Disparity, ResultPacker, &ResultPacker::take> disparities_in{"disparities_in", this};
 
-  explicit ResultPacker(const sc_core::sc_module_name& name) : sc_module(name) {}
+  ResultPacker(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
   // Adds the counts of a frame whose data did not pass through this stage.
@@ -31,8 +33,14 @@ class ResultPacker : public sc_core::sc_module {
   const Stats& stats() const { return stats_; }
 
  private:
-  std::size_t next_ = 0;  // position in the word
-  std::uint32_t word_ = 0;
+  struct Row {
+    std::size_t next = 0;  // position in the word
+    std::uint32_t word = 0;
+    std::uint64_t place = 0;  // of the word in the disparity buffer
+  };
+
+  std::uint64_t words_of_row_;
+  std::vector<Row> rows_;  // [row] of the R rows of a strip
   Stats stats_;
 };
 

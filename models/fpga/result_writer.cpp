@@ -11,7 +11,7 @@ ResultWriter::ResultWriter(const sc_core::sc_module_name& name, int fifo_words)
       fifo_words_(static_cast<std::size_t>(kResultFifoRule.required("result_fifo_words", fifo_words))) {}
 
 void ResultWriter::start_frame(std::uint64_t disparity_address) {
-  next_address_ = disparity_address;
+  disparity_address_ = disparity_address;
   stored_ = 0;
   written_ = 0;
 }
@@ -21,7 +21,7 @@ void ResultWriter::store(const ResultWord& word) {
     SC_REPORT_ERROR("/stereotlm/result_writer", "a word arrives at a full queue");
     return;
   }
-  words_[stored_++ % kRing] = word.word;
+  words_[stored_++ % kRing] = word;
   stats_.most_queued_words = std::max<std::uint64_t>(stats_.most_queued_words, stored_ - written_);
 }
 
@@ -31,13 +31,13 @@ void ResultWriter::write(const sc_core::sc_time& at) {
     return;
   }
   sc_core::sc_time delay = at;
-  if (!access_.write(next_address_, words_[written_++ % kRing], delay)) ++stats_.errors;
+  const ResultWord& word = words_[written_++ % kRing];
+  if (!access_.write(disparity_address_ + 4 * word.place, word.word, delay)) ++stats_.errors;
   ++stats_.writes;
-  next_address_ += 4;
 }
 
 std::uint8_t* ResultWriter::buffer(std::uint64_t words) {
-  return memory::direct_memory(port, tlm::TLM_WRITE_COMMAND, next_address_, words * 4);
+  return memory::direct_memory(port, tlm::TLM_WRITE_COMMAND, disparity_address_, words * 4);
 }
 
 void ResultWriter::count(const Stats& frame) {

@@ -13,7 +13,7 @@
 
 namespace stereotlm::fpga {
 
-// The result queue, and the port that writes its words to the disparity buffer, one after another.
+// The result queue, and the port that writes its words to their places in the disparity buffer.
 // CoreControl decides in which cycle a word is written.
 class ResultWriter : public sc_core::sc_module {
  public:
@@ -39,7 +39,7 @@ class ResultWriter : public sc_core::sc_module {
   // Writes the oldest word, in the cycle that is `at` from now.
   void write(const sc_core::sc_time& at);
   // The disparity buffer of `words` words, for immediate use only; null if memory does not grant direct
-  // access. To be called before the first write() of a frame.
+  // access.
   std::uint8_t* buffer(std::uint64_t words);
   // Adds the counts of a frame that was written directly.
   void count(const Stats& frame);
@@ -49,9 +49,9 @@ class ResultWriter : public sc_core::sc_module {
   static constexpr std::size_t kRing = kResultFifoRule.max;
 
   std::size_t fifo_words_;
-  std::uint64_t next_address_ = 0;
+  std::uint64_t disparity_address_ = 0;
   memory::WordAccess access_{port};
-  std::array<std::uint32_t, kRing> words_{};
+  std::array<ResultWord, kRing> words_{};
   std::size_t stored_ = 0;  // words since the start of the frame
   std::size_t written_ = 0;
   Stats stats_;

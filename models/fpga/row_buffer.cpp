@@ -4,19 +4,25 @@
 
 namespace stereotlm::fpga {
 
-RowBuffer::RowBuffer(const sc_core::sc_module_name& name, int width, int window)
+RowBuffer::RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes)
     : sc_module(name),
       newest_row_(static_cast<std::size_t>(window - 1)),
-      columns_(static_cast<std::size_t>(width)) {}
+      pixel_bytes_(static_cast<std::size_t>(pixel_bytes)),
+      values_(static_cast<std::size_t>(width) * static_cast<std::size_t>(window) * pixel_bytes_),
+      valid_(static_cast<std::size_t>(width)) {}
 
 void RowBuffer::take(const PixelColumn& pixel) {
-  PixelColumn& column = columns_[column_];
-  std::copy_n(column.values.begin() + 1, newest_row_, column.values.begin());
-  column.values[newest_row_] = pixel.values[0];
-  column.valid = column.valid >> 1U | (pixel.valid & 1U) << newest_row_;
-  column_ = column_ + 1 == columns_.size() ? 0 : column_ + 1;
+  const std::size_t older_bytes = newest_row_ * pixel_bytes_;
+  std::uint8_t* const values = values_.data() + column_ * (older_bytes + pixel_bytes_);
+  std::copy_n(values + pixel_bytes_, older_bytes, values);
+  std::copy_n(pixel.values.begin(), pixel_bytes_, values + older_bytes);
+  std::copy_n(values, older_bytes + pixel_bytes_, output_.values.begin());
+  std::uint64_t& valid = valid_[column_];
+  valid = valid >> 1U | (pixel.valid & 1U) << newest_row_;
+  output_.valid = valid;
+  column_ = column_ + 1 == valid_.size() ? 0 : column_ + 1;
   ++stats_.columns;
-  columns_out->push(column);
+  columns_out->push(output_);
 }
 
 }  // namespace stereotlm::fpga

@@ -9,8 +9,8 @@
 
 namespace stereotlm::fpga {
 
-// The line memories of the `line_buffer` fetch for one side. They keep the last n-1 rows of filtered pixels,
-// so that each pixel completes a column of n. The memories are not cleared between frames.
+// The line memories of the `line_buffer` fetch for one side. They keep the last n-1 rows of filtered pixels, or
+// of their census bits, so that each pixel completes a column of n. The memories are not cleared between frames.
 class RowBuffer : public sc_core::sc_module {
  public:
   struct Stats {
@@ -25,8 +25,8 @@ class RowBuffer : public sc_core::sc_module {
  public:
   StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
 
-  // `width`: pixels of a row of the image; `window`: n.
-  RowBuffer(const sc_core::sc_module_name& name, int width, int window);
+  // `width`: pixels of a row of the image; `window`: n; `pixel_bytes`: those of a row of a column.
+  RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes);
 
   void start_frame() { column_ = 0; }
   // Adds the counts of a frame whose data did not pass through this stage.
@@ -35,8 +35,11 @@ class RowBuffer : public sc_core::sc_module {
 
  private:
   std::size_t newest_row_;  // n - 1
+  std::size_t pixel_bytes_;
   std::size_t column_ = 0;
-  std::vector<PixelColumn> columns_;  // [image column]: its last n pixels
+  std::vector<std::uint8_t> values_;  // of each image column: its last n pixels
+  std::vector<std::uint64_t> valid_;  // their valid bits
+  PixelColumn output_;
   Stats stats_;
 };
 

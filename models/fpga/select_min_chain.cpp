@@ -4,11 +4,24 @@
 
 namespace stereotlm::fpga {
 
-SelectMinChain::SelectMinChain(const sc_core::sc_module_name& name, int disparities)
-    : sc_module(name), chain_(disparities) {}
+SelectMinChain::SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config)
+    : sc_module(name) {
+  for (int row = 0; row < config.rows; ++row) {
+    chains_.emplace_back(config.disparities);
+    score_chains_.emplace_back(config.disparities);
+  }
+}
+
+void SelectMinChain::start_frame() {
+  for (auto& chain : chains_) chain.start_frame();
+  for (auto& chain : score_chains_) chain.start_frame();
+}
 
 void SelectMinChain::take(const WindowSums& window) {
-  const RightMatch match{chain_.step(window.sums, window.candidates)};
+  const auto row = static_cast<std::size_t>(window.row);
+  const RightMatch match{window.row, window.scores
+                                         ? score_chains_[row].step(*window.scores, window.candidates)
+                                         : chains_[row].step(window.sums, window.candidates)};
   ++stats_.columns;
   stats_.matches += std::uint64_t{match.disparity != kernels::kInvalidDisparity};
   matches_out->push(match);

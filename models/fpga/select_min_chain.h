@@ -2,15 +2,17 @@
 
 #include <cstdint>
 #include <systemc>
+#include <vector>
 
 #include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
 #include "models/kernels/select_min.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
 
-// Select-min unit A (paper section 3.3): the serial chain of comparators, for right-based matching. With each
-// column of window sums the match of the right pixel D-1 columns back leaves.
+// Select-min unit A (paper section 3.3): the serial chain of comparators, for right-based matching; one for each
+// of the R rows. With each column of window sums the match of the right pixel D-1 columns back leaves.
 class SelectMinChain : public sc_core::sc_module {
  public:
   struct Stats {
@@ -26,10 +28,9 @@ class SelectMinChain : public sc_core::sc_module {
  public:
   StreamIn<WindowSums, SelectMinChain, &SelectMinChain::take> sums_in{"sums_in", this};
 
-  // `disparities`: D.
-  SelectMinChain(const sc_core::sc_module_name& name, int disparities);
+  SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config);
 
-  void start_frame() { chain_.start_frame(); }
+  void start_frame();
   // Adds the counts of a frame whose data did not pass through this stage.
   void count(const Stats& frame) {
     stats_.columns += frame.columns;
@@ -38,7 +39,9 @@ class SelectMinChain : public sc_core::sc_module {
   const Stats& stats() const { return stats_; }
 
  private:
-  kernels::SelectMinChain chain_;
+  // [row]
+  std::vector<kernels::SelectMinChain> chains_;
+  std::vector<kernels::ScoreChain> score_chains_;  // for beats with scores
   Stats stats_;
 };
 

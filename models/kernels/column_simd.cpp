@@ -40,10 +40,36 @@ Int32s widened(HalfInt16s values) {
 #endif
 }
 
+// Adds the column sums less those that leave to the window sums, and stores them in their place.
+void replace_columns(Int16s sums, std::int16_t* leaving, std::int32_t* windows) {
+  const Int16s change = sums - load<Int16s>(leaving);
+  store(sums, leaving);
+  for (int part = 0; part < kInt16s; part += kInt32s) {
+    std::int32_t* const window = windows + part;
+    const auto changes = load<HalfInt16s>(reinterpret_cast<const std::int16_t*>(&change) + part);
+    store(load<Int32s>(window) + widened(changes), window);
+  }
+}
+
+// ColumnSimd::ssd_windows and product_windows. `cost_of`: the cost of right pixels and a left pixel.
+template <class CostOf>
+void step_wide_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                       std::int32_t* leaving, std::int32_t* windows, CostOf cost_of) {
+  for (int d = 0; d < lanes; d += kInt32s) {
+    Int32s sums{};
+    for (int row = 0; row < rows; ++row) {
+      const auto right = __builtin_convertvector(load<QuarterBytes>(histories[row] + d), Int32s);
+      sums += cost_of(right, left[row]);
+    }
+    store(load<Int32s>(windows + d) + sums - load<Int32s>(leaving + d), windows + d);
+    store(sums, leaving + d);
+  }
+}
+
 }  // namespace
 
-void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                  std::int16_t* leaving, std::int32_t* windows) {
+void sad_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                 std::int16_t* leaving, std::int32_t* windows) {
   for (int d = 0; d < lanes; d += kInt16s) {
     Int16s sums{};
     for (int row = 0; row < rows; ++row) {
@@ -51,14 +77,36 @@ void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left
       const Int16s difference = right - left[row];
       sums += difference < 0 ? -difference : difference;
     }
-    const Int16s change = sums - load<Int16s>(leaving + d);
-    store(sums, leaving + d);
-    for (int part = 0; part < kInt16s; part += kInt32s) {
-      std::int32_t* const window = windows + d + part;
-      const auto changes = load<HalfInt16s>(reinterpret_cast<const std::int16_t*>(&change) + part);
-      store(load<Int32s>(window) + widened(changes), window);
-    }
+    replace_columns(sums, leaving + d, windows + d);
   }
+}
+
+void census_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                    std::int16_t* leaving, std::int32_t* windows) {
+  for (int d = 0; d < lanes; d += kInt16s) {
+    Int16s sums{};
+    for (int row = 0; row < rows; ++row) {
+      HalfBytes bits = load<HalfBytes>(histories[row] + d) ^ left[row];
+      bits -= bits >> 1 & 0x55;
+      bits = (bits & 0x33) + (bits >> 2 & 0x33);
+      sums += widened((bits + (bits >> 4)) & 0x0F);
+    }
+    replace_columns(sums, leaving + d, windows + d);
+  }
+}
+
+void ssd_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                 std::int32_t* leaving, std::int32_t* windows) {
+  step_wide_windows(histories, left, rows, lanes, leaving, windows, [](Int32s right, int left_pixel) {
+    const Int32s difference = right - left_pixel;
+    return difference * difference;
+  });
+}
+
+void product_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                     std::int32_t* leaving, std::int32_t* windows) {
+  step_wide_windows(histories, left, rows, lanes, leaving, windows,
+                    [](Int32s right, int left_pixel) { return right * left_pixel; });
 }
 
 namespace {

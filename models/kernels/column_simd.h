@@ -20,8 +20,16 @@ constexpr int padded_rows(int rows) { return (rows + kFilterBlock - 1) / kFilter
 struct ColumnSimd {
   // Steps all column and window modules by one column. For each d: adds the sum over the `rows` of
   // |histories[row][d] - left[row]| to windows[d], subtracts leaving[d], and stores the sum in leaving[d].
-  void (*step_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                       std::int16_t* leaving, std::int32_t* windows);
+  void (*sad_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                      std::int16_t* leaving, std::int32_t* windows);
+  // The same with the number of bits in which histories[row][d] and left[row] differ.
+  void (*census_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                         std::int16_t* leaving, std::int32_t* windows);
+  // The same with the square of the difference, and with the product.
+  void (*ssd_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                      std::int32_t* leaving, std::int32_t* windows);
+  void (*product_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                          std::int32_t* leaving, std::int32_t* windows);
 
   // Steps select-min unit A by one column: next[d] = min(held[d - 1], key(d)), where key(d) = sums[d] * 256 +
   // d for d < candidates, else INT32_MAX. Reads held[-1]; writes `next` from 0 on.

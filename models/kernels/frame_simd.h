@@ -27,16 +27,15 @@ struct MatchPlan {
   bool right_based = true;  // whether right-based disparities are wanted
   int columns = 0;          // positions of a segment, one right window each; a multiple of 8
   int first_outside = 0;    // from this position on the left window of some lane is outside the image
+  int right_stride = 0;     // of MatchMemory::right_pixels
+  int left_stride = 0;      // of MatchMemory::left_pixels
 };
 
-// The largest window for which a sum and two bits of the disparity fit into 16 bits: 7 * 7 * 255 * 4 fits, 9
-// * 9 * 255 * 4 does not.
-inline constexpr int kLastNarrowWindow = 7;
-
-// Arrays with one vector per position, aligned to kMostFrameVectorBytes.
+// Arrays with one or more vectors per position, aligned to kMostFrameVectorBytes.
 struct MatchMemory {
-  // In each lane the pixel that enters the window is the lower byte, the pixel that leaves the window the
-  // upper byte.
+  // In each lane the byte that enters the window is the lower one, the byte that leaves the window the upper
+  // one. Pixels of more than one byte have a plane for each byte, MatchPlan::right_stride apart and left_stride
+  // apart.
   const std::int16_t* right_pixels = nullptr;  // [columns + window - 1]
   const std::int16_t* left_pixels = nullptr;   // [columns + window + disparities - 2]
   // [columns + disparities]: the largest 16-bit value if the left window is outside the image, else the
@@ -44,9 +43,39 @@ struct MatchMemory {
   const std::int16_t* outside = nullptr;
   // [1]: the largest 16-bit value in the first lane of each band, else the smallest.
   const std::int16_t* band_begins = nullptr;
-  std::int16_t* column_sums = nullptr;  // [disparities * (columns + window)], zeros before the first row
-  std::int16_t* right_best = nullptr;   // [2 * columns]: best keys of right windows, then their disparities
-  std::int16_t* left_best = nullptr;    // [2 * (columns + disparities)]: those of left windows
+  // [disparities * (columns + window)], MatchLoops::sum_vectors each, zeros before the first row
+  std::int16_t* column_sums = nullptr;
+  // Best keys, MatchLoops::best_vectors each, then one vector of disparities each.
+  std::int16_t* right_best = nullptr;  // [columns]
+  std::int16_t* left_best = nullptr;   // [columns + disparities]
+
+  // With MatchLoops::unpacks: the pixels as numbers of 16 bits, two vectors per position.
+  std::int16_t* right_unpacked = nullptr;
+  std::int16_t* left_unpacked = nullptr;
+  // With MatchLoops::has_statistics: kColumnStatisticsVectors for each position of the pixels, zeros before the
+  // first row, and kWindowStatisticsVectors for each window.
+  std::int16_t* right_columns = nullptr;
+  std::int16_t* left_columns = nullptr;
+  std::int16_t* right_windows = nullptr;  // [columns]
+  std::int16_t* left_windows = nullptr;   // [columns + disparities - 1]
+};
+inline constexpr int kColumnStatisticsVectors = 4;
+inline constexpr int kWindowStatisticsVectors = 6;
+
+// In place of the disparity of a window that needs an exact comparison.
+inline constexpr int kUndecided = 255;
+
+// The loops of one cost, and the memory that they need.
+struct MatchLoops {
+  int sum_vectors;
+  int best_vectors;
+  bool unpacks;
+  bool has_statistics;
+  // Moves all column sums one row down. To be called for the rows before the first windows are complete.
+  void (*add_row)(const MatchPlan& plan, const MatchMemory& memory);
+  // Moves one row down and stores the disparities of the row of windows in right_best and left_best, one per
+  // lane and position.
+  void (*match_row)(const MatchPlan& plan, const MatchMemory& memory);
 };
 
 // The loops over whole images, for one instruction set.
@@ -70,11 +99,16 @@ struct FrameSimd {
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
   // The reverse of to_lanes(), with bytes as output.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
-  // Moves all column sums one row down. To be called for the rows before the first windows are complete.
-  void (*add_row)(const MatchPlan& plan, const MatchMemory& memory);
-  // Moves one row down and stores the disparities of the row of windows in right_best and left_best, one per
-  // lane and position.
-  void (*match_row)(const MatchPlan& plan, const MatchMemory& memory);
+  // The census bits of one row (contract 7.6). `rows`: the size x size neighbourhood of the first pixel, by
+  // rows, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order of
+  // the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
+  void (*census_row)(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out);
+
+  // The loops of each cost for windows of `window` x `window` pixels. kUndecided comes from zncc_loops() only.
+  MatchLoops (*sad_loops)(int window);
+  MatchLoops (*ssd_loops)(int window);
+  MatchLoops (*zncc_loops)(int window);
+  MatchLoops (*census_loops)(int bytes, int window);  // bytes of a pixel: 1, 3 or 6
 };
 
 }  // namespace stereotlm::kernels

@@ -26,6 +26,30 @@ inline Int16s join_lanes(Int32s even, Int32s odd) {
   return reinterpret_cast<Int16s>((even & 0xFFFF) | odd << 16);
 }
 
+// Values of 32 bits, in separate vectors for even and odd lanes.
+struct Int32Pair {
+  Int32s even;
+  Int32s odd;
+};
+template <>
+inline Int32Pair load<Int32Pair>(const void* from) {
+  const auto* halves = static_cast<const std::int16_t*>(from);
+  return {load<Int32s>(halves), load<Int32s>(halves + kLanes)};
+}
+inline void store(const Int32Pair& pair, std::int16_t* to) {
+  store(pair.even, to);
+  store(pair.odd, to + kLanes);
+}
+inline Int32Pair operator+(const Int32Pair& a, const Int32Pair& b) {
+  return {a.even + b.even, a.odd + b.odd};
+}
+inline Int32Pair operator-(const Int32Pair& a, const Int32Pair& b) {
+  return {a.even - b.even, a.odd - b.odd};
+}
+
+// Factors 1 and -1 for pairs of a pixel that enters a window and one that leaves it.
+inline Int16s entering_minus_leaving() { return reinterpret_cast<Int16s>(int32s(1 - 65536)); }
+
 // Multiplies lane by lane and adds the products of neighbours.
 inline Int32s multiply_pairs(Int16s a, Int16s b) {
 #if defined(__AVX512BW__)

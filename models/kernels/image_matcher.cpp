@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 
 #include "models/kernels/limits.h"
 #include "models/kernels/words.h"
@@ -22,16 +24,19 @@ constexpr int rounded_up(int value, int unit) { return divided_up(value, unit) *
 }  // namespace
 
 ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, bool right_based,
-                           const Simd& simd)
+                           const MatchingCost& cost, const Simd& simd)
     : width_(width), height_(height), radius_((window - 1) / 2), simd_(simd.frame) {
   plan_.window = kWindowRule.required("window", window);
   plan_.disparities = kDisparitiesRule.required("disparities", disparities);
   plan_.right_based = right_based;
+  if (const auto found = problems(cost); !found.empty())
+    throw std::invalid_argument("cost: " + found.front());
   windows_across_ = width - 2 * radius_;
   windows_down_ = height - 2 * radius_;
   if (windows_across_ < 1 || windows_down_ < 1) return;
   // No right window has more candidates.
   plan_.disparities = std::min(plan_.disparities, windows_across_);
+  choose_loops(cost, simd);
   choose_bands();
   plan_.first_outside = windows_across_ - (segments_ - 1) * plan_.columns;
 
@@ -57,9 +62,42 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
   for (int lane = 0; lane < simd_.lanes; ++lane)
     band_begins_.data()[lane] = lane % segments_ == 0 ? kLargest : kSmallest;
   column_sums_ = VectorArray(static_cast<std::size_t>(plan_.disparities) *
-                             static_cast<std::size_t>(plan_.columns + window) * lanes);
-  memory_ = {right_.pixel_vectors.data(), left_.pixel_vectors.data(), outside_.data(),  band_begins_.data(),
-             column_sums_.data(),         right_.best.data(),         left_.best.data()};
+                             static_cast<std::size_t>(plan_.columns + window) *
+                             static_cast<std::size_t>(loops_.sum_vectors) * lanes);
+  plan_.right_stride = pixel_stride(right_);
+  plan_.left_stride = pixel_stride(left_);
+  memory_ = {right_.pixel_vectors.data(),
+             left_.pixel_vectors.data(),
+             outside_.data(),
+             band_begins_.data(),
+             column_sums_.data(),
+             right_.best.data(),
+             left_.best.data(),
+             right_.unpacked.data(),
+             left_.unpacked.data(),
+             right_.column_statistics.data(),
+             left_.column_statistics.data(),
+             right_.window_statistics.data(),
+             left_.window_statistics.data()};
+}
+
+void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
+  switch (cost.kind) {
+    case CostKind::kSad:
+      loops_ = simd_.sad_loops(plan_.window);
+      return;
+    case CostKind::kSsd:
+      loops_ = simd_.ssd_loops(plan_.window);
+      return;
+    case CostKind::kZncc:
+      loops_ = simd_.zncc_loops(plan_.window);
+      exact_.emplace(width_, plan_.window, plan_.disparities);
+      return;
+    case CostKind::kCensus:
+      pixel_bytes_ = cost.pixel_bytes();
+      loops_ = simd_.census_loops(pixel_bytes_, plan_.window);
+      for (Side* side : {&left_, &right_}) side->census.emplace(width_, height_, cost.census_size, simd);
+  }
 }
 
 // Chooses the number of bands that needs the least work. Neighbouring segments share window - 1 columns, and
@@ -72,7 +110,8 @@ void ImageMatcher::choose_bands() {
     const int segments = simd_.lanes / bands;
     const int columns = rounded_up(divided_up(windows_across_, segments), 8);
     const int rows = divided_up(windows_down_, bands);
-    const double bytes = 2.0 * simd_.lanes * plan_.disparities * (columns + plan_.window);
+    const double bytes =
+        2.0 * loops_.sum_vectors * simd_.lanes * plan_.disparities * (columns + plan_.window);
     const double work = (rows + 0.5 * shared) * (columns + 0.5 * shared);
     if (work >= least || (bands > 1 && bytes > kMostColumnSumBytes)) continue;
     least = work;
@@ -83,22 +122,41 @@ void ImageMatcher::choose_bands() {
   }
 }
 
-void ImageMatcher::prepare(Side& side, int positions, int best_positions) {
+void ImageMatcher::prepare(Side& side, int positions, int windows) {
   const auto lanes = static_cast<std::size_t>(simd_.lanes);
+  const auto vectors = [lanes](int count, int vectors_each) {
+    return VectorArray(static_cast<std::size_t>(count) * static_cast<std::size_t>(vectors_each) * lanes);
+  };
   const auto rows = static_cast<std::size_t>(bands_) * row_stride_;
   side.positions = positions;
   side.rows = VectorArray(rows);
   side.out.resize(rows);
-  side.pixel_vectors = VectorArray(static_cast<std::size_t>(rounded_up(positions, 8)) * lanes);
-  side.best = VectorArray(2 * static_cast<std::size_t>(best_positions) * lanes);
+  side.pixel_vectors = vectors(rounded_up(positions, 8), pixel_bytes_);
+  side.best = vectors(windows, loops_.best_vectors);
+  if (loops_.unpacks) side.unpacked = vectors(positions, 2);
+  if (loops_.has_statistics) {
+    side.column_statistics = vectors(positions, kColumnStatisticsVectors);
+    side.window_statistics = vectors(windows, kWindowStatisticsVectors);
+  }
+}
+
+// From one byte of the pixels to the next, in Side::pixel_vectors.
+int ImageMatcher::pixel_stride(const Side& side) const { return rounded_up(side.positions, 8) * simd_.lanes; }
+
+void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
+  if (!side.census) return enter_rows(side, image, step, side.pixel_vectors.data());
+  for (int byte = 0; byte < pixel_bytes_; ++byte) {
+    enter_rows(side, side.census->plane(byte), step,
+               side.pixel_vectors.data() + std::ptrdiff_t{byte} * pixel_stride(side));
+  }
 }
 
 // Row `step` of each band enters its windows. Rows below the image repeat its last row; their results are not
 // used.
-void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
+void ImageMatcher::enter_rows(Side& side, const std::uint8_t* plane, int step, std::int16_t* pixel_vectors) {
   const auto width = static_cast<std::size_t>(width_);
   const auto row_of = [&](int row) {
-    return image + static_cast<std::size_t>(std::min(row, height_ - 1)) * width;
+    return plane + static_cast<std::size_t>(std::min(row, height_ - 1)) * width;
   };
   std::array<const std::int16_t*, kMostFrameLanes> lanes{};
   std::size_t lane = 0;
@@ -110,7 +168,7 @@ void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
     for (int segment = 0; segment < segments_; ++segment)
       lanes[lane++] = pairs + std::ptrdiff_t{segment} * plan_.columns;
   }
-  simd_.to_lanes(lanes.data(), side.positions, side.pixel_vectors.data());
+  simd_.to_lanes(lanes.data(), side.positions, pixel_vectors);
 }
 
 void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
@@ -129,6 +187,30 @@ void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
   }
 }
 
+// Decides the windows that the loops have left undecided.
+void ImageMatcher::decide(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
+                          std::uint8_t* right_disparity) {
+  static_assert(kUndecided == kInvalidDisparity);  // no window is invalid
+  for (int row = 0; row < windows_down_; ++row) {
+    bool row_is_set = false;
+    const auto decide_side = [&](std::uint8_t* disparities, auto best) {
+      disparities += (std::ptrdiff_t{row} + radius_) * width_ + radius_;
+      for (int column = 0; column < windows_across_; ++column) {
+        const void* const found =
+            std::memchr(disparities + column, kUndecided, static_cast<std::size_t>(windows_across_ - column));
+        if (found == nullptr) return;
+        column = static_cast<int>(static_cast<const std::uint8_t*>(found) - disparities);
+        if (!row_is_set) exact_->set_row(left, right, row);
+        row_is_set = true;
+        disparities[column] = best(column);
+      }
+    };
+    decide_side(left_disparity, [this](int column) { return exact_->left_based(column); });
+    if (plan_.right_based)
+      decide_side(right_disparity, [this](int column) { return exact_->right_based(column); });
+  }
+}
+
 void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
                        std::uint8_t* right_disparity) {
   const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
@@ -136,17 +218,23 @@ void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std:
   if (plan_.right_based) std::fill_n(right_disparity, pixels, kInvalidDisparity);
   if (windows_across_ < 1 || windows_down_ < 1) return;
   column_sums_.clear();
+  for (Side* side : {&left_, &right_}) side->column_statistics.clear();
+  if (left_.census) {
+    left_.census->run(left);
+    right_.census->run(right);
+  }
   for (int step = 0; step < band_rows_ + plan_.window - 1; ++step) {
     enter_rows(left_, left, step);
     enter_rows(right_, right, step);
     if (step < plan_.window - 1) {
-      simd_.add_row(plan_, memory_);
+      loops_.add_row(plan_, memory_);
       continue;
     }
-    simd_.match_row(plan_, memory_);
+    loops_.match_row(plan_, memory_);
     leave_rows(left_, step, left_disparity);
     if (plan_.right_based) leave_rows(right_, step, right_disparity);
   }
+  if (exact_) decide(left, right, left_disparity, right_disparity);
 }
 
 }  // namespace stereotlm::kernels

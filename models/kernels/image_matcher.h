@@ -2,21 +2,25 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "models/kernels/census_transform.h"
+#include "models/kernels/correlation_search.h"
+#include "models/kernels/matching_cost.h"
 #include "models/kernels/simd.h"
 #include "models/kernels/vector_array.h"
 
 namespace stereotlm::kernels {
 
-// Matches whole rectified image pairs (contract 1.3) with SIMD; used by match() and StereoPipeline. The image
+// Matches whole rectified and filtered image pairs (contract 1.3, 7.6) with SIMD; used by match() and StereoPipeline. The image
 // is cut into bands of rows, and each band into segments of columns; each lane of a vector matches one
 // segment of one band (MatchPlan).
 class ImageMatcher {
  public:
-  // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule.
+  // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule, or if the cost has problems.
   ImageMatcher(int width, int height, int window, int disparities, bool right_based,
-               const Simd& simd = best_simd());
+               const MatchingCost& cost = {}, const Simd& simd = best_simd());
   ImageMatcher(const ImageMatcher&) = delete;
   ImageMatcher& operator=(const ImageMatcher&) = delete;
 
@@ -28,21 +32,32 @@ class ImageMatcher {
   struct Side {
     VectorArray rows;           // per band: one row, each pixel paired with the pixel that leaves the window
     VectorArray pixel_vectors;  // these pairs of pixels, as one vector per position
-    VectorArray best;           // per position: the best keys, then the disparities
+    VectorArray unpacked;       // MatchMemory::right_unpacked or left_unpacked
+    VectorArray column_statistics;
+    VectorArray window_statistics;
+    VectorArray best;               // per position: the best keys, then the disparities
     std::vector<std::uint8_t> out;  // per band: one row of disparities
     int positions = 0;
+    std::optional<CensusTransform> census;
   };
 
+  void choose_loops(const MatchingCost& cost, const Simd& simd);
   void choose_bands();
-  void prepare(Side& side, int positions, int best_positions);
+  void prepare(Side& side, int positions, int windows);
+  int pixel_stride(const Side& side) const;
   void enter_rows(Side& side, const std::uint8_t* image, int step);
+  void enter_rows(Side& side, const std::uint8_t* plane, int step, std::int16_t* pixel_vectors);
   void leave_rows(Side& side, int step, std::uint8_t* disparity);
+  void decide(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
+              std::uint8_t* right_disparity);
 
   int width_;
   int height_;
   int radius_;
   const FrameSimd& simd_;
   MatchPlan plan_;
+  MatchLoops loops_{};
+  int pixel_bytes_ = 1;
   int bands_ = 1;     // number of bands, each of band_rows_ rows of windows
   int segments_ = 1;  // segments of a band, each of plan_.columns columns of windows
   int band_rows_ = 0;
@@ -56,6 +71,7 @@ class ImageMatcher {
   VectorArray column_sums_;
   std::vector<std::uint8_t> no_row_;  // a row of zeros that stands for the rows above the image
   MatchMemory memory_;
+  std::optional<CorrelationSearch> exact_;  // for the cost that leaves windows undecided
 };
 
 }  // namespace stereotlm::kernels

@@ -17,6 +17,7 @@ enum class CostKind : std::uint8_t {
 };
 
 inline constexpr IntegerRule kCensusSizeRule{3, 7, 2};
+inline constexpr int kMostPixelBytes = 6;  // 7 * 7 - 1 bits
 
 struct MatchingCost {
   CostKind kind = CostKind::kSad;
@@ -24,6 +25,8 @@ struct MatchingCost {
 
   // The rows and columns beyond the window that the cost reads on each side, in pixels.
   int half() const { return kind == CostKind::kCensus ? (census_size - 1) / 2 : 0; }
+  // The bytes of a pixel that is compared: a grey level, or census bits.
+  int pixel_bytes() const { return kind == CostKind::kCensus ? (census_size * census_size - 1) / 8 : 1; }
 
   friend bool operator==(const MatchingCost& a, const MatchingCost& b) {
     return a.kind == b.kind && a.census_size == b.census_size;

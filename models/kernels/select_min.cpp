@@ -1,5 +1,6 @@
 #include "models/kernels/select_min.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "models/kernels/limits.h"
@@ -8,8 +9,6 @@
 namespace stereotlm::kernels {
 namespace {
 
-// A key holds the sum in its upper bits and the disparity in the lowest 8: the smallest key is the smallest
-// sum, and among equal sums the smallest disparity. 31 * 31 * 255 needs 18 bits.
 constexpr std::int32_t kNoCandidate = std::numeric_limits<std::int32_t>::max();
 // Number of values before that of module 0, which reads the last of them as the value of module -1.
 constexpr int kBefore = kLanePadding;
@@ -22,6 +21,15 @@ constexpr std::uint8_t disparity_of(std::int32_t key) {
 
 std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes, const Simd& simd) {
   return disparity_of(simd.column.smallest_key(window_sums, candidates, lanes));
+}
+
+std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) {
+  if (candidates == 0) return kInvalidDisparity;
+  int best = 0;
+  for (int d = 1; d < candidates; ++d) {
+    if (is_greater(scores.of_left_pixel(d), scores.of_left_pixel(best))) best = d;
+  }
+  return static_cast<std::uint8_t>(best);
 }
 
 SelectMinChain::SelectMinChain(int disparities, const Simd& simd)
@@ -42,6 +50,23 @@ std::uint8_t SelectMinChain::step(const std::int32_t* window_sums, int candidate
   simd_.step_chain(window_sums, candidates, lanes_, held_.data() + kBefore, next_.data() + kBefore);
   held_.swap(next_);
   return disparity_of(held_.data()[kBefore + disparities_ - 1]);
+}
+
+ScoreChain::ScoreChain(int disparities)
+    : held_(static_cast<std::size_t>(kDisparitiesRule.required("disparities", disparities))) {}
+
+void ScoreChain::start_frame() { std::fill(held_.begin(), held_.end(), Held{}); }
+
+std::uint8_t ScoreChain::step(const ColumnScores& scores, int candidates) {
+  for (std::size_t d = held_.size(); d-- > 0;) {
+    const Held before = d > 0 ? held_[d - 1] : Held{};
+    held_[d] = before;
+    if (static_cast<int>(d) >= candidates) continue;
+    const Correlation score = scores.of_right_pixel(static_cast<int>(d));
+    if (before.disparity == kInvalidDisparity || is_greater(score, before.score))
+      held_[d] = {score, static_cast<std::uint8_t>(d)};
+  }
+  return held_.back().disparity;
 }
 
 }  // namespace stereotlm::kernels

@@ -8,8 +8,9 @@ namespace stereotlm::kernels::STEREOTLM_SIMD {
 extern const Simd kSimd;
 constexpr Simd kSimd = {
     STEREOTLM_SIMD_NAME,
-    {int{kLanes}, rectify, add_rows, filter_row, pair_pixels, to_lanes, from_lanes, add_row, match_row},
-    {step_windows, step_chain, smallest_key, filter_column},
+    {int{kLanes}, rectify, add_rows, filter_row, pair_pixels, to_lanes, from_lanes, census_row, sad_loops,
+     ssd_loops, zncc_loops, census_loops},
+    {sad_windows, census_windows, ssd_windows, product_windows, step_chain, smallest_key, filter_column},
 };
 
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -15,11 +15,20 @@ void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int wid
 void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int width, std::int16_t* out);
 void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out);
 void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out);
-void add_row(const MatchPlan& plan, const MatchMemory& memory);
-void match_row(const MatchPlan& plan, const MatchMemory& memory);
+void census_row(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out);
+MatchLoops sad_loops(int window);
+MatchLoops ssd_loops(int window);
+MatchLoops zncc_loops(int window);
+MatchLoops census_loops(int planes, int window);
 
-void step_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                  std::int16_t* leaving, std::int32_t* windows);
+void sad_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                 std::int16_t* leaving, std::int32_t* windows);
+void census_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                    std::int16_t* leaving, std::int32_t* windows);
+void ssd_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                 std::int32_t* leaving, std::int32_t* windows);
+void product_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                     std::int32_t* leaving, std::int32_t* windows);
 void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,
                 std::int32_t* next);
 std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes);

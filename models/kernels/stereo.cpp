@@ -28,6 +28,7 @@ std::vector<std::string> problems(const StereoConfig& config) {
   if (config.filter) {
     for (const std::string& problem : problems(*config.filter)) found.push_back("filter: " + problem);
   }
+  for (const std::string& problem : problems(config.cost)) found.push_back("cost: " + problem);
   return found;
 }
 
@@ -40,9 +41,10 @@ GrayImage filter_image(const GrayImage& image, const FilterKernel& kernel) {
   return filtered;
 }
 
-Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities) {
+Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities,
+              const MatchingCost& cost) {
   require_one_size(left, right);
-  ImageMatcher matcher(left.width, left.height, window, disparities, true);
+  ImageMatcher matcher(left.width, left.height, window, disparities, true, cost);
   Matches matches{GrayImage(left.width, left.height), GrayImage(left.width, left.height)};
   matcher.run(left.pixels.data(), right.pixels.data(), matches.left_based.pixels.data(),
               matches.right_based.pixels.data());

@@ -24,7 +24,8 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
       radius_((checked(config).window - 1) / 2),
       tolerance_(config.lr_tolerance),
       simd_(simd.frame),
-      matcher_(width, height, config.window, config.disparities, config.lr_tolerance.has_value(), simd) {
+      matcher_(width, height, config.window, config.disparities, config.lr_tolerance.has_value(), config.cost,
+               simd) {
   if (config.filter) filter_.emplace(width, height, *config.filter, simd);
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   for (Side* side : {&left_, &right_}) {

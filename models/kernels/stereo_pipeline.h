@@ -11,7 +11,7 @@
 
 namespace stereotlm::kernels {
 
-// Computes the disparity images of many frames (contract section 1): rectifies, filters, matches and checks
+// Computes the disparity images of many frames (contract sections 1 and 7.6): rectifies, filters, matches and checks
 // whole images. Used by disparity_image() and fpga::DirectFrame. The constructor allocates all memory.
 class StereoPipeline {
  public:

@@ -14,8 +14,9 @@ class VectorArray {
  public:
   VectorArray() = default;
   explicit VectorArray(std::size_t size) : blocks_((size + kMostFrameLanes - 1) / kMostFrameLanes) {}
-  std::int16_t* data() { return blocks_.data()->data(); }
-  const std::int16_t* data() const { return blocks_.data()->data(); }
+  // Null if the array is empty.
+  std::int16_t* data() { return blocks_.empty() ? nullptr : blocks_.data()->data(); }
+  const std::int16_t* data() const { return blocks_.empty() ? nullptr : blocks_.data()->data(); }
   void clear() {
     for (Block& block : blocks_) block = {};
   }

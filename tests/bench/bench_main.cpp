@@ -162,6 +162,19 @@ void add(const std::string& name, const std::function<void(benchmark::State&)>& 
   benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
+// Every cost, with what it adds to the names of benchmarks.
+const std::vector<std::pair<std::string, kernels::MatchingCost>>& costs() {
+  using kernels::CostKind;
+  static const std::vector<std::pair<std::string, kernels::MatchingCost>> all = {
+      {"", {}},
+      {"_ssd", {CostKind::kSsd, 0}},
+      {"_zncc", {CostKind::kZncc, 0}},
+      {"_census3", {CostKind::kCensus, 3}},
+      {"_census5", {CostKind::kCensus, 5}},
+      {"_census7", {CostKind::kCensus, 7}}};
+  return all;
+}
+
 // The arithmetic on whole images, part by part, with each instruction set of this machine.
 void add_kernels(const host::StereoPair& pair) {
   const int width = pair.left.width;
@@ -185,7 +198,7 @@ void add_kernels(const host::StereoPair& pair) {
       }
     });
     add("kernels/match" + end, [=, &pair](benchmark::State& state) {
-      kernels::ImageMatcher matcher(width, height, 7, 80, true, *simd);
+      kernels::ImageMatcher matcher(width, height, 7, 80, true, {}, *simd);
       kernels::GrayImage left_based(width, height);
       kernels::GrayImage right_based(width, height);
       for (auto _ : state) {
@@ -193,14 +206,18 @@ void add_kernels(const host::StereoPair& pair) {
                     right_based.pixels.data());
       }
     });
-    add("kernels/pipeline" + end, [=, &pair](benchmark::State& state) {
-      kernels::StereoPipeline pipeline(width, height, {}, *simd);
-      kernels::GrayImage out(width, height);
-      for (auto _ : state) {
-        pipeline.run(pair.left.pixels.data(), pair.right.pixels.data(), table->entries.data(),
-                     table->entries.data(), out.pixels.data());
-      }
-    });
+    for (const auto& [name, cost] : costs()) {
+      add("kernels/pipeline" + name + end, [=, &pair, cost = cost](benchmark::State& state) {
+        kernels::StereoConfig config;
+        config.cost = cost;
+        kernels::StereoPipeline pipeline(width, height, config, *simd);
+        kernels::GrayImage out(width, height);
+        for (auto _ : state) {
+          pipeline.run(pair.left.pixels.data(), pair.right.pixels.data(), table->entries.data(),
+                       table->entries.data(), out.pixels.data());
+        }
+      });
+    }
   }
   add("kernels/disparity_image", [=, &pair](benchmark::State& state) {
     for (auto _ : state)

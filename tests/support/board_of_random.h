@@ -17,7 +17,9 @@ inline constexpr RandomKnobs kKnobsOfTheModels = [] {
   knobs.units = true;
   knobs.joint_tables = true;
   knobs.word_cache = true;
+  knobs.rows = true;
   knobs.qdr = true;
+  knobs.cost = true;
   return knobs;
 }();
 

@@ -60,10 +60,11 @@ class CoreFigures {
       const PixelReader::Stats stats = lane.pixel_reader.stats();
       line("image", {stats.reads, stats.passed_slots, stats.errors});
       line("filter", {lane.filter.stats().pixels, lane.filter.stats().columns});
+      if (lane.census) line("census", {lane.census->stats().columns});
       if (lane.row_buffer) line("rows", {lane.row_buffer->stats().columns});
     }
-    const SadArray::Stats sums = datapath.sad_array().stats();
-    line("sums", {sums.columns, sums.absolute_differences, sums.candidates});
+    const CostArray::Stats sums = datapath.cost_array().stats();
+    line("sums", {sums.columns, sums.pixel_costs, sums.candidates});
     line("chain", {datapath.select_min_chain().stats().columns, datapath.select_min_chain().stats().matches});
     line("tree", {datapath.select_min_tree().stats().columns, datapath.select_min_tree().stats().matches});
     line("check", {datapath.lr_check().stats().answered, datapath.lr_check().stats().invalid});

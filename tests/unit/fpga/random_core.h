@@ -53,6 +53,13 @@ inline void draw_rows(test::SplitMix64& random, CoreConfig& config) {
   config.result_fifo_words = std::max(config.result_fifo_words, config.rows);
 }
 
+inline void draw_cost(test::SplitMix64& random, CoreConfig& config) {
+  using kernels::CostKind;
+  constexpr CostKind kKinds[] = {CostKind::kSad, CostKind::kSsd, CostKind::kZncc, CostKind::kCensus};
+  config.cost.kind = kKinds[random.between(0, 3)];
+  if (config.cost.kind == CostKind::kCensus) config.cost.census_size = 2 * random.between(1, 3) + 1;
+}
+
 // Index of a pixel's entry in a table.
 inline std::size_t place_of(const CoreConfig& config, int column, int row) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(config.width) +

@@ -131,7 +131,7 @@ TEST_F(PixelReaderTest, ReportsASlotThatItDoesNotHave) {
 }
 
 TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
-  RowBuffer rows("rows", 4, 3);
+  RowBuffer rows("rows", 4, 3, 1);
   Collected<PixelColumn> columns;
   rows.columns_out.bind(columns);
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -146,15 +146,15 @@ TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
 }
 
 TEST(ResultPacker, BeginsAFrameWithAnEmptyWord) {
-  ResultPacker packer("packer");
+  ResultPacker packer("packer", small_core(8, 6));
   Collected<ResultWord> words;
   packer.words_out.bind(words);
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
   packer.start_frame();
-  packer.disparities_in->push({0x11});
+  packer.disparities_in->push({0, 0x11});
   packer.start_frame();
   for (const std::uint8_t disparity : std::vector<std::uint8_t>{0x22, 0x33, 0x44, 0x55})
-    packer.disparities_in->push({disparity});
+    packer.disparities_in->push({0, disparity});
   ASSERT_EQ(words.beats.size(), 1U);
   EXPECT_EQ(words.beats[0].word, 0x5544'3322U);
 }
@@ -166,20 +166,20 @@ class ResultWriterTest : public StageTest<ResultWriter> {
     stage.start_frame(16);
   }
   void write(std::uint32_t word) {
-    stage.words_in->push({word});
+    stage.words_in->push({word, word - 4});
     stage.write(kAt);
   }
 };
 
 TEST_F(ResultWriterTest, TakesAsManyWordsAsItIsDeepAndReportsOneMore) {
-  for (std::uint32_t word = 0; word < 3; ++word) stage.words_in->push({word});
+  for (std::uint32_t word = 0; word < 3; ++word) stage.words_in->push({word, word});
   EXPECT_EQ(stage.stats().most_queued_words, 3U);
   const ExpectedReport report("/stereotlm/result_writer");
-  EXPECT_THROW(stage.words_in->push({3}), sc_core::sc_report);
+  EXPECT_THROW(stage.words_in->push({3, 3}), sc_core::sc_report);
 }
 
 TEST_F(ResultWriterTest, ReportsAWriteFromAnEmptyQueue) {
-  stage.words_in->push({7});
+  stage.words_in->push({7, 0});
   stage.start_frame(4);  // without the word of the last frame
   const ExpectedReport report("/stereotlm/result_writer");
   EXPECT_THROW(stage.write(kAt), sc_core::sc_report);

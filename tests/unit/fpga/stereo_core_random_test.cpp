@@ -41,6 +41,8 @@ StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {
   board.core = random_core(random, 64);
   board.core.height = std::min(board.core.height, 12);
   draw_units(random, board.core);
+  draw_rows(random, board.core);
+  draw_cost(random, board.core);
   const std::vector<double> clocks = {40, 50, 80};
   board.core.clock_mhz = clocks[static_cast<std::size_t>(random.between(0, 2))];
   board.local_bus.clock_mhz =

@@ -120,7 +120,7 @@ TEST_P(StereoCoreTest, CountsTheSameAtAllItsStages) {
     EXPECT_EQ(lane.pixel_reader.stats().passed_slots, port(pixel_port(side)).passed());
     EXPECT_EQ(lane.filter.stats().columns, columns);
   }
-  EXPECT_EQ(datapath.sad_array().stats().columns, columns);
+  EXPECT_EQ(datapath.cost_array().stats().columns, columns);
   EXPECT_EQ(datapath.select_min_chain().stats().columns, datapath.select_min_tree().stats().columns);
   EXPECT_EQ(datapath.lr_check().stats().answered + datapath.lr_check().stats().invalid, 48U);
   EXPECT_EQ(datapath.result_packer().stats().words, 12U);

@@ -59,7 +59,8 @@ void expect_two_frames(const RandomBoard& board, int rows_per_column, int first_
                        SplitMix64& random) {
   for (const Simd* simd : simd_sets()) {
     SCOPED_TRACE(simd->name);
-    ColumnFilter filter(board.width, board.height, rows_per_column, test::filter_kernel(board.filter), *simd);
+    ColumnFilter filter(board.width, board.height, rows_per_column, 1, test::filter_kernel(board.filter),
+                        *simd);
     for (int frame = 0; frame < 2; ++frame) {
       ASSERT_NO_FATAL_FAILURE(expect_filtered(filter, board, rows_per_column, first_row, strips, random));
     }
@@ -129,7 +130,7 @@ TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
     std::vector<std::uint8_t> pixels = test::noise_board(kWidth, kHeight, 3, random).pictures[0].left;
     for (int pixel = 0; pixel < kBelow * kWidth; ++pixel) pixels.push_back(pixels[pixels.size() - kWidth]);
     const auto expected = test::reference_filter(kWidth, kHeight + kBelow, pixels, kernel);
-    ColumnFilter filter(kWidth, kHeight, 1, test::filter_kernel(kernel));
+    ColumnFilter filter(kWidth, kHeight, 1, 1, test::filter_kernel(kernel));
     const int first_seen = half * kWidth + half;
     for (int count = 0; count < (kHeight + kBelow) * kWidth; ++count) {
       const auto at = static_cast<std::size_t>(count);
@@ -161,14 +162,14 @@ TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
 }
 
 TEST(ColumnFilter, RefusesABrokenKernelAndSizesOutsideTheirRange) {
-  EXPECT_NO_THROW(ColumnFilter(1, 1, 1, log7()));
-  EXPECT_NO_THROW(ColumnFilter(8, 8, kMostRows, std::nullopt));
+  EXPECT_NO_THROW(ColumnFilter(1, 1, 1, 1, log7()));
+  EXPECT_NO_THROW(ColumnFilter(8, 8, kMostRows, 1, std::nullopt));
   for (const auto& [width, height, rows] :
        {std::tuple(0, 8, 3), std::tuple(8, 0, 3), std::tuple(8, 8, 0), std::tuple(8, 8, kMostRows + 1)})
-    EXPECT_THROW(ColumnFilter(width, height, rows, std::nullopt), std::invalid_argument);
+    EXPECT_THROW(ColumnFilter(width, height, rows, 1, std::nullopt), std::invalid_argument);
   FilterKernel kernel = log7();
   kernel.weights[0] = 1;
-  EXPECT_THROW(ColumnFilter(8, 8, 3, kernel), std::invalid_argument);
+  EXPECT_THROW(ColumnFilter(8, 8, 3, 1, kernel), std::invalid_argument);
 }
 
 }  // namespace

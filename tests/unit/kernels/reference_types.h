@@ -44,8 +44,24 @@ inline std::optional<kernels::RectificationTable> table(
   return kernels::RectificationTable{board.width, board.height, *entries};
 }
 
+inline kernels::MatchingCost matching_cost(const ReferenceCost& cost) {
+  using kernels::CostKind;
+  constexpr CostKind kKinds[] = {CostKind::kSad, CostKind::kSsd, CostKind::kZncc, CostKind::kCensus};
+  return {kKinds[static_cast<std::size_t>(cost.kind)], cost.census_size};
+}
+
+// Every cost, for number = 0..kCosts-1.
+inline constexpr int kCosts = 6;
+inline ReferenceCost any_cost(int number) {
+  using Kind = ReferenceCost::Kind;
+  constexpr ReferenceCost kAll[kCosts] = {{Kind::kSad, 0},    {Kind::kSsd, 0},    {Kind::kZncc, 0},
+                                          {Kind::kCensus, 3}, {Kind::kCensus, 5}, {Kind::kCensus, 7}};
+  return kAll[number % kCosts];
+}
+
 inline kernels::StereoConfig stereo_config(const RandomBoard& board) {
-  return {board.window, board.disparities, filter_kernel(board.filter), board.lr_tolerance};
+  return {board.window, board.disparities, filter_kernel(board.filter), board.lr_tolerance,
+          matching_cost(board.cost)};
 }
 
 // The disparity image of the kernels for the pictures of frame 0.

@@ -47,6 +47,7 @@ void expect_reference(const RandomBoard& board) {
 TEST(StereoPipeline, EqualsTheReferenceOnRandomBoardsWithEachInstructionSet) {
   for (std::uint64_t seed = 7000; seed < 7400; ++seed) {
     RandomBoard board = test::make_random_board(seed);
+    board.cost = test::any_cost(static_cast<int>(seed));
     board.frames = static_cast<int>(board.pictures.size());
     SCOPED_TRACE(describe(board));
     ASSERT_NO_FATAL_FAILURE(expect_reference(board));
@@ -54,22 +55,28 @@ TEST(StereoPipeline, EqualsTheReferenceOnRandomBoardsWithEachInstructionSet) {
 }
 
 // Matches noise pictures, with a left-right check. Two grey levels make many sums equal.
-void expect_noise_matches(int width, int height, int window, int disparities, SplitMix64& random) {
+void expect_noise_matches(int width, int height, int window, int disparities, int cost, SplitMix64& random) {
   SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities) + ", " +
                std::to_string(width) + " x " + std::to_string(height));
   RandomBoard board = test::noise_board(width, height, window, random, random.chance(50) ? 2 : 256);
   board.disparities = disparities;
   board.lr_tolerance = 1;
+  board.cost = test::any_cost(cost);
+  SCOPED_TRACE(name_of(test::matching_cost(board.cost).kind));
   expect_reference(board);
 }
 
 // In wide images a lane's segment is several vectors long, and many disparities reach over more than one.
 TEST(StereoPipeline, EqualsTheReferenceOnWideAndOnHighImages) {
   SplitMix64 random(11);
+  int cost = 0;
   for (int window = 3; window <= 31; window += 2) {
     for (const auto& [width, height] : {std::pair(4 * random.between(50, 110), window + random.between(0, 3)),
                                         std::pair(4 * random.between(8, 14), random.between(50, 150))}) {
-      ASSERT_NO_FATAL_FAILURE(expect_noise_matches(width, height, window, random.between(1, 254), random));
+      for (int round = 0; round < 2; ++round) {
+        ASSERT_NO_FATAL_FAILURE(
+            expect_noise_matches(width, height, window, random.between(1, 254), cost++, random));
+      }
     }
   }
 }
@@ -79,7 +86,8 @@ TEST(StereoPipeline, EqualsTheReferenceForEachCountOfDisparities) {
   for (int disparities = 1; disparities <= 254; ++disparities) {
     const int window = 2 * random.between(1, 6) + 1;
     const int width = 4 * random.between(1, 40);
-    ASSERT_NO_FATAL_FAILURE(expect_noise_matches(width, window + 1, window, disparities, random));
+    ASSERT_NO_FATAL_FAILURE(
+        expect_noise_matches(width, window + 1, window, disparities, disparities, random));
   }
 }
 

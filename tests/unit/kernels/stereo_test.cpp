@@ -28,7 +28,8 @@ void expect_reference(const RandomBoard& board) {
   const auto expected = test::compute_reference(test::reference_input(board, 0));
   const GrayImage left = test::gray_image(board, expected.filtered_left);
   const GrayImage right = test::gray_image(board, expected.filtered_right);
-  const Matches matches = match(left, right, board.window, board.disparities);
+  const Matches matches =
+      match(left, right, board.window, board.disparities, test::matching_cost(board.cost));
   EXPECT_EQ(with_invalid_as_minus_1(matches.right_based), expected.right_based);
   EXPECT_EQ(with_invalid_as_minus_1(matches.left_based), expected.left_based);
   if (board.filter) {

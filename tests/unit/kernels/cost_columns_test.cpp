@@ -1,4 +1,4 @@
-#include "models/kernels/sad_columns.h"
+#include "models/kernels/cost_columns.h"
 
 #include <gtest/gtest.h>
 
@@ -38,18 +38,18 @@ int sad(const PixelColumns& left, const PixelColumns& right, int column, int d, 
 }
 
 // One frame through modules of each instruction set. A frame before it must leave no trace.
-void expect_literal_sums(std::vector<SadColumns>& sets, int window, int disparities, bool extreme,
+void expect_literal_sums(std::vector<CostColumns>& sets, int window, int disparities, bool extreme,
                          int columns, test::SplitMix64& random) {
   SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities));
   const PixelColumns left = random_columns(columns, window, extreme, random);
   const PixelColumns right = random_columns(columns, window, extreme, random);
-  for (SadColumns& sums : sets) {
+  for (CostColumns& sums : sets) {
     sums.start_frame();
     ASSERT_GE(sums.lanes(), disparities);
   }
   for (int column = 0; column < columns; ++column) {
     const auto at = static_cast<std::size_t>(column);
-    for (SadColumns& sums : sets) sums.push_column(left[at].data(), right[at].data());
+    for (CostColumns& sums : sets) sums.push_column(left[at].data(), right[at].data());
     for (int d = 0; d < disparities && d <= column - window + 1; ++d) {
       const int expected = sad(left, right, column, d, window);
       for (std::size_t set = 0; set < sets.size(); ++set)
@@ -59,25 +59,25 @@ void expect_literal_sums(std::vector<SadColumns>& sets, int window, int disparit
   }
 }
 
-std::vector<SadColumns> with_each_instruction_set(int window, int disparities) {
-  std::vector<SadColumns> sets;
-  for (const Simd* simd : simd_sets()) sets.emplace_back(window, disparities, *simd);
+std::vector<CostColumns> with_each_instruction_set(int window, int disparities, const MatchingCost& cost) {
+  std::vector<CostColumns> sets;
+  for (const Simd* simd : simd_sets()) sets.emplace_back(window, disparities, cost, *simd);
   return sets;
 }
 
-TEST(SadColumns, HoldTheLiteralSumsOfEachCandidateWithEachInstructionSet) {
+TEST(CostColumns, HoldTheLiteralSumsOfEachCandidateWithEachInstructionSet) {
   test::SplitMix64 random(1);
   for (const int window : {3, 7, 31}) {
     for (const int disparities : {1, 31, 32, 33, 64, 254}) {
-      auto sets = with_each_instruction_set(window, disparities);
+      auto sets = with_each_instruction_set(window, disparities, {});
       for (const bool extreme : {false, true})
         expect_literal_sums(sets, window, disparities, extreme, 330, random);
     }
   }
 }
 
-TEST(SadColumns, HoldTheLargestSum) {
-  SadColumns sums(31, 254);
+TEST(CostColumns, HoldTheLargestSum) {
+  CostColumns sums(31, 254);
   const std::vector<std::uint8_t> white(31, 255);
   const std::vector<std::uint8_t> black(31, 0);
   for (int column = 0; column < 300; ++column) sums.push_column(white.data(), black.data());
@@ -94,12 +94,12 @@ TEST(LaneArray, IsPaddedAlignedAndZero) {
   }
 }
 
-TEST(SadColumns, RefuseAWindowOrDisparitiesOutsideTheirRange) {
-  EXPECT_NO_THROW(SadColumns(3, 1));
-  EXPECT_NO_THROW(SadColumns(31, 254));
+TEST(CostColumns, RefuseAWindowOrDisparitiesOutsideTheirRange) {
+  EXPECT_NO_THROW(CostColumns(3, 1));
+  EXPECT_NO_THROW(CostColumns(31, 254));
   for (const auto& [window, disparities] :
        {std::pair(1, 8), std::pair(4, 8), std::pair(33, 8), std::pair(3, 0), std::pair(3, 255)}) {
-    EXPECT_THROW(SadColumns(window, disparities), std::invalid_argument) << window << ", " << disparities;
+    EXPECT_THROW(CostColumns(window, disparities), std::invalid_argument) << window << ", " << disparities;
   }
 }
 

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <systemc>
+#include <vector>
+
+#include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
+#include "models/fpga/frame_geometry.h"
+#include "models/kernels/column_scores.h"
+#include "models/kernels/cost_columns.h"
+#include "models/stream.h"
+
+namespace stereotlm::fpga {
+
+// The array of column and window modules (paper figures 6 and 8), D for each of the R rows. It takes one column
+// of each side, in either order. For the windows that end at these columns it passes on the sum of every
+// candidate, or its score: row by row, first to select-min unit A, then to unit B. Nothing leaves before the
+// first window is complete.
+class CostArray : public sc_core::sc_module {
+ public:
+  struct Stats {
+    std::uint64_t columns = 0;
+    std::uint64_t pixel_costs = 0;  // costs of pairs of pixels, which the rows have in common
+    std::uint64_t candidates = 0;   // candidates whose windows lie inside both images
+  };
+
+  StreamOut<WindowSums> chain_out{"chain_out"};
+  StreamOut<WindowSums> tree_out{"tree_out"};
+
+ private:
+  void take_left(const PixelColumn& column);
+  void take_right(const PixelColumn& column);
+
+ public:
+  StreamIn<PixelColumn, CostArray, &CostArray::take_left> left_in{"left_in", this};
+  StreamIn<PixelColumn, CostArray, &CostArray::take_right> right_in{"right_in", this};
+
+  CostArray(const sc_core::sc_module_name& name, const CoreConfig& config);
+
+  void start_frame();
+  // Adds the counts of a frame whose data did not pass through this stage.
+  void count(const Stats& frame) {
+    stats_.columns += frame.columns;
+    stats_.pixel_costs += frame.pixel_costs;
+    stats_.candidates += frame.candidates;
+  }
+  const Stats& stats() const { return stats_; }
+
+ private:
+  struct Row {
+    kernels::CostColumns sums;
+    std::optional<kernels::ColumnScorer> scorer;
+    std::uint32_t left_valid = 0;  // valid bits of the middle row of the window, newest column lowest
+  };
+
+  void finish_column();
+  void pass_on(int index, const Row& row);
+
+  FrameGeometry geometry_;
+  int window_;
+  int disparities_;
+  int column_rows_;  // n + R - 1
+  int pixel_bytes_;
+  std::vector<Row> rows_;
+  PixelColumn left_;
+  PixelColumn right_;
+  bool have_left_ = false;
+  bool have_right_ = false;
+  int columns_before_window_ = 0;  // still to come before the first windows are complete
+  int column_ = 0;                 // position of the middle of the next windows
+  int first_row_ = 0;              // that of the first of the R rows
+  Stats stats_;
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,37 @@
+#include "models/kernels/census_columns.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace stereotlm::kernels {
+
+CensusColumns::CensusColumns(int width, int height, int rows_per_column, int rows_per_strip, int census_size)
+    : size_(kCensusSizeRule.required("census_size", census_size)),
+      rows_(rows_per_column),
+      pixels_(width, height, rows_per_column, rows_per_strip, (census_size - 1) / 2) {
+  start_frame(0);
+}
+
+const PixelColumn& CensusColumns::push(const PixelColumn& column) {
+  std::copy_n(column.values.begin(), rows_, pixels_.begin_column());
+  if (!pixels_.finish_column(column.valid)) return output_;
+  const std::uint8_t* const columns = pixels_.columns();
+  const std::ptrdiff_t half = (size_ - 1) / 2;
+  output_.valid = pixels_.valid();
+  std::uint8_t* out = output_.values.data();
+  for (std::ptrdiff_t k = 0; k < rows_; ++k) {
+    const std::uint8_t middle = columns[half * pixels_.stride() + half + k];
+    unsigned bits = 0;
+    int bit = 0;
+    for (std::ptrdiff_t i = 0; i < size_; ++i) {
+      for (std::ptrdiff_t j = 0; j < size_; ++j) {
+        if (i == half && j == half) continue;
+        bits = bits << 1U | unsigned{columns[i * pixels_.stride() + k + j] < middle};
+        if (++bit % 8 == 0) *out++ = static_cast<std::uint8_t>(bits);
+      }
+    }
+  }
+  return output_;
+}
+
+}  // namespace stereotlm::kernels

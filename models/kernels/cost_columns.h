@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "models/kernels/lane_array.h"
+#include "models/kernels/matching_cost.h"
+#include "models/kernels/simd.h"
+
+namespace stereotlm::kernels {
+
+// The number of candidates of left pixel (column, row): disparities whose windows lie wholly inside both
+// images (contract 1.3). They are always 0, 1, .. without a gap.
+constexpr int candidate_count(int column, int row, int width, int height, int window, int disparities) {
+  const int radius = (window - 1) / 2;
+  if (row < radius || row >= height - radius || column < radius || column >= width - radius) return 0;
+  return column - radius + 1 < disparities ? column - radius + 1 : disparities;
+}
+
+// The array of column and window modules (paper section 3.4, figures 6 and 8); used by fpga::CostArray. Column
+// module d accumulates the costs of the right pixels d columns ago and the left pixels, over the n rows of a
+// column: absolute differences, their squares, or differing census bits; products for the cost `zncc`. Window
+// module d adds the finished column sum and subtracts the column sum of n columns ago, so that it holds the
+// sum of candidate d for the window that ends at this column.
+class CostColumns {
+ public:
+  // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule, or if the cost has problems.
+  CostColumns(int window, int disparities, const MatchingCost& cost = {}, const Simd& simd = best_simd());
+
+  void start_frame();
+  // Enters the next column of each side: n pixels of pixel_bytes() each, top first.
+  void push_column(const std::uint8_t* left, const std::uint8_t* right);
+  // The sums of candidates 0..disparities-1 for the last column, padded to lanes() values.
+  const std::int32_t* window_sums() const { return window_sums_.data(); }
+  int lanes() const { return lanes_; }
+
+ private:
+  const ColumnSimd& simd_;
+  MatchingCost cost_;
+  int window_;
+  int rows_;  // bytes of a column
+  int lanes_;
+  int position_ = 0;                           // of the newest right pixel in each history
+  int oldest_ = 0;                             // index of the column sums that leave the window next
+  std::vector<std::uint8_t> right_histories_;  // per byte of a column: newest column first
+  std::vector<const std::uint8_t*> newest_;    // per byte: the newest pixel in its history
+  // Column sums of the last n columns. Absolute differences and census bits fit into 16 bits: at most 31 * 255
+  // and 31 * 48.
+  std::vector<LaneArray<std::int16_t>> narrow_sums_;
+  std::vector<LaneArray<std::int32_t>> wide_sums_;
+  LaneArray<std::int32_t> window_sums_;  // at most 31 * 31 * 255 * 255
+};
+
+}  // namespace stereotlm::kernels

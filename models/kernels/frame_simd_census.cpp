@@ -1,0 +1,134 @@
+#include "models/kernels/frame_simd_match.h"
+#include "models/kernels/simd_loops.h"
+
+// Hamming distances of census bits. A pixel has 8 bits in each of kPlanes bytes.
+namespace stereotlm::kernels::STEREOTLM_SIMD {
+namespace {
+
+using SignedBytes = std::int8_t __attribute__((vector_size(kBytes)));
+using Uint16s = std::uint16_t __attribute__((vector_size(kBytes)));
+
+Bytes bytes(int value) { return Bytes{} + static_cast<std::uint8_t>(value); }
+Bytes shifted_right(Bytes lanes, int bits) {
+  return reinterpret_cast<Bytes>(reinterpret_cast<Uint16s>(lanes) >> static_cast<std::uint16_t>(bits));
+}
+
+#if defined(__AVX2__)
+// Returns the bits set in the lowest four bits of each byte, times kWeight.
+template <int kWeight>
+Bytes set_in_nibbles(Bytes nibbles) {
+  Bytes counts{};
+  for (int i = 0; i < kBytes; ++i)
+    counts[i] = static_cast<std::uint8_t>(kWeight * ((i & 1) + (i >> 1 & 1) + (i >> 2 & 1) + (i >> 3 & 1)));
+#if defined(__AVX512BW__)
+  return reinterpret_cast<Bytes>(
+      _mm512_shuffle_epi8(reinterpret_cast<__m512i>(counts), reinterpret_cast<__m512i>(nibbles)));
+#else
+  return reinterpret_cast<Bytes>(
+      _mm256_shuffle_epi8(reinterpret_cast<__m256i>(counts), reinterpret_cast<__m256i>(nibbles)));
+#endif
+}
+
+template <int kWeight>
+Bytes set_bits(Bytes lanes) {
+  return set_in_nibbles<kWeight>(lanes & bytes(0x0F)) +
+         set_in_nibbles<kWeight>(shifted_right(lanes, 4) & bytes(0x0F));
+}
+#else
+// Returns the bits set in each byte, times kWeight.
+template <int kWeight>
+Bytes set_bits(Bytes lanes) {
+  lanes -= shifted_right(lanes, 1) & bytes(0x55);
+  lanes = (lanes & bytes(0x33)) + (shifted_right(lanes, 2) & bytes(0x33));
+  lanes = (lanes + shifted_right(lanes, 4)) & bytes(0x0F);
+  return kWeight == 2 ? lanes + lanes : lanes;
+}
+#endif
+
+// Returns the bits set in the bytes of all planes. Of three planes a full adder first makes two.
+template <int kPlanes>
+Bytes set_bits_of_planes(const Bytes* planes) {
+  if constexpr (kPlanes == 1) {
+    return set_bits<1>(planes[0]);
+  } else {
+    const Bytes half = planes[0] ^ planes[1];
+    const Bytes sum = half ^ planes[2];
+    const Bytes carry = (planes[0] & planes[1]) | (half & planes[2]);
+    const Bytes count = set_bits<1>(sum) + set_bits<2>(carry);
+    if constexpr (kPlanes == 3) {
+      return count;
+    } else {
+      return count + set_bits_of_planes<kPlanes - 3>(planes + 3);
+    }
+  }
+}
+
+template <class Keys, int kPlanes>
+struct CensusCost : KeyedCost<Keys> {
+  using Sum = Int16s;
+  static constexpr std::ptrdiff_t kPixelLanes = kLanes;
+  static constexpr std::ptrdiff_t kSumLanes = kLanes;
+
+  struct Right {
+    Bytes planes[kPlanes];
+  };
+
+  CensusCost(const MatchPlan& plan, const MatchMemory& /*memory*/, int /*first*/)
+      : right_stride_(plan.right_stride), left_stride_(plan.left_stride) {}
+  Right right(const std::int16_t* pixels) const {
+    Right right;
+    for (std::ptrdiff_t plane = 0; plane < kPlanes; ++plane)
+      right.planes[plane] = load<Bytes>(pixels + plane * right_stride_);
+    return right;
+  }
+  Sum change(const Right& right_pixels, const std::int16_t* left_pixels) const {
+    Bytes differences[kPlanes];
+    for (std::ptrdiff_t plane = 0; plane < kPlanes; ++plane)
+      differences[plane] = right_pixels.planes[plane] ^ load<Bytes>(left_pixels + plane * left_stride_);
+    return difference_of_bytes<Keys::kScale>(set_bits_of_planes<kPlanes>(differences));
+  }
+
+ private:
+  std::ptrdiff_t right_stride_;
+  std::ptrdiff_t left_stride_;
+};
+
+template <int kPlanes>
+MatchLoops loops_of_planes(int window) {
+  return window * window * 8 * kPlanes <= kLargestNarrowSum ? loops_of<CensusCost<NarrowKeys, kPlanes>>()
+                                                            : loops_of<CensusCost<WideKeys, kPlanes>>();
+}
+
+}  // namespace
+
+MatchLoops census_loops(int planes, int window) {
+  switch (planes) {
+    case 1:
+      return loops_of_planes<1>(window);
+    case 3:
+      return loops_of_planes<3>(window);
+    default:
+      return loops_of_planes<6>(window);
+  }
+}
+
+void census_row(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out) {
+  const int half = (size - 1) / 2;
+  for (std::ptrdiff_t u = 0; u < width; u += kBytes) {
+    const auto middle = load<SignedBytes>(rows[half] + half + u);
+    Bytes set{};
+    int bit = 0;
+    for (int row = 0; row < size; ++row) {
+      for (int column = 0; column < size; ++column) {
+        if (row == half && column == half) continue;
+        const auto is_less = reinterpret_cast<Bytes>(load<SignedBytes>(rows[row] + column + u) < middle);
+        set |= is_less & bytes(1 << bit % 8);
+        if (++bit % 8 != 0) continue;
+        store(set, out[bit / 8 - 1] + u);
+        set = Bytes{};
+      }
+    }
+  }
+}
+
+}  // namespace stereotlm::kernels::STEREOTLM_SIMD

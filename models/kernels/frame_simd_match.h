@@ -1,0 +1,310 @@
+#pragma once
+
+#include "models/kernels/frame_simd_keys.h"
+#include "models/kernels/frame_simd_vectors.h"
+
+namespace stereotlm::kernels::STEREOTLM_SIMD {
+
+// The loops that match one row of windows, for any cost. Column sums are kept for each disparity and
+// position; a row adds the pixels that enter at the bottom and subtracts those that leave at the top. Along
+// the row a window sum gains the column sum that enters and loses the one that leaves.
+//
+// A Cost has:
+//   Keys                    how candidates are compared (frame_simd_keys.h)
+//   kGroup                  the number of disparities that are matched together
+//   kPixelLanes, kSumLanes  lanes of the pixels and of a column sum at one position
+//   Sum                     a column sum, or its change
+//   WindowSum, start(d), add(WindowSum&, Sum)
+//   right(pixels)           loads the right pixels at a position
+//   change(right, pixels)   the change of a column sum, for these left pixels
+//   score(WindowSum, j)     what both sides' keys have in common, for the j-th disparity of the group
+//   right_key(score, j), left_key(score, j)
+//   next()                  to be called between two windows
+// It is made from the plan, the memory and the first disparity of the group.
+
+// The column sums of kCount neighbouring disparities, which lie side by side for each position. next()
+// advances the pointers to the next position. Nothing points to this object, so that the compiler knows that
+// no store changes its pointers.
+template <class Cost, int kCount>
+struct ColumnSums {
+  using Sum = typename Cost::Sum;
+
+  const std::int16_t* right;
+  const std::int16_t* left;
+  std::int16_t* sums;
+
+  // Adds the change at this position to the sum of the j-th disparity, and returns the new sum.
+  template <class Pixels>
+  Sum add(const Cost& cost, const Pixels& right_pixels, std::ptrdiff_t j) const {
+    std::int16_t* place = sums + j * Cost::kSumLanes;
+    const Sum sum = load<Sum>(place) + cost.change(right_pixels, left + j * Cost::kPixelLanes);
+    store(sum, place);
+    return sum;
+  }
+  void next() {
+    right += Cost::kPixelLanes;
+    left += Cost::kPixelLanes;
+    sums += kCount * Cost::kSumLanes;
+  }
+};
+
+// Matches one group of disparities along a row.
+template <class Cost, int kCount>
+struct Group {
+  using Keys = typename Cost::Keys;
+  using Sum = typename Cost::Sum;
+  using Key = typename Keys::Key;
+  using Kept = typename Keys::Kept;
+  using Best = typename Keys::Best;
+
+  Cost cost;
+  ColumnSums<Cost, kCount> columns;
+  const std::int16_t* outside;
+  Best* right_best;
+  Best* left_best;
+  std::ptrdiff_t window_begin;  // offset from the sums that enter the window to those that leave it
+  int first;                    // first disparity of the group
+  typename Cost::WindowSum windows[kCount];
+  Kept passing[kCount];  // best keys of left windows that larger disparities of the group have yet to reach
+
+  Group(const MatchPlan& plan, const MatchMemory& memory, int first_disparity, std::int16_t* column_sums)
+      : cost(plan, memory, first_disparity),
+        columns{Cost::right_pixels(memory),
+                Cost::left_pixels(memory) + std::ptrdiff_t{first_disparity} * Cost::kPixelLanes, column_sums},
+        outside(memory.outside + first_disparity * kLanes),
+        right_best(reinterpret_cast<Best*>(memory.right_best)),
+        left_best(reinterpret_cast<Best*>(memory.left_best) + first_disparity),
+        window_begin(-std::ptrdiff_t{plan.window} * kCount * Cost::kSumLanes),
+        first(first_disparity) {
+    for (int j = 0; j < kCount; ++j) {
+      windows[j] = cost.start(first + j);
+      passing[j] = Keys::none();
+    }
+  }
+
+  void enter_first(int count) {
+    for (std::ptrdiff_t u = 0; u < count; ++u) {
+      const auto right = cost.right(columns.right);
+      for (std::ptrdiff_t j = 0; j < kCount; ++j) cost.add(windows[j], columns.add(cost, right, j));
+      columns.next();
+    }
+  }
+
+  template <bool kRightBased, bool kSomeOutside>
+  void match(int count) {
+    for (std::ptrdiff_t s = 0; s < count; ++s) {
+      const auto right = cost.right(columns.right);
+      for (std::ptrdiff_t j = 0; j < kCount; ++j) {
+        const auto leaving = load<Sum>(columns.sums + window_begin + j * Cost::kSumLanes);
+        cost.add(windows[j], columns.add(cost, right, j) - leaving);
+      }
+      columns.next();
+      typename Cost::Score scores[kCount];
+      for (std::ptrdiff_t j = 0; j < kCount; ++j) scores[j] = cost.score(windows[j], j);
+      if (kRightBased) {
+        Kept best;
+        for (std::ptrdiff_t j = 0; j < kCount; ++j) {
+          Key key = cost.right_key(scores[j], j);
+          if (kSomeOutside) key = Keys::unless(load<Int16s>(outside + j * kLanes), key);
+          best = j == 0 ? Keys::only(key) : Keys::best_of(best, key);
+        }
+        *right_best = Keys::better(*right_best, best, first);
+        ++right_best;
+        outside += kLanes;
+      }
+      const Key smallest = cost.left_key(scores[0], 0);
+      *left_best = Keys::better(
+          *left_best, kCount > 1 ? Keys::best_of(passing[0], smallest) : Keys::only(smallest), first);
+      ++left_best;
+      for (std::ptrdiff_t j = 1; j < kCount; ++j) {
+        const Key key = cost.left_key(scores[j], j);
+        passing[j - 1] = j + 1 < kCount ? Keys::best_of(passing[j], key) : Keys::only(key);
+      }
+      cost.next();
+    }
+  }
+
+  void leave() {
+    for (std::ptrdiff_t j = 0; j + 1 < kCount; ++j)
+      left_best[j] = Keys::better(left_best[j], passing[j], first);
+  }
+};
+
+template <class Cost, int kCount, bool kRightBased>
+void match_group(const MatchPlan& plan, const MatchMemory& memory, int first, std::int16_t* column_sums) {
+  int inside = plan.first_outside - first - kCount + 1;
+  if (inside < 0) inside = 0;
+  const int columns = plan.columns;
+  if (inside > columns || !kRightBased) inside = columns;
+  Group<Cost, kCount> group(plan, memory, first, column_sums);
+  group.enter_first(plan.window - 1);
+  group.template match<kRightBased, false>(inside);
+  group.template match<kRightBased, true>(columns - inside);
+  group.leave();
+}
+
+template <class Cost, int kCount>
+void add_group(const MatchPlan& plan, const MatchMemory& memory, int first, std::int16_t* column_sums) {
+  const Cost cost(plan, memory, first);
+  ColumnSums<Cost, kCount> columns{Cost::right_pixels(memory),
+                                   Cost::left_pixels(memory) + std::ptrdiff_t{first} * Cost::kPixelLanes,
+                                   column_sums};
+  const int positions = plan.columns + plan.window - 1;
+  for (std::ptrdiff_t u = 0; u < positions; ++u) {
+    const auto right = cost.right(columns.right);
+    for (std::ptrdiff_t j = 0; j < kCount; ++j) columns.add(cost, right, j);
+    columns.next();
+  }
+}
+
+template <int kCount, class Visit>
+void visit_rest(int count, int first, std::int16_t* column_sums, const Visit& visit) {
+  if constexpr (kCount > 0) {
+    if (count == kCount) {
+      visit.template group<kCount>(first, column_sums);
+    } else {
+      visit_rest<kCount - 1>(count, first, column_sums, visit);
+    }
+  }
+}
+
+template <class Cost, class Visit>
+void visit_groups(const MatchPlan& plan, const MatchMemory& memory, const Visit& visit) {
+  const std::ptrdiff_t stride = (plan.columns + plan.window) * Cost::kSumLanes;
+  // A sum of zero stands before the sums of each disparity.
+  std::int16_t* column_sums = memory.column_sums;
+  int first = 0;
+  for (; first + Cost::kGroup <= plan.disparities; first += Cost::kGroup) {
+    visit.template group<Cost::kGroup>(first, column_sums + Cost::kGroup * Cost::kSumLanes);
+    column_sums += Cost::kGroup * stride;
+  }
+  const int rest = plan.disparities - first;
+  visit_rest<Cost::kGroup - 1>(rest, first, column_sums + rest * Cost::kSumLanes, visit);
+}
+
+template <class Cost>
+struct AddGroup {
+  const MatchPlan& plan;
+  const MatchMemory& memory;
+  template <int kCount>
+  void group(int first, std::int16_t* column_sums) const {
+    add_group<Cost, kCount>(plan, memory, first, column_sums);
+  }
+};
+
+template <class Cost>
+struct MatchGroup {
+  const MatchPlan& plan;
+  const MatchMemory& memory;
+  template <int kCount>
+  void group(int first, std::int16_t* column_sums) const {
+    if (plan.right_based) {
+      match_group<Cost, kCount, true>(plan, memory, first, column_sums);
+    } else {
+      match_group<Cost, kCount, false>(plan, memory, first, column_sums);
+    }
+  }
+};
+
+template <class Keys>
+void store_disparities(const typename Keys::Best* best, int count, std::int16_t* out) {
+  // Works in place: `out` points to the keys, which are longer than the disparities.
+  for (std::ptrdiff_t p = 0; p < count; ++p) store(Keys::disparity(best[p]), out + p * kLanes);
+}
+
+// MatchLoops::add_row and match_row.
+template <class Cost>
+void add_row_with(const MatchPlan& plan, const MatchMemory& memory) {
+  Cost::prepare(plan, memory, false);
+  visit_groups<Cost>(plan, memory, AddGroup<Cost>{plan, memory});
+}
+
+template <class Cost>
+void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
+  using Keys = typename Cost::Keys;
+  Cost::prepare(plan, memory, true);
+  auto* right = reinterpret_cast<typename Keys::Best*>(memory.right_best);
+  auto* left = reinterpret_cast<typename Keys::Best*>(memory.left_best);
+  const int left_positions = plan.columns + plan.disparities - 1;
+  for (std::ptrdiff_t p = 0; p < plan.columns; ++p) right[p] = Keys::best_of_none();
+  for (std::ptrdiff_t p = 0; p < left_positions; ++p) left[p] = Keys::best_of_none();
+  visit_groups<Cost>(plan, memory, MatchGroup<Cost>{plan, memory});
+  // Left windows beyond the end of a segment belong to the next segment, where their disparities are smaller.
+  const auto band_begins = load<Int16s>(memory.band_begins);
+  for (std::ptrdiff_t p = left_positions - 1; p >= plan.columns; --p) {
+    auto& own = left[p - plan.columns];
+    own = Keys::better(own, Keys::load_moved(left + p, band_begins));
+  }
+  store_disparities<Keys>(left, plan.columns, memory.left_best);
+  if (plan.right_based) store_disparities<Keys>(right, plan.columns, memory.right_best);
+}
+
+template <class Cost>
+constexpr MatchLoops loops_of() {
+  return {int{Cost::kSumLanes / kLanes},
+          static_cast<int>(sizeof(typename Cost::Keys::Best) / kBytes),
+          Cost::kUnpacks,
+          Cost::kHasStatistics,
+          add_row_with<Cost>,
+          match_row_with<Cost>};
+}
+
+// The parts that the costs have in common.
+
+// Costs whose column sums have 16 bits: each disparity is part of the key from the start, so that the window
+// sum is the key of both sides.
+template <class KeysOfCost>
+struct KeyedCost {
+  using Keys = KeysOfCost;
+  using WindowSum = typename Keys::Key;
+  using Score = WindowSum;
+  static constexpr int kGroup = Keys::kGroup;
+  static constexpr bool kUnpacks = false;
+  static constexpr bool kHasStatistics = false;
+
+  static WindowSum start(int disparity) { return Keys::without_sum(disparity); }
+  template <class Sum>
+  static void add(WindowSum& key, const Sum& sum) {
+    Keys::add(key, sum);
+  }
+  static const Score& score(const WindowSum& key, std::ptrdiff_t /*j*/) { return key; }
+  static const WindowSum& right_key(const Score& key, std::ptrdiff_t /*j*/) { return key; }
+  static const WindowSum& left_key(const Score& key, std::ptrdiff_t /*j*/) { return key; }
+  static void next() {}
+  static void prepare(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, bool /*match*/) {}
+  static const std::int16_t* right_pixels(const MatchMemory& memory) { return memory.right_pixels; }
+  static const std::int16_t* left_pixels(const MatchMemory& memory) { return memory.left_pixels; }
+};
+
+// Returns kScale * (lower byte - upper byte) of each lane. The bytes must be small enough for 16 bits.
+template <int kScale>
+Int16s difference_of_bytes(Bytes bytes) {
+#if defined(__AVX512BW__)
+  const Int16s weights = int16s((kScale & 0xFF) - kScale * 256);
+  return reinterpret_cast<Int16s>(
+      _mm512_maddubs_epi16(reinterpret_cast<__m512i>(bytes), reinterpret_cast<__m512i>(weights)));
+#elif defined(__AVX2__)
+  const Int16s weights = int16s((kScale & 0xFF) - kScale * 256);
+  return reinterpret_cast<Int16s>(
+      _mm256_maddubs_epi16(reinterpret_cast<__m256i>(bytes), reinterpret_cast<__m256i>(weights)));
+#else
+  const auto lanes = reinterpret_cast<Int16s>(bytes);
+  return ((lanes & 0xFF) - (lanes >> 8 & 0xFF)) * static_cast<std::int16_t>(kScale);
+#endif
+}
+
+// Stores the pixels of even lanes and those of odd lanes as pairs of 16 bits: the pixel that enters the
+// window times kEntering, and the pixel that leaves it times kLeaving.
+template <int kEntering, int kLeaving>
+void unpack(const std::int16_t* pixels, int positions, std::int16_t* out) {
+  const auto factors = reinterpret_cast<Int16s>(int32s((kEntering & 0xFFFF) + kLeaving * 65536));
+  for (std::ptrdiff_t p = 0; p < positions; ++p) {
+    const auto bytes = load<Int32s>(pixels + p * kLanes);
+    const Int32s even = (bytes & 0xFF) | (bytes & 0xFF00) << 8;
+    const Int32s odd = (bytes >> 16 & 0xFF) | (bytes >> 8 & 0xFF0000);
+    store(reinterpret_cast<Int16s>(even) * factors, out + 2 * p * kLanes);
+    store(reinterpret_cast<Int16s>(odd) * factors, out + (2 * p + 1) * kLanes);
+  }
+}
+
+}  // namespace stereotlm::kernels::STEREOTLM_SIMD
