@@ -17,9 +17,7 @@
 #include "sw/process/streams.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/calibration_library.h"
-#include "sw/runs/sources/media_library.h"
 #include "sw/runs/sources/open_source.h"
-#include "sw/runs/sources/picture_size.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -86,21 +84,18 @@ class InputLoader {
 
   void load_pictures(const platform::BoardConfig* board) {
     source_ = runs::open_source(options_.pictures.source, board, input_.described, problems_);
-    if (!options_.truth) return;
-    const runs::NamedFile file = {"--truth", *options_.truth};
+    if (!options_.truth.file) return;
+    const runs::NamedFile file = {"--truth", *options_.truth.file};
     source_.files.push_back(file);
+    input_.truth = runs::open_truth(file, options_.truth.scale, board, problems_);
+    if (!input_.truth) return;
     attempt(file.option, [&] {
-      media::Truth truth = runs::media_functions().load_truth(file.path, options_.truth_scale);
-      const auto problem =
-          board != nullptr ? runs::size_problem(truth.grey.width, truth.grey.height, *board) : std::nullopt;
-      if (problem) problems_.add(file.text() + *problem);
-      input_.truth = std::move(truth);
       input_.described.truth = {fs::absolute(file.path).string(), files::sha256_file(file.path)};
     });
   }
 
   void check_truth() {
-    if (!options_.truth || !options_.camera || !source_.pairs || source_.pairs->length() == 1) return;
+    if (!options_.truth.file || !options_.camera || !source_.pairs || source_.pairs->length() == 1) return;
     problems_.add(fmt::format(
         "--truth: cameras drop frames: which of {} pairs the last frame shows is not known before the run: "
         "must be a run with one pair, or with --source preloaded",
@@ -174,7 +169,7 @@ class InputLoader {
     run.timing_only = options_.timing_only;
     run.verify = options_.verify;
     run.frames = input_.frames;
-    run.truth_scale = options_.truth_scale;
+    run.truth_scale = options_.truth.scale;
     run.save_frames = options_.save_frames;
     run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
   }

@@ -8,15 +8,21 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
+#include "models/kernels/limits.h"
 #include "platform/bounds.h"
+#include "platform/config/board_yaml.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/temporary_files.h"
+#include "sw/cli/truth_options.h"
 #include "sw/cli/typed_option.h"
 #include "sw/files/document_folder.h"
 #include "sw/files/whole_file.h"
+#include "sw/media/truth.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
 #include "sw/process/installation.h"
@@ -24,9 +30,11 @@
 #include "sw/process/problems.h"
 #include "sw/process/python_script.h"
 #include "sw/process/streams.h"
+#include "sw/report/accuracy.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
+#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -34,33 +42,116 @@ namespace {
 constexpr const char* kScript = "plot_paper.py";
 constexpr const char* kPaperFooter =
     "Written are paper.md, every claim with paper value, model value, bound, rule, verdict and the commands\n"
-    "that give the numbers again; claims.csv with a row for each case; table1.csv, table2.csv and "
-    "banks.csv;\n"
-    "and their figures table1, table2 and banks as .png and .svg. Other files in DIR stay; files of these\n"
-    "names are replaced if paper.md is there. \"At least eight banks\" is settled with every allocation of "
-    "the\n"
-    "core alone; of the whole computer some allocations are run, see stereotlm allocate for all of them.";
+    "that give the numbers again; claims.csv with a row for each case; table1.csv, table2.csv, banks.csv\n"
+    "and costs.csv; figures table1, table2 and banks as .png and .svg. Other files in DIR stay; files of\n"
+    "these names are replaced if paper.md is there. \"At least eight banks\" is settled with every "
+    "allocation\n"
+    "of the core alone; of the whole computer some allocations are run, see stereotlm allocate for all of\n"
+    "them. \"Almost the same results\" of other costs is judged on synthetic scenes, and on the pair of\n"
+    "--left, --right and --truth too, with as many disparities as its truth needs.";
 
 struct PaperOptions {
   Typed out;
+  Typed left;
+  Typed right;
+  TruthOptions truth;
 
   void add_to(CLI::App& command) {
     out.add_to(command, "--out", "DIR", "The folder to write, created if missing");
+    left.add_to(command, "--left", "F",
+                fmt::format("The left picture of a rectified pair with ground truth, 8-bit, as large as the "
+                            "images of {}",
+                            paper::kBoard));
+    right.add_to(command, "--right", "F", "The right picture");
+    truth.add_to(command, "the left picture");
   }
 
-  void check_usage() const {
-    if (!out.is_given()) process::refuse("--out: missing: the folder to write");
+  bool has_pair() const { return left.is_given() || right.is_given() || truth.file; }
+
+  void check_usage() {
+    process::Problems problems;
+    if (!out.is_given()) problems.add("--out: missing: the folder to write");
+    truth.check_usage(problems);
+    const std::pair<const char*, bool> given[] = {
+        {"--left", left.is_given()}, {"--right", right.is_given()}, {"--truth", truth.file.has_value()}};
+    for (const auto& [name, is_given] : given) {
+      if (has_pair() && !is_given)
+        problems.add(fmt::format("{}: missing: a pair has --left F, --right F and --truth F", name));
+    }
+    problems.check();
   }
 };
 
+// The pictures of a scene.
+struct Pictures {
+  std::unique_ptr<runs::PairSource> pairs;
+  media::Truth truth;
+};
+
+// The given pair, loaded and checked.
+struct LoadedPair {
+  paper::GivenPair files;
+  Pictures pictures;
+  std::vector<std::string> notes;  // for standard error
+};
+
+// Returns nullopt, without a problem, if no pair is given. Reports problems.
+std::optional<LoadedPair> load_pair(const PaperOptions& options, process::Problems& problems) {
+  if (!options.has_pair()) return std::nullopt;
+  const platform::BoardConfig board = platform::load_board(paper::kBoard);
+  runs::PictureSource source;
+  source.pair = {options.left.text, options.right.text};
+  runs::RecordedOptions described;
+  runs::OpenedSource opened = runs::open_source(source, &board, described, problems);
+  const runs::NamedFile file = {"--truth", *options.truth.file};
+  auto truth = runs::open_truth(file, options.truth.scale, &board, problems);
+  if (!opened.pairs || !truth) return std::nullopt;
+  const kernels::GrayImage blank(board.image.width, board.image.height);
+  if (!report::accuracy(blank, *truth).answered_percent)
+    problems.add(file.text() + ": no pixel that both cameras see has a known disparity");
+  const double disparities = media::disparities_needed(*truth);
+  const kernels::IntegerRule& rule = kernels::kDisparitiesRule;
+  if (disparities > static_cast<double>(rule.max)) {
+    problems.add(fmt::format("{}, --truth-scale {}: needs {:.0f} disparities: must be {}", file.text(),
+                             options.truth.scale, disparities, rule.text()));
+    return std::nullopt;
+  }
+  return LoadedPair{{options.left.text, options.right.text, *options.truth.file, options.truth.scale,
+                     static_cast<int>(disparities)},
+                    {std::move(opened.pairs), std::move(*truth)},
+                    opened.notes};
+}
+
+Pictures synthetic_pictures(const platform::BoardConfig& board, std::uint64_t seed) {
+  process::Problems none;
+  runs::PictureSource source;
+  source.synthetic = seed;
+  runs::RecordedOptions described;
+  auto pairs = runs::open_source(source, &board, described, none).pairs;
+  media::Truth truth = pairs->truth(0).value();
+  return {std::move(pairs), std::move(truth)};
+}
+
+// The accuracy of a board's disparities for the first pair of the pictures.
+paper::Quality quality(const platform::BoardConfig& board, const Pictures& pictures) {
+  const auto run = runs::simulate_pixels(board, runs::tables_of(board, std::nullopt), *pictures.pairs, 1);
+  const report::Accuracy found = report::accuracy(run.last, pictures.truth);
+  if (!found.bad_1_percent) throw std::runtime_error("the board answers no pixel whose disparity is known");
+  return {*found.bad_1_percent, found.answered_percent.value()};
+}
+
 // Simulates everything that the claims of the paper need. Returns nullopt if interrupted.
-std::optional<paper::Findings> study() {
+std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
   runs::PointSimulator simulator;
   runs::ProgressLine progress;
   paper::Means means;
   means.evaluate = [&simulator](const explore::Point& point) { return simulator(point); };
   means.bound = [](const platform::BoardConfig& board, std::uint64_t frames) {
     return platform::core_bound(board, runs::tables_of(board, std::nullopt), frames);
+  };
+  means.quality = [&given](const platform::BoardConfig& board, const paper::Scene& scene) {
+    return scene.synthetic ? quality(board, synthetic_pictures(board, *scene.synthetic))
+                           : quality(board, given.value().pictures);
   };
   means.version = process::kVersion;
   means.jobs = std::max(1U, std::thread::hardware_concurrency());
@@ -69,7 +160,8 @@ std::optional<paper::Findings> study() {
         [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });
     return !process::interrupted();
   };
-  return paper::study(paper::claims(), means);
+  const auto claims = paper::claims(given ? std::optional(given->files) : std::nullopt);
+  return paper::study(claims, means);
 }
 
 // Draws figures from the tables in `files`, which has contents by name, and adds the figures to it. Returns
@@ -94,6 +186,7 @@ bool draw(const std::filesystem::path& folder, std::map<std::string, std::string
 int compare_with_paper(const PaperOptions& options) {
   process::Problems problems;
   const auto drawings = temporary_folder(problems);
+  const auto given = load_pair(options, problems);
   std::unique_ptr<files::DocumentFolder> folder;
   try {
     folder = std::make_unique<files::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
@@ -101,8 +194,11 @@ int compare_with_paper(const PaperOptions& options) {
     problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
   }
   problems.check();
+  if (given) {
+    for (const std::string& note : given->notes) process::say("note", note);
+  }
   process::catch_interrupts();
-  const auto findings = study();
+  const auto findings = study(given);
   auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
   if (!findings || !draw(drawings->path(), files)) {
     process::say("note", "interrupted: nothing was written");

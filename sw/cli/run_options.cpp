@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -40,9 +39,7 @@ void RunOptions::add_to(CLI::App& command) {
            "disparities");
   add_flag(command, "--verify", verify,
            "Run at the other fidelity too, in a second process, and compare every figure, time and pixel");
-  truth_.add_to(command, "--truth", "F",
-                "Ground truth of the left picture that the last frame shows, 8-bit grey, 0 = unknown");
-  truth_scale_.add_to(command, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)");
+  truth.add_to(command, "the left picture that the last frame shows");
   out_.add_to(command, "--out", "DIR",
               "Folder for the result files: created if missing, else empty or an earlier result, which is "
               "replaced (default: no files)");
@@ -67,10 +64,10 @@ void RunOptions::check_usage() {
   pictures.check_usage(problems);
   check_choices(problems);
   check_numbers(problems);
+  truth.check_usage(problems);
   check_combinations(problems);
   if (!is_complete) problems.add_note(std::string("a complete command: ") + kRunExample);
   problems.check();
-  if (truth_.is_given()) truth = truth_.text;
   if (out_.is_given()) out = out_.text;
 }
 
@@ -91,22 +88,14 @@ void RunOptions::check_numbers(process::Problems& problems) {
     }
     frames = number;
   }
-  if (truth_scale_.is_given()) {
-    const auto number = number_of<double>(truth_scale_.text);
-    if (!number || !std::isfinite(*number) || *number <= 0) {
-      problems.add(fmt::format("--truth-scale = {}: must be a number above 0", truth_scale_.text));
-    }
-    truth_scale = number.value_or(1);
-  }
 }
 
 void RunOptions::check_combinations(process::Problems& problems) const {
-  if (truth_scale_.is_given() && !truth_.is_given()) problems.add("--truth-scale: goes with --truth F");
-  if (truth_.is_given() && pictures.source.synthetic) {
+  if (truth.file && pictures.source.synthetic) {
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
   }
   for (const auto& [name, given] :
-       {std::pair("--truth", truth_.is_given()), std::pair("--save-frames", save_frames)}) {
+       {std::pair("--truth", truth.file.has_value()), std::pair("--save-frames", save_frames)}) {
     if (timing_only && given)
       problems.add(fmt::format("{}: does not go with --timing-only, which has no disparities", name));
   }

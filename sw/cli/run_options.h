@@ -6,6 +6,7 @@
 
 #include "sw/cli/board_options.h"
 #include "sw/cli/picture_options.h"
+#include "sw/cli/truth_options.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/unbuilt.h"
 
@@ -26,14 +27,13 @@ class RunOptions {
 
   BoardOptions board;
   PictureOptions pictures;
+  TruthOptions truth;
   // Set by check_usage().
   bool camera = true;  // false: preloaded
   bool fast = true;    // false: fidelity cycle
   bool timing_only = false;
   bool verify = false;
   std::optional<std::uint64_t> frames;
-  std::optional<std::string> truth;
-  double truth_scale = 1;
   bool save_frames = false;
   std::optional<std::string> out;
 
@@ -45,8 +45,6 @@ class RunOptions {
   Typed frames_;
   Typed source_;
   Typed fidelity_;
-  Typed truth_;
-  Typed truth_scale_;
   Typed out_;
   UnbuiltOption trace_{"--trace"};
 };

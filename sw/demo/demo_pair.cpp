@@ -50,11 +50,4 @@ DemoPair make_demo_pair(const GrayImage& left, const GrayImage& right, const Gra
           middle_at_half_size(truth, top_left)};
 }
 
-int disparities_needed(const GrayImage& truth) {
-  const auto largest = std::max_element(truth.pixels.begin(), truth.pixels.end());
-  if (largest == truth.pixels.end())
-    throw std::invalid_argument("truth = an empty picture: must have pixels");
-  return (*largest + kTruthScale - 1) / kTruthScale + 1;
-}
-
 }  // namespace stereotlm::demo

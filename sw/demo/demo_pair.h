@@ -24,8 +24,4 @@ struct DemoPair {
 DemoPair make_demo_pair(const kernels::GrayImage& left, const kernels::GrayImage& right,
                         const kernels::GrayImage& truth);
 
-// The number of candidate disparities (0, 1, ..) that a board needs to find every known disparity of the
-// truth, rounded up.
-int disparities_needed(const kernels::GrayImage& truth);
-
 }  // namespace stereotlm::demo

@@ -22,6 +22,7 @@
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
 #include "sw/media/panels.h"
+#include "sw/media/truth.h"
 
 namespace stereotlm::demo {
 namespace {
@@ -54,7 +55,7 @@ void prepare(const fs::path& source, const fs::path& out) {
   write_file(out / "left.png", media::encode_png_gray(pair.left));
   write_file(out / "right.png", media::encode_png_gray(pair.right));
   write_file(out / "truth.png", media::encode_png_gray(pair.truth));
-  std::printf("%d\n", disparities_needed(pair.truth));
+  std::printf("%.0f\n", media::disparities_needed({pair.truth, kTruthScale}));
 }
 
 // The numbers NN of all leftNN.jpg in a folder, sorted.

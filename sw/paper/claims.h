@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,11 +9,32 @@
 
 namespace stereotlm::paper {
 
-// A board as a command line names it. It is run without pixels for explore::frames_of() frames.
+// The paper's board.
+inline constexpr const char* kBoard = "fpl2003";
+
+// A stereo pair with ground truth.
+struct Scene {
+  std::string name;                        // "synthetic 1"
+  std::vector<std::string> options;        // the words with which `run` shows it: "--synthetic", "1"
+  std::optional<std::uint64_t> synthetic;  // the seed of a synthetic scene; nullopt: the GivenPair
+};
+
+// A stereo pair with ground truth that a user gives, as large as the images of kBoard.
+struct GivenPair {
+  std::string left;  // files
+  std::string right;
+  std::string truth;
+  double truth_scale = 1;  // grey levels of the truth per disparity
+  int disparities = 0;     // that a board needs to find all of its disparities
+};
+
+// A board as a command line names it. It is run without pixels for explore::frames_of() frames. With a scene
+// the core alone is run with pixels too, for one frame.
 struct BoardRun {
   std::string preset;
   std::vector<std::string> sets;  // KEY=VALUE
   bool camera = false;            // true: the whole computer; false: the core alone
+  std::optional<Scene> scene = std::nullopt;
 };
 
 // The quantity that is compared.
@@ -28,9 +51,12 @@ enum class Quantity {
   // The smallest number of banks among the runs that reach the rate of the first run. It is no proof of a
   // minimum.
   kBanksFound,
+  // The second run against the first on the same scene: the larger of two changes, that of the share of wrong
+  // answers and that of the share of answered pixels. Further runs are shown beside it, and not compared.
+  kAccuracyChange,
 };
 
-// "frames/s", "% of the slices", "times", "banks"
+// "frames/s", "% of the slices", "times", "banks", "percentage points"
 std::string unit_of(Quantity quantity);
 
 // One printed number of a claim, and the boards that are simulated for it.
@@ -52,7 +78,8 @@ struct Claim {
 };
 
 // All numbers of the paper that are compared, each with its place, its boards and its rule. The sizes of
-// Table 2 come from table_2(), because the area model is fitted to them.
-std::vector<Claim> claims();
+// Table 2 come from table_2(), because the area model is fitted to them. Costs are compared on synthetic
+// scenes, and on the given pair if there is one.
+std::vector<Claim> claims(const std::optional<GivenPair>& given = std::nullopt);
 
 }  // namespace stereotlm::paper

@@ -16,8 +16,8 @@ inline constexpr const char* kFigures[] = {"table1", "table2", "banks"};
 // The names of the files beside the report: tables and pictures.
 std::vector<std::string> file_names();
 
-// The contents of the tables by file name: table1.csv, table2.csv, banks.csv, claims.csv. Numbers are the
-// shortest decimals that read back equal, as in stats.json.
+// The contents of the tables by file name: table1.csv, table2.csv, banks.csv, costs.csv, claims.csv. Numbers
+// are the shortest decimals that read back equal, as in stats.json.
 std::map<std::string, std::string> tables(const Findings& findings);
 
 // paper.md: each claim with its rule, its values and the commands that reproduce them.

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "models/kernels/matching_cost.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/knobs.h"
@@ -37,13 +40,19 @@ std::string identity_of(const BoardRun& run) {
   return text;
 }
 
+// A word of a shell command.
+std::string shell_word(const std::string& text) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char each : text) word += each == '\'' ? std::string("'\\''") : std::string(1, each);
+  return word + '\'';
+}
+
 // The words that name the board on a command line: "fpl2003 --set matcher.window=7".
 std::string words_of(const BoardRun& run) {
   std::string text = run.preset;
-  for (const std::string& set : run.sets) {
-    const bool is_plain = set.find_first_of(" []{}") == std::string::npos;
-    text += is_plain ? fmt::format(" --set {}", set) : fmt::format(" --set '{}'", set);
-  }
+  for (const std::string& set : run.sets) text += " --set " + shell_word(set);
   return text;
 }
 
@@ -87,6 +96,40 @@ class Runs {
   explore::PointRun run_;
   std::vector<BoardConfig> boards_;
   std::map<std::string, std::size_t> numbers_;
+};
+
+// All different runs of the claims with a scene.
+class SceneRuns {
+ public:
+  explicit SceneRuns(const std::vector<Claim>& claims) {
+    for (const Claim& claim : claims) {
+      for (const Case& one : claim.cases) {
+        for (const BoardRun& run : one.runs) {
+          if (run.scene) runs_.emplace(command_of(run), run);
+        }
+      }
+    }
+  }
+
+  std::size_t size() const { return runs_.size(); }
+
+  // Returns false if `keep_going` has ended the runs.
+  bool simulate(const Means& means, const std::function<bool(std::uint64_t done)>& keep_going) {
+    for (const auto& [command, run] : runs_) {
+      if (!keep_going(qualities_.size())) return false;
+      qualities_[command] = means.quality(platform::load_board(run.preset, run.sets), *run.scene);
+    }
+    return true;
+  }
+
+  // nullopt for a run without scene.
+  std::optional<Quality> of(const BoardRun& run) const {
+    return run.scene ? std::optional(qualities_.at(command_of(run))) : std::nullopt;
+  }
+
+ private:
+  std::map<std::string, BoardRun> runs_;  // by command
+  std::map<std::string, Quality> qualities_;
 };
 
 // The progress of a study, whose parts are its searches and runs.
@@ -210,6 +253,21 @@ double spread(const std::vector<Measured>& runs) {
   return most->rate - least->rate;
 }
 
+Quality change_of(const Quality& from, const Quality& to) {
+  return {to.wrong_percent - from.wrong_percent, to.answered_percent - from.answered_percent};
+}
+
+double largest_change(const Quality& from, const Quality& to) {
+  const Quality change = change_of(from, to);
+  return std::max(std::abs(change.wrong_percent), std::abs(change.answered_percent));
+}
+
+std::string name_of_cost(const BoardRun& run) {
+  const kernels::MatchingCost cost = platform::load_board(run.preset, run.sets).matcher.cost;
+  const std::string name = kernels::name_of(cost.kind);
+  return cost.kind == kernels::CostKind::kCensus ? fmt::format("{} {}", name, cost.census_size) : name;
+}
+
 double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
                       const std::vector<BankRow>& banks) {
   switch (claim.quantity) {
@@ -221,6 +279,8 @@ double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
       return spread(runs);
     case Quantity::kSpeedUp:
       return runs.at(0).rate / runs.at(1).rate;
+    case Quantity::kAccuracyChange:
+      return largest_change(runs.at(0).quality.value(), runs.at(1).quality.value());
     case Quantity::kBanksProved:
       return fewest_banks(banks, claim.name);
     case Quantity::kBanksFound:
@@ -262,7 +322,8 @@ const ClaimFinding& Findings::of(const std::string& claim) const {
 
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means) {
   const Runs runs_of[] = {{claims, false}, {claims, true}};
-  std::uint64_t most = runs_of[0].size() + runs_of[1].size();
+  SceneRuns scene_runs(claims);
+  std::uint64_t most = runs_of[0].size() + runs_of[1].size() + scene_runs.size();
   std::vector<BankSearch> searches;
   for (const Claim& claim : claims) {
     if (claim.quantity == Quantity::kBanksProved) most += searches.emplace_back(claim, means).most();
@@ -285,6 +346,11 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
     if (!is_whole) return std::nullopt;
     progress.end_part(runs_of[i].size());
   }
+  progress.begin_part(scene_runs.size());
+  const bool is_whole = scene_runs.simulate(
+      means, [&](std::uint64_t done) { return progress.keep_going(done, scene_runs.size() - done); });
+  if (!is_whole) return std::nullopt;
+  progress.end_part(scene_runs.size());
   for (const Claim& claim : claims) {
     ClaimFinding found = {claim, {}, Verdict::kOpen};
     std::vector<Verdict> verdicts;
@@ -294,6 +360,7 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
         for (const BoardRun& run : one.runs) {
           const int i = run.camera ? 1 : 0;
           finding.runs.push_back(runs_of[i].of(run, batches[i]));
+          finding.runs.back().quality = scene_runs.of(run);
         }
       }
       finding.modelled = modelled_value(claim, finding.runs, findings.banks);
@@ -308,7 +375,30 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
   return findings;
 }
 
+std::vector<CostRow> cost_rows(const ClaimFinding& found) {
+  std::vector<CostRow> rows;
+  std::set<std::string> commands;
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const CaseFinding& finding = found.cases[i];
+    for (std::size_t j = 0; j < finding.runs.size(); ++j) {
+      const BoardRun& run = found.claim.cases[i].runs[j];
+      const Measured& measured = finding.runs[j];
+      if (!commands.insert(command_of(run)).second) continue;
+      rows.push_back({run.scene.value().name, name_of_cost(run), measured.quality.value(),
+                      change_of(finding.runs[0].quality.value(), measured.quality.value()),
+                      measured.slices_percent, j == 1 ? std::optional(finding.verdict) : std::nullopt,
+                      command_of(run)});
+    }
+  }
+  return rows;
+}
+
 std::string command_of(const BoardRun& run) {
+  if (run.scene) {
+    std::string text = fmt::format("stereotlm run {} --source preloaded", words_of(run));
+    for (const std::string& option : run.scene->options) text += ' ' + shell_word(option);
+    return text;
+  }
   const explore::PointRun point_run = {run.camera, 0, ""};
   const std::uint64_t frames = explore::frames_of(point_run, platform::load_board(run.preset, run.sets));
   return fmt::format("stereotlm run {}{} --timing-only --frames {}", words_of(run),
@@ -328,6 +418,7 @@ std::vector<std::string> commands_of(const Claim& claim, const Case& one) {
     case Quantity::kSpread:
     case Quantity::kSpeedUp:
     case Quantity::kBanksFound:
+    case Quantity::kAccuracyChange:
       break;
   }
   std::vector<std::string> all;

@@ -13,6 +13,12 @@
 
 namespace stereotlm::paper {
 
+// The accuracy of disparities, in percent. Only pixels count whose truth is known and which both cameras see.
+struct Quality {
+  double wrong_percent = 0;     // share of the answered pixels that are wrong by more than 1 disparity
+  double answered_percent = 0;  // share of the pixels that have a valid disparity
+};
+
 // The figures of a simulated board.
 struct Measured {
   // Frames per second of the core alone, or of the computer from the first delivery to the last.
@@ -21,7 +27,8 @@ struct Measured {
   double bound = 0;                 // upper bound for the rate, frames per second
   std::string limited_by;           // the resource that limits the bound
   double slices_percent = 0;
-  int banks = 0;  // number of banks that its allocation uses
+  int banks = 0;                   // number of banks that its allocation uses
+  std::optional<Quality> quality;  // of a run with a scene
 };
 
 // A row of the table of banks: the best allocation for a number of banks, or a chosen allocation.
@@ -64,6 +71,9 @@ struct Means {
   explore::Evaluate evaluate;
   // platform::core_bound() of the core alone, without calibration, for this number of frames.
   std::function<platform::Bound(const platform::BoardConfig& board, std::uint64_t frames)> bound;
+  // Simulates one frame of the core alone, without calibration, that shows the scene. Throws std::runtime_error
+  // if a share has no pixels.
+  std::function<Quality(const platform::BoardConfig& board, const Scene& scene)> quality;
   std::string version;
   unsigned jobs = 1;
   // Called several times a second with the number of boards that are done, and an upper limit for the number
@@ -74,6 +84,19 @@ struct Means {
 // Simulates the boards of the claims. Returns nullopt if `keep_going` has ended the study. Throws
 // std::runtime_error if a board cannot be simulated.
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means);
+
+// A row of the table of costs: a run of a claim about Quantity::kAccuracyChange.
+struct CostRow {
+  std::string scene;
+  std::string cost;  // "sad", "census 5"
+  Quality quality;
+  Quality change;  // quality less that of the first run on the scene
+  double slices_percent = 0;
+  std::optional<Verdict> verdict;  // nullopt: the run is not compared
+  std::string command;
+};
+// The rows of such a claim, each run once.
+std::vector<CostRow> cost_rows(const ClaimFinding& found);
 
 // The shell command that reproduces the number of a run: "stereotlm run fpl2003 --timing-only ..".
 std::string command_of(const BoardRun& run);

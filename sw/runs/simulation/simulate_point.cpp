@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "models/binder.h"
 #include "models/clock.h"
@@ -109,10 +110,15 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
     tell(files::sha256_hex(pixels.data(), pixels.size()));
     const auto& cycles = statistics.frame_cycles;
     tell(std::to_string(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})));
+    const std::vector<std::uint8_t>& last = simulation->last().disparity.pixels;
+    tell(std::string(last.begin(), last.end()));
   });
   PixelRun run;
   run.disparities_sha256 = child.next().value();
   run.cycles = std::stoull(child.next().value());
+  const std::string last = child.next().value();
+  run.last = kernels::GrayImage(board.image.width, board.image.height);
+  run.last.pixels.assign(last.begin(), last.end());
   child.next();
   return run;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "models/host/frame_source.h"
+#include "models/kernels/gray_image.h"
 #include "platform/bounds.h"
 #include "platform/config/tables.h"
 #include "sw/explore/plan/figures.h"
@@ -40,11 +41,11 @@ class PointSimulator {
 // local bus may be saved. Throws as PointSimulator does.
 double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables);
 
-// The result of simulate_pixels(): the SHA-256 over the disparities of all frames, and the sum of their
-// cycles.
+// The result of simulate_pixels().
 struct PixelRun {
-  std::string disparities_sha256;
-  std::uint64_t cycles = 0;
+  std::string disparities_sha256;  // over the disparities of all frames
+  std::uint64_t cycles = 0;        // sum of those of all frames
+  kernels::GrayImage last;         // disparities of the last frame
 };
 
 // Simulates frames of the core alone, with pixels, in a child process at fidelity fast. Throws as

@@ -142,4 +142,18 @@ OpenedSource open_source(const PictureSource& options, const platform::BoardConf
   return opener.opened();
 }
 
+std::optional<media::Truth> open_truth(const NamedFile& file, double scale,
+                                       const platform::BoardConfig* board, process::Problems& problems) {
+  try {
+    media::Truth truth = media_functions().load_truth(file.path, scale);
+    const auto problem =
+        board != nullptr ? size_problem(truth.grey.width, truth.grey.height, *board) : std::nullopt;
+    if (!problem) return truth;
+    problems.add(file.text() + *problem);
+  } catch (const std::exception& error) {
+    problems.add(file.option + ' ' + error.what());
+  }
+  return std::nullopt;
+}
+
 }  // namespace stereotlm::runs

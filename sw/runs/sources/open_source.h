@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/config/board_config.h"
+#include "sw/media/truth.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/pair_source.h"
@@ -31,5 +33,10 @@ struct OpenedSource {
 // that concern the pictures. `board`: null if unknown; the sizes of the pictures are then not checked.
 OpenedSource open_source(const PictureSource& options, const platform::BoardConfig* board,
                          RecordedOptions& described, process::Problems& problems);
+
+// Loads the ground truth and checks its size. Reports problems and returns nullopt if there are any. `board`:
+// null if unknown; the size is then not checked.
+std::optional<media::Truth> open_truth(const NamedFile& file, double scale,
+                                       const platform::BoardConfig* board, process::Problems& problems);
 
 }  // namespace stereotlm::runs

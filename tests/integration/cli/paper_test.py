@@ -1,6 +1,7 @@
 """paper: its numbers are those of the other commands, its verdicts follow from them; figures; refusals."""
 
 import csv
+import functools
 import os
 import pathlib
 import re
@@ -11,17 +12,40 @@ import subprocess
 import time
 
 import program
-from pictures import PYTHON, drawn
-from program import ProgramTest, run, wait_until
+from pictures import PYTHON, drawn, noise, pgm
+from program import HEIGHT as HEIGHT_OF_SMALL
+from program import WIDTH as WIDTH_OF_SMALL
+from program import ProgramTest, run, shared_folder, wait_until
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[3] / "sw" / "report" / "plots" / "plot_paper.py"
-TABLES = ["table1.csv", "table2.csv", "banks.csv", "claims.csv"]
+TABLES = ["table1.csv", "table2.csv", "banks.csv", "costs.csv", "claims.csv"]
 FIGURES = ["table1", "table2", "banks"]
 FILES = ["paper.md", *TABLES, *(name + ending for name in FIGURES for ending in (".png", ".svg"))]
 
 
+WIDTH, HEIGHT = 640, 480
+
+
+@functools.cache
+def pair_with_truth():
+    """The options of a pair with ground truth.
+
+    The right picture is noise, the left one the same 2 columns further right. The truth of the lower half is
+    known: grey 3 at 1.5 grey levels a disparity. So a board needs 3 disparities.
+    """
+    folder = shared_folder() / "pair"
+    folder.mkdir()
+    rows = [noise(WIDTH + 2, 1, row) for row in range(HEIGHT)]
+    known = WIDTH * HEIGHT // 2
+    (folder / "left.pgm").write_bytes(pgm(WIDTH, HEIGHT, b"".join(row[:WIDTH] for row in rows)))
+    (folder / "right.pgm").write_bytes(pgm(WIDTH, HEIGHT, b"".join(row[2:] for row in rows)))
+    (folder / "truth.pgm").write_bytes(pgm(WIDTH, HEIGHT, bytes(known) + b"\3" * known))
+    files = [word for name in ("left", "right", "truth") for word in (f"--{name}", folder / f"{name}.pgm")]
+    return [*files, "--truth-scale", "1.5"]
+
+
 class PaperTest(ProgramTest):
-    """With one report for all cases: it takes some seconds."""
+    """With one report, on a pair with truth too, for all cases: it takes some seconds."""
 
     files = None
     said = ""
@@ -32,7 +56,7 @@ class PaperTest(ProgramTest):
             # It is written over an earlier one, and leaves other files.
             self.file("out/paper.md", "old")
             self.file("out/run", "script")
-            PaperTest.said = self.succeeds(run("paper", "--out", self.out))
+            PaperTest.said = self.succeeds(run("paper", "--out", self.out, *pair_with_truth()))
             PaperTest.files = self.result()
             self.assertEqual(PaperTest.files.pop("run"), b"script")
             shutil.rmtree(self.out)
@@ -83,6 +107,40 @@ class Numbers(PaperTest):
             said = self.succeeds(run(*shlex.split(row["size_command"])[1:]))
             self.assertIn(f"({float(row['model_slices_percent']):.2f} %)", said)
 
+    def test_accuracies_are_those_of_the_commands(self):
+        rows = self.table("costs")
+        scenes = ["synthetic 1", "synthetic 2", "synthetic 3", "the given pair"]
+        costs = ["sad", "ssd", "zncc", "census 5"]
+        expected = [(scene, cost) for scene in scenes for cost in costs]
+        self.assertEqual([(row["scene"], row["cost"]) for row in rows], expected)
+        for row in [rows[0], rows[6]]:
+            said = self.succeeds(run(*shlex.split(row["command"])[1:]))
+            wrong, answered = float(row["wrong_percent"]), float(row["answered_percent"])
+            pattern = rf"\naccuracy +off by more than 1: {wrong:.2f} %, .* answered: {answered:.2f} %\n"
+            self.assertRegex(said, pattern)
+        for row in rows[12:]:
+            accuracy = self.rates(row["command"])["accuracy"]
+            self.assertEqual(float(row["wrong_percent"]), accuracy["bad_1_percent"])
+            self.assertEqual(float(row["answered_percent"]), accuracy["answered_percent"])
+            self.assertIn("--set matcher.disparities=3 ", row["command"])
+            self.assertGreater(float(row["answered_percent"]), 90)
+
+    def test_changes_of_the_accuracy_are_from_sad(self):
+        rows = self.table("costs")
+        claims = {row["case"]: row for row in self.claim("costs")}
+        for row in rows:
+            sad = next(one for one in rows if one["scene"] == row["scene"])
+            shares = [("wrong_percent", "wrong_change_points"), ("answered_percent", "answered_change_points")]
+            for share, change in shares:
+                self.assertEqual(float(row[change]), float(row[share]) - float(sad[share]))
+            claim = claims.pop(f"{row['cost']}, {row['scene']}", None)
+            self.assertEqual(claim is not None, row["cost"] in ("ssd", "zncc"))
+            if claim is not None:
+                self.assertEqual(float(claim["model"]), max(abs(float(row[change])) for _, change in shares))
+                self.assertEqual(row["verdict"], "confirmed" if float(claim["model"]) <= 1 else "not confirmed")
+                self.assertEqual(row["verdict"], claim["verdict"])
+        self.assertEqual(claims, {})
+
     @program.slow
     def test_banks_are_those_of_allocate(self):
         for claim in ("banks", "banks_of_matching"):
@@ -127,7 +185,7 @@ class Verdicts(PaperTest):
 class Report(PaperTest):
     def test_has_every_file_case_command_and_verdict(self):
         self.assertEqual(sorted(self.files), sorted(FILES))
-        self.assertRegex(self.said, r"\S+: 11 files\n$")
+        self.assertRegex(self.said, r"\S+: 12 files\n$")
         report = self.files["paper.md"].decode()
         for row in self.table("claims"):
             self.assertIn(f"| {row['case']} |", report)
@@ -188,7 +246,7 @@ class Meanwhile(PaperTest):
 
     def begin(self):
         """A process that has begun."""
-        process = self.start("paper", "--out", self.out)
+        process = self.start("paper", "--out", self.out, *pair_with_truth())
         wait_until((self.out / ".partial" / "new").exists)
         return process
 
@@ -205,7 +263,7 @@ class Meanwhile(PaperTest):
         self.refused_in_one_line(run("paper", "--out", self.out), f"'{self.out}': in use by another run")
         self.close(process)
         self.assertTrue((self.out / ".partial").exists())
-        self.succeeds(run("paper", "--out", self.out))
+        self.succeeds(run("paper", "--out", self.out, *pair_with_truth()))
         self.assertTrue(self.result() == self.files)
 
 
@@ -228,6 +286,42 @@ class Refusals(ProgramTest):
             lines = self.refused(run(*paper, self.left, env=place), "TMPDIR = ", "not a folder")
             self.assertEqual(len(lines), 2)
         self.is_in(self.folder, "out", "left.pgm", "right.pgm")
+
+    def test_a_pair_that_cannot_be_judged_is_refused(self):
+        options = {"--out": self.out, **dict(zip(pair_with_truth()[::2], pair_with_truth()[1::2]))}
+        small = f"{WIDTH_OF_SMALL}x{HEIGHT_OF_SMALL} pixels: must be as large as the board's images, 640x480"
+        unknown = self.file("unknown.pgm", pgm(WIDTH, HEIGHT, bytes(WIDTH * HEIGHT)))
+        far = self.file("far.pgm", pgm(WIDTH, HEIGHT, b"\1" * WIDTH * HEIGHT))
+        none = self.folder / "none.png"
+
+        def arguments(**changed):
+            """With other values of options, and without those that are None."""
+            values = {**options, **{"--" + name.replace("_", "-"): value for name, value in changed.items()}}
+            given = [(name, value) for name, value in values.items() if value is not None]
+            return ["paper", *(word for option in given for word in option)]
+
+        whole = "missing: a pair has --left F, --right F and --truth F"
+        number = "must be a number above 0"
+        sees = "no pixel that both cameras see has a known disparity"
+        needs = "--truth-scale 0.00395: needs 255 disparities: must be 1..254"
+        with self.unchanged(self.folder):
+            self.all_refused([
+                (arguments(left=None), f"error: --left: {whole}"),
+                (arguments(right=None), f"error: --right: {whole}"),
+                (arguments(truth=None, truth_scale=None), f"error: --truth: {whole}"),
+                (["paper", "--out", self.out, "--truth-scale", "2"], "error: --truth-scale: goes with --truth F"),
+                (arguments(truth_scale="0"), f"error: --truth-scale = 0: {number}"),
+                (arguments(left=self.left), f"error: --left '{self.left}': {small}"),
+                (arguments(right=self.right), f"error: --right '{self.right}': {small}"),
+                (arguments(truth=self.left), f"error: --truth '{self.left}': {small}"),
+                (arguments(truth=none), f"error: --truth '{none}': "),
+                (arguments(truth=unknown), f"error: --truth '{unknown}': {sees}"),
+                (arguments(truth=far, truth_scale="0.00395"), f"error: --truth '{far}', {needs}"),
+                # 254 disparities are not refused: the one line is of the folder.
+                (arguments(truth=far, truth_scale="0.00396", out=self.left), f"error: --out {self.left}: "),
+            ])
+            lines = self.refused(run(*arguments(left=none, right=self.right, out=self.left)), "--out", "--left")
+            self.assertEqual(len(lines), 3)
 
 
 if __name__ == "__main__":

@@ -61,15 +61,5 @@ TEST(MakeDemoPair, RefusesSmallerPicturesAndPicturesOfDifferentSizes) {
   EXPECT_THROW(make_demo_pair(full_size(), full_size(), wider), std::invalid_argument);
 }
 
-TEST(DisparitiesNeeded, HoldsTheLargestDisparityRoundedUp) {
-  GrayImage truth(2, 1);
-  EXPECT_EQ(disparities_needed(truth), 1);
-  truth.at(1, 0) = 158;
-  EXPECT_EQ(disparities_needed(truth), 80);
-  truth.at(0, 0) = 159;
-  EXPECT_EQ(disparities_needed(truth), 81);
-  EXPECT_THROW(disparities_needed(GrayImage()), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace stereotlm::demo

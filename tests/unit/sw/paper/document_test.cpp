@@ -19,6 +19,7 @@ Findings as_printed() {
       Measured measured;
       measured.rate = measured.bound = one.printed;
       measured.limited_by = "matcher";
+      if (one.runs.front().scene) measured.quality = {0.25, 90};
       found.cases.push_back(
           {one.printed, std::vector<Measured>(one.runs.size(), measured), Verdict::kConfirmed});
     }
@@ -80,6 +81,26 @@ TEST(Document, ConcludesWhetherTheBanksAreNeeded) {
   EXPECT_THAT(document(findings), HasSubstr("None of these gives with fewer banks what 8 give"));
   row_of(findings, "banks_of_computer", 0).modelled = 7;
   EXPECT_THAT(document(findings), HasSubstr("7 banks give what 8 give: so 8 are not needed"));
+}
+
+TEST(Document, ShowsTheAccuracyOfEachCostOnEachScene) {
+  Findings findings = as_printed();
+  CaseFinding& zncc = row_of(findings, "costs", 1);
+  zncc.runs[1].quality = {1.5, 88};
+  zncc.runs[1].slices_percent = 40;
+  zncc.verdict = Verdict::kNotConfirmed;
+  zncc.runs[2].quality = {0.125, 91};
+  const std::string text = document(findings);
+  EXPECT_THAT(text,
+              HasSubstr("\n| synthetic 1 | sad | 0.250 | 90.000 |  |  | 0.00 |  |\n"
+                        "| synthetic 1 | ssd | 0.250 | 90.000 | +0.000 | +0.000 | 0.00 | confirmed |\n"
+                        "| synthetic 1 | zncc | 1.500 | 88.000 | +1.250 | -2.000 | 40.00 | not confirmed |\n"
+                        "| synthetic 1 | census 5 | 0.125 | 91.000 | -0.125 | +1.000 | 0.00 | not judged |\n"
+                        "| synthetic 2 | sad |"));
+  const std::string table = tables(findings).at("costs.csv");
+  EXPECT_THAT(table, HasSubstr("\nsynthetic 1,sad,0.25,90,0,0,0,,stereotlm run fpl2003 --set "
+                               "matcher.cost=sad --source preloaded --synthetic 1\n"));
+  EXPECT_THAT(table, HasSubstr("\nsynthetic 1,zncc,1.5,88,1.25,-2,40,not confirmed,stereotlm "));
 }
 
 TEST(Document, SummaryFitsIntoAHundredColumns) {

@@ -1,5 +1,6 @@
 #include "sw/paper/study.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -142,6 +143,109 @@ TEST(Study, ProvesHowFewBanksReachTheBestRate) {
   EXPECT_EQ(found.banks[2].measured.bound, 40);
   EXPECT_LT(found.banks[1].measured.rate, found.banks[2].measured.rate);
   EXPECT_EQ(found.banks[2].measured.rate, found.banks[5].measured.rate);
+}
+
+// Made up: wrong and answered shares by cost, which are less on the second synthetic scene.
+Quality made_up_quality(const BoardConfig& board, const Scene& scene) {
+  const double less = scene.synthetic == 2 ? 1 : 0;
+  switch (board.matcher.cost.kind) {
+    case kernels::CostKind::kSad:
+      return {2 - less, 80};
+    case kernels::CostKind::kSsd:
+      return {3, 79.5};
+    case kernels::CostKind::kZncc:
+      return {1.5, 81.25};
+    case kernels::CostKind::kCensus:
+      break;
+  }
+  return {9, 9};
+}
+
+Means seeing_means() {
+  Means seeing = means();
+  seeing.quality = made_up_quality;
+  return seeing;
+}
+
+BoardRun cost_run(const std::string& cost, std::uint64_t scene) {
+  const std::string name = std::to_string(scene);
+  return {"fpl2003", {"matcher.cost=" + cost}, false, Scene{"scene " + name, {"--synthetic", name}, scene}};
+}
+
+Claim cost_claim() {
+  Claim claim = claim_of(Quantity::kAccuracyChange, 0, {cost_run("sad", 1), cost_run("ssd", 1)});
+  claim.cases.push_back({"", 0, {cost_run("sad", 1), cost_run("zncc", 1), cost_run("{census: 5}", 1)}});
+  claim.cases.push_back({"", 0, {cost_run("sad", 2), cost_run("ssd", 2)}});
+  return claim;
+}
+
+TEST(Study, TakesTheLargerChangeOfTheAccuracyOfTheSecondRun) {
+  const ClaimFinding found = study({cost_claim()}, seeing_means()).value().of("one");
+  EXPECT_EQ(found.cases.at(0).modelled, 1);
+  EXPECT_EQ(found.cases.at(0).verdict, Verdict::kConfirmed);
+  // Zncc answers more, which counts as a change too.
+  EXPECT_EQ(found.cases.at(1).modelled, 1.25);
+  EXPECT_EQ(found.cases.at(1).verdict, Verdict::kNotConfirmed);
+  EXPECT_EQ(found.cases.at(2).modelled, 2);
+  EXPECT_EQ(found.verdict, Verdict::kInPart);
+  // The boards are simulated without pixels too.
+  EXPECT_EQ(found.cases.at(0).runs.at(0).slices_percent, 20);
+}
+
+TEST(Study, ListsEachRunOfAScene) {
+  const ClaimFinding found = study({cost_claim()}, seeing_means()).value().of("one");
+  std::vector<std::string> rows;
+  for (const CostRow& row : cost_rows(found)) {
+    rows.push_back(fmt::format("{} {}: {} {}, change {} {}, {}", row.scene, row.cost,
+                               row.quality.wrong_percent, row.quality.answered_percent,
+                               row.change.wrong_percent, row.change.answered_percent,
+                               row.verdict ? text_of(*row.verdict) : "-"));
+  }
+  EXPECT_THAT(rows,
+              ElementsAre("scene 1 sad: 2 80, change 0 0, -", "scene 1 ssd: 3 79.5, change 1 -0.5, confirmed",
+                          "scene 1 zncc: 1.5 81.25, change -0.5 1.25, not confirmed",
+                          "scene 1 census 5: 9 9, change 7 -71, -", "scene 2 sad: 1 80, change 0 0, -",
+                          "scene 2 ssd: 3 79.5, change 2 -0.5, not confirmed"));
+  EXPECT_EQ(cost_rows(found)[3].command,
+            "stereotlm run fpl2003 --set 'matcher.cost={census: 5}' --source preloaded --synthetic 1");
+}
+
+TEST(Study, QuotesTheWordsOfACommand) {
+  BoardRun run = cost_run("ssd", 1);
+  run.scene.value().options = {"--left", "my left.png", "--right", "it's.png", "--truth", ""};
+  EXPECT_EQ(command_of(run),
+            "stereotlm run fpl2003 --set matcher.cost=ssd --source preloaded --left 'my left.png' "
+            "--right 'it'\\''s.png' --truth ''");
+}
+
+TEST(Study, SimulatesEachRunOfASceneOnceAndCountsIt) {
+  Means counting = seeing_means();
+  int frames = 0;
+  counting.quality = [&frames](const BoardConfig& board, const Scene& scene) {
+    ++frames;
+    return made_up_quality(board, scene);
+  };
+  std::vector<std::uint64_t> totals;
+  counting.keep_going = [&totals](std::uint64_t done, std::uint64_t most_left) {
+    totals.push_back(done + most_left);
+    return true;
+  };
+  ASSERT_TRUE(study({cost_claim()}, counting).has_value());
+  EXPECT_EQ(frames, 6);
+  // Four boards without pixels, and the frames.
+  for (const std::uint64_t total : totals) EXPECT_EQ(total, 10U);
+}
+
+TEST(Study, EndsBetweenTheFramesOfScenesWhenStopped) {
+  Means ending = seeing_means();
+  ending.keep_going = [](std::uint64_t done, std::uint64_t) { return done < 6; };
+  int frames = 0;
+  ending.quality = [&frames](const BoardConfig& board, const Scene& scene) {
+    ++frames;
+    return made_up_quality(board, scene);
+  };
+  EXPECT_FALSE(study({cost_claim()}, ending).has_value());
+  EXPECT_EQ(frames, 2);
 }
 
 TEST(Study, SimulatesABoardOfTwoClaimsOnce) {
