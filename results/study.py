@@ -1,8 +1,10 @@
 """What the studies share: the points of a sweep's database, tables, and figures whose bytes depend on the data alone."""
 import csv
 import pathlib
+import re
 import sqlite3
 import sys
+import textwrap
 
 import matplotlib
 
@@ -11,6 +13,42 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "sw" / "report" / "plots"))
 from points import Points  # noqa: E402
+
+
+# A row that `allocate` prints: banks, allocations, simulated, best rate, bound, steady rate (only for a whole
+# computer), number of allocations that reach the best rate, one of them.
+ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
+
+
+def searched(path):
+    """What `allocate` has printed into this file. By number of banks: the values of the row, such as the best rate and
+    an allocation that reaches it."""
+    found = {}
+    for line in path.read_text().splitlines():
+        if row := ROW.fullmatch(line):
+            banks, allocations, simulated, best, bound, steady, reached_by, witness = row.groups()
+            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated), "best": float(best),
+                                 "steady": float(steady) if steady else None, "bound": float(bound),
+                                 "reached_by": int(reached_by), "witness": witness}
+    return found
+
+
+def best_table(searches, banks):
+    """The best rates of searches, each a text and what `searched` has found; the first that is best of all is bold."""
+    lines = []
+    for what, rates in searches:
+        top = max(row["best"] for row in rates.values())
+        fewest = min(number for number, row in rates.items() if row["best"] == top)
+        cells = (f"{rates[number]['best']:.3f}" if number in rates else "" for number in banks)
+        lines.append([what, *(f"**{cell}**" if number == fewest else cell for number, cell in zip(banks, cells))])
+    return markdown(["", *(f"{number}" for number in banks)], lines)
+
+
+def witness_table(rates):
+    return markdown(["banks", "allocations", "simulated", "best", "steady", "reached by", "one of them"],
+                    [[banks, row["allocations"], row["simulated"], f"{row['best']:.3f}",
+                      "" if row["steady"] is None else f"{row['steady']:.3f}", row["reached_by"], row["witness"]]
+                     for banks, row in rates.items()])
 
 
 def points(database, **columns):
@@ -41,6 +79,19 @@ def only(found, **values):
 def markdown(header, rows):
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def page(text):
+    """Markdown whose paragraphs and items are wrapped anew, because the figures in them are of any length."""
+    blocks = []
+    for block in re.split(r"(\n\n+|\n(?=- ))", text):
+        if block and not block.startswith(("|", "!", "#", "\n")):
+            indent = "  " if block.startswith("- ") else ""
+            text = " ".join(block.split()).replace(" %", "\N{NO-BREAK SPACE}%")
+            block = textwrap.fill(text, 110, subsequent_indent=indent, break_long_words=False,
+                                  break_on_hyphens=False).replace("\N{NO-BREAK SPACE}", " ") + "\n" * block.endswith("\n")
+        blocks.append(block)
+    return "".join(blocks)
 
 
 def write_csv(path, found):

@@ -4,7 +4,6 @@ Reads QUEUES.db, and the texts that `allocate` has printed, beside this script. 
 README.md beside it.
 """
 import pathlib
-import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -24,40 +23,7 @@ SEARCHES = {
 }
 DRAWN = {"core": ("o-", "tab:blue"), "core_sync_burst": ("o--", "tab:cyan"), "computer": ("s-", "tab:red"),
          "computer_sync_burst": ("s--", "tab:orange"), "computer_long_queues": ("s-", "tab:green")}
-# A row that `allocate` prints: banks, allocations, simulated, best rate, bound, steady rate (only for a whole
-# computer), number of allocations that reach the best rate, one of them.
-ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
 BANKS = range(1, 9)
-
-
-def read(name):
-    """By number of banks: the values of the row, such as the best rate and an allocation that reaches it."""
-    found = {}
-    for line in (HERE / f"{name}.txt").read_text().splitlines():
-        if row := ROW.fullmatch(line):
-            banks, allocations, simulated, best, bound, steady, reached_by, witness = row.groups()
-            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated), "best": float(best),
-                                 "steady": float(steady) if steady else None, "bound": float(bound),
-                                 "reached_by": int(reached_by), "witness": witness}
-    return found
-
-
-def best_table(found):
-    lines = []
-    for name, what in SEARCHES.items():
-        rates = found[name]
-        top = max(row["best"] for row in rates.values())
-        fewest = min(banks for banks, row in rates.items() if row["best"] == top)
-        cells = (f"{rates[banks]['best']:.3f}" if banks in rates else "" for banks in BANKS)
-        lines.append([what, *(f"**{cell}**" if banks == fewest else cell for banks, cell in zip(BANKS, cells))])
-    return study.markdown(["", *(f"{banks}" for banks in BANKS)], lines)
-
-
-def witness_table(rates):
-    return study.markdown(["banks", "allocations", "simulated", "best", "steady", "reached by", "one of them"],
-                          [[banks, row["allocations"], row["simulated"], f"{row['best']:.3f}",
-                            "" if row["steady"] is None else f"{row['steady']:.3f}", row["reached_by"], row["witness"]]
-                           for banks, row in rates.items()])
 
 
 def queues_table(queues):
@@ -143,15 +109,16 @@ windows, cameras and numbers of buffers need a search of their own: give `--set`
 
 
 def main():
-    found = {name: read(name) for name in SEARCHES}
+    found = {name: study.searched(HERE / f"{name}.txt") for name in SEARCHES}
     queues = study.points(sys.argv[1], lane_fifo_slots="fpga.lane_fifo_slots", core="frames_per_second.core",
                           steady="frames_per_second.steady", slices="area.slices")
     queues.sort(key=lambda point: point["lane_fifo_slots"])
     study.write_csv(HERE / "queues.csv", queues)
     draw(found, queues)
     core, computer = found["core"], found["computer"]
-    text = TEXT.format(files=",\n".join(f"[{name}.txt]({name}.txt)" for name in SEARCHES), best=best_table(found),
-                       core=witness_table(core), computer=witness_table(computer), queues=queues_table(queues),
+    text = TEXT.format(files=",\n".join(f"[{name}.txt]({name}.txt)" for name in SEARCHES),
+                       best=study.best_table([(what, found[name]) for name, what in SEARCHES.items()], BANKS),
+                       core=study.witness_table(core), computer=study.witness_table(computer), queues=queues_table(queues),
                        core4=core[4]["best"], core5=core[5]["best"], best4=computer[4]["best"], best5=computer[5]["best"],
                        best6=computer[6]["best"], best7=computer[7]["best"],
                        long5=found["computer_long_queues"][5]["best"])
