@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <systemc>
 
 #include "models/fpga/core_ports.h"
@@ -35,9 +34,9 @@ struct WindowSums {
   int row = 0;
   const std::int32_t* sums = nullptr;  // padded lanes, valid during the push
   int lanes = 0;
-  std::optional<kernels::ColumnScores> scores;  // compared in place of the sums, if there are any
-  int candidates = 0;                           // lanes 0..candidates-1 have windows inside both images
-  bool left_valid = false;                      // valid bit of the left pixel in the middle of the window
+  const kernels::ColumnScores* scores = nullptr;  // compared in place of the sums, unless null
+  int candidates = 0;                             // lanes 0..candidates-1 have windows inside both images
+  bool left_valid = false;                        // valid bit of the left pixel in the middle of the window
 };
 
 // Unit A's result for a right pixel.

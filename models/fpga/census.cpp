@@ -22,10 +22,10 @@ void Census::take(const PixelColumn& column) {
   ++stats_.columns;
   if (columns_to_skip_ > 0) {
     --columns_to_skip_;
-    columns_out->push(before_first_);
-    return;
+    columns_out->push(census_.output());
+  } else {
+    columns_out->push(census_.push(column));
   }
-  columns_out->push(census_.push(column));
 }
 
 }  // namespace stereotlm::fpga

@@ -38,8 +38,7 @@ class Census : public sc_core::sc_module {
   int filter_half_;
   int first_row_;  // of the rows that leave the filter first
   kernels::CensusColumns census_;
-  PixelColumn before_first_;  // passed on until the filter has output
-  int columns_to_skip_ = 0;
+  int columns_to_skip_ = 0;  // until the filter has output
   Stats stats_;
 };
 

@@ -1,7 +1,5 @@
 #include "models/fpga/cost_array.h"
 
-#include <algorithm>
-
 namespace stereotlm::fpga {
 
 CostArray::CostArray(const sc_core::sc_module_name& name, const CoreConfig& config)
@@ -32,14 +30,13 @@ void CostArray::start_frame() {
 }
 
 void CostArray::take_left(const PixelColumn& column) {
-  std::copy_n(column.values.begin(), column_rows_ * pixel_bytes_, left_.values.begin());
-  left_.valid = column.valid;
+  left_ = column;
   have_left_ = true;
   if (have_right_) finish_column();
 }
 
 void CostArray::take_right(const PixelColumn& column) {
-  std::copy_n(column.values.begin(), column_rows_ * pixel_bytes_, right_.values.begin());
+  right_ = column;
   have_right_ = true;
   if (have_left_) finish_column();
 }
@@ -52,8 +49,8 @@ void CostArray::finish_column() {
   const bool has_windows = columns_before_window_ == 0;
   for (int index = 0; index < geometry_.rows; ++index) {
     Row& row = rows_[static_cast<std::size_t>(index)];
-    const std::uint8_t* const left = left_.values.data() + index * pixel_bytes_;
-    const std::uint8_t* const right = right_.values.data() + index * pixel_bytes_;
+    const std::uint8_t* const left = left_.values + index * pixel_bytes_;
+    const std::uint8_t* const right = right_.values + index * pixel_bytes_;
     row.sums.push_column(left, right);
     if (row.scorer) row.scorer->push_column(left, right, row.sums.window_sums());
     row.left_valid = row.left_valid << 1U | (left_.valid >> (index + geometry_.radius) & 1U);
@@ -74,7 +71,7 @@ void CostArray::pass_on(int index, const Row& row) {
   window.row = index;
   window.sums = row.sums.window_sums();
   window.lanes = row.sums.lanes();
-  if (row.scorer) window.scores = row.scorer->scores();
+  if (row.scorer) window.scores = &row.scorer->scores();
   window.candidates = kernels::candidate_count(column_, first_row_ + index, geometry_.width, geometry_.height,
                                                window_, disparities_);
   window.left_valid = (row.left_valid >> geometry_.radius & 1U) != 0;

@@ -15,14 +15,12 @@ void RowBuffer::take(const PixelColumn& pixel) {
   const std::size_t older_bytes = newest_row_ * pixel_bytes_;
   std::uint8_t* const values = values_.data() + column_ * (older_bytes + pixel_bytes_);
   std::copy_n(values + pixel_bytes_, older_bytes, values);
-  std::copy_n(pixel.values.begin(), pixel_bytes_, values + older_bytes);
-  std::copy_n(values, older_bytes + pixel_bytes_, output_.values.begin());
+  std::copy_n(pixel.values, pixel_bytes_, values + older_bytes);
   std::uint64_t& valid = valid_[column_];
   valid = valid >> 1U | (pixel.valid & 1U) << newest_row_;
-  output_.valid = valid;
   column_ = column_ + 1 == valid_.size() ? 0 : column_ + 1;
   ++stats_.columns;
-  columns_out->push(output_);
+  columns_out->push({values, valid});
 }
 
 }  // namespace stereotlm::fpga

@@ -39,7 +39,6 @@ class RowBuffer : public sc_core::sc_module {
   std::size_t column_ = 0;
   std::vector<std::uint8_t> values_;  // of each image column: its last n pixels
   std::vector<std::uint64_t> valid_;  // their valid bits
-  PixelColumn output_;
   Stats stats_;
 };
 

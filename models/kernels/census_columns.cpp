@@ -8,17 +8,17 @@ namespace stereotlm::kernels {
 CensusColumns::CensusColumns(int width, int height, int rows_per_column, int rows_per_strip, int census_size)
     : size_(kCensusSizeRule.required("census_size", census_size)),
       rows_(rows_per_column),
-      pixels_(width, height, rows_per_column, rows_per_strip, (census_size - 1) / 2) {
+      pixels_(width, height, rows_per_column, rows_per_strip, (census_size - 1) / 2),
+      output_(static_cast<std::size_t>(rows_per_column * (census_size * census_size - 1) / 8)) {
   start_frame(0);
 }
 
-const PixelColumn& CensusColumns::push(const PixelColumn& column) {
-  std::copy_n(column.values.begin(), rows_, pixels_.begin_column());
-  if (!pixels_.finish_column(column.valid)) return output_;
+PixelColumn CensusColumns::push(const PixelColumn& column) {
+  std::copy_n(column.values, rows_, pixels_.begin_column());
+  if (!pixels_.finish_column(column.valid)) return output();
   const std::uint8_t* const columns = pixels_.columns();
   const std::ptrdiff_t half = (size_ - 1) / 2;
-  output_.valid = pixels_.valid();
-  std::uint8_t* out = output_.values.data();
+  std::uint8_t* out = output_.data();
   for (std::ptrdiff_t k = 0; k < rows_; ++k) {
     const std::uint8_t middle = columns[half * pixels_.stride() + half + k];
     unsigned bits = 0;
@@ -31,7 +31,8 @@ const PixelColumn& CensusColumns::push(const PixelColumn& column) {
       }
     }
   }
-  return output_;
+  output_valid_ = pixels_.valid();
+  return output();
 }
 
 }  // namespace stereotlm::kernels

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "models/kernels/column_neighbourhood.h"
+#include "models/kernels/matching_cost.h"
 #include "models/kernels/pixel_column.h"
 
 namespace stereotlm::kernels {
@@ -17,14 +19,17 @@ class CensusColumns {
 
   // Begins a frame. `first_row`: see ColumnNeighbourhood.
   void start_frame(int first_row) { pixels_.start_frame(first_row); }
-  // Enters the next column. Returns output(), which is that of an earlier column until the first one leaves.
-  const PixelColumn& push(const PixelColumn& column);
+  // Enters the next column. Returns the column that leaves, or any one until the first leaves.
+  PixelColumn push(const PixelColumn& column);
+  // The last column that has left.
+  PixelColumn output() const { return {output_.data(), output_valid_}; }
 
  private:
   int size_;
   int rows_;
   ColumnNeighbourhood<std::uint8_t> pixels_;
-  PixelColumn output_;
+  std::vector<std::uint8_t> output_;
+  std::uint64_t output_valid_ = 0;
 };
 
 }  // namespace stereotlm::kernels

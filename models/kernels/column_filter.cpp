@@ -21,7 +21,8 @@ ColumnFilter::ColumnFilter(int width, int height, int rows_per_column, int rows_
     : simd_(simd.column),
       rows_per_column_(rows_per_column),
       kernel_(checked(kernel)),
-      pixels_(width, height, rows_per_column, rows_per_strip, kernel ? kernel->half() : 0) {
+      pixels_(width, height, rows_per_column, rows_per_strip, kernel ? kernel->half() : 0),
+      output_(static_cast<std::size_t>(padded_rows(rows_per_column))) {
   if (kernel_) {
     std::int64_t positive = 0;
     for (int column = 0; column < kernel_->size; ++column) {
@@ -50,17 +51,17 @@ void ColumnFilter::begin_column() {
 
 void ColumnFilter::finish_column() {
   if (!kernel_) {
-    output_.valid = entered_valid_;
+    output_valid_ = entered_valid_;
     return;
   }
   if (!pixels_.finish_column(entered_valid_)) return;
   const float* const columns = pixels_.columns();
-  output_.valid = pixels_.valid();
+  output_valid_ = pixels_.valid();
   if (wide_) {
     filter_wide(columns);
   } else {
     simd_.filter_column(columns, pixels_.stride(), weights_.data(), kernel_->size, rows_per_column_,
-                        kernel_->shift, output_.values.data());
+                        kernel_->shift, output_.data());
   }
 }
 
@@ -75,8 +76,7 @@ void ColumnFilter::filter_wide(const float* columns) {
     }
     // An arithmetic shift is the floor of the quotient.
     const std::int64_t level = 128 + (sum >> kernel_->shift);
-    output_.values[static_cast<std::size_t>(k)] =
-        static_cast<std::uint8_t>(std::clamp<std::int64_t>(level, 0, 255));
+    output_[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::clamp<std::int64_t>(level, 0, 255));
   }
 }
 

@@ -34,7 +34,7 @@ class ColumnFilter {
     if (entered_ != nullptr) {
       entered_[k] = static_cast<float>(pixel.value);
     } else {
-      output_.values[k] = pixel.value;
+      output_[k] = pixel.value;
     }
     entered_valid_ |= std::uint64_t{pixel.valid} << k;
     if (++k_ < rows_per_column_) return false;
@@ -42,7 +42,7 @@ class ColumnFilter {
     return true;
   }
   // The last column that has left; valid until the next push().
-  const PixelColumn& output() const { return output_; }
+  PixelColumn output() const { return {output_.data(), output_valid_}; }
 
  private:
   void begin_column();
@@ -59,7 +59,8 @@ class ColumnFilter {
   int k_ = 0;                 // number of rows of the column that have entered
   float* entered_ = nullptr;  // where the rows of that column are stored; null without kernel
   std::uint64_t entered_valid_ = 0;
-  PixelColumn output_;
+  std::vector<std::uint8_t> output_;
+  std::uint64_t output_valid_ = 0;
 };
 
 }  // namespace stereotlm::kernels

@@ -47,6 +47,8 @@ void ColumnScorer::push(Side& side, const std::uint8_t* pixels) const {
 
 void ColumnScorer::push_column(const std::uint8_t* left, const std::uint8_t* right,
                                const std::int32_t* window_sums) {
+  scores_.covariances = covariances_.data();
+  scores_.right_variances = right_variances_.data();
   const std::size_t candidates = covariances_.size();
   if (!are_products_) {
     for (std::size_t d = 0; d < candidates; ++d) covariances_[d] = -std::int64_t{window_sums[d]};
@@ -59,7 +61,7 @@ void ColumnScorer::push_column(const std::uint8_t* left, const std::uint8_t* rig
   std::copy_backward(right_variances_.begin(), right_variances_.end() - 1, right_variances_.end());
   right_history_.front() = right_.window;
   right_variances_.front() = right_.window.variance(pixels_);
-  left_variance_ = left_.window.variance(pixels_);
+  scores_.left_variance = left_.window.variance(pixels_);
   for (std::size_t d = 0; d < candidates; ++d)
     covariances_[d] = covariance(pixels_, window_sums[d], left_.window, right_history_[d]);
 }

@@ -34,7 +34,7 @@ class ColumnScorer {
   // Sums other than of products become negative covariances, with variances of 1: the smallest wins.
   void push_column(const std::uint8_t* left, const std::uint8_t* right, const std::int32_t* window_sums);
   // Valid until the next push_column().
-  ColumnScores scores() const { return {covariances_.data(), right_variances_.data(), left_variance_}; }
+  const ColumnScores& scores() const { return scores_; }
 
  private:
   struct Side {
@@ -53,7 +53,7 @@ class ColumnScorer {
   std::vector<PixelSums> right_history_;  // [d]: the right window d columns ago
   std::vector<std::int64_t> covariances_;
   std::vector<std::int64_t> right_variances_;
-  std::int64_t left_variance_ = 1;
+  ColumnScores scores_;
 };
 
 }  // namespace stereotlm::kernels

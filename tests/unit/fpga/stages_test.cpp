@@ -136,9 +136,10 @@ TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
   rows.columns_out.bind(columns);
   sc_core::sc_start(sc_core::SC_ZERO_TIME);
   PixelColumn pixel;
-  for (const std::uint8_t value : std::vector<std::uint8_t>{99, 1}) {
+  const std::vector<std::uint8_t> values = {99, 1};
+  for (const std::uint8_t& value : values) {
     rows.start_frame();
-    pixel.values[0] = value;
+    pixel.values = &value;
     rows.columns_in->push(pixel);
   }
   EXPECT_EQ(columns.beats.back().values[1], 99);
@@ -157,6 +158,29 @@ TEST(ResultPacker, BeginsAFrameWithAnEmptyWord) {
     packer.disparities_in->push({0, disparity});
   ASSERT_EQ(words.beats.size(), 1U);
   EXPECT_EQ(words.beats[0].word, 0x5544'3322U);
+}
+
+// Two words a row, three rows a strip.
+TEST(ResultPacker, GivesEachWordItsPlaceInTheImage) {
+  CoreConfig config = small_core(8, 6);
+  config.rows = 3;
+  ResultPacker packer("packer", config);
+  Collected<ResultWord> words;
+  packer.words_out.bind(words);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  for (int frame = 0; frame < 2; ++frame) {
+    words.beats.clear();
+    packer.start_frame();
+    for (int column = 0; column < 2 * 8; ++column) {
+      for (int row = 0; row < 3; ++row)
+        packer.disparities_in->push({row, static_cast<std::uint8_t>(16 * row + column)});
+    }
+    std::vector<std::uint64_t> places;
+    for (const ResultWord& word : words.beats) places.push_back(word.place);
+    EXPECT_EQ(places, (std::vector<std::uint64_t>{0, 2, 4, 1, 3, 5, 6, 8, 10, 7, 9, 11}));
+    EXPECT_EQ(words.beats[1].word, 0x1312'1110U);
+    EXPECT_EQ(words.beats[11].word, 0x2F2E'2D2CU);
+  }
 }
 
 class ResultWriterTest : public StageTest<ResultWriter> {

@@ -19,10 +19,18 @@ namespace {
 using test::RandomBoard;
 using test::SplitMix64;
 
+// How a frame is cut into columns.
+struct Strips {
+  int rows_per_column;
+  int rows_per_strip;
+  int first_row;
+  int strips;
+};
+
 // Sends one frame through the filter. Pixel (u, v) must leave filtered, with its own valid bit, `half`
 // columns after it entered and `half` rows further up. Rows outside the image hold random pixels.
-void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_per_column, int first_row,
-                     int strips, SplitMix64& random) {
+void expect_filtered(ColumnFilter& filter, const RandomBoard& board, const Strips& cut, SplitMix64& random) {
+  const auto [rows_per_column, rows_per_strip, first_row, strips] = cut;
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
   const auto& pixels = board.pictures.front().left;
   const auto expected = test::reference_filter(board.width, board.height, pixels, board.filter);
@@ -36,7 +44,7 @@ void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_pe
   filter.start_frame(first_row);
   for (int count = 0; count < strips * board.width + half; ++count) {
     for (int k = 0; k < rows_per_column; ++k) {
-      const int row = first_row + count / board.width + k;
+      const int row = first_row + count / board.width * rows_per_strip + k;
       const MaskedPixel outside{static_cast<std::uint8_t>(random.between(0, 255)), random.chance(50)};
       const auto from = inside(row) ? place(count % board.width, row) : 0;
       const bool complete = filter.push(inside(row) ? MaskedPixel{pixels[from], valid[from]} : outside);
@@ -45,7 +53,7 @@ void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_pe
     if (count < half) continue;
     const int column = (count - half) % board.width;
     for (int k = 0; k < rows_per_column; ++k) {
-      const int row = first_row + (count - half) / board.width - half + k;
+      const int row = first_row + (count - half) / board.width * rows_per_strip - half + k;
       if (!inside(row)) continue;
       const auto at = static_cast<std::size_t>(k);
       ASSERT_EQ(int{filter.output().values[at]}, expected[place(column, row)]) << column << ", " << row;
@@ -55,30 +63,30 @@ void expect_filtered(ColumnFilter& filter, const RandomBoard& board, int rows_pe
 }
 
 // Two frames through one filter, with each instruction set.
-void expect_two_frames(const RandomBoard& board, int rows_per_column, int first_row, int strips,
-                       SplitMix64& random) {
+void expect_two_frames(const RandomBoard& board, const Strips& cut, SplitMix64& random) {
   for (const Simd* simd : simd_sets()) {
     SCOPED_TRACE(simd->name);
-    ColumnFilter filter(board.width, board.height, rows_per_column, 1, test::filter_kernel(board.filter),
-                        *simd);
+    ColumnFilter filter(board.width, board.height, cut.rows_per_column, cut.rows_per_strip,
+                        test::filter_kernel(board.filter), *simd);
     for (int frame = 0; frame < 2; ++frame) {
-      ASSERT_NO_FATAL_FAILURE(expect_filtered(filter, board, rows_per_column, first_row, strips, random));
+      ASSERT_NO_FATAL_FAILURE(expect_filtered(filter, board, cut, random));
     }
   }
 }
 
-// Column fetch: the n rows of a window at once, from the first strip that the matcher needs.
-void expect_filtered_by_columns(const RandomBoard& board, SplitMix64& random) {
+// Column fetch: the rows of `rows` windows at once, from the first strip that the matcher needs.
+void expect_filtered_by_columns(const RandomBoard& board, int rows, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
   const int radius = (board.window - 1) / 2;
-  const int lead = std::max(0, half - radius);
-  expect_two_frames(board, board.window, half - radius - lead, lead + board.height, random);
+  const int lead = (std::max(0, half - radius) + rows - 1) / rows;
+  const int strips = lead + (board.height + rows - 1) / rows;
+  expect_two_frames(board, {board.window + rows - 1, rows, half - radius - lead * rows, strips}, random);
 }
 
 // Line buffers: one row at a time, from the first row of the image.
 void expect_filtered_by_rows(const RandomBoard& board, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
-  expect_two_frames(board, 1, 0, board.height + half + (board.window - 1) / 2, random);
+  expect_two_frames(board, {1, 1, 0, board.height + half + (board.window - 1) / 2}, random);
 }
 
 TEST(ColumnFilter, EqualsTheLiteralFilterOnRandomBoards) {
@@ -86,7 +94,8 @@ TEST(ColumnFilter, EqualsTheLiteralFilterOnRandomBoards) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const RandomBoard board = test::make_random_board(seed);
     SCOPED_TRACE(describe(board));
-    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
+    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, 1, random));
+    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random.between(2, 16), random));
     ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
   }
 }
@@ -111,7 +120,8 @@ TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
                      std::to_string(width) + " x " + std::to_string(height));
         RandomBoard board = test::noise_board(width, height, window, random);
         board.filter = differences_kernel(size);
-        ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
+        for (const int rows : {1, 2, 16})
+          ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, rows, random));
         ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
       }
     }
@@ -155,7 +165,7 @@ TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
       for (std::uint8_t& pixel : board.pictures[0].left) {
         if (pixel > 60) pixel = random.chance(50) ? 255 : 0;
       }
-      ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
+      ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, 1, random));
       ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
     }
   }

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "models/kernels/column_scores.h"
 #include "tests/support/random_board.h"
+#include "tests/unit/kernels/reference_types.h"
 
 namespace stereotlm::kernels {
 namespace {
@@ -25,24 +27,42 @@ PixelColumns random_columns(int columns, int window, bool extreme, test::SplitMi
   return pixels;
 }
 
-// Sum of |right pixel d columns before - left pixel| over the window columns that end at `column`.
-int sad(const PixelColumns& left, const PixelColumns& right, int column, int d, int window) {
+int cost_of(CostKind kind, int right, int left) {
+  switch (kind) {
+    case CostKind::kSad:
+      return std::abs(right - left);
+    case CostKind::kSsd:
+      return (right - left) * (right - left);
+    case CostKind::kZncc:
+      return right * left;
+    case CostKind::kCensus:
+      break;
+  }
+  int bits = 0;
+  for (int differing = right ^ left; differing != 0; differing &= differing - 1) ++bits;
+  return bits;
+}
+
+// Sum of the costs of the right pixels d columns before and the left pixels, over the window columns that end
+// at `column`.
+int window_sum(CostKind kind, const PixelColumns& left, const PixelColumns& right, int column, int d,
+               int window) {
   int sum = 0;
   for (int c = column - window + 1; c <= column; ++c) {
     const auto& left_column = left[static_cast<std::size_t>(c)];
     const auto& right_column = right[static_cast<std::size_t>(c - d)];
     for (std::size_t row = 0; row < left_column.size(); ++row)
-      sum += std::abs(int{left_column[row]} - int{right_column[row]});
+      sum += cost_of(kind, right_column[row], left_column[row]);
   }
   return sum;
 }
 
 // One frame through modules of each instruction set. A frame before it must leave no trace.
-void expect_literal_sums(std::vector<CostColumns>& sets, int window, int disparities, bool extreme,
-                         int columns, test::SplitMix64& random) {
+void expect_literal_sums(std::vector<CostColumns>& sets, const MatchingCost& cost, int window,
+                         int disparities, bool extreme, int columns, test::SplitMix64& random) {
   SCOPED_TRACE("window " + std::to_string(window) + ", disparities " + std::to_string(disparities));
-  const PixelColumns left = random_columns(columns, window, extreme, random);
-  const PixelColumns right = random_columns(columns, window, extreme, random);
+  const PixelColumns left = random_columns(columns, window * cost.pixel_bytes(), extreme, random);
+  const PixelColumns right = random_columns(columns, window * cost.pixel_bytes(), extreme, random);
   for (CostColumns& sums : sets) {
     sums.start_frame();
     ASSERT_GE(sums.lanes(), disparities);
@@ -51,7 +71,7 @@ void expect_literal_sums(std::vector<CostColumns>& sets, int window, int dispari
     const auto at = static_cast<std::size_t>(column);
     for (CostColumns& sums : sets) sums.push_column(left[at].data(), right[at].data());
     for (int d = 0; d < disparities && d <= column - window + 1; ++d) {
-      const int expected = sad(left, right, column, d, window);
+      const int expected = window_sum(cost.kind, left, right, column, d, window);
       for (std::size_t set = 0; set < sets.size(); ++set)
         ASSERT_EQ(sets[set].window_sums()[d], expected)
             << simd_sets()[set]->name << ", d " << d << ", " << column;
@@ -65,23 +85,90 @@ std::vector<CostColumns> with_each_instruction_set(int window, int disparities, 
   return sets;
 }
 
-TEST(CostColumns, HoldTheLiteralSumsOfEachCandidateWithEachInstructionSet) {
+class CostColumnsOf : public testing::TestWithParam<int> {
+ protected:
+  MatchingCost cost_ = test::matching_cost(test::any_cost(GetParam()));
+};
+
+INSTANTIATE_TEST_SUITE_P(EachCost, CostColumnsOf, testing::Range(0, test::kCosts), [](const auto& suite) {
+  const test::ReferenceCost cost = test::any_cost(suite.param);
+  return std::string(name_of(test::matching_cost(cost).kind)) + std::to_string(cost.census_size);
+});
+
+TEST_P(CostColumnsOf, HoldTheLiteralSumsOfEachCandidateWithEachInstructionSet) {
   test::SplitMix64 random(1);
-  for (const int window : {3, 7, 31}) {
-    for (const int disparities : {1, 31, 32, 33, 64, 254}) {
-      auto sets = with_each_instruction_set(window, disparities, {});
-      for (const bool extreme : {false, true})
-        expect_literal_sums(sets, window, disparities, extreme, 330, random);
+  const auto expect_frames = [&](int window, int disparities, int columns) {
+    auto sets = with_each_instruction_set(window, disparities, cost_);
+    for (const bool extreme : {false, true})
+      expect_literal_sums(sets, cost_, window, disparities, extreme, columns, random);
+  };
+  for (const int disparities : {1, 31, 32, 33, 64, 254}) expect_frames(3, disparities, disparities + 20);
+  expect_frames(7, 80, 120);
+  expect_frames(31, 33, 80);
+  expect_frames(3, 17, 1100);  // more columns than the histories hold
+}
+
+TEST_P(CostColumnsOf, HoldTheLargestSum) {
+  CostColumns sums(31, 254, cost_);
+  const std::vector<std::uint8_t> white(31 * 6, 255);
+  const std::vector<std::uint8_t> black(31 * 6, 0);
+  const auto& left = cost_.kind == CostKind::kZncc ? white : black;
+  for (int column = 0; column < 300; ++column) sums.push_column(left.data(), white.data());
+  const int largest = cost_.pixel_bytes() * cost_of(cost_.kind, 255, left.front());
+  for (int d = 0; d < 254; ++d) ASSERT_EQ(sums.window_sums()[d], 31 * 31 * largest);
+}
+
+// Scores of one column against literal ones, in all columns of a frame.
+TEST(ColumnScorer, HoldsTheCovariancesAndVariancesOfTheWindows) {
+  test::SplitMix64 random(2);
+  constexpr int kDisparities = 9;
+  for (const int window : {3, 31}) {
+    const MatchingCost cost{CostKind::kZncc, 0};
+    CostColumns products(window, kDisparities, cost);
+    ColumnScorer scorer(window, kDisparities, cost);
+    for (int frame = 0; frame < 2; ++frame) {
+      const PixelColumns left = random_columns(100, window, frame == 0, random);
+      const PixelColumns right = random_columns(100, window, frame == 0, random);
+      products.start_frame();
+      scorer.start_frame();
+      for (int column = 0; column < 100; ++column) {
+        const auto at = static_cast<std::size_t>(column);
+        products.push_column(left[at].data(), right[at].data());
+        scorer.push_column(left[at].data(), right[at].data(), products.window_sums());
+        for (int d = 0; d < kDisparities && d <= column - window + 1; ++d) {
+          const std::int64_t pixels = std::int64_t{window} * window;
+          PixelSums l;
+          PixelSums r;
+          for (int c = column - window + 1; c <= column; ++c) {
+            for (int row = 0; row < window; ++row) {
+              const int lp = left[static_cast<std::size_t>(c)][static_cast<std::size_t>(row)];
+              const int rp = right[static_cast<std::size_t>(c - d)][static_cast<std::size_t>(row)];
+              l.pixels += lp;
+              l.squares += lp * lp;
+              r.pixels += rp;
+              r.squares += rp * rp;
+            }
+          }
+          const std::int64_t cov =
+              pixels * window_sum(cost.kind, left, right, column, d, window) - l.pixels * r.pixels;
+          ASSERT_EQ(scorer.scores().of_left_pixel(d).covariance, cov);
+          ASSERT_EQ(scorer.scores().of_left_pixel(d).variance, pixels * r.squares - r.pixels * r.pixels);
+          ASSERT_EQ(scorer.scores().of_right_pixel(d).covariance, cov);
+          ASSERT_EQ(scorer.scores().of_right_pixel(d).variance, pixels * l.squares - l.pixels * l.pixels);
+        }
+      }
     }
   }
 }
 
-TEST(CostColumns, HoldTheLargestSum) {
-  CostColumns sums(31, 254);
-  const std::vector<std::uint8_t> white(31, 255);
-  const std::vector<std::uint8_t> black(31, 0);
-  for (int column = 0; column < 300; ++column) sums.push_column(white.data(), black.data());
-  for (int d = 0; d < 254; ++d) ASSERT_EQ(sums.window_sums()[d], 31 * 31 * 255);
+// A key has 23 bits for the sum.
+TEST(ColumnScorer, IsNeededForCorrelationsAndForSquaresOfLargeWindows) {
+  for (int window = 3; window <= 31; window += 2) {
+    EXPECT_FALSE(ColumnScorer::is_needed(window, {CostKind::kSad, 0}));
+    EXPECT_FALSE(ColumnScorer::is_needed(window, {CostKind::kCensus, 7}));
+    EXPECT_TRUE(ColumnScorer::is_needed(window, {CostKind::kZncc, 0}));
+    EXPECT_EQ(ColumnScorer::is_needed(window, {CostKind::kSsd, 0}), window >= 13) << window;
+  }
 }
 
 TEST(LaneArray, IsPaddedAlignedAndZero) {

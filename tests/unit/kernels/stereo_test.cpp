@@ -41,7 +41,8 @@ void expect_reference(const RandomBoard& board) {
 
 TEST(Stereo, EqualsTheReferenceOnRandomBoards) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    const RandomBoard board = test::make_random_board(seed);
+    RandomBoard board = test::make_random_board(seed);
+    board.cost = test::any_cost(static_cast<int>(seed));
     SCOPED_TRACE(describe(board));
     ASSERT_NO_FATAL_FAILURE(expect_reference(board));
     if (HasFailure()) return;
@@ -75,6 +76,7 @@ TEST(Stereo, EqualsTheReferenceForEachWindowAndContent) {
           board.lr_tolerance = next % 3;
           if (next % 4 == 0) board.lr_tolerance.reset();
           board.frames = 1;
+          board.cost = test::any_cost(next / 5 + next);
           board.pictures.resize(1);
           for (int row = 0; row < height; ++row) {
             for (int column = 0; column < board.width; ++column) {
@@ -112,6 +114,9 @@ TEST(StereoConfig, NamesTheRuleThatItBreaks) {
   config.filter->shift = 32;
   EXPECT_EQ(problems(config), Problems{"filter: shift = 32: must be 0..31"});
   EXPECT_EQ(found(1, 0, -1).size(), 3U);
+  config = {};
+  config.cost = {CostKind::kCensus, 4};
+  EXPECT_EQ(problems(config), Problems{"cost: census_size = 4: must be 3..7, odd"});
 }
 
 TEST(Stereo, RefusesDifferentSizesAndBrokenRules) {
@@ -123,6 +128,8 @@ TEST(Stereo, RefusesDifferentSizesAndBrokenRules) {
   EXPECT_THROW(disparity_image(GrayImage(4, 5), image, nullptr, nullptr, config), std::invalid_argument);
   EXPECT_NO_THROW(match(image, image, 3, 254));
   EXPECT_THROW(match(image, GrayImage(8, 4), 3, 2), std::invalid_argument);
+  EXPECT_THROW(match(image, image, 3, 2, {CostKind::kCensus, 9}), std::invalid_argument);
+  EXPECT_THROW(match(image, image, 3, 2, {CostKind::kSsd, 3}), std::invalid_argument);
   for (const auto& [window, disparities] :
        {std::pair(1, 2), std::pair(4, 2), std::pair(33, 2), std::pair(3, 0), std::pair(3, 255)})
     EXPECT_THROW(match(image, image, window, disparities), std::invalid_argument);
