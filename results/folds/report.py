@@ -76,8 +76,8 @@ def together_table(found):
                 here = [point for point in found["together"] if point["window"] == window and point["fetch"] == fetch
                         and point["core"] >= rate]
                 best = min(here, key=lambda point: point["slices"], default=None)
-                cells += [f"{best['units']} modules" + (f", {best['rows']} row{'s' * (best['rows'] > 1)}" if fetch == "column" else ""),
-                          f"{best['slices']:.1f}"] if best else ["none", ""]
+                rows = f", {best['rows']} row{'s' * (best['rows'] > 1)}" if best and fetch == "column" else ""
+                cells += [f"{best['units']} modules{rows}", f"{best['slices']:.1f}"] if best else ["none", ""]
             lines.append([f"{window}x{window}", f"{rate:g}", *cells])
     return study.markdown(["window", "frames/s at least", "smallest with column fetch", "% of the slices",
                            "smallest with line buffers", "% of the slices"], lines)

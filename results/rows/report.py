@@ -72,10 +72,12 @@ def takeover_table(found):
         below = max((point for point in points if point["slices"] <= kept["slices"]), key=lambda point: point["rows"])
         fits = max((point for point in points if point["slices"] <= 100), key=lambda point: point["rows"])
         best = max(points, key=lambda point: point["core"] / point["slices"])
-        lines.append([f"{window}x{window}", f"{points[0]['core']:.2f}", best["rows"], f"{kept['core']:.2f}", f"{kept['slices']:.1f}",
+        lines.append([f"{window}x{window}", f"{points[0]['core']:.2f}", best["rows"], f"{kept['core']:.2f}",
+                      f"{kept['slices']:.1f}",
                       below["rows"], f"{below['core']:.2f}", fits["rows"], f"{fits['core']:.2f}", f"{fits['slices']:.1f}"])
-    return study.markdown(["window", "one row, frames/s", "rows with the most frames for an area", "line buffers, frames/s", "their slices, %",
-                           "most rows that are no larger", "frames/s", "most rows that fit", "frames/s", "slices, %"], lines)
+    return study.markdown(["window", "one row, frames/s", "rows with the most frames for an area",
+                           "line buffers, frames/s", "their slices, %", "most rows that are no larger", "frames/s",
+                           "most rows that fit", "frames/s", "slices, %"], lines)
 
 
 def cameras_table(found):

@@ -25,7 +25,8 @@ SEARCHES = {
 DRAWN = {"core": "tab:blue", "core_joint": "tab:green", "core_cache": "tab:orange", "core_both": "tab:red"}
 BANKS = range(2, 9)
 # The points of ports.yaml and of banks.yaml.
-PORTS = ("two banks", "no cache", "round robin", "age", "queues of 8", "queues of 64")
+PORTS = ("two banks", "no cache", "round robin", "age", "queues of 8", "queues of 11", "queues of 12",
+         "queues of 64")
 PLACES = {"one bank": "one bank, `two-banks`", "one qdr": "one bank, `qdr`", "results apart": "results in a third bank",
           "right apart": "right pictures in a third bank",
           "right apart and qdr": "right pictures in a third bank, the others in a `qdr` one",
@@ -247,7 +248,7 @@ With cameras, 61 frames ([cameras.yaml](cameras.yaml)). Eight banks are the pape
   average a step of one column in the rectified picture is less than one column in the camera's, because the lenses
   squeeze the sides, so the next word comes later. And the left table has no source for 11 % of its entries. On the
   other hand 3 % of the slots read only because a row of the rectified picture crosses into another row of the camera's,
-  most of them in the corners, where rows are bent most. The bank is busy in 48 % of the clocks.
+  most of them in the corners, where rows are bent most (5 %; 1 % in the middle). The bank is busy in 48 % of the clocks.
 - It is *when*. The seven slots of a column mostly come to their next words together, so a lane reads in bursts of seven.
   With the identity each lane has a burst in every fourth column. The right lane waits for the first one, and for the
   rest of the frame its bursts are seven clocks behind those of the left one, in their gaps. With the rig the bursts of
@@ -256,8 +257,8 @@ With cameras, 61 frames ([cameras.yaml](cameras.yaml)). Eight banks are the pape
   the right port waits makes the frame one clock longer ({rig_extra:,} of each). So longer queues do not help, and the bound,
   which counts words, still says 18.60.
 - To keep the bursts apart, one lane has to fall behind the other by a burst. A fixed order does that, and `age` too.
-  Round robin keeps the lanes in step and loses {robin_loss:.1f} % with the identity; so do queues of 8 slots, which cannot hold a
-  burst and the latencies. With the rig round robin is {robin_gain:.1f} % better than the fixed order, and `age` as good.
+  Round robin keeps the lanes in step and loses {robin_loss:.1f} % with the identity. Queues of fewer than 12 slots lose as
+  well: they cannot hold a burst and the latencies. With the rig round robin is {robin_gain:.1f} % better than the fixed order, and `age` as good.
 - A `qdr` bank takes the writes of the results out of the way, as a bank of their own does: both give {qdr:.2f} with the
   rig. The two readers still share one port. With the right pictures in a third bank, and results in a `qdr` bank,
   three banks give the full rate.
