@@ -189,7 +189,8 @@ TEST_F(VideoTest, ReservesNoMemoryForAFrameThatIsLargerThanTheHeaderSays) {
   std::string bytes = test::read_file(written("png.avi", "MPNG", 2));
   const std::size_t at = bytes.rfind("IHDR");
   ASSERT_NE(at, std::string::npos);
-  bytes.replace(at + 4, 8, std::string("\0\0\x3E\x80\0\0\x3E\x80", 8));  // 16000x16000
+  bytes.replace(at + 4, 10,
+                std::string("\0\0\x3E\x80\0\0\x3E\x80\x10\x06", 10));  // 16000x16000, RGBA of 16 bits
   EXPECT_THAT(refusal_of_bytes("png.avi", bytes), StartsWith("'[png] get_buffer() failed'"));
 }
 

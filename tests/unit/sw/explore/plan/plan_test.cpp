@@ -87,7 +87,9 @@ TEST(Plan, MakesPointsImpossibleThatCannotHaveTheTables) {
 }
 
 TEST(Plan, MakesPointsImpossibleWhoseJointTablesDoNotFit) {
-  const std::string joint = "set: {allocation.right_lut: bank6}\nvary: {fpga.tables: [separate, joint]}\n";
+  const std::string joint =
+      "set: {allocation.right_lut: bank6, ssram.banks.bank6.words: 1048576}\n"
+      "vary: {fpga.tables: [separate, joint]}\n";
   Plan plan = plan_of(joint);
   EXPECT_EQ(plan.use_calibration("5a", 640, 480, "too wide"), std::nullopt);
   EXPECT_EQ(plan.point(0).reason, "");
