@@ -58,7 +58,8 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     if (status == tlm::TLM_COMPLETED) record(transaction, delay);
     return status;
   }
-  // END_RESP at the time of the last answer, after Ending::kAccepted.
+  // Sends END_RESP for the last response, timed at that response, and returns what the target returns. To be
+  // called only if `ending` was kAccepted.
   tlm::tlm_sync_enum end_response() {
     tlm::tlm_phase phase = tlm::END_RESP;
     sc_core::sc_time delay =

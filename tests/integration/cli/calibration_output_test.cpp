@@ -1,5 +1,5 @@
-// A calibration on a machine that fails. files::OutputFolder, which writes results and documents too, is tested
-// here only.
+// How `calibrate` behaves when a call of the file system fails or the process is killed. files::OutputFolder,
+// which also writes results and documents, is tested only here.
 #include "sw/cli/calibration_output.h"
 
 #include <fcntl.h>
@@ -26,11 +26,11 @@ namespace {
 
 enum class Fault { kKill, kKillInRename, kFailOnce, kFailFromThenOn };
 
-int steps_left = -1;  // calls that change a file system and go well; below 0: all
+int steps_left = -1;  // calls that still succeed before the fault; negative: no fault
 Fault fault = Fault::kKill;
 int failures = 0;
 
-// Whether the call that asks fails, with errno.
+// Counts a call that changes the file system. Returns whether that call is to fail, and then sets errno.
 bool fails(bool is_rename = false) {
   if (steps_left < 0 || (fault == Fault::kKillInRename && !is_rename)) return false;
   if (steps_left > 0) {
@@ -51,9 +51,9 @@ long address(const char* path) { return reinterpret_cast<long>(path); }
 
 }  // namespace
 
-// They take the place of those of the C library.
+// These functions replace those of the C library, so that a test can make the n-th call fail.
 extern "C" {
-int fsync(int /*file*/) { return fails() ? -1 : 0; }  // which takes its time
+int fsync(int /*file*/) { return fails() ? -1 : 0; }  // syncs nothing, which would be slow
 int rename(const char* from, const char* to) noexcept {
   return fails(true) ? -1 : static_cast<int>(syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
 }

@@ -95,7 +95,8 @@ inline void run_to(std::uint64_t time_ps) {
   while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
 }
 
-// One side on its own. The pictures are small: 16 x 3 pixels. The FIFO has 4 words and requests the bus with 2.
+// One camera with its capture board, without the partner board. The pictures are small: 16 x 3 pixels. The
+// FIFO holds 4 words and requests the bus when 2 are complete.
 class CaptureBench : public testing::Test {
  protected:
   void build() { side.emplace("", camera, board, clock_mhz); }

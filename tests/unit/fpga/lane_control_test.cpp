@@ -34,7 +34,7 @@ struct Cycles {
   std::string lut = "";
   std::string pixel = "";
   std::string consumed = "";
-  // Given: 1 or 0; the last one holds for the later cycles.
+  // Inputs of each cycle, 1 or 0. The last character also holds for all later cycles.
   std::string grants_lut = "1";
   std::string grants_pixel = "1";
   std::string needs_pixel = "1";

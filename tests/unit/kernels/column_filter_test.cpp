@@ -153,8 +153,8 @@ TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
   }
 }
 
-// 255 * 65793 is the last multiple of 255 below 2^24, the limit up to which floats are exact integers. With
-// each shift other low bits of the sum decide the result.
+// 255 * 65793 is the last multiple of 255 below 2^24, up to which a float holds every integer exactly. At
+// each shift, different low bits of the sum decide the result.
 TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
   SplitMix64 random(7);
   for (const int more : {0, 1, 2}) {

@@ -218,7 +218,8 @@ TEST_F(ProtocolMonitorHandshake, DoesNotTouchATransactionThatTheInitiatorRelease
   backward(*heap, BEGIN_RESP);
 }
 
-// The payload, the other calls and simulated time during a handshake.
+// Violations during a handshake: a payload that is wrong or changes, a forbidden call, time that passes or
+// runs backwards. Each is reported once.
 class ProtocolMonitorMistake : public ExchangeTest {
  protected:
   ProtocolMonitorMistake() { manage(); }

@@ -335,8 +335,8 @@ Lines refusal(const std::string& text) {
   return lines;
 }
 
-// [plan of the board fpl2003, from its second line]: the texts that its lines contain. A line that only
-// counts the points need not be named.
+// Pairs of a plan (without its first line, the board) and the texts expected in the lines of its refusal. A
+// line that only counts the points need not be named.
 using Refusals = std::vector<std::pair<std::string, Lines>>;
 
 void expect_refusals(const Refusals& refusals) {
