@@ -105,7 +105,8 @@ std::uint64_t FastForward::skip_known(std::uint64_t cycle, std::uint64_t end) {
     arbitration.skip_to(known_.state(last).arbitration, cycle, skipped.cycles);
   }
   if (!holds_group(left)) return cycle;
-  const TransitionCache::Accesses accesses = accesses_from(consumed());
+  TransitionCache::Accesses accesses{};  // none in the drain
+  if (!control().match().draining()) accesses = accesses_from(consumed());
   if (!known_.find(last, accesses)) begin_group(last, accesses, cycle);
   return cycle;
 }

@@ -240,12 +240,13 @@ std::uint64_t computers() {
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-// Computers without the knobs of contract section 7, or with those that the models have.
+// Computers without the knobs of contract section 7, or with them.
 class RandomComputers : public testing::TestWithParam<std::tuple<Fidelity, bool>> {};
 
 TEST_P(RandomComputers, EqualThePlainLoopOverEvents) {
   const auto [fidelity, with_knobs] = GetParam();
-  const test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
+  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
+  knobs.large_images = false;  // they take minutes under the sanitizers; the random boards have them
   std::vector<test::ChildWork> jobs;
   for (std::uint64_t seed = 0; seed < computers(); ++seed)
     jobs.push_back([seed, knobs, fidelity = fidelity] { return problems_of(seed, knobs, fidelity); });
