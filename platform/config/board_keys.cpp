@@ -203,8 +203,10 @@ std::vector<Key> make_keys() {
       other("fpga.priority", priority_meaning(), "", "a list that names each port once: " + port_names()),
       integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
               fpga::kLaneFifoRule, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
-      integer("fpga.result_fifo_words", "queue of result words before the result port", "words",
-              fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
+      integer("fpga.result_fifo_words",
+              "queue of result words before the result port; with fewer than 2 a row of matcher.rows the "
+              "matcher waits for it",
+              "words", fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
       integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
               "cycles", fpga::kPipelineLatencyRule, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
       optional(word<&B::fpga, &FpgaConfig::joint_tables>("fpga.tables",
@@ -258,7 +260,7 @@ std::vector<Key> make_keys() {
                   "it 1",
                   "rows", fpga::kRowsRule, member<&B::matcher, &MatcherConfig::rows>)),
       optional(other("matcher.cost", "how two windows are compared; optional, without it sad", "",
-                     "sad, ssd, zncc or a map of census")),
+                     "sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}")),
       other_integer("matcher.cost.census", "rows and columns of the neighbourhood of the census bits",
                     "pixels", kernels::kCensusSizeRule, "3, 5 or 7"),
   };

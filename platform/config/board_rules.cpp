@@ -24,7 +24,8 @@ class RuleChecker {
     check_units();
     check_rows();
     check_joint_tables();
-    check_bank_depths();
+    // Deeper banks would not help tables that are too large anyhow.
+    if (!is_too_large_for_tables_) check_bank_depths();
     check_list_lengths();
     check_bank_names();
     return std::move(found_);
@@ -74,6 +75,7 @@ class RuleChecker {
     std::vector<std::string> involved = {key};
     involved.insert(involved.end(), tables.begin(), tables.end());
     if (!all_valid(involved)) return;
+    is_too_large_for_tables_ = true;
     found_.push_back(
         {fmt::format("{} = {}: at most {} with a look-up table; set {} to none, or a smaller image", key,
                      value, rule.max, fmt::join(tables, " and ")),
@@ -144,16 +146,22 @@ class RuleChecker {
     std::vector<std::string> involved = {fmt::format("ssram.banks.{}.words", bank.name)};
     if (!is_valid_(involved.front())) return;
     std::vector<std::string> held;
+    std::vector<std::uint64_t> tables;  // their words
     for (const PlacedBuffer& buffer : known) {
       if (buffer.bank != bank.name) continue;
       involved.push_back(buffer.path());
       held.push_back(buffer.label());
+      if (buffer.index < 0) tables.push_back(buffer_words(buffer, board_.image));
     }
     involved.insert(involved.end(), {"image.width", "image.height"});
-    found_.push_back(
-        {fmt::format("{} = {}: {} words missing, its buffers ({}) need {}", involved.front(), bank.words,
-                     needed - static_cast<std::uint64_t>(bank.words), fmt::join(held, ", "), needed),
-         involved});
+    const std::uint64_t missing = needed - static_cast<std::uint64_t>(bank.words);
+    std::string text = fmt::format("{} = {}: {} words missing, its buffers ({}) need {}", involved.front(),
+                                   bank.words, missing, fmt::join(held, ", "), needed);
+    if (tables.size() == 2 && missing <= tables.front()) {
+      involved.emplace_back("fpga.tables");
+      text += "; set fpga.tables to joint, or give the bank more words, or one of the tables another bank";
+    }
+    found_.push_back({std::move(text), involved});
   }
 
   void check_list_lengths() {
@@ -183,6 +191,7 @@ class RuleChecker {
   const BoardConfig& board_;
   const std::function<bool(const std::string&)>& is_valid_;
   std::vector<BrokenRule> found_;
+  bool is_too_large_for_tables_ = false;
 };
 
 }  // namespace

@@ -3,11 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "platform/config/yaml_values.h"
 
 namespace stereotlm::platform {
+
+namespace {
+
+// The known name in a key such as "census:5", which YAML takes for one word without a value.
+std::optional<std::string> name_before_colon(const YamlNode::Entry& entry,
+                                             const std::vector<std::string>& known) {
+  const bool has_value = entry.value.kind != YamlNode::Kind::kNull || !entry.value.text.empty();
+  if (!entry.key.is_scalar() || has_value) return std::nullopt;
+  const std::string name = entry.key.text.substr(0, entry.key.text.find(':'));
+  const bool is_joined = name.size() + 1 < entry.key.text.size();
+  return is_joined && std::find(known.begin(), known.end(), name) != known.end() ? std::optional(name)
+                                                                                 : std::nullopt;
+}
+
+}  // namespace
 
 std::string below(const std::string& path, const std::string& name) {
   return path.empty() ? name : path + '.' + name;
@@ -65,20 +81,26 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
     return std::nullopt;
   }
   Entries entries;
+  std::set<std::string> joined;  // names that are joined with their value by the colon
   for (const YamlNode::Entry& entry : node.entries) {
     const std::string full = below(path, entry.key.is_scalar() ? entry.key.text : short_text(entry.key));
     if (!entry.key.misuse.empty()) report(entry.key.place, full, short_text(entry.value), entry.key.misuse);
     if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
       const bool is_bank = path == "ssram.banks";
-      report(entry.key.place, full, short_text(entry.value),
-             is_bank ? kBankNameRule : unknown_key_text(full));
+      std::string rule = is_bank ? kBankNameRule : unknown_key_text(full);
+      if (const auto name = name_before_colon(entry, known)) {
+        joined.insert(*name);
+        rule = fmt::format("a blank is missing after the colon: {}: {}", *name,
+                           entry.key.text.substr(name->size() + 1));
+      }
+      report(entry.key.place, full, short_text(entry.value), rule);
     } else if (const auto [first, is_new] = entries.emplace(entry.key.text, &entry); !is_new) {
       report_repeated(entry, *first->second, full);
     }
   }
   for (const std::string& name : required) {
     const std::string full = below(path, name);
-    if (entries.count(name) == 0) report_missing(key, full, rule_text(full));
+    if (entries.count(name) == 0 && joined.count(name) == 0) report_missing(key, full, rule_text(full));
   }
   return entries;
 }

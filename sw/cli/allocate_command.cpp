@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "platform/bounds.h"
@@ -118,6 +120,15 @@ struct Context {
 
 std::string rate_text(double rate) { return fmt::format("{:.3f}", rate); }
 
+// Two rates that differ, with as many decimals as show it; at least three.
+std::pair<std::string, std::string> different_texts(double one, double other) {
+  for (int decimals = 3;; ++decimals) {
+    std::pair<std::string, std::string> texts = {fmt::format("{:.{}f}", one, decimals),
+                                                 fmt::format("{:.{}f}", other, decimals)};
+    if (texts.first != texts.second) return texts;
+  }
+}
+
 std::string table(const Context& context, const std::vector<BestPlacement>& all) {
   const bool camera = context.search.run().camera;
   std::string text = fmt::format("{:>5} {:>12} {:>10} {:>14} {:>10}", "banks", "allocations", "simulated",
@@ -184,16 +195,19 @@ std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
   const auto rate = [](const BestPlacement& best) { return best.frames_per_second; };
   const auto by_rate = [&](const auto& a, const auto& b) { return rate(a) < rate(b); };
   const auto top = std::max_element(all.begin(), all.end(), by_rate);
-  std::string text =
-      fmt::format("The best of all is {} frames/s, and needs {} banks", rate_text(rate(*top)), top->banks);
+  std::string top_text = rate_text(rate(*top));
+  std::string rest;
   if (top != all.begin()) {
-    text += fmt::format(": the best with fewer gives {}",
-                        rate_text(rate(*std::max_element(all.begin(), top, by_rate))));
+    std::string fewer_text;
+    std::tie(top_text, fewer_text) =
+        different_texts(rate(*top), rate(*std::max_element(all.begin(), top, by_rate)));
+    rest = ": the best with fewer gives " + fewer_text;
   } else {
-    text += holds_buffers_only ? ", the fewest with an allocation that counts"
-                               : ", the fewest that hold the buffers";
+    rest = holds_buffers_only ? ", the fewest with an allocation that counts"
+                              : ", the fewest that hold the buffers";
   }
-  text += ".\n";
+  std::string text =
+      fmt::format("The best of all is {} frames/s, and needs {} banks{}.\n", top_text, top->banks, rest);
   const auto kept = std::find_if(all.begin(), all.end(), [&](const BestPlacement& best) {
     return rate(best) * 100 >= rate(*top) * keep_percent;
   });
@@ -280,8 +294,10 @@ int allocate(const AllocateOptions& options) {
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   if (board && *options.banks > static_cast<int>(board->banks.size())) {
-    problems.add(fmt::format("--banks = {}: must be 1..{}, the banks of the board", *options.banks,
-                             board->banks.size()));
+    problems.add(
+        fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
+                    "gives it one more",
+                    *options.banks, board->banks.size()));
   }
   problems.check();
   explore::SweepOptions sweep;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "models/fpga/core_ports.h"
 #include "platform/bounds.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
@@ -35,7 +36,8 @@ using explore::KnobStep;
 using platform::BoardConfig;
 
 constexpr int kMostBlames = 5;
-constexpr double kVisible = 0.0005;  // frames per second: half of the last printed digit
+constexpr double kVisibleLoss = 0.01;  // of the cycles
+constexpr double kVisible = 0.0005;    // frames per second: half of the last printed digit
 
 struct ExplainOptions {
   BoardOptions board;
@@ -97,16 +99,17 @@ class Explanation {
     const Rate now = rate_of(0);
     if (!now.failure.empty()) throw std::runtime_error(now.failure);
     std::vector<StepRate> rates;
-    for (std::size_t i = 0; i < steps_.size(); ++i) rates.push_back({&steps_[i], rate_of(i + 1)});
-    return head(now) + resources(now) + blames() + prices(now, rates) +
+    for (std::size_t i = 0; i < steps_.possible.size(); ++i)
+      rates.push_back({&steps_.possible[i], rate_of(i + 1)});
+    return head(now) + result_queue() + resources(now) + blames() + prices(now, rates) +
            knobs_with(Effect::kTooSmall, "less than 0.0005 frames/s: ", now, rates) +
-           knobs_with(Effect::kNone, "no effect on this run: ", now, rates) + failures(rates);
+           knobs_with(Effect::kNone, "no effect on this run: ", now, rates) + forbidden() + failures(rates);
   }
 
  private:
   std::vector<BoardConfig> boards() const {
     std::vector<BoardConfig> all = {board_};
-    for (const KnobStep& step : steps_) all.push_back(step.board);
+    for (const KnobStep& step : steps_.possible) all.push_back(step.board);
     return all;
   }
 
@@ -130,6 +133,29 @@ class Explanation {
                        run_.camera ? " between the first and the last delivery" : "", frames, row.real(of),
                        row.text(std::string(of) + "_limited_by"),
                        now.loses_pixels ? "; captures lose pixels" : "");
+  }
+
+  // A line if the matcher waits for places in the result queue, which no bound counts. Then it is slower than
+  // its bound though no port stalls, and the ports that fill the lanes are blocked.
+  std::string result_queue() {
+    const explore::StoredRow& row = batch_.row_of(points_.point(0));
+    const double cycles = static_cast<double>(row.integer("cycles"));
+    const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
+    std::int64_t stalled = 0;
+    std::int64_t blocked = 0;
+    for (const fpga::CorePort& port : fpga::kPorts) {
+      const std::string name = std::string("ports.") + port.name;
+      stalled += row.integer(name + ".stall_cycles");
+      blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
+    }
+    const char* const of = run_.camera ? "bound.system_limited_by" : "bound.core_limited_by";
+    const bool is_it = row.text(of) == "matcher" && lost > kVisibleLoss * cycles && stalled == 0 &&
+                       static_cast<double>(blocked) > lost / 2;
+    return is_it ? fmt::format(
+                       "the result queue is too short: in {:.2f} % of the cycles the matcher waits for "
+                       "fpga.result_fifo_words\n",
+                       100 * lost / cycles)
+                 : "";
   }
 
   // A resource of the board and its bound.
@@ -227,8 +253,9 @@ class Explanation {
     std::stable_sort(rates.begin(), rates.end(), [](const StepRate& a, const StepRate& b) {
       return a.rate.frames_per_second > b.rate.frames_per_second;
     });
-    std::string text = fmt::format(
-        "one step of each knob: {} boards simulated; *: the disparities change too\n", steps_.size());
+    std::string text =
+        fmt::format("one step of each knob: {} boards simulated; *: the disparities change too\n",
+                    steps_.possible.size());
     text += fmt::format("  {:>9} {:>9} {:>8}  knob: from -> to\n", "frames/s", "gained", "%");
     std::map<std::string, int> shown;
     for (const auto& [step, rate] : rates) {
@@ -240,6 +267,14 @@ class Explanation {
                       100 * gained / now.frames_per_second, step->knob, step->changes_disparities ? " *" : "",
                       step->from, step->to, rate.loses_pixels && !now.loses_pixels ? "  loses pixels" : "");
     }
+    return text;
+  }
+
+  std::string forbidden() const {
+    std::string text;
+    for (const explore::ForbiddenStep& step : steps_.forbidden)
+      text += paragraph("not possible here: ", 2,
+                        fmt::format("{}: {} -> {}, because {}", step.knob, step.from, step.to, step.reason));
     return text;
   }
 
@@ -281,7 +316,7 @@ class Explanation {
   const BoardConfig& board_;
   const platform::Tables& tables_;
   explore::PointRun run_;
-  std::vector<KnobStep> steps_;
+  explore::KnobSteps steps_;
   explore::BoardPoints points_;
   explore::Batch batch_;
 };

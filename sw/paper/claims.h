@@ -52,7 +52,8 @@ enum class Quantity {
   // minimum.
   kBanksFound,
   // The second run against the first on the same scene: the larger of two changes, that of the share of wrong
-  // answers and that of the share of answered pixels. Further runs are shown beside it, and not compared.
+  // answers and that of the share of answered pixels. Further runs are shown beside it, and not compared. The
+  // paper prints no number, so `printed` is 0: no change.
   kAccuracyChange,
 };
 

@@ -9,6 +9,7 @@
 
 #include "models/area/area.h"
 #include "platform/config/board_yaml.h"
+#include "sw/report/accuracy.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -35,6 +36,7 @@ std::string three(double value) { return fmt::format("{:.3f}", value); }
 
 // The printed value with as many decimals as in the paper: 10.0 in Table 1, 80 elsewhere.
 std::string printed_text(const Claim& claim, double printed) {
+  if (claim.quantity == Quantity::kAccuracyChange) return "";  // the paper prints no number
   const bool has_decimals = claim.half_digit > 0 && claim.half_digit < 0.5;
   return fmt::format("{:.{}f}", printed, has_decimals ? 1 : 0);
 }
@@ -59,6 +61,33 @@ std::string confirmed_text(const ClaimFinding& found) {
   return fmt::format("{} of {}", confirmed, found.cases.size());
 }
 
+// For a claim about costs: the scenes on which its verdict rests, in clauses. Empty for other claims.
+std::vector<std::string> scene_clauses(const ClaimFinding& found) {
+  if (found.claim.quantity != Quantity::kAccuracyChange) return {};
+  bool has_pair = false;
+  std::vector<std::string> clauses = {"on synthetic scenes only"};
+  for (const SceneFinding& scene : scenes_of(found)) {
+    const bool is_pair = !scene.scene.synthetic;
+    has_pair = has_pair || is_pair;
+    if (!scene.judges) {
+      clauses.push_back(
+          fmt::format("not on {}, whose cases are open: sad itself is wrong in {:.2f} % of its answers",
+                      scene.scene.name, scene.wrong_percent));
+      clauses.push_back(fmt::format("a pair with more than {:g} % does not judge: check --truth-scale",
+                                    report::kDoubtfulBad1Percent));
+    } else if (is_pair) {
+      clauses.front() = "on synthetic scenes and " + scene.scene.name;
+    }
+  }
+  if (!has_pair) clauses.emplace_back("give --left, --right and --truth for a real pair");
+  return clauses;
+}
+
+std::string verdict_text(const ClaimFinding& found) {
+  const std::vector<std::string> clauses = scene_clauses(found);
+  return text_of(found.verdict) + (clauses.empty() ? "" : ", " + clauses.front());
+}
+
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
@@ -68,7 +97,7 @@ std::string overview(const Findings& findings) {
   std::string text = "\n| the paper says | where | cases confirmed | verdict |\n|---|---|---|---|\n";
   for (const ClaimFinding& found : findings.claims) {
     text += fmt::format("| {} | {} | {} | **{}** |\n", found.claim.says, found.claim.place,
-                        confirmed_text(found), text_of(found.verdict));
+                        confirmed_text(found), verdict_text(found));
   }
   return text;
 }
@@ -99,11 +128,15 @@ std::string cases_text(const ClaimFinding& found) {
   }
   text += "\n```console\n";
   std::vector<std::string> said;  // each once
+  const auto say = [&](const std::string& command) {
+    if (std::find(said.begin(), said.end(), command) != said.end()) return;
+    text += "$ " + command + '\n';
+    said.push_back(command);
+  };
   for (const Case& one : claim.cases) {
-    for (const std::string& command : commands_of(claim, one)) {
-      if (std::find(said.begin(), said.end(), command) != said.end()) continue;
-      text += "$ " + command + '\n';
-      said.push_back(command);
+    for (const std::string& command : commands_of(claim, one)) say(command);
+    for (const BoardRun& run : one.runs) {
+      if (run.scene) say(command_of(run));  // also costs that are not compared
     }
   }
   return text + "```\n";
@@ -299,13 +332,15 @@ std::string banks_of_computer_remarks(const Findings& findings, const ClaimFindi
 }
 
 std::string costs_remarks(const ClaimFinding& found) {
-  std::string text =
+  std::string text = fmt::format(
       "\nThe paper gives no figures for \"almost same\". So the rule is ours: with the other cost neither\n"
       "the share of wrong answers nor the share of answered pixels changes by more than one point. *Model*\n"
       "is the larger of the two changes. An answer is wrong if it is off by more than 1 disparity. Only\n"
-      "pixels count whose truth is known and which both cameras see.\n\n"
+      "pixels count whose truth is known and which both cameras see. A pair on which `sad` itself is wrong\n"
+      "in more than {:g} % of its answers does not judge: its cases are open.\n\n"
       "| scene | cost | wrong, % | answered, % | change of wrong | of answered | slices, % | verdict |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+      "|---|---|---|---|---|---|---|---|\n",
+      report::kDoubtfulBad1Percent);
   for (const CostRow& row : cost_rows(found)) {
     const bool is_first = row.cost == "sad";
     const auto change = [&](double Quality::*share) {
@@ -350,13 +385,41 @@ std::string figure_text(const std::string& claim) {
   return "";
 }
 
+// The lines of the cases of a claim that are not confirmed, below the name of the claim; empty if there are
+// none.
+std::string others_text(const ClaimFinding& found) {
+  const Claim& claim = found.claim;
+  std::string lines;
+  if (claim.quantity == Quantity::kAccuracyChange) {
+    for (const CostRow& row : cost_rows(found)) {
+      if (row.verdict.value_or(Verdict::kConfirmed) == Verdict::kConfirmed) continue;
+      lines += fmt::format("  {:<22} wrong {:+.3f}, answered {:+.3f} percentage points against sad{}\n",
+                           fmt::format("{}, {}", row.cost, row.scene), row.change.wrong_percent,
+                           row.change.answered_percent, row.verdict == Verdict::kOpen ? " (open)" : "");
+    }
+  } else {
+    for (std::size_t i = 0; i < found.cases.size(); ++i) {
+      const Case& one = claim.cases[i];
+      const CaseFinding& finding = found.cases[i];
+      if (finding.verdict == Verdict::kConfirmed) continue;
+      std::string line =
+          fmt::format("  {:<55} {:>7} {:>9}  {:>9}", one.name, printed_text(claim, one.printed),
+                      modelled_text(claim, finding.modelled), deviation_text(claim, one, finding));
+      lines += line.erase(line.find_last_not_of(' ') + 1) + '\n';
+    }
+  }
+  return lines.empty() ? "" : fmt::format("{}: {}\n{}", claim.place, claim.says, lines);
+}
+
 }  // namespace
 
 std::string document(const Findings& findings) {
   std::string text = kHead + overview(findings);
   for (const ClaimFinding& found : findings.claims) {
-    text += fmt::format("\n## {} ({})\n\n**{}** (cases: {}).\n", capitalised(found.claim.says),
+    text += fmt::format("\n## {} ({})\n\n**{}** (cases: {})", capitalised(found.claim.says),
                         found.claim.place, text_of(found.verdict), confirmed_text(found));
+    const std::vector<std::string> clauses = scene_clauses(found);
+    text += clauses.empty() ? ".\n" : fmt::format(",\n{}.\n", fmt::join(clauses, ";\n"));
     text += cases_text(found) + remarks(findings, found) + figure_text(found.claim.name);
   }
   return text;
@@ -368,15 +431,9 @@ std::string summary(const Findings& findings) {
   for (const ClaimFinding& found : findings.claims) {
     text += fmt::format("{:<72} {:>9}  {}\n", found.claim.place + ": " + found.claim.says,
                         confirmed_text(found), text_of(found.verdict));
-    for (std::size_t i = 0; i < found.cases.size(); ++i) {
-      if (found.cases[i].verdict == Verdict::kConfirmed) continue;
-      const Case& one = found.claim.cases[i];
-      std::string line = fmt::format("  {:<17} {:<37} {:>7} {:>9}  {:>9}", found.claim.name, one.name,
-                                     printed_text(found.claim, one.printed),
-                                     modelled_text(found.claim, found.cases[i].modelled),
-                                     deviation_text(found.claim, one, found.cases[i]));
-      others += line.erase(line.find_last_not_of(' ') + 1) + '\n';
-    }
+    const std::vector<std::string> clauses = scene_clauses(found);
+    if (!clauses.empty()) text += fmt::format("  {}\n", fmt::join(clauses, ";\n  "));
+    others += others_text(found);
   }
   if (others.empty()) return text;
   return text + fmt::format("{:<57} {:>7} {:>9}  {:>9}\n", "not confirmed", "paper", "model", "deviation") +

@@ -16,6 +16,7 @@
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/files/temporary_folder.h"
+#include "sw/report/accuracy.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -289,7 +290,12 @@ double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
   return fewest_banks(runs);
 }
 
-Verdict verdict_of_case(const Claim& claim, const Case& one, double modelled) {
+bool judges(const Quality& first) { return first.wrong_percent <= report::kDoubtfulBad1Percent; }
+
+Verdict verdict_of_case(const Claim& claim, const Case& one, const CaseFinding& finding) {
+  const double modelled = finding.modelled;
+  if (claim.quantity == Quantity::kAccuracyChange && !judges(finding.runs.at(0).quality.value()))
+    return Verdict::kOpen;
   const bool is_proved = claim.quantity == Quantity::kBanksProved;
   if (!is_proved && claim.quantity != Quantity::kBanksFound)
     return verdict_of(claim.rule, one.printed, modelled);
@@ -364,7 +370,7 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
         }
       }
       finding.modelled = modelled_value(claim, finding.runs, findings.banks);
-      finding.verdict = verdict_of_case(claim, one, finding.modelled);
+      finding.verdict = verdict_of_case(claim, one, finding);
       if (claim.quantity == Quantity::kBanksFound) add_chosen(claim, one, finding.runs, findings.banks);
       verdicts.push_back(finding.verdict);
       found.cases.push_back(std::move(finding));
@@ -393,6 +399,18 @@ std::vector<CostRow> cost_rows(const ClaimFinding& found) {
   return rows;
 }
 
+std::vector<SceneFinding> scenes_of(const ClaimFinding& found) {
+  std::vector<SceneFinding> scenes;
+  for (std::size_t i = 0; i < found.cases.size(); ++i) {
+    const Scene& scene = found.claim.cases[i].runs[0].scene.value();
+    const auto is_it = [&](const SceneFinding& known) { return known.scene.name == scene.name; };
+    if (std::any_of(scenes.begin(), scenes.end(), is_it)) continue;
+    const Quality first = found.cases[i].runs[0].quality.value();
+    scenes.push_back({scene, first.wrong_percent, judges(first)});
+  }
+  return scenes;
+}
+
 std::string command_of(const BoardRun& run) {
   if (run.scene) {
     std::string text = fmt::format("stereotlm run {} --source preloaded", words_of(run));
@@ -412,13 +430,14 @@ std::vector<std::string> commands_of(const Claim& claim, const Case& one) {
       return {command_of(first)};
     case Quantity::kSlices:
       return {fmt::format("stereotlm bounds {}", words_of(first))};
+    case Quantity::kAccuracyChange:
+      return {command_of(first), command_of(one.runs.at(1))};
     case Quantity::kBanksProved:
       return {fmt::format("stereotlm allocate {} --source preloaded --banks {} --out banks.db",
                           words_of(first), platform::load_board(first.preset, first.sets).banks.size())};
     case Quantity::kSpread:
     case Quantity::kSpeedUp:
     case Quantity::kBanksFound:
-    case Quantity::kAccuracyChange:
       break;
   }
   std::vector<std::string> all;

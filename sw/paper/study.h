@@ -98,6 +98,15 @@ struct CostRow {
 // The rows of such a claim, each run once.
 std::vector<CostRow> cost_rows(const ClaimFinding& found);
 
+// A scene of such a claim. A scene on which the first run is wrong in more than report::kDoubtfulBad1Percent
+// of its answers does not judge: its cases are open.
+struct SceneFinding {
+  Scene scene;
+  double wrong_percent = 0;  // of the first run
+  bool judges = false;
+};
+std::vector<SceneFinding> scenes_of(const ClaimFinding& found);
+
 // The shell command that reproduces the number of a run: "stereotlm run fpl2003 --timing-only ..".
 std::string command_of(const BoardRun& run);
 // The commands that reproduce the numbers of a case.

@@ -149,13 +149,18 @@ std::string all_claims(const Findings& findings) {
       const auto of_clock = [&](double ClockRange::*mhz) {
         return clock ? std::optional<double>((*clock).*mhz) : std::nullopt;
       };
-      text += row(found.claim.name, found.claim.place, found.claim.says, one.name,
-                  unit_of(found.claim.quantity), one.printed, found.claim.half_digit, finding.modelled,
-                  is_rate ? std::optional<double>(finding.runs.front().bound) : std::nullopt,
-                  is_rate ? finding.runs.front().limited_by : std::string(),
-                  deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
-                  found.claim.rule.tolerance, text_of(finding.verdict), of_clock(&ClockRange::least_mhz),
-                  of_clock(&ClockRange::most_mhz), text_of(found.verdict), command_text(found.claim, one));
+      const auto of_paper = [&](double value) {
+        const bool is_printed = found.claim.quantity != Quantity::kAccuracyChange;
+        return is_printed ? std::optional<double>(value) : std::nullopt;
+      };
+      text +=
+          row(found.claim.name, found.claim.place, found.claim.says, one.name, unit_of(found.claim.quantity),
+              of_paper(one.printed), of_paper(found.claim.half_digit), finding.modelled,
+              is_rate ? std::optional<double>(finding.runs.front().bound) : std::nullopt,
+              is_rate ? finding.runs.front().limited_by : std::string(),
+              deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
+              found.claim.rule.tolerance, text_of(finding.verdict), of_clock(&ClockRange::least_mhz),
+              of_clock(&ClockRange::most_mhz), text_of(found.verdict), command_text(found.claim, one));
     }
   }
   return text;

@@ -17,6 +17,10 @@ struct Accuracy {
   std::optional<double> answered_percent;  // share of the pixels that are answered: the density
 };
 
+// If more than this share of the answers is wrong by more than 1 disparity, the truth is probably that of
+// another picture, or has another scale.
+inline constexpr double kDoubtfulBad1Percent = 50;
+
 // `disparity`: referenced to the left picture; kernels::kInvalidDisparity marks pixels without a valid
 // disparity. Throws std::invalid_argument if the sizes differ.
 Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth);

@@ -53,6 +53,15 @@ std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Re
   return report::accuracy(last.disparity, *truth);
 }
 
+// `accuracy`: that against --truth.
+void say_if_doubtful(const RunInput& input, const report::Accuracy& accuracy) {
+  const double bad = accuracy.bad_1_percent.value_or(0);
+  if (bad <= report::kDoubtfulBad1Percent) return;
+  process::say("note", fmt::format("--truth: {:.2f} % of the answers are off by more than 1: is it of this "
+                                   "picture, and is --truth-scale {:g} right?",
+                                   bad, input.described.truth_scale));
+}
+
 }  // namespace
 
 void save_frame(const RunInput& input, const Result& result) {
@@ -86,6 +95,7 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   process::print(report::console_table(
       statistics, {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
       accuracy_to_show(input, last, accuracy)));
+  if (accuracy) say_if_doubtful(input, *accuracy);
   for (const std::string& difference : differences) process::say("error", difference);
   return statistics.failed.empty() && differences.empty();
 }

@@ -33,7 +33,7 @@ ROOMS = {
     "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/files", "sw/process"],
     "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep"],
     "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
-    "sw/paper": ["sw/explore", "sw/files"],
+    "sw/paper": ["sw/explore", "sw/files", "sw/report"],
     "sw/runs": ["sw/driver", "sw/explore", "sw/files", "sw/media", "sw/process", "sw/report"],
     "sw/demo": ["sw/files", "sw/media"],
     "sw/cli": ["sw"],

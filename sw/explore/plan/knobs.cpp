@@ -11,6 +11,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "platform/config/board_keys.h"
+#include "platform/config/board_rules.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/store/bank_names.h"
@@ -232,11 +233,32 @@ class Steps {
     }
   }
 
-  std::vector<KnobStep> take() { return std::move(steps_); }
+  KnobSteps take() {
+    KnobSteps all = {std::move(steps_), {}};
+    std::set<std::string> alternatives;  // knobs with a possible or a listed step
+    for (const KnobStep& step : all.possible) {
+      if (step.only_best) alternatives.insert(step.knob);
+    }
+    for (auto& [step, is_alternative] : forbidden_) {
+      if (!is_alternative || alternatives.insert(step.knob).second) all.forbidden.push_back(std::move(step));
+    }
+    return all;
+  }
 
  private:
   void add(KnobStep step) {
-    if (platform::problems(step.board).empty()) steps_.push_back(std::move(step));
+    const std::vector<std::string> problems = platform::problems(step.board);
+    if (problems.empty()) {
+      steps_.push_back(std::move(step));
+      return;
+    }
+    std::set<std::string> rules;
+    for (const platform::BrokenRule& rule :
+         platform::broken_rules(step.board, [](const auto&) { return true; }))
+      rules.insert(rule.text);
+    const auto is_rule = [&](const std::string& problem) { return rules.count(problem) > 0; };
+    if (!std::all_of(problems.begin(), problems.end(), is_rule)) return;  // out of the range of its key
+    forbidden_.push_back({{step.knob, step.from, step.to, problems.front()}, step.only_best});
   }
   // One of several alternatives.
   void add_best(KnobStep step) {
@@ -270,8 +292,12 @@ class Steps {
       if (other == now) continue;
       BoardConfig changed = board_;
       word.set(changed, other);
-      add({key.path, word.words[static_cast<std::size_t>(now)], word.words[static_cast<std::size_t>(other)],
-           changed});
+      std::string to = word.words[static_cast<std::size_t>(other)];
+      if (changed.matcher.fetch != board_.matcher.fetch && board_.matcher.rows != 1) {
+        changed.matcher.rows = 1;  // as the line buffer needs
+        to += ", matcher.rows 1";
+      }
+      add({key.path, word.words[static_cast<std::size_t>(now)], to, changed});
     }
   }
   void add_key(const Key&, const platform::OtherKey&) {}
@@ -299,11 +325,12 @@ class Steps {
 
   const BoardConfig& board_;
   std::vector<KnobStep> steps_;
+  std::vector<std::pair<ForbiddenStep, bool>> forbidden_;  // second: only_best of the step
 };
 
 }  // namespace
 
-std::vector<KnobStep> knob_steps(const BoardConfig& board, bool camera) {
+KnobSteps knob_steps(const BoardConfig& board, bool camera) {
   Steps steps(board);
   steps.add_keys(camera);
   steps.add_units();

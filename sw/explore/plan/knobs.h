@@ -20,8 +20,23 @@ struct KnobStep {
   bool only_best = false;
 };
 
-// One step of every knob of a board, as long as the changed board is valid:
+// A step that a rule between several keys forbids.
+struct ForbiddenStep {
+  std::string knob;
+  std::string from;
+  std::string to;
+  std::string reason;  // the problem of the changed board
+};
+
+struct KnobSteps {
+  std::vector<KnobStep> possible;
+  // Without steps of a knob whose steps are alternatives, if one of them is possible; else the first of them.
+  std::vector<ForbiddenStep> forbidden;
+};
+
+// One step of every knob of a board, as long as the value is in the range of its key:
 //   a number: up and down by one (the window by two); a word: each other one
+//   matcher.fetch: the line buffer takes matcher.rows back to 1 with it
 //   matcher.units: from all to half of them; from a number up and down by one, and back to all
 //   fpga.tables: joint tables are in the bank of either table; of separate ones the right one gets a bank
 //   without buffers, if there is one that can hold it
@@ -35,7 +50,7 @@ struct KnobStep {
 //   a bank less: all buffers of one bank move into another bank that is used
 // The size of the images, the depth of banks and the device do not change. `camera`: whether the knobs of the
 // computer around the board are included.
-std::vector<KnobStep> knob_steps(const platform::BoardConfig& board, bool camera);
+KnobSteps knob_steps(const platform::BoardConfig& board, bool camera);
 
 // A list of boards as points, in the order of the list.
 class BoardPoints : public Points {

@@ -123,7 +123,7 @@ def table2(folder):
 def banks(folder):
     """Draws frame rates over the number of banks: the best of the core, and those of runs of the computer."""
     rows = read(folder, "banks")
-    printed = {row["claim"]: float(row["paper"]) for row in read(folder, "claims")}
+    printed = {row["claim"]: row["paper"] for row in read(folder, "claims")}
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]
     board = rows[0]
     sheet = Sheet()
@@ -141,7 +141,7 @@ def banks(folder):
         axes.plot(xs, numbers(every, "bound_frames_per_second"), color=pale(MODEL), linewidth=BOUND_WIDTH,
                   solid_capstyle="butt", zorder=1.5)
         model_line(axes, xs, numbers(every, "frames_per_second"))
-        axes.axvline(printed[claim], color=PAPER, linewidth=1.2, linestyle=(0, (4, 2)), zorder=1.2)
+        axes.axvline(float(printed[claim]), color=PAPER, linewidth=1.2, linestyle=(0, (4, 2)), zorder=1.2)
         axes.set_title(heading, fontsize=9.5)
         axes.set_xticks(xs, [f"{row['banks']}\n({row['allocations']})" for row in every])
         axes.set_xlim(min(xs) - 0.5, max(xs) + 0.5)

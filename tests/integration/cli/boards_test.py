@@ -65,6 +65,7 @@ class Check(ProgramTest):
             (["check", "fpl2003", *sets("image.width=2052", "image.height=4")],
              "image.width = 2052: at most 2048 with a look-up table; set allocation.left_lut and "
              "allocation.right_lut to none, or a smaller image"),
+            (["check", "fpl2003", *sets("matcher.cost={census:5}")], "a blank is missing after the colon: census: 5"),
             (["check", "fpl2003", *sets("matcher.units=81")],
              "matcher.units = 81: 1..disparities, which is 80, or all"),
             (["check", "fpl2003", *sets("matcher.rows=2", "matcher.fetch=line_buffer")],
@@ -290,6 +291,29 @@ class Explain(ProgramTest):
         for key in set(keys) - no_knobs:
             if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "matcher.cost.", "allocation.")):
                 self.assertIn(key, text)
+
+    def test_a_result_queue_that_is_too_short_is_named(self):
+        rows = sets("matcher.rows=4", "matcher.disparities=4")
+        short = [*PRELOADED, *rows, *sets("fpga.result_fifo_words=4")]
+        said = "the result queue is too short: in"
+        text = self.explain(*short)
+        rate = self.rate(*short)
+        lost = 100 * (1 - rate / self.stats()["bound"]["core"])
+        self.assertGreater(lost, 1)
+        lines = text.splitlines()
+        self.assertEqual(lines[1], f"{said} {lost:.2f} % of the cycles the matcher waits for fpga.result_fifo_words")
+        self.assertLessEqual(max(map(len, lines)), 100)
+        # The step to five rows would need a longer queue. That to the line buffer is one to a single row.
+        self.assertIn("\nnot possible here: matcher.rows: 4 -> 5, because fpga.result_fifo_words = 4: at least 5", text)
+        (fetch,) = (row for row in self.rows(text) if row[2] == "matcher.fetch")
+        self.assertEqual(fetch[3], "line_buffer, matcher.rows 1")
+        line_buffer = sets("matcher.disparities=4", "matcher.fetch=line_buffer", "fpga.result_fifo_words=4")
+        self.assertEqual(fetch[0], f"{self.rate(*PRELOADED, *line_buffer):.3f}")
+        text = self.explain(*PRELOADED, *rows)  # with 8 words
+        self.assertNotIn(said, text)
+        self.assertNotIn("not possible", text)
+        # With stalls it cannot be told.
+        self.assertNotIn(said, self.explain(*short, *sets("allocation.left_lut=bank0")))
 
     def test_wrong_options_are_refused(self):
         self.refused(run("explain"), "BOARD: missing")

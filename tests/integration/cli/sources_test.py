@@ -209,6 +209,16 @@ class Truth(SourceTest):
             self.assertEqual(self.accuracy("--sequence", folder, *frames), self.accuracy(*pair))
 
 
+    def test_a_truth_that_most_answers_miss_by_more_than_1_is_doubted(self):
+        note = ("stereotlm: note: --truth: 100.00 % of the answers are off by more than 1: is it of this picture, "
+                "and is --truth-scale 1 right?\n")
+        for grey, errors in ((b"\1", ""), (b"\2", note)):  # every answer is 0
+            truth = self.file("truth.pgm", pgm(WIDTH, HEIGHT, grey * WIDTH * HEIGHT))
+            process = self.run_small("--truth", truth, right=self.left)
+            self.assertRegex(self.succeeds(process), r"\naccuracy .* answered: [1-9]")
+            self.assertEqual(process.stderr, errors)
+
+
 class Memory(SourceTest):
     """A thousand frames take hardly more memory than thirty: their pictures alone would take 24 MB."""
 

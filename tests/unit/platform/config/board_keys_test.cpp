@@ -208,7 +208,7 @@ std::vector<KeyCase> key_cases() {
       {"matcher.cost",
        {"sad", "ssd", "zncc", "\"zncc\"", "{census: 3}", "{census: 5}", "{'census': 7}"},
        {"census", "ncc", "null", "~", "[sad]", "[]", "5", "Sad"},
-       "sad, ssd, zncc or a map of census"},
+       "sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}"},
   };
 }
 

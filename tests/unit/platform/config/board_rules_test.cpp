@@ -167,10 +167,22 @@ TEST(BoardBanks, HaveValidNamesAndKnownKeysOnce) {
             "board.yaml:2:21: ssram.banks.a.depth = 5: unknown k");
 }
 
+const std::string kTablesHint =
+    "; set fpga.tables to joint, or give the bank more words, or one of the tables another bank";
+
 TEST(BoardBanks, HoldTheirBuffers) {
   EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: 11}}}")), "");
   EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: 10}}}")),
             "board.yaml:2:28: ssram.banks.a.words = 10: 1 words missing, its buffers (left_image[0], "
+            "right_image[0], disparity[0], left_lut, right_lut) need 11" +
+                kTablesHint);
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: 7}}}")),
+            "board.yaml:2:28: ssram.banks.a.words = 7: 4 words missing, its buffers (left_image[0], "
+            "right_image[0], disparity[0], left_lut, right_lut) need 11" +
+                kTablesHint);
+  // One table more or less does not decide.
+  EXPECT_EQ(refusal_of(banks_board("{banks: {a: {words: 6}}}")),
+            "board.yaml:2:28: ssram.banks.a.words = 6: 5 words missing, its buffers (left_image[0], "
             "right_image[0], disparity[0], left_lut, right_lut) need 11");
   EXPECT_EQ(refusal_of(banks_board("{default: {words: 1}, banks: {a: {}}}")),
             "board.yaml:2:26: ssram.banks.a.words = 1: 10 words missing, its buffers (left_image[0], "
@@ -341,6 +353,23 @@ TEST(BoardCost, IsAWordOrACensusOfItsSize) {
             (MatchingCost{CostKind::kCensus, 5}));
   EXPECT_EQ(load_text(cost_board("{census: 5}"), {"matcher.cost=sad"}), load_board("fpl2003"));
   EXPECT_EQ(load_text(cost_board("{census: 5}"), {"matcher.cost.census=7"}).matcher.cost.census_size, 7);
+}
+
+TEST(BoardCost, SaysHowACensusIsWritten) {
+  EXPECT_EQ(
+      refusal_of(cost_board("census")),
+      "board.yaml:2:17: matcher.cost = census: sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}");
+  EXPECT_EQ(
+      refusal_of(cost_board("{census:5}")),
+      "board.yaml:2:18: matcher.cost.census:5 = (nothing): a blank is missing after the colon: census: 5");
+  // Neither another key nor a colon at the end is a forgotten blank.
+  EXPECT_EQ(refusal_of(cost_board("{ssd:5}")),
+            "board.yaml:2:11: matcher.cost.census: missing: 3, 5 or 7\n"
+            "board.yaml:2:18: matcher.cost.ssd:5 = (nothing): unknown key, and no known key is near");
+  EXPECT_EQ(
+      refusal_of(cost_board("{census:5: 3}")),
+      "board.yaml:2:11: matcher.cost.census: missing: 3, 5 or 7\n"
+      "board.yaml:2:18: matcher.cost.census:5 = 3: unknown key; nearest known key: matcher.cost.census");
 }
 
 TEST(BoardCost, HasACensusOfAnOddSizeUpToBothLimits) {

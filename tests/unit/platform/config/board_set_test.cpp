@@ -90,9 +90,17 @@ TEST(BoardSet, IsNamedWhereItBreaksARuleWithOtherValues) {
   EXPECT_EQ(
       refusal_of_board("fpl2003", {"allocation.left_lut=bank9"}),
       "--set allocation.left_lut: allocation.left_lut = bank9: not a bank of this board; nearest: bank0");
-  EXPECT_EQ(refusal_of_board("fpl2003", {"allocation.left_lut=bank7"}),
-            "--set allocation.left_lut: ssram.banks.bank7.words = 524288: 90112 words missing, its buffers "
-            "(left_lut, right_lut) need 614400");
+  EXPECT_EQ(
+      refusal_of_board("fpl2003", {"allocation.left_lut=bank7"}),
+      "--set allocation.left_lut: ssram.banks.bank7.words = 524288: 90112 words missing, its buffers "
+      "(left_lut, right_lut) need 614400; set fpga.tables to joint, or give the bank more words, or one of "
+      "the tables another bank");
+  EXPECT_EQ(refusal_of_board("two-banks", {"fpga.tables=separate"}).substr(0, 77),
+            "--set fpga.tables: ssram.banks.bank0.words = 524288: 90112 words missing, its");
+  EXPECT_EQ(
+      refusal_of_board("fpl2003", {"image.width=2052"}),
+      "--set image.width: image.width = 2052: at most 2048 with a look-up table; set allocation.left_lut and "
+      "allocation.right_lut to none, or a smaller image");
   EXPECT_EQ(refusal_of_board("fpl2003", {"allocation.left_image=bank0"}),
             "--set allocation.left_image: allocation.right_image = [bank2, bank3]: must be as long as "
             "left_image, which is "

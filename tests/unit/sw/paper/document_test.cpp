@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
+#include <regex>
 #include <sstream>
 
 namespace stereotlm::paper {
@@ -11,9 +13,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 // What the simulation has given, where every claim is as the paper says.
-Findings as_printed() {
+Findings as_printed(const std::optional<GivenPair>& given = std::nullopt) {
   Findings findings;
-  for (const Claim& claim : claims()) {
+  for (const Claim& claim : claims(given)) {
     ClaimFinding found = {claim, {}, Verdict::kConfirmed};
     for (const Case& one : claim.cases) {
       Measured measured;
@@ -103,11 +105,43 @@ TEST(Document, ShowsTheAccuracyOfEachCostOnEachScene) {
   EXPECT_THAT(table, HasSubstr("\nsynthetic 1,zncc,1.5,88,1.25,-2,40,not confirmed,stereotlm "));
 }
 
+TEST(Document, SaysOnWhichScenesTheVerdictOnCostsRests) {
+  const GivenPair pair = {"left.png", "right.png", "truth.png", 1, 214};
+  const auto says = [](const Findings& findings, const std::string& text) {
+    EXPECT_THAT(document(findings), HasSubstr("),\non " + text + ".\n"));
+    EXPECT_THAT(document(findings),
+                HasSubstr("**confirmed, on " + text.substr(0, text.find(';')) + "** |\n"));
+    EXPECT_THAT(summary(findings),
+                HasSubstr("confirmed\n  on " + std::regex_replace(text, std::regex("\n"), "\n  ")));
+  };
+  says(as_printed(), "synthetic scenes only;\ngive --left, --right and --truth for a real pair");
+  Findings findings = as_printed(pair);
+  says(findings, "synthetic scenes and the given pair");
+  row_of(findings, "costs", 6).runs[0].quality = {99.96, 80};
+  says(findings,
+       "synthetic scenes only;\nnot on the given pair, whose cases are open: sad itself is wrong in 99.96 % "
+       "of "
+       "its answers;\na pair with more than 50 % does not judge: check --truth-scale");
+}
+
+TEST(Document, ListsTheCommandsOfCostsThatAreNotCompared) {
+  EXPECT_THAT(document(as_printed()),
+              HasSubstr("\n$ stereotlm run fpl2003 --set 'matcher.cost={census: 5}' "));
+}
+
+TEST(Document, HasNoPrintedNumberOfCosts) {
+  EXPECT_THAT(document(as_printed()), HasSubstr("\n| ssd, synthetic 1 |  | 0.000 |"));
+  EXPECT_THAT(tables(as_printed()).at("claims.csv"),
+              HasSubstr(",\"ssd, synthetic 1\",percentage points,,,0,"));
+}
+
 TEST(Document, SummaryFitsIntoAHundredColumns) {
-  Findings findings = as_printed();
+  const GivenPair pair = {"left.png", "right.png", "truth.png", 1, 214};
+  Findings findings = as_printed(pair);
+  row_of(findings, "costs", 6).runs[0].quality = {100, 80};
   for (ClaimFinding& found : findings.claims) {
     found.verdict = Verdict::kNotConfirmed;
-    for (CaseFinding& one : found.cases) one.verdict = Verdict::kNotConfirmed;
+    for (CaseFinding& one : found.cases) one.verdict = Verdict::kOpen;
   }
   EXPECT_LE(longest_line(summary(findings)), 100U);
 }
@@ -118,6 +152,22 @@ TEST(Document, SummaryListsWhatIsNotConfirmed) {
   refute(findings, "table1", 4, 18.6);
   EXPECT_THAT(summary(findings), HasSubstr("5 of 6"));
   EXPECT_THAT(summary(findings), HasSubstr("18.9    18.600    -1.59 %\n"));
+  EXPECT_THAT(summary(findings),
+              HasSubstr("deviation\nTable 1: frames per second against the window, 80 disparities\n  7x7 "));
+}
+
+TEST(Document, SummaryListsTheChangesOfCostsThatAreNotConfirmed) {
+  Findings findings = as_printed();
+  CaseFinding& zncc = row_of(findings, "costs", 1);
+  zncc.runs[1].quality = {1.5, 88};
+  zncc.verdict = Verdict::kNotConfirmed;
+  row_of(findings, "costs", 2).verdict = Verdict::kOpen;
+  EXPECT_THAT(
+      summary(findings),
+      HasSubstr(
+          "\nsec. 2.1: almost the same results with SAD as with SSD and NCC\n"
+          "  zncc, synthetic 1      wrong +1.250, answered -2.000 percentage points against sad\n"
+          "  ssd, synthetic 2       wrong +0.000, answered +0.000 percentage points against sad (open)\n"));
 }
 
 TEST(Document, TablesQuoteWhatHasCommas) {

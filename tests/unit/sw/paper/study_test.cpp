@@ -192,6 +192,29 @@ TEST(Study, TakesTheLargerChangeOfTheAccuracyOfTheSecondRun) {
   EXPECT_EQ(found.cases.at(0).runs.at(0).slices_percent, 20);
 }
 
+TEST(Study, LeavesOpenWhatASceneOfWrongAnswersWouldJudge) {
+  struct Limit {
+    double wrong;
+    Verdict verdict;
+    bool judges;
+  };
+  for (const Limit& limit : {Limit{50, Verdict::kConfirmed, true}, Limit{50.01, Verdict::kOpen, false}}) {
+    Means seeing = means();
+    seeing.quality = [&limit](const BoardConfig& board, const Scene& scene) {
+      return scene.synthetic == 2 ? Quality{limit.wrong, 80} : made_up_quality(board, scene);
+    };
+    const ClaimFinding found = study({cost_claim()}, seeing).value().of("one");
+    EXPECT_EQ(found.cases.at(0).verdict, Verdict::kConfirmed);
+    EXPECT_EQ(found.cases.at(2).verdict, limit.verdict);
+    const std::vector<SceneFinding> scenes = scenes_of(found);
+    ASSERT_EQ(scenes.size(), 2U);
+    EXPECT_TRUE(scenes[0].judges);
+    EXPECT_EQ(scenes[1].scene.name, "scene 2");
+    EXPECT_EQ(scenes[1].wrong_percent, limit.wrong);
+    EXPECT_EQ(scenes[1].judges, limit.judges);
+  }
+}
+
 TEST(Study, ListsEachRunOfAScene) {
   const ClaimFinding found = study({cost_claim()}, seeing_means()).value().of("one");
   std::vector<std::string> rows;
@@ -318,6 +341,10 @@ TEST(Study, CommandsGiveTheFiguresOfANumber) {
   EXPECT_THAT(commands(Quantity::kRate), ElementsAre(core));
   EXPECT_THAT(commands(Quantity::kSpeedUp),
               ElementsAre(core, "stereotlm run fpl2003 --set matcher.window=7 --timing-only --frames 13"));
+  // A cost that is shown beside has no command in the row of another.
+  const Claim costs = cost_claim();
+  EXPECT_THAT(commands_of(costs, costs.cases[1]),
+              ElementsAre(command_of(cost_run("sad", 1)), command_of(cost_run("zncc", 1))));
   EXPECT_THAT(commands(Quantity::kSlices), ElementsAre("stereotlm bounds fpl2003 --set matcher.window=5"));
   EXPECT_THAT(commands(Quantity::kBanksProved),
               ElementsAre("stereotlm allocate fpl2003 --set matcher.window=5 --source preloaded --banks 8 "

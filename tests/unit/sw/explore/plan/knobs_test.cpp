@@ -1,5 +1,6 @@
 #include "sw/explore/plan/knobs.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@ namespace {
 
 using platform::BoardConfig;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using Texts = std::vector<std::string>;
@@ -35,7 +37,7 @@ std::string burst(const std::string& bank, int cycles) {
 
 std::vector<KnobStep> steps_of(const std::string& knob, const BoardConfig& board) {
   std::vector<KnobStep> found;
-  for (const KnobStep& step : knob_steps(board, true)) {
+  for (const KnobStep& step : knob_steps(board, true).possible) {
     if (step.knob == knob) found.push_back(step);
   }
   return found;
@@ -57,7 +59,8 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {"pci.load.burst_words", {"pci.load={burst_words: 8, interval_us: 10}"}, "8 -> 9; 8 -> 7; "},
       {"fpga.arbitration", {}, "fixed_priority -> round_robin; fixed_priority -> age; "},
       {"matcher.fetch", {}, "column -> line_buffer; "},
-      {"matcher.fetch", {"matcher.rows=2"}, ""},
+      {"matcher.fetch", {"matcher.rows=2"}, "column -> line_buffer, matcher.rows 1; "},
+      {"matcher.fetch", {"matcher.fetch=line_buffer"}, "line_buffer -> column; "},
       {"matcher.rows", {}, "1 -> 2; "},
       {"matcher.rows", {"matcher.rows=4"}, "4 -> 5; 4 -> 3; "},
       {"matcher.rows", {"matcher.rows=8"}, "8 -> 7; "},  // the queue has 8 words
@@ -140,6 +143,7 @@ TEST(KnobSteps, ChangeNothingButTheirKnob) {
        joint_without_room,
        0,
        {"allocation.right_lut=bank6", kJoint[2], joint_without_room[3]}},
+      {"matcher.fetch", {"matcher.rows=2"}, 0, {"matcher.fetch=line_buffer"}},
       {"matcher.units", {}, 0, {"matcher.units=40"}},
       {"matcher.cost", {}, 2, {"matcher.cost={census: 5}"}},
       {kKind, {}, 1, {bursts}},
@@ -164,7 +168,7 @@ TEST(KnobSteps, AreValidBoardsThatDifferAndAreMarkedByTheirEffect) {
   const BoardConfig board = board_with({"allocation.disparity=[bank0, bank5]"});
   EXPECT_EQ(steps_of("fpga.priority", board).size(), 5U);
   EXPECT_EQ(steps_of("a bank less", board_with({})).size(), 8U * 7 - 2) << "no bank holds both tables";
-  for (const KnobStep& step : knob_steps(board, true)) {
+  for (const KnobStep& step : knob_steps(board, true).possible) {
     EXPECT_THAT(platform::problems(step.board), IsEmpty()) << step.knob;
     EXPECT_FALSE(step.board == board) << step.knob;
     EXPECT_EQ(step.only_best, step.knob.find("a bank ") == 0 || step.knob == "fpga.tables") << step.knob;
@@ -172,6 +176,28 @@ TEST(KnobSteps, AreValidBoardsThatDifferAndAreMarkedByTheirEffect) {
     EXPECT_EQ(step.changes_disparities, step.knob.find("matcher.") == 0 && same.count(step.knob) == 0)
         << step.knob;
   }
+}
+
+TEST(KnobSteps, AreForbiddenWhereAnotherKeyForbidsThem) {
+  const auto forbidden = [](const std::string& preset, const Texts& sets) {
+    Texts texts;
+    for (const ForbiddenStep& step : knob_steps(platform::load_board(preset, sets), false).forbidden)
+      texts.push_back(fmt::format("{}: {} -> {}: {}", step.knob, step.from, step.to, step.reason));
+    return texts;
+  };
+  EXPECT_THAT(forbidden("fpl2003", {}), IsEmpty()) << "a bank less is possible somewhere";
+  // 0 rows, which no board has, are not listed.
+  EXPECT_THAT(forbidden("fpl2003-line-buffer", {}),
+              ElementsAre("matcher.rows: 1 -> 2: matcher.rows = 2: must be 1 where matcher.fetch is "
+                          "line_buffer; with column it may be 1..16"));
+  const Texts all = forbidden("two-banks", {});
+  ASSERT_EQ(all.size(), 4U) << "one of the two steps of a bank less";
+  EXPECT_EQ(
+      all[0],
+      "fpga.tables: joint -> separate, right_lut in bank0: ssram.banks.bank0.words = 524288: 90112 words "
+      "missing, its buffers (left_lut, right_lut) need 614400; set fpga.tables to joint, or give the bank "
+      "more words, or one of the tables another bank");
+  EXPECT_EQ(all[3].substr(0, 31), "a bank less: bank0 -> into bank");
 }
 
 TEST(KnobSteps, GiveNoBankANameThatDiffersFromAnotherOnlyInCase) {
@@ -187,7 +213,7 @@ TEST(KnobSteps, GiveNoBankANameThatDiffersFromAnotherOnlyInCase) {
 
 TEST(KnobSteps, OfTheBoardAloneDoNotChangeTheComputer) {
   std::set<std::string> knobs;
-  for (const KnobStep& step : knob_steps(board_with({}), false)) knobs.insert(step.knob);
+  for (const KnobStep& step : knob_steps(board_with({}), false).possible) knobs.insert(step.knob);
   for (const char* const knob :
        {"pci.clock_mhz", "cameras.trigger", "capture.fifo_words", "bridge.posted_words", "image.width"})
     EXPECT_THAT(knobs, Not(Contains(knob)));
