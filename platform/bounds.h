@@ -64,8 +64,8 @@ struct RateBound {
   double frames_per_second = 0;
 };
 
-// The bounds of the computer, in the order of the table at RateBound. Throws std::invalid_argument if the board has
-// problems.
+// The bounds of the computer, in the order of the table at RateBound. Throws std::invalid_argument if the
+// board has problems.
 std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures);
 
 // Sets bound.system to the least of bound.core and the bounds of computer_bounds(), and

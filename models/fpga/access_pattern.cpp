@@ -114,9 +114,8 @@ void AccessPattern::count() {
 }
 
 void AccessPattern::set_slots() const {
-  // A query reads the word after the last one, and up to kMostSlots beyond the end of the frame.
-  constexpr std::size_t kMostSlots = 512;
-  slots_.resize((geometry_.slots + kMostSlots) / 64);
+  // A query begins up to 256 slots beyond the end of the frame, and reads two words.
+  slots_.resize((geometry_.slots + 256) / 64 + 2);
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   for (int strip = 0; strip < geometry_.strips; ++strip) {
     const std::uint64_t first_slot =
@@ -172,8 +171,8 @@ void AccessPattern::find_strips_with_changes() const {
   }
 }
 
-// Whether one of the first four columns of a strip makes the same accesses as the fourth column before it, which
-// is in the strip before.
+// Whether one of the first four columns of a strip makes the same accesses as the fourth column before it,
+// which is in the strip before.
 bool AccessPattern::begins_alike(int strip, int column) const {
   const int column_before = geometry_.width - 4 + column;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {

@@ -11,10 +11,10 @@
 namespace stereotlm::fpga {
 
 // Computes, before a frame that works directly on memory, which accesses each slot of one side makes: none if
-// the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid and
-// the word cache does not have its word. Columns are uniform if each makes the same accesses as the fourth
-// column before it, slot for slot: with a word cache the accesses repeat every four columns at best. What
-// only some frames ask for is computed when it is asked for.
+// the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid
+// and the word cache does not have its word. Columns are uniform if each makes the same accesses as the
+// fourth column before it, slot for slot: with a word cache the accesses repeat every four columns at best.
+// What only some frames ask for is computed when it is asked for.
 class AccessPattern {
  public:
   // At first every entry is its own source, as on a side without table.
@@ -33,11 +33,11 @@ class AccessPattern {
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
   // The end of the run of uniform columns that begins with the four columns from `frame_column` on: the next
-  // column that differs from the fourth column before it, or the number of columns. Columns are counted over the
-  // whole frame, strip after strip.
+  // column that differs from the fourth column before it, or the number of columns. Columns are counted over
+  // the whole frame, strip after strip.
   std::uint64_t uniform_until(std::uint64_t frame_column) const;
-  // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the end of
-  // the frame.
+  // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the
+  // end of the frame. `slot` is at most 256 slots beyond it.
   std::uint64_t pixels_of_slots(std::uint64_t slot) const {
     if (slots_.empty()) set_slots();
     const std::uint64_t* const words = slots_.data() + slot / 64;

@@ -27,22 +27,19 @@ std::uint64_t AssumedAccesses::marks(Side side) const {
   return marks;
 }
 
-bool AssumedAccesses::resolve() {
-  const bool left_may_be_wrong = resolve(Side::kLeft);
-  const bool right_may_be_wrong = resolve(Side::kRight);
-  return left_may_be_wrong || right_may_be_wrong;
+void AssumedAccesses::resolve() {
+  for (const Side side : kSides) resolve(side);
 }
 
-bool AssumedAccesses::resolve(Side side) {
+void AssumedAccesses::resolve(Side side) {
   SideAccesses& accesses = sides_[index_of(side)];
-  if (!accesses.are_all || accesses.pattern->needs_all_pixels()) return false;
+  if (!accesses.are_all || accesses.pattern->needs_all_pixels()) return;
   accesses.are_all = false;
   const LaneControl& lane = stepper_.control().lane(side);
   const std::uint64_t passed = accesses.pattern->passes_before(lane.handled());
   stepper_.control().correct_passes(side, passed);
   stepper_.control().correct_marks(side, marks(side));
   stepper_.arbitration().retract_grants(pixel_port(side), passed);
-  return true;
 }
 
 }  // namespace stereotlm::fpga

@@ -12,9 +12,10 @@ namespace stereotlm::fpga {
 // access for every slot of a side with table whose pixel port is uncontended, and it corrects the counts
 // afterwards.
 //
-// An uncontended pixel port takes one cycle for a slot, whether it is granted or passes. Only the counts differ:
-// a pass counts as a grant until resolve() corrects the counts. With this assumption the transitions of the core
-// repeat far more often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
+// An uncontended pixel port takes one cycle for a slot, whether it is granted or passes. Only the counts
+// differ: a pass counts as a grant until resolve() corrects the counts. With this assumption the transitions
+// of the core repeat far more often with the tables of a rig: a frame of the paper's board takes a thirtieth
+// of the time.
 class AssumedAccesses {
  public:
   // `stepper` outlives this object.
@@ -30,8 +31,8 @@ class AssumedAccesses {
   PixelNeeds needs_pixel(memory::PortMask granted) const {
     return {needs_pixel(Side::kLeft, granted), needs_pixel(Side::kRight, granted)};
   }
-  // The pattern by which the accesses of a side vary. Null if all its slots inside the image access their pixels,
-  // or are assumed to, or if its port itself finds them in the cache (a side without table).
+  // The pattern by which the accesses of a side vary. Null if all its slots inside the image access their
+  // pixels, or are assumed to, or if its port itself finds them in the cache (a side without table).
   const AccessPattern* varying(Side side) const {
     const SideAccesses& accesses = sides_[index_of(side)];
     return accesses.are_all || !stepper_.control().lane(side).has_table() ? nullptr : accesses.pattern;
@@ -40,9 +41,8 @@ class AssumedAccesses {
   std::uint64_t marks(Side side) const;
 
   // To be called before a route changes, and after the last cycle of a frame. Corrects the counts. From now
-  // on the patterns determine which slots need their pixels. Returns whether a pass may have been taken for an
-  // access: if so, transitions that were recorded before are no longer true.
-  bool resolve();
+  // on the patterns determine which slots need their pixels.
+  void resolve();
 
  private:
   struct SideAccesses {
@@ -50,7 +50,7 @@ class AssumedAccesses {
     bool are_all = false;  // every slot inside the image has an access, or is assumed to have one
   };
 
-  bool resolve(Side side);
+  void resolve(Side side);
   bool needs_pixel(Side side, memory::PortMask granted) const {
     const CoreControl& control = stepper_.control();
     if ((granted & memory::mask_of(control.table_port(side))) == 0) return false;

@@ -1,12 +1,20 @@
 #include "models/fpga/core_config.h"
 
+#include <stdexcept>
+
 namespace stereotlm::fpga {
 
 std::vector<std::string> problems(const CoreConfig& config) {
   std::vector<std::string> found;
   const bool has_table = config.left_table || config.right_table;
-  (has_table ? kWidthWithTableRule : kWidthRule).check("width", config.width, found);
-  (has_table ? kHeightWithTableRule : kHeightRule).check("height", config.height, found);
+  const auto check_size = [&](const char* field, int value, const kernels::IntegerRule& rule,
+                              const kernels::IntegerRule& with_table) {
+    if (!has_table) return rule.check(field, value, found);
+    if (!with_table.allows(value))
+      found.push_back(with_table.problem(field, value) + "; a side has a look-up table");
+  };
+  check_size("width", config.width, kWidthRule, kWidthWithTableRule);
+  check_size("height", config.height, kHeightRule, kHeightWithTableRule);
   kernels::kWindowRule.check("window", config.window, found);
   kernels::kDisparitiesRule.check("disparities", config.disparities, found);
   if (config.units) {
@@ -37,6 +45,11 @@ std::vector<std::string> problems(const CoreConfig& config) {
       found.push_back("filter: " + problem);
   }
   return found;
+}
+
+const CoreConfig& checked(const CoreConfig& config) {
+  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+  return config;
 }
 
 }  // namespace stereotlm::fpga

@@ -65,5 +65,7 @@ inline int passes_of(const CoreConfig& config) {
 
 // Every broken rule as `field = value: rule`; empty if the core can be built.
 std::vector<std::string> problems(const CoreConfig& config);
+// Returns the configuration. Throws std::invalid_argument with the first of its problems if there are any.
+const CoreConfig& checked(const CoreConfig& config);
 
 }  // namespace stereotlm::fpga

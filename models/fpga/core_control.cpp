@@ -1,17 +1,8 @@
 #include "models/fpga/core_control.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace stereotlm::fpga {
-namespace {
-
-const CoreConfig& checked(const CoreConfig& config) {
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  return config;
-}
-
-}  // namespace
 
 CoreControl::CoreControl(const CoreConfig& config)
     : geometry_(checked(config)),

@@ -83,8 +83,8 @@ class CoreControl {
     return {{lane(Side::kLeft).state(), lane(Side::kRight).state()}, match_.state() | result_.state() << 8U};
   }
   // Skips the cycles in which the matcher consumes `columns` columns and `words` words of results are
-  // written. Afterwards the lanes and the result queue are in `state`; the caller corrects the marks of the lanes.
-  // `columns` is at most MatchControl::uniform_columns().
+  // written. Afterwards the lanes and the result queue are in `state`; the caller corrects the marks of the
+  // lanes. `columns` is at most MatchControl::uniform_columns().
   void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
   // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;

@@ -14,10 +14,10 @@
 
 namespace stereotlm::fpga {
 
-// The array of column and window modules (paper figures 6 and 8), D for each of the R rows. It takes one column
-// of each side, in either order. For the windows that end at these columns it passes on the sum of every
-// candidate, or its score: row by row, first to select-min unit A, then to unit B. Nothing leaves before the
-// first window is complete.
+// The array of column and window modules (paper figures 6 and 8). It takes one column of each side, in either
+// order. For the windows that end at these columns it passes on the sum of every candidate, or its score: row
+// by row, first to select-min unit A, then to unit B. Nothing leaves before the first window is complete. The
+// number of modules has no effect here: all candidates are computed when the last pass ends.
 class CostArray : public sc_core::sc_module {
  public:
   struct Stats {

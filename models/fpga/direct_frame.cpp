@@ -15,7 +15,7 @@ std::size_t pixels_of(const CoreConfig& config) {
 }  // namespace
 
 DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels)
-    : config_(config),
+    : config_(checked(config)),
       patterns_{AccessPattern(FrameGeometry(config), config.pixel_cache),
                 AccessPattern(FrameGeometry(config), config.pixel_cache)} {
   if (!has_pixels) return;

@@ -228,8 +228,8 @@ void FastForward::begin_group(StateNumber state, const TransitionCache::Accesses
   stepper_.arbitration().begin_recording();
 }
 
-// Records the transition of the group that has just been stepped, unless the state after it is not that of other
-// groups: the strips have ended, or MatchControl::state() has changed.
+// Records the transition of the group that has just been stepped, unless the state after it is not that of
+// other groups: the strips have ended, or MatchControl::state() has changed.
 void FastForward::end_group(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();

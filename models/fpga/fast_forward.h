@@ -21,8 +21,8 @@ class FastForward {
   FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t most_groups);
 
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
-  // and the stepper has started it. The patterns must outlive the frame. `routes`: frames with the same number
-  // have the same routes and latencies.
+  // and the stepper has started it. The patterns must outlive the frame. `routes`: frames with the same
+  // number have the same routes and latencies.
   void start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
@@ -53,8 +53,8 @@ class FastForward {
   };
 
   std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
-  // A transition that was followed at some group of the frame. It is followed there again, if the state is the
-  // same: frame after frame the slots make the same accesses.
+  // A transition that was followed at some group of the frame. It is followed there again, if the state is
+  // the same: frame after frame the slots make the same accesses.
   struct Followed {
     StateNumber state = UINT32_MAX;
     TransitionCache::Transition transition;

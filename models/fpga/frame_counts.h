@@ -28,7 +28,7 @@ namespace stereotlm::fpga {
 // can compare them with the geometry. All other counts follow from the geometry, the accesses of the slots
 // and the number of disparities.
 //
-// With several rows at once a column is counted once for all rows of its strip, and the absolute differences
+// With several rows at once a column is counted once for all rows of its strip, and the costs of pixel pairs
 // that the rows share are counted once. Candidates, matches and disparities are counted for each row.
 struct FrameCounts {
   // `run` has run the frame up to its last write. `answered`: the number of pixels that have a disparity;

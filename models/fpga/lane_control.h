@@ -104,8 +104,8 @@ class LaneControl {
   }
   // The number of slots in the lane in this state that are handled.
   static std::uint64_t handled_slots(State state) { return state >> 8U & 0xffU; }
-  // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The caller
-  // corrects the marks.
+  // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The
+  // caller corrects the marks.
   void skip_to(State state, std::uint64_t slots) {
     static_assert(kMostSlots <= 0xff);
     const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state >> bit & 0xffU); };
@@ -135,8 +135,8 @@ class LaneControl {
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;
     return next_slot_.empty() || (!has_table_ && has_cached_word()) ? Intent::kPass : Intent::kRequest;
   }
-  // Whether the cache of a side without table has the word of the next slot: a strip begins with a word, and its
-  // columns follow one another.
+  // Whether the cache of a side without table has the word of the next slot: a strip begins with a word, and
+  // its columns follow one another.
   bool has_cached_word() const { return has_cache_ && next_slot_.column() % kernels::kPixelsPerWord != 0; }
   Intent handle_intent() const {
     if (arrived_entries_ > handled_) {

@@ -20,8 +20,8 @@ namespace stereotlm::fpga {
 // table, the pixel of a slot from the sequencer is read as soon as the slot arrives. CoreControl decides in
 // which cycle a pixel is read, and in which cycle release() is called.
 //
-// With the word cache it keeps, for each slot of a column, the last word that it has read. A pixel in that word
-// needs no access. All words are forgotten where a strip begins.
+// With the word cache it keeps, for each slot of a column, the last word that it has read. A pixel in that
+// word needs no access. All words are forgotten where a strip begins.
 class PixelReader : public sc_core::sc_module {
  public:
   struct Stats {
@@ -92,8 +92,8 @@ class PixelReader : public sc_core::sc_module {
   std::array<Waiting, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};
   bool needs_access_ = false;
-  // [slot of a column]: the number in the image of the word that the slots before leave in the cache when they
-  // are handled, or kNoWord.
+  // [slot of a column]: the number in the image of the word that the slots before leave in the cache when
+  // they are handled, or kNoWord.
   std::vector<std::uint64_t> cached_;
   std::vector<std::uint32_t> words_;  // [slot of a column]: the last word read
   // Numbers of slots since the start of the frame.

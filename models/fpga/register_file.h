@@ -21,9 +21,9 @@ struct FrameStart {
   sc_core::sc_time delay{};  // time of the strobe, from now
 };
 
-// The register file of register_map.h: start strobe, status, bases and offsets of a frame, done interrupt. An access
-// takes no time; there is no DMI. A start strobe takes effect at the annotated time of its access. Debug
-// transport only reads.
+// The register file of register_map.h: start strobe, status, bases and offsets of a frame, done interrupt.
+// An access takes no time; there is no DMI. A start strobe takes effect at the annotated time of its access.
+// Debug transport only reads.
 //
 // | refused, without effect                                                        | response           |
 // |--------------------------------------------------------------------------------|--------------------|

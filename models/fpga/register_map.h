@@ -25,10 +25,10 @@
 // | 0x2c    | kRightColumns    | both   | as kLeftColumns                                              |
 // | 0x30    | kRightRows       | both   | as kLeftColumns                                              |
 //
-// The core takes bases and offsets at the start strobe. It ignores a strobe while it is busy, and a strobe with a
-// base in a bank that the board does not have. Both raise error. Error is also raised if memory refuses an
-// access of the running frame, or if the frame works directly on memory and its result may differ from that
-// at Fidelity::kCycle. Error stays until it is acknowledged. One write may acknowledge and start.
+// The core takes bases and offsets at the start strobe. It ignores a strobe while it is busy, and a strobe
+// with a base in a bank that the board does not have. Both raise error. Error is also raised if memory
+// refuses an access of the running frame, or if the frame works directly on memory and its result may differ
+// from that at Fidelity::kCycle. Error stays until it is acknowledged. One write may acknowledge and start.
 namespace stereotlm::fpga::registers {
 
 inline constexpr std::uint64_t kControl = 0x00;

@@ -9,8 +9,9 @@
 
 namespace stereotlm::fpga {
 
-// The line memories of the `line_buffer` fetch for one side. They keep the last n-1 rows of filtered pixels, or
-// of their census bits, so that each pixel completes a column of n. The memories are not cleared between frames.
+// The line memories of the `line_buffer` fetch for one side. They keep the last n-1 rows of filtered pixels,
+// or of their census bits, so that each pixel completes a column of n. The memories are not cleared between
+// frames.
 class RowBuffer : public sc_core::sc_module {
  public:
   struct Stats {

@@ -11,8 +11,8 @@
 
 namespace stereotlm::fpga {
 
-// Select-min unit A (paper section 3.3): the serial chain of comparators, for right-based matching; one for each
-// of the R rows. With each column of window sums the match of the right pixel D-1 columns back leaves.
+// Select-min unit A (paper section 3.3): the serial chain of comparators, for right-based matching; one for
+// each of the R rows. With each column of window sums the match of the right pixel D-1 columns back leaves.
 class SelectMinChain : public sc_core::sc_module {
  public:
   struct Stats {

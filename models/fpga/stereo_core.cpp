@@ -271,8 +271,9 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   return burst_has_ended;
 }
 
-// Whether the core writes a result to a bank with separate ports that the host reads in the same cycle. The read
-// must come first, because it gets the old word. (move() reads before it writes, and before the host writes.)
+// Whether the core writes a result to a bank with separate ports that the host reads in the same cycle. The
+// read must come first, because it gets the old word. (move() reads before it writes, and before the host
+// writes.)
 bool StereoCore::host_reads_where_core_writes(PortMask granted) const {
   return has_host(granted) && (granted & memory::mask_of(kResultPort)) != 0 &&
          crossbar_.bank_of(kHostPort) == crossbar_.bank_of(kResultPort);

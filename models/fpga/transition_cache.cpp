@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/kernels/pixel_column.h"
+
 namespace stereotlm::fpga {
 namespace {
 
@@ -55,6 +57,9 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
   for (const auto& alone : effect.decided.alone) hash.mix(alone.ports * alone.cycles);
   return hash.value();
 }
+
+static_assert(4 * kernels::kMostRows + kLaneFifoRule.max <= 64 * TransitionCache::kMostWordsOfSide,
+              "Accesses does not hold the slots of a group");
 
 TransitionCache::TransitionCache(std::size_t slots, std::size_t most)
     : words_(2 * ((slots + 63) / 64)), most_(most) {
@@ -156,8 +161,8 @@ void TransitionCache::double_places() {
 }
 
 // Loops are found as by Brent (1980): the mark moves to the current state after 1, 2, 4, .. steps, so that a
-// loop of any length is found. When the walk returns to the marked state, it repeats the loop as often as there
-// is room.
+// loop of any length is found. When the walk returns to the marked state, it repeats the loop as often as
+// there is room.
 TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Accesses& accesses,
                                                    Progress& room) {
   StateNumber state = first;

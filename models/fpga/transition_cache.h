@@ -48,11 +48,11 @@ struct Progress {
 };
 
 // Memo of state transitions for FastForward, one per group of four columns of the matcher. The state before a
-// group, and the accesses of the slots that the group can handle, determine the group's cycles, counts and next
-// state. A transition is recorded when its group is stepped; after that it is skipped.
+// group, and the accesses of the slots that the group can handle, determine the group's cycles, counts and
+// next state. A transition is recorded when its group is stepped; after that it is skipped.
 //
-// States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step along
-// the memo is one look-up in a small table.
+// States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step
+// along the memo is one look-up in a small table.
 class TransitionCache {
  public:
   // Cap: a frame that never repeats would otherwise fill memory.
@@ -71,9 +71,9 @@ class TransitionCache {
   };
   using StateNumber = std::uint32_t;
 
-  // The slots in the lanes during a group, from the first one that is not consumed before it: a bit for each, which
-  // is 1 if the slot accesses its pixel. words_of_side() words for the left lane, then as many for the right lane.
-  // Slots that are handled before the group have no effect.
+  // The slots in the lanes during a group, from the first one that is not consumed before it: a bit for
+  // each, which is 1 if the slot accesses its pixel. words_of_side() words for the left lane, then as many
+  // for the right lane. Slots that are handled before the group have no effect.
   static constexpr std::size_t kMostWordsOfSide = 4;
   using Accesses = std::array<std::uint64_t, 2 * kMostWordsOfSide>;
   std::size_t words_of_side() const { return words_ / 2; }
@@ -126,8 +126,8 @@ class TransitionCache {
     std::size_t operator()(const Effect& effect) const;
   };
 
-  // A place in the table of transitions: the number of the state plus one (0: the place is free), the accesses
-  // of key_of(), the transition.
+  // A place in the table of transitions: the number of the state plus one (0: the place is free), the
+  // accesses of key_of(), the transition.
   std::size_t words_of_place() const { return words_ + 2; }
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
   std::size_t place_of(StateNumber from, const Accesses& key) const;

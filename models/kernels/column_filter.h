@@ -14,8 +14,9 @@ namespace stereotlm::kernels {
 
 // Filters the pixels of a frame (contract 1.2) in the order in which the hardware fetches them; used by
 // fpga::LogFilter. Pixels enter column by column, see ColumnNeighbourhood. A column has `rows_per_column` new
-// rows: n + R - 1 for the column fetch, 1 for line buffers. When column u enters, the filtered pixels of column
-// u - h leave, h rows further up (h: half width of the kernel). Without a kernel a column leaves as it enters.
+// rows: n + R - 1 for the column fetch, 1 for line buffers. When column u enters, the filtered pixels of
+// column u - h leave, h rows further up (h: half width of the kernel). Without a kernel a column leaves as
+// it enters.
 class ColumnFilter {
  public:
   // Throws std::invalid_argument if the kernel has problems, the image has no pixels, or `rows_per_column` is

@@ -132,8 +132,8 @@ class ColumnNeighbourhood {
   int step_;
   int half_;
 
-  // Line memories: 2h rows per image column, padded to whole blocks. Of the valid bits only those of the last h
-  // rows are needed (bit e: row e - h).
+  // Line memories: 2h rows per image column, padded to whole blocks. Of the valid bits only those of the
+  // last h rows are needed (bit e: row e - h).
   std::size_t line_stride_ = 0;
   std::vector<Value> line_values_;
   std::vector<std::uint64_t> line_valid_;

@@ -17,11 +17,11 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
   return column - radius + 1 < disparities ? column - radius + 1 : disparities;
 }
 
-// The array of column and window modules (paper section 3.4, figures 6 and 8); used by fpga::CostArray. Column
-// module d accumulates the costs of the right pixels d columns ago and the left pixels, over the n rows of a
-// column: absolute differences, their squares, or differing census bits; products for the cost `zncc`. Window
-// module d adds the finished column sum and subtracts the column sum of n columns ago, so that it holds the
-// sum of candidate d for the window that ends at this column.
+// The array of column and window modules (paper section 3.4, figures 6 and 8); used by fpga::CostArray.
+// Column module d accumulates the costs of the right pixels d columns ago and the left pixels, over the n
+// rows of a column: absolute differences, their squares, or differing census bits; products for the cost
+// `zncc`. Window module d adds the finished column sum and subtracts the column sum of n columns ago, so
+// that it holds the sum of candidate d for the window that ends at this column.
 class CostColumns {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule, or if the cost has problems.
@@ -44,8 +44,8 @@ class CostColumns {
   int oldest_ = 0;                             // index of the column sums that leave the window next
   std::vector<std::uint8_t> right_histories_;  // per byte of a column: newest column first
   std::vector<const std::uint8_t*> newest_;    // per byte: the newest pixel in its history
-  // Column sums of the last n columns. Absolute differences and census bits fit into 16 bits: at most 31 * 255
-  // and 31 * 48.
+  // Column sums of the last n columns. Absolute differences and census bits fit into 16 bits: at most 31 *
+  // 255 and 31 * 48.
   std::vector<LaneArray<std::int16_t>> narrow_sums_;
   std::vector<LaneArray<std::int32_t>> wide_sums_;
   LaneArray<std::int32_t> window_sums_;  // at most 31 * 31 * 255 * 255

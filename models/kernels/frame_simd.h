@@ -34,8 +34,8 @@ struct MatchPlan {
 // Arrays with one or more vectors per position, aligned to kMostFrameVectorBytes.
 struct MatchMemory {
   // In each lane the byte that enters the window is the lower one, the byte that leaves the window the upper
-  // one. Pixels of more than one byte have a plane for each byte, MatchPlan::right_stride apart and left_stride
-  // apart.
+  // one. Pixels of more than one byte have a plane for each byte, MatchPlan::right_stride apart and
+  // left_stride apart.
   const std::int16_t* right_pixels = nullptr;  // [columns + window - 1]
   const std::int16_t* left_pixels = nullptr;   // [columns + window + disparities - 2]
   // [columns + disparities]: the largest 16-bit value if the left window is outside the image, else the
@@ -52,8 +52,8 @@ struct MatchMemory {
   // With MatchLoops::unpacks: the pixels as numbers of 16 bits, two vectors per position.
   std::int16_t* right_unpacked = nullptr;
   std::int16_t* left_unpacked = nullptr;
-  // With MatchLoops::has_statistics: kColumnStatisticsVectors for each position of the pixels, zeros before the
-  // first row, and kWindowStatisticsVectors for each window.
+  // With MatchLoops::has_statistics: kColumnStatisticsVectors for each position of the pixels, zeros before
+  // the first row, and kWindowStatisticsVectors for each window.
   std::int16_t* right_columns = nullptr;
   std::int16_t* left_columns = nullptr;
   std::int16_t* right_windows = nullptr;  // [columns]
@@ -100,11 +100,12 @@ struct FrameSimd {
   // The reverse of to_lanes(), with bytes as output.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
   // The census bits of one row (contract 7.6). `rows`: the size x size neighbourhood of the first pixel, by
-  // rows, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order of
-  // the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
+  // rows, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order
+  // of the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
   void (*census_row)(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out);
 
-  // The loops of each cost for windows of `window` x `window` pixels. kUndecided comes from zncc_loops() only.
+  // The loops of each cost for windows of `window` x `window` pixels. kUndecided comes from zncc_loops()
+  // only.
   MatchLoops (*sad_loops)(int window);
   MatchLoops (*ssd_loops)(int window);
   MatchLoops (*zncc_loops)(int window);

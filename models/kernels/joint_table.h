@@ -9,9 +9,9 @@
 
 namespace stereotlm::kernels {
 
-// One table for both sides (contract 7.3). Its word for a pixel holds a displacement of each side, 16 bits each:
-// bit 15 valid, bits 14..8 rows + 64, bits 7..0 columns + 128. The left side has the upper half of the word. The
-// source of a pixel is its own position, plus the displacement, plus the offset of the side.
+// One table for both sides (contract 7.3). Its word for a pixel holds a displacement of each side, 16 bits
+// each: bit 15 valid, bits 14..8 rows + 64, bits 7..0 columns + 128. The left side has the upper half of the
+// word. The source of a pixel is its own position, plus the displacement, plus the offset of the side.
 inline constexpr int kJointColumns = 256;  // range of the displacements of a side
 inline constexpr int kJointRows = 128;
 
@@ -32,16 +32,16 @@ struct JointTable {
   JointOffsets offsets;
 };
 
-// The reasons for which two tables of one size, which have no problems, cannot be joined: one for each side and
-// coordinate whose displacements need a larger range than there is. Empty if they can.
+// The reasons for which two tables of one size, which have no problems, cannot be joined: one for each side
+// and coordinate whose displacements need a larger range than there is. Empty if they can.
 std::vector<std::string> joint_problems(const RectificationTable& left, const RectificationTable& right);
 
 // Joins two tables. The offsets are the middles of the ranges that the valid entries of a side need. Throws
 // std::invalid_argument if the tables cannot be joined.
 JointTable join_tables(const RectificationTable& left, const RectificationTable& right);
 
-// The entry of one side, as in a table of its own; 0 if it is not valid. `half`: that side's half of the word of
-// pixel (column, row). The coordinates of the source have 11 bits, as in the entry.
+// The entry of one side, as in a table of its own; 0 if it is not valid. `half`: that side's half of the
+// word of pixel (column, row). The coordinates of the source have 11 bits, as in the entry.
 constexpr std::uint32_t entry_of_joint_half(std::uint32_t half, int column, int row,
                                             const JointOffset& offset) {
   if ((half & 0x8000U) == 0) return 0;

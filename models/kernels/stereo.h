@@ -12,9 +12,9 @@
 
 namespace stereotlm::kernels {
 
-// The functions of this file do the arithmetic of contract sections 1 and 7.6 on single pairs of whole images, without
-// memories and time. StereoPipeline does the same for many frames. Disparity images hold kInvalidDisparity
-// where there is no disparity.
+// The functions of this file do the arithmetic of contract sections 1 and 7.6 on single pairs of whole
+// images, without memories and time. StereoPipeline does the same for many frames. Disparity images hold
+// kInvalidDisparity where there is no disparity.
 
 // The parameters of that arithmetic.
 struct StereoConfig {
@@ -36,8 +36,8 @@ struct Matches {
   GrayImage right_based;  // dR
   GrayImage left_based;   // dL
 };
-// Matches two filtered images (contract 1.3, 7.6). Throws std::invalid_argument if they differ in size, or the
-// window, the number of disparities or the cost breaks its rule.
+// Matches two filtered images (contract 1.3, 7.6). Throws std::invalid_argument if they differ in size, or
+// the window, the number of disparities or the cost breaks its rule.
 Matches match(const GrayImage& left, const GrayImage& right, int window, int disparities,
               const MatchingCost& cost = {});
 

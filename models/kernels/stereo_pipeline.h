@@ -11,8 +11,9 @@
 
 namespace stereotlm::kernels {
 
-// Computes the disparity images of many frames (contract sections 1 and 7.6): rectifies, filters, matches and checks
-// whole images. Used by disparity_image() and fpga::DirectFrame. The constructor allocates all memory.
+// Computes the disparity images of many frames (contract sections 1 and 7.6): rectifies, filters, matches
+// and checks whole images. Used by disparity_image() and fpga::DirectFrame. The constructor allocates all
+// memory.
 class StereoPipeline {
  public:
   // Throws std::invalid_argument if the configuration has problems, or if the images are empty but are to be

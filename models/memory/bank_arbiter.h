@@ -99,8 +99,8 @@ class BankArbiter {
     DecisionTable::Row& at(std::uint64_t cycle) const { return row->after_idle_cycles(cycle - next_cycle); }
   };
 
-  // Half of an outcome. `by`: index of the port that was granted, or ArbiterStats::kTurnaround. `write`: 1 for
-  // a write.
+  // Half of an outcome. `by`: index of the port that was granted, or ArbiterStats::kTurnaround. `write`: 1
+  // for a write.
   static constexpr Outcome outcome_of(std::size_t requests, std::size_t by, std::size_t write) {
     return static_cast<Outcome>((by << 1U | write) << kMostPorts | requests);
   }
@@ -146,8 +146,8 @@ class BankArbiter {
   bool counting_ = false;
   std::uint64_t next_uncounted_cycle_ = 0;  // all counted cycles before it are in the statistics
   std::uint64_t idle_cycles_ = 0;
-  // [half of an outcome]: cycles counted. stats() is computed from this table, from idle_cycles_, and from the
-  // cycles that are in the table twice, because both halves of their outcome have a grant or contend.
+  // [half of an outcome]: cycles counted. stats() is computed from this table, from idle_cycles_, and from
+  // the cycles that are in the table twice, because both halves of their outcome have a grant or contend.
   std::array<std::uint64_t, (kMostPorts + 1) * 2 * kMasks> outcomes_{};
   std::uint64_t both_granted_cycles_ = 0;
   std::uint64_t both_contended_cycles_ = 0;

@@ -9,10 +9,11 @@
 
 namespace stereotlm::memory {
 
-// One synchronous SRAM bank: one 32-bit word per access, byte enables. b_transport never waits. A read adds to
-// `delay` the time until its reader can use the word; a write adds nothing. nb_transport_fw has the same effect
-// and returns TLM_COMPLETED. The arbiter in front of the bank decides which port may access it. A bank with
-// separate ports has one socket too: of a read and a write in one cycle the initiators make the read first.
+// One synchronous SRAM bank: one 32-bit word per access, byte enables. b_transport never waits. A read adds
+// to `delay` the time until its reader can use the word; a write adds nothing. nb_transport_fw has the same
+// effect and returns TLM_COMPLETED. The arbiter in front of the bank decides which port may access it. A
+// bank with separate ports has one socket too: of a read and a write in one cycle the initiators make the
+// read first.
 //
 // Errors have no effect and add no delay:
 //   TLM_ADDRESS_ERROR_RESPONSE      an address outside the bank, or not a multiple of 4

@@ -160,8 +160,8 @@ std::vector<Key> make_keys() {
       word<&B::capture, &CaptureConfig::destination>(
           "capture.destination", "where capture writes: the FPGA board, or a ring in host memory",
           {"board", "host_memory"}),
-      integer("capture.host_frames", "pairs in the ring in host memory", "pairs", {1, 64},
-              member<&B::capture, &CaptureConfig::host_frames>),
+      integer("capture.host_frames", "pairs in the ring in host memory, which takes at most 1 GiB", "pairs",
+              {1, 64}, member<&B::capture, &CaptureConfig::host_frames>),
       integer("capture.fifo_words", "FIFO of a capture board", "words", {1, 4096},
               member<&B::capture, &CaptureConfig::fifo_words>),
       trigger_words,

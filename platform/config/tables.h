@@ -36,8 +36,8 @@ std::optional<std::string> calibration_buffer_problem(const BoardConfig& board);
 std::optional<std::string> joint_tables_problem(const Tables& tables);
 
 // Throws std::invalid_argument if a side has a table but no buffer for it, or a buffer but no table; if a
-// table has another size than the images; if a table has problems; or if the board has joint tables, but these do
-// not fit into one.
+// table has another size than the images; if a table has problems; or if the board has joint tables, but
+// these do not fit into one.
 void check_tables(const BoardConfig& board, const Tables& tables);
 
 }  // namespace stereotlm::platform

@@ -57,9 +57,9 @@ class FrameListener {
 // reports an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
-  // Entries of the tables, row by row (contract 1.1); empty for a side without table. The driver joins those of
-  // joint tables. `listener` outlives the driver. Throws std::invalid_argument if the configuration has problems,
-  // a table does not have one entry per pixel, or joint tables do not fit.
+  // Entries of the tables, row by row (contract 1.1); empty for a side without table. The driver joins those
+  // of joint tables. `listener` outlives the driver. Throws std::invalid_argument if the configuration has
+  // problems, a table does not have one entry per pixel, or joint tables do not fit.
   StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
                std::vector<std::uint32_t> right_table, FrameListener& listener);
 

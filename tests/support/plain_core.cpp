@@ -206,8 +206,8 @@ class Lane {
     return !has_cache_ || slot.begins || kept_[static_cast<std::size_t>(slot.k)] != word_of(slot);
   }
 
-  // The word of the picture in which the source pixel of a slot that is not empty lies; nullopt if the entry is
-  // not valid.
+  // The word of the picture in which the source pixel of a slot that is not empty lies; nullopt if the entry
+  // is not valid.
   std::optional<int> word_of(const Slot& slot) const {
     const int place = slot.row * width_ + slot.column;
     if (setting_.entries == nullptr) return place / 4;

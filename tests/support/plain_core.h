@@ -11,9 +11,9 @@
 
 #include "tests/support/plain_cycle_input.h"
 
-// The timing of the FPGA core, cycle by cycle, written from contract sections 2 and 7 alone. It shares no code with
-// the models, which tests compare with it: it keeps a time stamp for every event that the page dates, and
-// applies every rule in every cycle.
+// The timing of the FPGA core, cycle by cycle, written from contract sections 2 and 7 alone. It shares no
+// code with the models, which tests compare with it: it keeps a time stamp for every event that the page
+// dates, and applies every rule in every cycle.
 namespace stereotlm::test {
 
 struct PlainPortStates {

@@ -32,7 +32,7 @@ struct PicturePair {
   std::vector<std::uint8_t> right;
 };
 
-// 4..64 x 1..40 pixels, 1..10 banks, a latency of the pipeline of up to 40 cycles, all else in its whole range.
+// 4..64 x 1..40 pixels, 1..10 banks, a pipeline latency of up to 40 cycles, all else in its whole range.
 // Each side with a bank for its table has entries; filter_half and cost_half are not set.
 struct RandomBoard : PlainCycleInput {
   std::uint64_t seed = 0;
@@ -47,8 +47,8 @@ struct RandomBoard : PlainCycleInput {
   }
 };
 
-// The knobs of contract section 7 that boards draw, beside all of sections 1 to 6. Each is then drawn by every
-// second board or so: a board has any combination that is allowed.
+// The knobs of contract section 7 that boards draw, beside all of sections 1 to 6. Each is then drawn by
+// every second board or so: a board has any combination that is allowed.
 struct RandomKnobs {
   bool large_images = false;  // few boards: up to 8192 columns or rows, without tables
   bool units = false;         // up to 16 passes

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-// The arithmetic of contract sections 1 and 7 as literal nested loops, written from that page alone. It shares no
-// code with the models, which tests compare with it. Each function is one sentence or formula of the page,
-// without regard to speed. Nothing checks the input, which must keep the rules of the page.
+// The arithmetic of contract sections 1 and 7 as literal nested loops, written from that page alone. It
+// shares no code with the models, which tests compare with it. Each function is one sentence or formula of
+// the page, without regard to speed. Nothing checks the input, which must keep the rules of the page.
 namespace stereotlm::test {
 
 // K of contract 1.2.

@@ -1,5 +1,5 @@
-// Whole computers around random boards, each in a process of its own under the monitor, against the plain loop
-// over events: every figure, time and pixel, at each fidelity.
+// Whole computers around random boards, each in a process of its own under the monitor, against the plain
+// loop over events: every figure, time and pixel, at each fidelity.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

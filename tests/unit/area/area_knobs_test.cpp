@@ -53,8 +53,8 @@ TEST(FoldedArea, LeadsRightPixelsBackToTheFirstModule) {
   EXPECT_EQ(item_of(core(kUnits, 40), "right pixel delays").count, 40);
 }
 
-// A comparison takes a comparator of 14 bits, the decision and a selector. Of 80 disparities on 40 modules the
-// pass has 1 bit and the module 6. 40 * pass + module takes a multiplier and an adder of 7 bits.
+// A comparison takes a comparator of 14 bits, the decision and a selector. Of 80 disparities on 40 modules
+// the pass has 1 bit and the module 6. 40 * pass + module takes a multiplier and an adder of 7 bits.
 TEST(FoldedArea, ContinuesTheChainInTheNextPass) {
   constexpr int kComparison = 15 + 1 + 14 + 7;
   expect_all("select-min unit A", {{core(kUnits, 40), {40 * (kComparison + 22) + 7, 22, 0, 1}},

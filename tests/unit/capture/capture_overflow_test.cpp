@@ -1,5 +1,5 @@
-// A capture board that is granted the bus too late (contract section 3). The paper's board: 640 x 480, 29.97 Hz, a
-// FIFO of 140 words that requests the bus with 32.
+// A capture board that is granted the bus too late (contract section 3). The paper's board: 640 x 480, 29.97
+// Hz, a FIFO of 140 words that requests the bus with 32.
 #include <algorithm>
 #include <string>
 
@@ -57,8 +57,8 @@ TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
   EXPECT_EQ(side->board.stats().words, 640U * 480 / 4 - 20);
 }
 
-// A FIFO of one word, and pixel 4 arrives at an edge of the bus clock. The only word of the first burst leaves, or
-// is lost, at that edge or a clock later.
+// A FIFO of one word, and pixel 4 arrives at an edge of the bus clock. The only word of the first burst
+// leaves, or is lost, at that edge or a clock later.
 struct LastMoment {
   bool lost;
   std::uint64_t late_clocks;

@@ -1,5 +1,5 @@
-// Random frames on a random bus, against the literal board of plain_capture_board.h. Each case is a process that
-// simulates many boards at once.
+// Random frames on a random bus, against the literal board of plain_capture_board.h. Each case is a process
+// that simulates many boards at once.
 #include <random>
 #include <string>
 

@@ -86,18 +86,24 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
     const FrameGeometry geometry(config);
     std::uint64_t passes = 0;
     std::uint64_t slot = 0;
+    std::vector<bool> pixels(geometry.slots + 256 + 64);  // beyond the end of the frame there are none
     for (SlotCursor place(geometry); !place.done(); place.advance(), ++slot) {
       const Access access = columns[place.frame_column()][slot % columns.front().size()];
       if (access != Access::kNone) {
         ASSERT_EQ(pattern.needs_pixel(place.column(), place.row()), access == Access::kTableAndImage);
       }
-      ASSERT_EQ(pattern.pixels_of_slots(slot) & 1U, access == Access::kTableAndImage ? 1U : 0U) << slot;
+      pixels[slot] = access == Access::kTableAndImage;
       if (slot % 7 == 0) {
         ASSERT_EQ(pattern.passes_before(slot), passes) << slot;
       }
       if (access == Access::kTable || access == Access::kTableAndCache) ++passes;
     }
     ASSERT_EQ(pattern.passes_before(geometry.slots), passes);
+    for (slot = 0; slot <= geometry.slots + 256; ++slot) {
+      std::uint64_t expected = 0;
+      for (std::size_t bit = 0; bit < 64; ++bit) expected |= std::uint64_t{pixels[slot + bit]} << bit;
+      ASSERT_EQ(pattern.pixels_of_slots(slot), expected) << slot;
+    }
   }
 }
 

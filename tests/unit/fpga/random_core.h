@@ -68,8 +68,8 @@ inline std::size_t place_of(const CoreConfig& config, int column, int row) {
          static_cast<std::size_t>(column);
 }
 
-// The table entries of one side: all valid, valid but for a block or some columns, or some anywhere. The sources
-// are the pixels themselves, or lie on slanted lines.
+// The table entries of one side: all valid, valid but for a block or some columns, or some anywhere. The
+// sources are the pixels themselves, or lie on slanted lines.
 inline std::vector<std::uint32_t> random_entries(test::SplitMix64& random, const CoreConfig& config) {
   auto entries = kernels::identity_table(config.width, config.height).entries;
   if (random.chance(50)) {

@@ -43,8 +43,8 @@ class LambdaProgram : public Program {
   void run(HostBus& bus) override { body(bus); }
 };
 
-// A processor with host memory, two interrupt lines, and registers behind a monitor. A register access waits for
-// half of kAccessTime and annotates the other half.
+// A processor with host memory, two interrupt lines, and registers behind a monitor. A register access waits
+// for half of kAccessTime and annotates the other half.
 class CpuTest : public testing::Test {
  protected:
   CpuTest() {

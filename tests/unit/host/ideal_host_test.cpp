@@ -60,8 +60,8 @@ class Sink : public FrameSink {
   std::vector<sc_time> times;
 };
 
-// Registers and memory of a core. A frame takes it kFrameTime; then the disparity buffer is filled with the sum
-// of a left and a right pixel.
+// Registers and memory of a core. A frame takes it kFrameTime; then the disparity buffer is filled with the
+// sum of a left and a right pixel.
 class IdealHostTest : public testing::Test {
  public:
   void build(const IdealHostConfig& host_config, const kernels::RectificationTable* left_table = nullptr,

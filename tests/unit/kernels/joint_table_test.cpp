@@ -71,8 +71,8 @@ TEST(JointTable, EqualsTheReferenceAndGivesTheEntriesBack) {
                                          {board.width, board.height, *board.right_table});
     const auto expected = test::reference_joint_table(board.width, *board.left_table, *board.right_table);
     ASSERT_EQ(joint.words, expected.words);
-    ASSERT_EQ(joint.offsets, (JointOffsets{{{expected.left.x, expected.left.y},
-                                            {expected.right.x, expected.right.y}}}));
+    ASSERT_EQ(joint.offsets,
+              (JointOffsets{{{expected.left.x, expected.left.y}, {expected.right.x, expected.right.y}}}));
     for (std::size_t pixel = 0; pixel < joint.words.size(); ++pixel) {
       const int column = static_cast<int>(pixel) % board.width;
       const int row = static_cast<int>(pixel) / board.width;

@@ -110,8 +110,8 @@ TEST(StereoAndOpenCv, HaveTheSameLeftBasedSearch) {
   expect_same_search(640, 60, 7, 80, random);
 }
 
-// Compares each right window with the left windows of its row by matchTemplate. It has rounding errors far below
-// one half in windows of this size.
+// Compares each right window with the left windows of its row by matchTemplate. It has rounding errors far
+// below one half in windows of this size.
 GrayImage ssd_matched_by_opencv(const GrayImage& left, const GrayImage& right, int window, int disparities) {
   const int r = (window - 1) / 2;
   const cv::Mat left_mat = mat_of(left);

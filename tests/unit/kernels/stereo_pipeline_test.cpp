@@ -66,8 +66,8 @@ void expect_noise_matches(int width, int height, int window, int disparities, in
   expect_reference(board);
 }
 
-// In wide images a lane's segment is several vectors long, and many disparities reach over more than one. Other
-// costs than SAD get fewer candidates, because the reference is slow for them.
+// In wide images a lane's segment is several vectors long, and many disparities reach over more than one.
+// Other costs than SAD get fewer candidates, because the reference is slow for them.
 TEST(StereoPipeline, EqualsTheReferenceOnWideAndOnHighImages) {
   SplitMix64 random(11);
   int cost = 0;

@@ -36,8 +36,8 @@ std::vector<std::uint64_t> waiting(const PostedWrites& posted) {
   return addresses;
 }
 
-// Bursts end at the longest length, where addresses jump and at the end of a bank. Words that are pushed while
-// a burst is sent are not part of it.
+// Bursts end at the longest length, where addresses jump and at the end of a bank. Words that are pushed
+// while a burst is sent are not part of it.
 TEST(PostedWrites, SendsTheSameBurstsAsAQueueOfSingleWords) {
   constexpr std::size_t kPlaces = 24;
   std::mt19937 random(1);

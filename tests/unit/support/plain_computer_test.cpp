@@ -19,8 +19,8 @@ ReferenceInput camera_input(const RandomBoard& board, std::uint64_t camera_frame
   return input;
 }
 
-// The pictures reach the board whole, and the tables as the core reads them: joint tables with their registers
-// give what separate tables give.
+// The pictures reach the board whole, and the tables as the core reads them: joint tables with their
+// registers give what separate tables give.
 TEST(PlainComputer, DeliversTheDisparitiesOfThePicturesWithAllKnobs) {
   RandomKnobs knobs = RandomKnobs::all();
   knobs.large_images = false;

@@ -352,8 +352,8 @@ INSTANTIATE_TEST_SUITE_P(
                     2'257}),
     [](const auto& board) { return board.param.name; });
 
-// left_pixel reads in cycles 1, 4, 7 and 10, right_pixel, after a stall in 1, in 2, 5, 8 and 11. The host writes
-// in every cycle.
+// left_pixel reads in cycles 1, 4, 7 and 10, right_pixel, after a stall in 1, in 2, 5, 8 and 11. The host
+// writes in every cycle.
 TEST(PlainCycleLoop, GrantsAReadAndAWriteOfAQdrBankInOneCycle) {
   PlainCycleInput input = tiny_board_of_one_bank();
   input.banks[0].kind = PlainBankKind::kQdr;
@@ -386,7 +386,8 @@ TEST(PlainCycleLoop, KeepsARoundRobinPlaceForEachDirectionOfAQdrBank) {
   EXPECT_EQ(core.result().blamed(PlainPort::kRightPixel, 0, PlainPort::kLeftPixel), 2U);
 }
 
-// Cycles in which the host's word is granted. The host asks in every cycle but `pause`, and is last in the list.
+// Cycles in which the host's word is granted. The host asks in every cycle but `pause`, and is last in the
+// list.
 std::string host_grants_by_age(const PlainBank& bank, int cycles, int pause = -1) {
   PlainCycleInput input = tiny_board_of_one_bank();  // without host, each lane asks in cycles 1, 4, 7 and 10
   input.arbitration = PlainArbitration::kAge;
