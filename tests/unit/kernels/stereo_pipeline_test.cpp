@@ -21,7 +21,7 @@ using test::SplitMix64;
 
 // Sends all pictures of the board through one pipeline for each instruction set, forwards and backwards: no
 // frame may leave a trace in the next.
-void expect_reference(const RandomBoard& board) {
+void expect_literal_frame(const RandomBoard& board) {
   const auto entries = [](const std::optional<std::vector<std::uint32_t>>& table) {
     return table ? table->data() : nullptr;
   };
@@ -50,7 +50,7 @@ TEST(StereoPipeline, EqualsTheReferenceOnRandomBoardsWithEachInstructionSet) {
     board.cost = test::any_cost(static_cast<int>(seed));
     board.frames = static_cast<int>(board.pictures.size());
     SCOPED_TRACE(describe(board));
-    ASSERT_NO_FATAL_FAILURE(expect_reference(board));
+    ASSERT_NO_FATAL_FAILURE(expect_literal_frame(board));
   }
 }
 
@@ -63,7 +63,7 @@ void expect_noise_matches(int width, int height, int window, int disparities, in
   board.lr_tolerance = 1;
   board.cost = test::any_cost(cost);
   SCOPED_TRACE(name_of(test::matching_cost(board.cost).kind));
-  expect_reference(board);
+  expect_literal_frame(board);
 }
 
 // In wide images a lane's segment is several vectors long, and many disparities reach over more than one.
