@@ -55,7 +55,8 @@ struct CoreConfig {
   int pipeline_latency_cycles = 16;  // cycles, kPipelineLatencyRule, after the last write
 };
 
-// U, and S: the number of cycles in which the matcher works on a slot (contract 7.1).
+// U, the number of window modules, and S, that of the cycles in which the matcher works on a slot (contract
+// 7.1).
 inline int units_of(const CoreConfig& config) { return config.units.value_or(config.disparities); }
 inline int passes_of(int disparities, int units) { return (disparities + units - 1) / units; }
 inline int passes_of(const CoreConfig& config) { return passes_of(config.disparities, units_of(config)); }

@@ -1,7 +1,5 @@
 #include "models/fpga/row_recorder.h"
 
-#include <algorithm>
-
 namespace stereotlm::fpga {
 
 void RowRecorder::start_frame(const CoreControl& control) {

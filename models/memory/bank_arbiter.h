@@ -141,8 +141,8 @@ class BankArbiter {
 
   DecisionTable table_;
   bool has_separate_ports_;
-  std::array<PolicyPosition, 2>
-      positions_;                         // of [0] reads, [1] writes; without separate ports [0] is of both
+  // Of [0] reads, [1] writes. Without separate ports [0] is of both.
+  std::array<PolicyPosition, 2> positions_;
   std::uint64_t other_direction_cycles_;  // from an access to the first possible one in the other direction
   std::array<std::uint64_t, 2> ready_cycle_{};  // first cycle in which [0] a read, [1] a write can be granted
   bool counting_ = false;
