@@ -28,7 +28,7 @@ struct Core {
         geometry(config),
         columns_of_pixels(config.fetch == Fetch::kLineBuffer),
         passes(fpga::passes_of(config)),
-        units(config.units.value_or(config.disparities)),
+        units(fpga::units_of(config)),
         pair(pair_arithmetic(config.cost)),
         disparity_bits(bits_of(config.disparities - 1)) {}
 
