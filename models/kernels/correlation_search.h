@@ -17,6 +17,8 @@ class CorrelationSearch {
  public:
   // Images of `width` columns.
   CorrelationSearch(int width, int window, int disparities, const Simd& simd);
+  CorrelationSearch(const CorrelationSearch&) = delete;
+  CorrelationSearch& operator=(const CorrelationSearch&) = delete;
 
   // Begins a pair of images, which must stay as they are until the next one.
   void set_images(const std::uint8_t* left, const std::uint8_t* right);

@@ -13,7 +13,7 @@ using QuarterVectorBytes = std::uint8_t __attribute__((vector_size(kBytes / 4)))
 using Uint64s = std::uint64_t __attribute__((vector_size(kBytes)));
 using Int64s = std::int64_t __attribute__((vector_size(kBytes)));
 
-// Conversion by an intrinsic, because GCC's own takes several instructions.
+// By an intrinsic, because GCC's own conversion takes several instructions.
 Int32s widened(const std::uint8_t* bytes) {
 #if defined(__AVX512BW__)
   return reinterpret_cast<Int32s>(_mm512_maskz_cvtepu8_epi32(0xFFFF, load<__m128i>(bytes)));
@@ -36,13 +36,13 @@ double greatest_of(Doubles values) {
   return greatest;
 }
 
+double least_of(Doubles values) { return -greatest_of(-values); }
+
 bool any(Int64s lanes) {
   std::int64_t all = 0;
   for (int i = 0; i < kDoubles; ++i) all |= lanes[i];
   return all != 0;
 }
-
-double least_of(Doubles values) { return -greatest_of(-values); }
 
 // The integers in these doubles, which are below 2^51.
 Uint64s uint64s(Doubles values) {
@@ -68,11 +68,12 @@ void add_products(const std::uint8_t* const* rows, const std::int16_t* own, int 
   }
 }
 
-// The quotients are rounded three times, each time by at most 2^-53 of their value: those of equal scores differ
-// by less than 2^-50. So every candidate with the greatest score is near the greatest quotient. If all these
-// have one variance, then their covariances, below 2^34, differ by less than 1, and their scores are equal.
-// Otherwise they are compared as fractions. The cross products of candidates that are near differ by less than
-// 2^56, so that the lowest 64 bits of the difference suffice.
+// The quotients covariance * |covariance| / variance are rounded three times, each time by at most 2^-53 of
+// their value: those of equal scores differ by less than 2^-50. A candidate is near if its quotient is less
+// than 2^-49 below the greatest one, so that every candidate with the greatest score is near. Near candidates
+// with the same variance have the same covariance, because covariances are integers below 2^34. If all near
+// candidates have one variance, their scores are equal. Otherwise they are compared as fractions: their cross
+// products differ by less than 2^56, so that the lowest 64 bits of the difference suffice.
 int best_candidate(const Candidates& candidates, const std::int32_t* products, double pixels, double own_sum,
                    double* quotients) {
   Doubles first_lanes{};
@@ -94,7 +95,7 @@ int best_candidate(const Candidates& candidates, const std::int32_t* products, d
 
   int best = 0;
   while (quotients[best] < least_near) ++best;
-  Int64s is_unlike{};
+  Int64s is_unlike{};  // negative where a near candidate has another variance
   for (int c = 0; c < candidates.count; c += kDoubles) {
     is_unlike += (load<Doubles>(quotients + c) >= least_near) &
                  (load<Doubles>(candidates.inverses + c) != candidates.inverses[best]);

@@ -4,8 +4,8 @@
 
 namespace stereotlm::kernels {
 
-// The candidates of a window: windows of the other side, in the order of their disparities, which begin with 0.
-// The arrays may be read up to the next multiple of kLanePadding.
+// The candidates of a window: windows of the other side, for the disparities 0..count-1. The arrays may
+// be read up to the next multiple of kLanePadding.
 struct Candidates {
   int count;
   const double* sums;  // of the pixels of each candidate
@@ -20,8 +20,9 @@ struct CorrelationSimd {
   void (*add_products)(const std::uint8_t* const* rows, const std::int16_t* own, int pairs, int lanes,
                        std::int32_t* column, const std::int32_t* leaving, std::int32_t* window);
 
-  // The first candidate with the greatest score, for a window of `pixels` pixels with the sum `own_sum`.
-  // `products` holds the sums of its pixels times those of each candidate. `quotients`: memory for as many values.
+  // Returns the first candidate with the greatest score, for a window of `pixels` pixels with the sum
+  // `own_sum`. products[d]: the sum of its pixels times those of candidate d. Arrays are padded like those of
+  // the candidates; `quotients` is memory for the work.
   int (*best_candidate)(const Candidates& candidates, const std::int32_t* products, double pixels,
                         double own_sum, double* quotients);
 };

@@ -96,7 +96,7 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
     case CostKind::kCensus:
       pixel_bytes_ = cost.pixel_bytes();
       loops_ = simd_.census_loops(pixel_bytes_, plan_.window);
-      for (Side* side : {&left_, &right_}) side->census.emplace(width_, height_, cost.census_size, simd);
+      for (Side* side : {&left_, &right_}) side->census.emplace(width_, height_, cost, simd);
   }
 }
 

@@ -16,7 +16,7 @@ void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int wid
 void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int width, std::int16_t* out);
 void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out);
 void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out);
-void census_row(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out);
+void census_row(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 MatchLoops sad_loops(int window);
 MatchLoops ssd_loops(int window);
 MatchLoops zncc_loops(int window);
