@@ -97,6 +97,7 @@ class Made(CalibrateTest):
         pair = f"'{self.pictures / 'left_01.png'}' with '{self.pictures / 'right_02.png'}'"
         self.assertIn(f"{pair}: do they belong together?", process.stderr)
 
+    @program.slow
     def test_writes_nothing_where_it_is_interrupted(self):
         command = ["calibrate", "--synthetic", 3, *GRID, "--out", self.folder / "rig.yaml"]
         for number, has_earlier, delay in (
