@@ -18,7 +18,8 @@ namespace {
 
 using Kind = StorageValue::Kind;
 
-// The value as a number; nullopt unless its whole text is one, not in quotes.
+// The value as a number. Nullopt if its text is in quotes, or if a part of the text does not belong to a
+// number.
 template <typename Number>
 std::optional<Number> number_of(const StorageValue& value) {
   Number number = 0;

@@ -124,8 +124,8 @@ class BoardCheck {
     return std::abs(sum) > kAtLeast * most;
   }
 
-  // Whether the board has further lines of corners outside those found. Where it has none, one or two of the
-  // four squares around a point are missing, so that the contrast is half that of a corner.
+  // Whether the board has further lines of corners outside the lines found. If there is none, one or two of
+  // the four squares around a point are missing, so that the point has half the contrast of a corner.
   bool continue_outside() const {
     constexpr double kAtLeast = 0.72;
     const auto exceeds = [](double beyond, double within) {

@@ -18,9 +18,9 @@ struct GridSheet {
 };
 
 // The first of A4 landscape, A4 portrait, A3 landscape and A3 portrait that leaves a white margin of half a
-// square, and of at least 10 mm, around the board. If no page does, the first that leaves 10 mm. If no page
-// does that either, a page that fits the board with a margin of half a square, but no narrower than A4.
-// Throws std::invalid_argument with all problems(shape), or if the page would be larger than the limit of
+// square, and of at least 10 mm, around the board. If there is none, the first of them that leaves 10 mm. If
+// there is none either, a page of the size of the board and a margin of half a square, at least as wide as
+// A4. Throws std::invalid_argument with all problems(shape), or if the page would be larger than the limit of
 // PDF, 5080 mm (14400 pt).
 GridSheet grid_sheet(const GridShape& shape);
 

@@ -9,10 +9,10 @@ namespace stereotlm::calib {
 
 using Projection = Eigen::Matrix<double, 3, 4>;
 
-// Two ideal cameras that replace those of a rig. They have parallel axes, the same focal length and the same
-// principal point, and see a point in the same row. Names as in OpenCV's stereoRectify.
+// Two ideal cameras that replace the cameras of a rig. They have parallel axes, the same focal length and the
+// same principal point, and see a point in the same row. The names are those of OpenCV's stereoRectify.
 struct Rectification {
-  // r1 (r2) maps camera coordinates of the left (right) camera to those of its ideal camera.
+  // r1 (r2) maps camera coordinates of the left (right) camera to camera coordinates of its ideal camera.
   Eigen::Matrix3d r1 = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d r2 = Eigen::Matrix3d::Identity();
   // p1 (p2) maps camera coordinates of the ideal left camera to pixels of the left (right) rectified picture.

@@ -126,8 +126,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Uses all corners of the pairs in which the right camera is near its median position relative to the left. A
-// grid that moved between the two pictures of a pair would spoil the fit to all pairs.
+// Returns which corners to use: all corners of the pairs in which the right camera is near its median
+// position relative to the left one, and none of the other pairs. A pair whose grid moved between its two
+// pictures would spoil the fit to all pairs.
 Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
   constexpr double kMostShare = 0.02;  // of the distance of the grid
   std::array<std::vector<double>, 3> places;

@@ -102,7 +102,7 @@ SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
     surfaces.emplace_back(
         Sphere(moved, radius, unit_at(centre.z() - radius, rig), noise(random.next(), level)));
   };
-  // A wall, a floor and a board in front of them.
+  // A wall, a floor and a panel in front of the wall.
   add_plane({{0, 0, 2050}, random.between(-3, 3), 0, {8000, 8000}, 1, 110});
   add_plane({{0, random.about(350, 0.04), 1300}, 0, random.between(88, 92), {8000, 8000}, 3, 145});
   add_plane({{random.between(-250, -150), random.between(-260, -200), 1450},

@@ -16,13 +16,13 @@
 namespace stereotlm::calib {
 
 // A rig whose parameters are known exactly. It renders pictures of chessboards, to calibrate the cameras, and
-// of a textured scene: a wall, a floor, a slanted board and spheres. The same seed gives the same pictures on
+// of a textured scene: a wall, a floor, a slanted panel and spheres. The same seed gives the same pictures on
 // every machine, within floating-point accuracy.
 //
-// The cameras are about 80 mm apart and not quite parallel. Their wide-angle lenses see about 68 degrees
-// across (51 down if the picture is taller than 3:4 of its width). The rectified disparities of the scene are
-// 1/34 to 1/9 of the picture's width (of 4/3 of its height if that is more): about 20 to 65 pixels at 640 x
-// 480.
+// The cameras are about 80 mm apart and not quite parallel. Let w be the width of the smallest 4:3 picture
+// that contains theirs. The wide-angle lenses see about 68 degrees over the width w, and 51 degrees over the
+// height 3/4 w. The rectified disparities of the scene are w/34 to w/9, such as about 20 to 65 pixels at 640
+// x 480.
 class SyntheticRig {
  public:
   // Throws std::invalid_argument unless width is 4..2048, a multiple of 4, and height 1..2048.
@@ -40,10 +40,11 @@ class SyntheticRig {
   };
 
   // The pictures of the chessboard, with a white border before a grey background, in pose `number`: 0, 1, ..
-  // The board fills a good part of both pictures. It is tilted from the line of sight by 10 to 35 degrees,
-  // and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate the rig.
+  // The chessboard fills a good part of both pictures. It is tilted from the line of sight by 10 to 35
+  // degrees, and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate
+  // the rig.
   // Throws std::invalid_argument for columns or rows outside 1..1000, squares that are not larger than 0 mm,
-  // or a negative `number`. Throws std::domain_error if the pictures have no room for the board, such as
+  // or a negative `number`. Throws std::domain_error if the pictures have no room for the chessboard, such as
   // pictures of a few rows.
   Pair grid_view(const GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
@@ -58,13 +59,14 @@ class SyntheticRig {
   // the right camera, or if it lies outside the right picture.
   std::optional<Eigen::Vector2d> match(const Eigen::Vector2d& left_pixel) const;
 
-  // The disparities that a board with a calibration of this rig should find in the scene: for every pixel of
-  // its output, row by row, its column less the column of its match in the rectified right picture; NaN
-  // without a match. Column u of the output is column u + disparity_offset of the rectified left picture, so
-  // the true disparity is larger by disparity_offset. `calibrated` may differ from rig(), if it was fitted to
-  // pictures: the matches are those in the pictures of the cameras, and `calibrated` and its `rectification`
-  // map them to the rectified pictures. Throws std::invalid_argument if the pictures of `calibrated` have
-  // another size, else as rectified_pixel() does.
+  // The disparities that the FPGA board should find in the scene with the calibration `calibrated`, row by
+  // row; NaN where a pixel has no match. Column u of the board's left picture is column u + disparity_offset
+  // of the rectified left picture. A returned value is u less the column of the match in the rectified right
+  // picture; the true disparity is this value + disparity_offset.
+  //
+  // Matches are found with rig(), in the pictures of the cameras. `calibrated` and its `rectification` map
+  // them to the rectified pictures. So `calibrated` may be a rig that was fitted to pictures. Throws
+  // std::invalid_argument if the pictures of `calibrated` have another size, else as rectified_pixel() does.
   std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
                                int disparity_offset) const;
 

@@ -20,8 +20,8 @@ std::uint32_t table_entry(const Rig& rig, const SourcePixels& sources, const Eig
 // std::invalid_argument if the pictures are larger than 2048 x 2048.
 TablePair tables(const Rig& rig, const Rectification& rectification, int disparity_offset);
 
-// Whether the tables, which have the size of the rig's pictures, are those that tables() would make. Compares
-// about one entry in a hundred.
+// Whether tables() would make the same tables. They must have the size of the rig's pictures. Compares about
+// one entry in a hundred.
 bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification& rectification,
                    int disparity_offset);
 

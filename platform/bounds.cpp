@@ -125,7 +125,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   const fpga::CoreConfig core = core_config(board);
   FrameAccesses accesses = {accesses_of(core, tables.left), accesses_of(core, tables.right)};
-  if (core.joint_tables) accesses.right.lut = 0;  // they are those of the left side
+  if (core.joint_tables) accesses.right.lut = 0;  // the left LUT port reads for both sides
   return accesses;
 }
 

@@ -29,16 +29,17 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 //
 // | resource | needs                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
-// | port P   | One cycle per slot or word. The first port of a lane (its LUT port, or its pixel port if   |
-// |          | the side has no table) also waits for a place in the lane, which has F places: slot s+F is |
-// |          | taken after slot s was consumed. That is at least the read latencies of the lane and the   |
-// |          | passes of the matcher after s was taken.                                                   |
+// | port P   | A LUT or pixel port: one cycle per slot. The result port: one cycle per word. The first    |
+// |          | port of a lane (LUT, or pixel if the side has no table) also waits for a place in the      |
+// |          | lane, which holds F slots (fpga.lane_fifo_slots). Slot s+F is taken only after slot s is   |
+// |          | consumed. Slot s is consumed no earlier than the read latencies of the lane and the passes |
+// |          | of the matcher after it was taken.                                                         |
 // | bank B   | One cycle per access, no turnaround; with separate ports one cycle per read or one per     |
 // |          | write, whichever are more. After the last read: the latencies of its slot up to the        |
 // |          | matcher, the passes on it, the drain and the last writes.                                  |
 // | matcher  | The read latencies of the first slot, the passes on each slot, the drain, the last writes. |
 //
-// The last writes are those of the words that the last column completes, one for each row of the last strip.
+// The last writes store the words that the last column completes, one for each row of the last strip.
 struct ResourceBound {
   std::string resource;  // "port left_lut", "bank bank0", "matcher"
   std::uint64_t cycles = 0;
@@ -79,8 +80,8 @@ struct FrameBegin {
   double start_s = 0;
 };
 
-// A lower bound for the time of the last of `frames` deliveries, in seconds from time 0, of a run that
-// continues from `from` and loses no pixel. Two things limit the run:
+// A lower bound for the time of the last delivery in a run of frames 0..frames-1, in seconds from time 0. The
+// core starts frame from.frame at from.start_s, and no pixel is lost. Two things limit the run:
 // - The core runs its frames one after another, and each takes at least the cycles of its bound.
 // - A bank makes one access per cycle, with separate ports one read and one write: for the core, for the
 //   results that are read back, and for the pictures that are captured. The first pair of each buffer is left

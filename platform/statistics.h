@@ -44,7 +44,7 @@ struct BlameRow {
 
 struct FramesPerSecond {
   double core = 0;  // frames / the time that the core runs
-  // The other rates are those of a computer, and nullopt without one.
+  // The other rates belong to a whole computer; nullopt for a board without a computer.
   std::optional<double> system;  // deliveries / time of the last delivery
   std::optional<double> steady;  // (deliveries - 1) / time between the first and the last; nullopt for one
 };

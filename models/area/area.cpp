@@ -52,9 +52,8 @@ void add(const char* name, std::int64_t count, const Resources& all, Items& item
   if (count > 0) items.push_back({name, count, all});
 }
 
-// Contract 7.4. For each slot of a column a lane keeps the address of the last word, with a bit that it is
-// valid, and the word itself: slots come in turn, so these are shift registers of K places. A slot without
-// access keeps the old address and word.
+// Contract 7.4. For each slot of a column a lane keeps the last word, its address and a valid bit. Slots come
+// in turn, so these are shift registers of K places. A slot without access keeps the old address and word.
 Resources word_cache(const Core& core) {
   const int places = core.geometry.slots_per_column;
   const int address_bits = bits_of(std::int64_t{core.config.width} * core.config.height / 4 - 1) + kValidBit;
@@ -139,9 +138,10 @@ void add_row_buffers(const Core& core, Items& items) {
 // Contract 7.1: a module does the candidates u, u + U, u + 2U, .. in S passes. What it keeps of one candidate
 // from column to column is a shift register with a place for each pass (S = 1: registers).
 
-// The sum of the last n results of one pair a cycle, or of n pairs in one cycle. With one row of results the
-// sum begins anew with each column. With several (contract 7.2) it slides down the column: the result of the
-// new pair is added and that of n slots before is subtracted, so that the last R sums are those of the rows.
+// Sums the results of n pixel pairs: of one pair per cycle, or of n pairs in one cycle. With one row of
+// results the sum begins anew with each column. With several rows (contract 7.2) it slides down the column:
+// the result of the new pair is added, and the result of n slots before is subtracted. The last R values of
+// the sum belong to the R rows.
 Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int passes) {
   const int n = core.config.window;
   const int bits = core.column_sum_bits(most);
@@ -151,7 +151,7 @@ Resources column_sum(const Core& core, const Resources& pair, std::int64_t most,
   return column;
 }
 
-// The sum of the last n column sums: the new one is added and that of n columns before is subtracted.
+// Sums the last n column sums: adds the new column sum, and subtracts the column sum of n columns before.
 Resources window_sum(const Core& core, std::int64_t most, int passes) {
   const int column_bits = core.column_sum_bits(most);
   const int bits = core.window_sum_bits(most);
@@ -176,10 +176,10 @@ Delays delays(const Core& core, int places, int bits) {
 }
 
 // Paper figures 6 and 8. Left pixels go to all column modules. Right pixels go from module to module, one
-// column later in each. A column module adds up the results of n pixel pairs, one a cycle. A window module
+// column later in each. A column module adds up the results of n pixel pairs, one per cycle. A window module
 // adds the output of its column module, and subtracts the output of n columns before; R rows share the column
 // module. Each candidate has a flip-flop that marks whether its window lies inside both images (contract
-// 1.3). With each column of a row, the window of one candidate more does.
+// 1.3). Each column of a row adds one candidate whose window does.
 void add_modules(const Core& core, Items& items) {
   const PairArithmetic& pair = core.pair;
   const Delays pixels = core.columns_of_pixels
@@ -257,9 +257,9 @@ void add_select_min_chain(const Core& core, Items& items) {
 }
 
 // Paper section 3.3: a tree of U-1 comparators, registered at every level. The result of a comparison is the
-// highest bit of the pair's disparity; the lower bits are those of the smaller sum. A sum without a partner
-// at its level waits in registers. With several passes a last comparator keeps the smallest sum of the passes
-// so far.
+// highest bit of the pair's disparity; the lower bits are the disparity of the smaller sum. A sum without a
+// partner at its level waits in registers. With several passes a last comparator keeps the smallest sum of
+// the passes so far.
 void add_select_min_tree(const Core& core, Items& items) {
   const Rank rank = rank_of(core);
   std::int64_t comparators = core.units - 1;
@@ -302,8 +302,8 @@ void add_left_right_check(const Core& core, Items& items) {
 }
 
 // Contract 1.5 and section 2, "Matcher": the first three disparities of a word wait for the fourth; words
-// wait in the queue. Of several rows the words are complete together: each waits as a whole until the queue,
-// which takes one a cycle, has taken it.
+// wait in the queue. With several rows, the words of all rows are complete in the same cycle. Each whole word
+// waits until the queue takes it; the queue takes one word per cycle.
 void add_results(const Core& core, Items& items) {
   const int rows = core.config.rows;
   const Resources packers = rows == 1 ? registers(kWordBits - kDisparityBits)

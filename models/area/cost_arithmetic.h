@@ -11,7 +11,7 @@ namespace stereotlm::area {
 
 // What a column module does with two pixels.
 struct PairArithmetic {
-  Resources resources;    // of one pair a cycle
+  Resources resources;    // for one pair per cycle
   std::int64_t most = 0;  // largest value of the result
   int pixel_bits = 0;     // bits of a pixel, as it goes to the modules
 };
@@ -22,10 +22,12 @@ struct PairArithmetic {
 //   census  two LUTs count how many of two bits differ; a tree of adders sums the counts
 PairArithmetic pair_arithmetic(const kernels::MatchingCost& cost);
 
-// The census bits of one pixel a cycle, on one side. c is the size of the neighbourhood: c * c - 1
-// comparators, and registers for the pixels that the next position needs too. Behind a line buffer the
-// neighbourhood moves to the right. In columns it moves down. At the top of a column it takes the c - 1 rows
-// above from the line memories, and those of the c - 1 columns before from registers: a selector a bit.
+// Computes the census bits of one pixel per cycle, on one side. c is the size of the neighbourhood.
+// - c * c - 1 comparators, and registers for the c * (c - 1) pixels that the next position needs too.
+// - `moves_down`: the neighbourhood moves down a column; else to the right, behind a line buffer. At the top
+//   of a column these registers are loaded with the c - 1 rows above, through one selector per bit. The
+//   newest pixels of these rows come from the line memories, the pixels of the c - 1 columns before from
+//   further registers.
 Resources census_bits(const kernels::MatchingCost& cost, bool moves_down);
 
 // zncc: the widths that follow from the window, and the parts for one pixel or candidate. N is the number of
@@ -36,14 +38,14 @@ class ZnccArithmetic {
 
   int sum_bits() const { return sum_bits_; }                 // of the sum of the pixels of a window
   int variance_bits() const { return variance_bits_; }       // of N * sum(F^2) - sum(F)^2; also of |cov|
-  int score_bits() const { return 3 * variance_bits_ + 1; }  // cov * |cov|, and the variance below it
+  int score_bits() const { return 3 * variance_bits_ + 1; }  // numerator cov * |cov|, and denominator
 
   // N * sum(F^2) - sum(F)^2, with its register; the lowest bit of a variance of 0 is set, so that a fraction
   // is never 0 / 0.
   Resources variance() const;
   // cov = N * sum(FrFl) - sum(Fr) * sum(Fl), then cov * |cov|, with its register.
   Resources score() const;
-  // Compares two fractions: each numerator times the variance below the other. Selects one of them.
+  // Compares two fractions, and selects one: multiplies each numerator by the denominator of the other.
   Resources select() const;
 
  private:

@@ -13,8 +13,8 @@ struct Shape {
 constexpr std::array<Shape, 6> kBlockRamShapes = {
     {{512, 36}, {1024, 18}, {2048, 9}, {4096, 4}, {8192, 2}, {16384, 1}}};
 constexpr int kSrlLength = 16;
-constexpr int kMultiplierBits = 17;     // of a magnitude
-constexpr int kMultiplexerInputs = 32;  // of the largest that MUXF8 completes
+constexpr int kMultiplierBits = 17;     // bits of a magnitude that one multiplier takes
+constexpr int kMultiplexerInputs = 32;  // inputs of the largest multiplexer in slices, which MUXF8 completes
 
 constexpr std::int64_t ceil_of(std::int64_t part, std::int64_t whole) { return (part + whole - 1) / whole; }
 

@@ -36,28 +36,29 @@ Resources adder(int bits);
 // Tests whether one number is less than another, by the borrow of their difference: one LUT more than a
 // subtracter.
 Resources comparator(int bits);
-// Selects one of two numbers: one LUT a bit.
+// Selects one of two numbers: one LUT per bit.
 Resources selector(int bits);
-// Selects one of several numbers: a LUT for two of them, a bit. The multiplexers of the slices (MUXF5 to
-// MUXF8) join up to 32 numbers; more take a selection among the groups of 32.
+// Selects one of several numbers: one LUT per bit for every two numbers. The multiplexers of the slices
+// (MUXF5 to MUXF8) join these LUTs for up to 32 numbers. For more numbers, a further multiplexer selects
+// among the groups of 32.
 Resources multiplexer(int numbers, int bits);
-// Tests whether two numbers are equal: a LUT compares two bits of each, the carry chain joins the LUTs.
+// Tests whether two numbers are equal: each LUT compares two bits of both, the carry chain joins the LUTs.
 Resources equality(int bits);
-// |a - b|: the difference with its borrow, and one LUT a bit that negates it.
+// |a - b|: the difference with its borrow, and one LUT per bit that negates it.
 Resources absolute_difference(int bits);
 // Sums `count` numbers of 0..most in one cycle, in a tree of adders.
 Resources adder_tree(int count, std::int64_t most);
-// Multiplies two magnitudes. A multiplier of the device takes 17 bits of each; longer numbers are multiplied
-// in parts, and the parts are added.
+// Multiplies two magnitudes. A multiplier of the device takes 17 bits of each. Longer numbers are multiplied
+// in parts, and the products of the parts are added.
 Resources product(int bits, int other_bits);
-// radix * high + low, where low < radix: a multiplier and an adder. For a power of two the bits of both stand
-// side by side.
+// radix * high + low, where low < radix: a multiplier and an adder. A radix that is a power of two takes no
+// logic: the bits of `low` follow those of `high`.
 Resources digits(int radix, int bits);
-// Holds a number until the next clock enable: one flip-flop a bit.
+// Holds a number until the next clock enable: one flip-flop per bit.
 Resources registers(int bits);
 // Delays a number by `length` clock enables, or queues up to `length` numbers. A length of 1 takes one
-// flip-flop a bit. Longer ones take one SRL16 a bit for every 16 places. The multiplexers of the slices
-// (MUXF5 to MUXF8) join the SRL16s of a queue.
+// flip-flop per bit. A longer register takes one SRL16 per bit for every 16 places. The multiplexers of the
+// slices (MUXF5 to MUXF8) join the SRL16s of a queue.
 Resources shift_register(int length, int bits);
 // A memory with a write port and a read port: block RAMs side by side, each 512 x 36, or deeper and narrower
 // (1K x 18, 2K x 9, 4K x 4, 8K x 2, 16K x 1) so that no multiplexer is needed.

@@ -36,9 +36,9 @@ class Census : public sc_core::sc_module {
 
  private:
   int filter_half_;
-  int first_row_;  // of the rows that leave the filter first
+  int first_row_;  // image row of the first row that leaves the filter
   kernels::CensusColumns census_;
-  int columns_to_skip_ = 0;  // until the filter has output
+  int columns_to_skip_ = 0;  // columns that still come before the first output of the filter
   Stats stats_;
 };
 

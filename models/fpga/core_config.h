@@ -12,8 +12,8 @@
 namespace stereotlm::fpga {
 
 enum class Fetch : std::uint8_t {
-  kColumn,      // n pixels of a column, one a cycle (paper section 3.2)
-  kLineBuffer,  // one pixel a cycle, older rows from block RAM
+  kColumn,      // n pixels of a column, one per cycle (paper section 3.2)
+  kLineBuffer,  // one pixel per cycle, older rows from block RAM
 };
 
 // The word cache of a lane (contract 7.4).
@@ -55,7 +55,7 @@ struct CoreConfig {
   int pipeline_latency_cycles = 16;  // cycles, kPipelineLatencyRule, after the last write
 };
 
-// U, the number of window modules, and S, that of the cycles in which the matcher works on a slot (contract
+// U, the number of window modules, and S, the number of cycles in which the matcher works on a slot (contract
 // 7.1).
 inline int units_of(const CoreConfig& config) { return config.units.value_or(config.disparities); }
 inline int passes_of(int disparities, int units) { return (disparities + units - 1) / units; }

@@ -75,7 +75,7 @@ class CoreControl {
   // state and the slots that the pixel ports have not handled.
   struct State {
     std::array<LaneControl::State, 2> lanes{};  // [side]
-    std::uint64_t rest = 0;                     // state of the matcher, and above it that of the result queue
+    std::uint64_t rest = 0;  // bits 0..7: state of the matcher; from bit 8 on: state of the result queue
 
     friend bool operator==(const State& a, const State& b) { return a.lanes == b.lanes && a.rest == b.rest; }
   };

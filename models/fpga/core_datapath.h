@@ -48,7 +48,8 @@ class CoreDatapath {
   // `binder` binds the stages to the crossbar, which outlives this object.
   CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder);
 
-  // Starts a frame on these buffers, whose banks must exist. `offsets`: of joint tables.
+  // Starts a frame on these buffers, whose banks must exist. `offsets`: without effect unless the tables are
+  // joint.
   void start_frame(const FrameBases& bases, const kernels::JointOffsets& offsets);
   // Moves the data of one cycle, which begins `at` from now. `control` must be in the state in which it
   // decided, before commit().

@@ -70,7 +70,7 @@ class CostArray : public sc_core::sc_module {
   bool have_right_ = false;
   int columns_before_window_ = 0;  // still to come before the first windows are complete
   int column_ = 0;                 // position of the middle of the next windows
-  int first_row_ = 0;              // that of the first of the R rows
+  int first_row_ = 0;              // row of the middle of the first of the R windows
   Stats stats_;
 };
 

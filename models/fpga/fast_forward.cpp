@@ -5,7 +5,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-// After as many groups with the same accesses the walk expects more of them.
+// After this number of groups with the same accesses, the walk expects more groups with these accesses.
 constexpr int kManyAlike = 8;
 
 // The empty slots of a column of a strip: bit k for slot k.
@@ -229,8 +229,9 @@ void FastForward::begin_group(StateNumber state, const TransitionCache::Accesses
   stepper_.arbitration().begin_recording();
 }
 
-// Records the transition of the group that has just been stepped, unless the state after it is not that of
-// other groups: the strips have ended, or MatchControl::state() has changed.
+// Records the transition of the group that has just been stepped. Does not record it if the next state
+// depends on the position in the frame, and not on the state before the group alone: a lane has left the
+// current run of equal strips (Strips), or MatchControl::state() has changed.
 void FastForward::end_group(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();

@@ -40,9 +40,9 @@ class FastForward {
 
  private:
   using StateNumber = TransitionCache::StateNumber;
-  // Strips one after the other whose columns have the same empty slots.
+  // A run of consecutive strips whose columns have the same empty slots.
   struct Strips {
-    std::uint64_t end = 0;    // number of slots of the frame up to the end of the strips
+    std::uint64_t end = 0;    // number of slots of the frame up to the end of the last of these strips
     std::uint64_t empty = 0;  // bit k: slot k of each column is empty
   };
   // The group that is being stepped, to be recorded at its end.
@@ -84,13 +84,13 @@ class FastForward {
 
   CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
-  std::vector<Strips> all_strips_;  // of a frame
+  std::vector<Strips> all_strips_;  // all strips of a frame, in order
   AssumedAccesses accesses_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   std::uint64_t skipped_cycles_ = 0;
   std::uint64_t routes_ = 0;
-  std::size_t strips_ = 0;  // index of the strips in which the lanes take their next slots
+  std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.
   std::array<const AccessPattern*, 2> varying_{};
   std::vector<Followed> followed_;  // [group of the frame]; empty until it is used

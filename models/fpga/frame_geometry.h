@@ -47,20 +47,20 @@ struct FrameGeometry {
   int width;
   int height;
   int radius;            // r
-  int half;              // h: of the filter and of the cost together
+  int half;              // h: half width of the filter and the cost together
   int rows;              // R: rows of results of a strip
-  int last_rows;         // of them, those of the last strip that lie inside the image
+  int last_rows;         // rows of results of the last strip that lie inside the image
   int passes;            // S: cycles of the matcher for a slot, or for a consume-cycle of the drain
   int slots_per_column;  // also the number of consume-cycles of a column of the drain
   int lead_strips;       // strips before the first row of results can begin
   int strips;
-  int first_row;      // of the first strip; may lie above the image. Each strip begins `rows` further down
+  int first_row;      // first row of strip 0; may lie above the image. Each strip begins `rows` further down
   int drain_columns;  // C_d of the contract
   std::uint64_t slots;
   std::uint64_t drain_cycles;  // consume-cycles, each of `passes` cycles
   // C of the contract: the results of column i leave with column i + C, both counted over all strips.
   std::uint64_t result_delay_columns;
-  std::uint64_t last_strip_column;  // with which the first results of the last strip leave
+  std::uint64_t last_strip_column;  // the column with which the first results of the last strip leave
   std::uint64_t result_words;
 
   // The row of the first slot of each column of a strip; may lie outside the image.

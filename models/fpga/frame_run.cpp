@@ -22,7 +22,7 @@ void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
 
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
   begin(cycle, bases);
-  fast_forward_.start_direct_frame(patterns, number_of_routes(bases));
+  fast_forward_.start_direct_frame(patterns, index_of_routes(bases));
 }
 
 void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
@@ -46,14 +46,14 @@ FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
   return latencies;
 }
 
-// Frames with the same number have each port on the same bank.
-std::uint64_t FrameRun::number_of_routes(const FrameBases& bases) {
+// Returns the index of a frame's banks in routes_; adds them if they are new.
+std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
   std::array<std::uint32_t, kCorePortCount> banks{};
   std::transform(bases.begin(), bases.end(), banks.begin(), registers::bank_of);
   const auto known = std::find(routes_.begin(), routes_.end(), banks);
-  const auto number = static_cast<std::uint64_t>(known - routes_.begin());
+  const auto index = static_cast<std::uint64_t>(known - routes_.begin());
   if (known == routes_.end()) routes_.push_back(banks);
-  return number;
+  return index;
 }
 
 void FrameRun::finish() {

@@ -86,7 +86,7 @@ class FrameRun {
   enum class State { kIdle, kRunning, kFinishing };
 
   FrameLatencies route_ports(const FrameBases& bases);
-  std::uint64_t number_of_routes(const FrameBases& bases);
+  std::uint64_t index_of_routes(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
   std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
 
@@ -95,8 +95,8 @@ class FrameRun {
   CoreStepper stepper_;
   FastForward fast_forward_;
   StallWatchdog watchdog_;
-  std::vector<std::array<std::uint32_t, kCorePortCount>>
-      routes_;  // [number]: bank of each port, in direct frames
+  // The distinct combinations of banks that direct frames have used: [index][port].
+  std::vector<std::array<std::uint32_t, kCorePortCount>> routes_;
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;

@@ -55,10 +55,10 @@ class LrCheck : public sc_core::sc_module {
   void next_column();
 
   FrameGeometry geometry_;
-  std::vector<Row> rows_;  // of a strip; their matches come in this order, column by column
+  std::vector<Row> rows_;  // [row of a strip]; for each column, the matches of the rows come in this order
   std::uint64_t columns_to_skip_ = 0;
-  int column_ = 0;     // position of the next results
-  int first_row_ = 0;  // of their strip
+  int column_ = 0;     // column of the next results
+  int first_row_ = 0;  // first row of the next results
   Stats stats_;
 };
 

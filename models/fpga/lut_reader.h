@@ -12,14 +12,14 @@
 
 namespace stereotlm::fpga {
 
-// Reads the table entry of each slot of one side, at most one a cycle, and passes it to the pixel reader
+// Reads the table entry of each slot of one side, at most one per cycle, and passes it to the pixel reader
 // (paper section 3.2). A reader of joint tables serves both sides with each word. The control decides when a
 // slot comes: one that is not empty comes in the cycle in which its access is granted.
 class LutReader : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t reads = 0;
-    std::uint64_t invalid_entries = 0;  // of the entries read, with joint tables of both sides
+    std::uint64_t invalid_entries = 0;  // among the entries read; joint tables: entries of both sides
     std::uint64_t empty_slots = 0;
     std::uint64_t errors = 0;  // refused accesses; the entries then count as not valid
   };

@@ -15,7 +15,7 @@
 
 namespace stereotlm::fpga {
 
-// Reads the source pixel of each slot of one side, at most one a cycle, in order, and holds it until the
+// Reads the source pixel of each slot of one side, at most one per cycle, in order, and holds it until the
 // matcher consumes it. With a table, an entry from the LUT reader waits until handle() is called. Without a
 // table, the pixel of a slot from the sequencer is read as soon as the slot arrives. CoreControl decides in
 // which cycle a pixel is read, and in which cycle release() is called.
@@ -26,7 +26,7 @@ class PixelReader : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t reads = 0;
-    std::uint64_t passed_slots = 0;  // slots without access: empty, without valid entry, or in a word kept
+    std::uint64_t passed_slots = 0;  // slots without access: empty, without valid entry, or a cache hit
     std::uint64_t errors = 0;        // refused accesses; the pixel is then 0
   };
 

@@ -28,7 +28,8 @@
 // The core takes bases and offsets at the start strobe. It ignores a strobe while it is busy, and a strobe
 // with a base in a bank that the board does not have. Both raise error. Error is also raised if memory
 // refuses an access of the running frame, or if the frame works directly on memory and its result may differ
-// from that at Fidelity::kCycle. Error stays until it is acknowledged. One write may acknowledge and start.
+// from the result at Fidelity::kCycle. Error stays until it is acknowledged. One write may acknowledge and
+// start the next frame.
 namespace stereotlm::fpga::registers {
 
 inline constexpr std::uint64_t kControl = 0x00;

@@ -26,7 +26,7 @@ class RowBuffer : public sc_core::sc_module {
  public:
   StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
 
-  // `width`: pixels of a row of the image; `window`: n; `pixel_bytes`: those of a row of a column.
+  // `width`: pixels of a row of the image; `window`: n; `pixel_bytes`: bytes of a pixel (PixelColumn).
   RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes);
 
   void start_frame() { column_ = 0; }
@@ -38,8 +38,8 @@ class RowBuffer : public sc_core::sc_module {
   std::size_t newest_row_;  // n - 1
   std::size_t pixel_bytes_;
   std::size_t column_ = 0;
-  std::vector<std::uint8_t> values_;  // of each image column: its last n pixels
-  std::vector<std::uint64_t> valid_;  // their valid bits
+  std::vector<std::uint8_t> values_;  // [image column]: the last n pixels, of pixel_bytes_ bytes each
+  std::vector<std::uint64_t> valid_;  // [image column]: the valid bits of these pixels
   Stats stats_;
 };
 

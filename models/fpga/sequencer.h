@@ -16,7 +16,7 @@ class Sequencer : public sc_core::sc_module {
  public:
   struct Stats {
     std::uint64_t slots = 0;
-    std::uint64_t empty_slots = 0;  // those of `slots` that are empty
+    std::uint64_t empty_slots = 0;  // also counted in `slots`
   };
 
   StreamOut<Slot> left_out{"left_out"};

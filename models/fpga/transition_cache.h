@@ -62,7 +62,7 @@ class TransitionCache {
     CoreControl::State control;
     memory::Arbitration::State arbitration{};
     std::uint64_t empty = 0;  // bit k: slot k of each column is empty
-    std::uint64_t frame = 0;  // of FastForward: what else the frames of the memo may differ in
+    std::uint64_t frame = 0;  // set by FastForward: the routes, and the sides whose accesses vary
 
     friend bool operator==(const State& a, const State& b) {
       return a.control == b.control && a.arbitration == b.arbitration && a.empty == b.empty &&

@@ -10,8 +10,8 @@
 namespace stereotlm::kernels {
 
 // Computes the census bits (contract 7.6) of filtered columns, in the order in which they leave the filter;
-// used by fpga::Census. With column u those of column u - h leave, h rows further up (h = (c - 1) / 2). The
-// 2h rows above the new ones come from line memories.
+// used by fpga::Census. When column u enters, the bits of column u - h leave, h rows further up, where
+// h = (c - 1) / 2. The 2h rows above the new ones come from line memories.
 class CensusColumns {
  public:
   // Throws std::invalid_argument as ColumnNeighbourhood does, or if the size of the census `cost` is outside

@@ -132,13 +132,15 @@ class ColumnNeighbourhood {
   int step_;
   int half_;
 
-  // Line memories: 2h rows per image column, padded to whole blocks. Of the valid bits only those of the
-  // last h rows are needed (bit e: row e - h).
+  // Rows of a column are counted from its first new row, so the rows above it are negative. Values begin at
+  // row -2h. Valid bits begin at row -h (bit 0), because only the rows that leave need one.
+  //
+  // Line memories: rows -2h .. -1 of each image column, padded to whole blocks.
   std::size_t line_stride_ = 0;
   std::vector<Value> line_values_;
   std::vector<std::uint64_t> line_valid_;
-  // The last columns, of 2h + rows_ rows each; the newest is at position_. When the memory is full, the last
-  // columns move to its beginning. Bit e of the valid bits: row e - h.
+  // The columns that entered last, rows -2h .. rows_ - 1; the newest is at position_. When the memory is
+  // full, the newest 2h columns move to its beginning.
   std::size_t stride_ = 0;
   std::vector<Value> columns_;
   std::vector<std::uint64_t> columns_valid_;

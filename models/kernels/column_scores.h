@@ -8,9 +8,9 @@
 
 namespace stereotlm::kernels {
 
-// The scores of the candidates of one column, as exact fractions; the greatest wins. Candidates of one left
-// pixel have the variance of its window in common, so that only those of the right windows are compared. For
-// a right pixel it is the other way round.
+// The scores of the candidates of one column, as exact fractions; the greatest wins. All candidates of a left
+// pixel share the variance of its window, so only the variances of the right windows enter the scores. For a
+// right pixel, only the variance of the left window does.
 struct ColumnScores {
   const std::int64_t* covariances = nullptr;      // [d]
   const std::int64_t* right_variances = nullptr;  // [d]: of the right window d columns ago
@@ -30,8 +30,9 @@ class ColumnScorer {
   ColumnScorer(int window, int disparities, const MatchingCost& cost);
 
   void start_frame();
-  // Enters the next column of each side: n pixels, top first. `window_sums`: those of CostColumns after it.
-  // Sums other than of products become negative covariances, with variances of 1: the smallest wins.
+  // Enters the next column of each side: n pixels, top first. `window_sums`: the sums of CostColumns after
+  // the same columns. Sums that are not sums of products become negative covariances with variances of 1, so
+  // that the smallest sum wins.
   void push_column(const std::uint8_t* left, const std::uint8_t* right, const std::int32_t* window_sums);
   // Valid until the next push_column().
   const ColumnScores& scores() const { return scores_; }

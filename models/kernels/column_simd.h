@@ -8,7 +8,7 @@ namespace stereotlm::kernels {
 // Arrays with one value per disparity are padded to a multiple of this many values. ColumnSimd reads and
 // writes the padding.
 inline constexpr int kLanePadding = 16;
-// Alignment of those arrays in bytes, and the longest vector that ColumnSimd uses.
+// Alignment of these arrays, and length of the longest vector that ColumnSimd uses, in bytes.
 inline constexpr int kLaneAlignment = 32;
 
 // ColumnSimd::filter_column works on blocks of this many rows.

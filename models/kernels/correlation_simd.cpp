@@ -69,11 +69,12 @@ void add_products(const std::uint8_t* const* rows, const std::int16_t* own, int 
 }
 
 // The quotients covariance * |covariance| / variance are rounded three times, each time by at most 2^-53 of
-// their value: those of equal scores differ by less than 2^-50. A candidate is near if its quotient is less
-// than 2^-49 below the greatest one, so that every candidate with the greatest score is near. Near candidates
-// with the same variance have the same covariance, because covariances are integers below 2^34. If all near
-// candidates have one variance, their scores are equal. Otherwise they are compared as fractions: their cross
-// products differ by less than 2^56, so that the lowest 64 bits of the difference suffice.
+// their value. So the quotients of equal scores differ by less than 2^-50. A candidate is near if its
+// quotient is less than 2^-49 below the greatest one, so that every candidate with the greatest score is
+// near. Near candidates with the same variance have the same covariance, because covariances are integers
+// below 2^34. If all near candidates have the same variance, their scores are equal. Otherwise they are
+// compared as fractions: their cross products differ by less than 2^56, so that the lowest 64 bits of the
+// difference suffice.
 int best_candidate(const Candidates& candidates, const std::int32_t* products, double pixels, double own_sum,
                    double* quotients) {
   Doubles first_lanes{};

@@ -21,8 +21,8 @@ struct CorrelationSimd {
                        std::int32_t* column, const std::int32_t* leaving, std::int32_t* window);
 
   // Returns the first candidate with the greatest score, for a window of `pixels` pixels with the sum
-  // `own_sum`. products[d]: the sum of its pixels times those of candidate d. Arrays are padded like those of
-  // the candidates; `quotients` is memory for the work.
+  // `own_sum`. products[d]: the sum of its pixels times the pixels of candidate d. All arrays have the
+  // padding of the arrays of `candidates`. `quotients` is memory for intermediate values.
   int (*best_candidate)(const Candidates& candidates, const std::int32_t* products, double pixels,
                         double own_sum, double* quotients);
 };

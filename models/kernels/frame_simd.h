@@ -10,7 +10,7 @@ inline constexpr int kMostFrameLanes = 32;
 inline constexpr int kMostFrameVectorBytes = 2 * kMostFrameLanes;
 
 // Filter taps as pairs of neighbouring columns: weights[row * pairs + p] holds the weight of column 2p in the
-// lower 16 bits and that of column 2p + 1 in the upper 16 bits. A weight that does not exist is 0.
+// lower 16 bits and the weight of column 2p + 1 in the upper 16 bits. A weight that does not exist is 0.
 struct FilterTaps {
   int rows = 0;
   int pairs = 0;
@@ -26,16 +26,18 @@ struct MatchPlan {
   int disparities = 0;
   bool right_based = true;  // whether right-based disparities are wanted
   int columns = 0;          // positions of a segment, one right window each; a multiple of 8
-  int first_outside = 0;    // from this position on the left window of some lane is outside the image
-  int right_stride = 0;     // of MatchMemory::right_pixels
-  int left_stride = 0;      // of MatchMemory::left_pixels
+  // The first position at which the left window of the last segment is outside the image.
+  int first_outside = 0;
+  int right_stride = 0;  // of MatchMemory::right_pixels: from one plane to the next
+  int left_stride = 0;   // of MatchMemory::left_pixels: from one plane to the next
 };
 
-// Arrays with one or more vectors per position, aligned to kMostFrameVectorBytes.
+// The arrays of the loops, aligned to kMostFrameVectorBytes. The comment of an array gives the number of its
+// positions: [n]. Each position has one vector, unless the comment gives another number.
 struct MatchMemory {
   // In each lane the byte that enters the window is the lower one, the byte that leaves the window the upper
-  // one. Pixels of more than one byte have a plane for each byte, MatchPlan::right_stride apart and
-  // left_stride apart.
+  // one. Pixels of more than one byte have a plane for each byte. The planes are MatchPlan::right_stride and
+  // MatchPlan::left_stride apart.
   const std::int16_t* right_pixels = nullptr;  // [columns + window - 1]
   const std::int16_t* left_pixels = nullptr;   // [columns + window + disparities - 2]
   // [columns + disparities]: the largest 16-bit value if the left window is outside the image, else the
@@ -43,34 +45,39 @@ struct MatchMemory {
   const std::int16_t* outside = nullptr;
   // [1]: the largest 16-bit value in the first lane of each band, else the smallest.
   const std::int16_t* band_begins = nullptr;
-  // [disparities * (columns + window)], MatchLoops::sum_vectors each, zeros before the first row
+  // [disparities * (columns + window)], with MatchLoops::sum_vectors vectors per position; all 0 before the
+  // first row.
   std::int16_t* column_sums = nullptr;
-  // Best keys, MatchLoops::best_vectors each, then one vector of disparities each.
+  // While match_row() runs: the best key of each position so far, in MatchLoops::best_vectors vectors. When
+  // it returns, in the same place: the disparities of positions 0 .. columns - 1, in one vector each.
   std::int16_t* right_best = nullptr;  // [columns]
-  std::int16_t* left_best = nullptr;   // [columns + disparities]
+  std::int16_t* left_best = nullptr;   // [columns + disparities - 1]
 
-  // With MatchLoops::unpacks: the pixels as numbers of 16 bits, two vectors per position.
+  // With MatchLoops::unpacks: the pixels as numbers of 16 bits, two vectors per position. Positions as in
+  // right_pixels and left_pixels.
   std::int16_t* right_unpacked = nullptr;
   std::int16_t* left_unpacked = nullptr;
-  // With MatchLoops::has_statistics: kColumnStatisticsVectors for each position of the pixels, zeros before
-  // the first row, and kWindowStatisticsVectors for each window.
+  // With MatchLoops::has_statistics: kColumnStatisticsVectors vectors per position; all 0 before the first
+  // row. Positions as in right_pixels and left_pixels.
   std::int16_t* right_columns = nullptr;
   std::int16_t* left_columns = nullptr;
+  // With MatchLoops::has_statistics: kWindowStatisticsVectors vectors per position.
   std::int16_t* right_windows = nullptr;  // [columns]
   std::int16_t* left_windows = nullptr;   // [columns + disparities - 1]
 };
 inline constexpr int kColumnStatisticsVectors = 4;
 inline constexpr int kWindowStatisticsVectors = 6;
 
-// In place of the disparity of a window that needs an exact comparison.
+// Stored in place of a disparity that the vector arithmetic cannot decide. ImageMatcher then compares the
+// candidates of the window exactly (CorrelationSearch).
 inline constexpr int kUndecided = 255;
 
 // The loops of one cost, and the memory that they need.
 struct MatchLoops {
-  int sum_vectors;
-  int best_vectors;
-  bool unpacks;
-  bool has_statistics;
+  int sum_vectors;      // vectors per position of MatchMemory::column_sums
+  int best_vectors;     // vectors per position of MatchMemory::right_best and left_best
+  bool unpacks;         // uses MatchMemory::right_unpacked and left_unpacked
+  bool has_statistics;  // uses the statistics of columns and windows
   // Moves all column sums one row down. To be called for the rows before the first windows are complete.
   void (*add_row)(const MatchPlan& plan, const MatchMemory& memory);
   // Moves one row down and stores the disparities of the row of windows in right_best and left_best, one per
@@ -109,7 +116,7 @@ struct FrameSimd {
   MatchLoops (*sad_loops)(int window);
   MatchLoops (*ssd_loops)(int window);
   MatchLoops (*zncc_loops)(int window);
-  MatchLoops (*census_loops)(int bytes, int window);  // bytes of a pixel: 1, 3 or 6
+  MatchLoops (*census_loops)(int bytes, int window);  // `bytes` of a pixel: 1, 3 or 6
 };
 
 }  // namespace stereotlm::kernels

@@ -15,7 +15,7 @@ namespace {
 constexpr std::int16_t kSmallest = std::numeric_limits<std::int16_t>::min();
 constexpr std::int16_t kLargest = std::numeric_limits<std::int16_t>::max();
 
-// Column sums are read and written once a row, and should fit into the second-level cache.
+// Column sums are read and written once per row, and should fit into the second-level cache.
 constexpr double kMostColumnSumBytes = 400e3;
 
 constexpr int divided_up(int value, int divisor) { return (value + divisor - 1) / divisor; }

@@ -10,7 +10,7 @@ namespace stereotlm::kernels {
 namespace {
 
 constexpr std::int32_t kNoCandidate = std::numeric_limits<std::int32_t>::max();
-// Number of values before that of module 0, which reads the last of them as the value of module -1.
+// Number of values before the value of module 0. Module 0 reads the last of them as the value of module -1.
 constexpr int kBefore = kLanePadding;
 
 constexpr std::uint8_t disparity_of(std::int32_t key) {

@@ -22,10 +22,10 @@ std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, in
                              const Simd& simd = best_simd());
 std::uint8_t select_min_tree(const ColumnScores& scores, int candidates);
 
-// Select-min unit A: a chain of `disparities` compare-and-shift modules. In each column module d compares the
-// sum that module d-1 held a column ago with the sum of candidate d, and keeps the smaller; of equal sums it
-// keeps that of module d-1. The minimum that leaves the chain belongs to the right pixel disparities-1
-// columns back: right-based matching.
+// Select-min unit A: a chain of `disparities` compare-and-shift modules. In each column, module d compares
+// the sum that module d-1 held a column ago with the sum of candidate d, and keeps the smaller sum. If they
+// are equal, it keeps the sum of module d-1. The minimum that leaves the chain belongs to the right pixel
+// disparities-1 columns back: right-based matching.
 class SelectMinChain {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule.
@@ -44,7 +44,7 @@ class SelectMinChain {
   LaneArray<std::int32_t> next_;  // written by step(), then swapped with held_
 };
 
-// The same chain for scores. Of equal scores, too, module d keeps that of module d-1.
+// The same chain for scores. If two scores are equal, module d keeps the score of module d-1 here too.
 class ScoreChain {
  public:
   // Throws std::invalid_argument outside kDisparitiesRule.

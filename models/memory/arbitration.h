@@ -39,9 +39,9 @@ class Arbitration {
   // granted in its cycle, as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
   // Subtracts grants of a port that is alone. FastForward counts a grant for each slot of such a pixel port
-  // before it knows which table entries are valid, and then subtracts those of the slots that passed. To be
-  // called before a route changes or counting ends: at that time the remaining grants move the state of the
-  // bank's policy.
+  // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
+  // be called before a route changes or counting ends: at that time the remaining grants move the state of
+  // the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
   // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the

@@ -71,7 +71,8 @@ class BoardDraft {
   std::vector<Source> sources_;  // origins of replaced values, by Place::source - Place::kFirstSet
   YamlNode tree_;
   bool has_extends_ = false;
-  bool is_whole_ = true;           // false: the preset that it extends does not exist
+  // False if the preset that the file extends does not exist. read() then reports no missing keys.
+  bool is_whole_ = true;
   std::vector<Finding> findings_;  // problems found before read()
 };
 

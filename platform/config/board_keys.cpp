@@ -360,8 +360,8 @@ std::string nearest_path(const std::string& path) {
     if (is_below(schema, known)) return;  // the section that holds `path`
     if (schema == known) return;          // the schema path of a bank, not a key
     offer(known, likely_path_distance(schema, known));
-    // The right key in a wrong section, at a distance of 2, is nearer than most wrong keys in the right
-    // section.
+    // A known key of another section counts as 2 further away. So the right key in a wrong section is nearer
+    // than most wrong keys in the right section.
     if (const auto moved = likely_distance(last_part(schema), last_part(known))) offer(known, *moved + 2);
   };
   offer_known("extends");

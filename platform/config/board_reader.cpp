@@ -307,8 +307,8 @@ class BoardReader {
     return bank;
   }
 
-  // Turnaround cycles beside a kind without turnaround in the same entry are a mistake. If the entry inherits
-  // its kind, they are allowed, and have no effect unless that kind has turnaround.
+  // An entry with turnaround cycles and a kind without turnaround is a mistake. If the entry inherits its
+  // kind, turnaround cycles are allowed, and have an effect only if that kind has turnaround.
   void check_turnaround_use(const std::string& path, const BankEntry& entry) {
     const Given& given = entry.turnaround_cycles;
     const Given& kind = entry.kind;

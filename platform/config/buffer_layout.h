@@ -68,8 +68,8 @@ struct PlacedBuffer {
   std::string path() const { return "allocation." + label(); }  // "allocation.left_image[0]"
 };
 
-// All buffers, in the order of Buffer, those of a list in the order of the list. Joint tables are one buffer,
-// the one of kLeftLut.
+// All buffers, in the order of Buffer; the buffers of a list are in the order of the list. Joint tables are
+// one buffer, kLeftLut.
 std::vector<PlacedBuffer> buffers(const BoardConfig& board);
 
 // Puts a buffer of the board into another bank.

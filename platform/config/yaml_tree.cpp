@@ -176,7 +176,7 @@ class TreeBuilder : public YAML::EventHandler {
       parent.key = std::move(node);
       parent.has_key = true;
     } else {
-      // A missing value has no place of its own; it gets that of its key.
+      // A missing value has no place of its own; it gets the place of its key.
       if (node.kind == YamlNode::Kind::kNull && node.text.empty() && node.misuse.empty()) {
         node.place = parent.key.place;
       }
@@ -345,8 +345,8 @@ YamlNode parse_yaml(const std::string& text, int source) {
   return parse_document(text, text.size(), source);
 }
 
-// Parses the text inside a flow list, where block style is not allowed. The line break ends a comment in the
-// text.
+// Parses the text as the only item of a flow list, because block style is not allowed there. The line break
+// before the ] ends a comment in the text.
 YamlNode parse_flow_value(const std::string& text, int source) {
   YamlNode list = parse_document("[" + text + "\n]", 1 + text.size(), source);
   const std::size_t first = text.find_first_not_of(" \t\r\n");

@@ -54,7 +54,7 @@ class YamlError : public std::runtime_error {
   Place place;
 };
 
-// Parses one YAML document. `source`: of the places of all values. Throws YamlError for the first error of
+// Parses one YAML document. `source`: Place::source of all values. Throws YamlError for the first error of
 // syntax, text that is not UTF-8, control characters, an empty text and a second document.
 YamlNode parse_yaml(const std::string& text, int source);
 

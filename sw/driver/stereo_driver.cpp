@@ -109,14 +109,14 @@ void StereoDriver::run(host::HostBus& bus) {
 std::string StereoDriver::under_way() const {
   std::string text;
   const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
-  const auto add_stage = [&add](const std::string& what, const Stage& stage) {
-    if (!stage.idle()) add(what + ' ' + std::to_string(stage.ended));
+  const auto add_activity = [&add](const std::string& what, const Activity& activity) {
+    if (!activity.idle()) add(what + ' ' + std::to_string(activity.ended));
   };
   if (uploading_) add("the upload of the tables");
-  add_stage("capture", captures_);
-  add_stage("copy of pair", copies_);
-  add_stage("core with frame", frames_);
-  add_stage("read-back of frame", read_backs_);
+  add_activity("capture", captures_);
+  add_activity("copy of pair", copies_);
+  add_activity("core with frame", frames_);
+  add_activity("read-back of frame", read_backs_);
   return text.empty() ? "nothing" : text;
 }
 

@@ -48,9 +48,9 @@ class FrameListener {
 };
 
 // Uploads the tables, then schedules captures, frames and read-backs. It arms a capture when its buffer is
-// free, starts the core when a pair and an output buffer are ready, and reads results back by DMA. Each stage
-// counts the frames that it has begun and ended. A buffer is free when the next stage has ended the frame in
-// it. README.md lists every access.
+// free, starts the core when a pair and an output buffer are ready, and reads results back by DMA. Each of
+// these activities counts the frames that it has begun and ended. A buffer is free when the activity that
+// reads it has ended the frame in it. README.md lists every access.
 //
 // With capture_to_host, captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
 // board. run() returns after the last of `frames` deliveries. run() throws std::runtime_error if the hardware
@@ -75,8 +75,8 @@ class StereoDriver : public host::Program {
   std::string under_way() const;
 
  private:
-  // The progress of one stage: numbers of frames or pairs.
-  struct Stage {
+  // Captures, copies, frames of the core or read-backs: how many have begun and ended.
+  struct Activity {
     std::uint64_t begun = 0;
     std::uint64_t ended = 0;
     bool idle() const { return begun == ended; }
@@ -111,17 +111,17 @@ class StereoDriver : public host::Program {
   std::uint64_t image_bytes() const;
 
   DriverConfig config_;
-  // The words of the tables; the left one is that of joint tables.
+  // The words of the tables. Joint tables are in left_table_.
   std::vector<std::uint32_t> left_table_;
   std::vector<std::uint32_t> right_table_;
   kernels::JointOffsets joint_offsets_{};
   FrameListener& listener_;
   host::HostBus* bus_ = nullptr;
 
-  Stage captures_;
-  Stage copies_;  // only with capture_to_host
-  Stage frames_;  // frames of the core
-  Stage read_backs_;
+  Activity captures_;
+  Activity copies_;  // only with capture_to_host
+  Activity frames_;  // frames of the core
+  Activity read_backs_;
   bool uploading_ = false;
   std::array<bool, 2> side_done_{};           // [left, right]: the side of the running capture is complete
   std::vector<std::uint64_t> camera_frames_;  // camera frame of each finished capture

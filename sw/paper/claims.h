@@ -25,7 +25,7 @@ struct GivenPair {
   std::string right;
   std::string truth;
   double truth_scale = 1;  // grey levels of the truth per disparity
-  int disparities = 0;     // that a board needs to find all of its disparities
+  int disparities = 0;     // matcher.disparities that a board needs to find all disparities of the pair
 };
 
 // A board as a command line names it. It is run without pixels for explore::frames_of() frames. With a scene
@@ -44,16 +44,16 @@ enum class Quantity {
   kRate,
   kSlices,   // % of the FPGA's slices that the first run's board uses
   kSpread,   // highest rate of the runs minus the lowest
-  kSpeedUp,  // rate of the first run divided by that of the second
+  kSpeedUp,  // rate of the first run divided by the rate of the second run
   // The smallest number of banks with which some allocation is as fast as the fastest allocation on the first
   // run's board. All allocations are searched, so the minimum is proved.
   kBanksProved,
   // The smallest number of banks among the runs that reach the rate of the first run. It is no proof of a
   // minimum.
   kBanksFound,
-  // The second run against the first on the same scene: the larger of two changes, that of the share of wrong
-  // answers and that of the share of answered pixels. Further runs are shown beside it, and not compared. The
-  // paper prints no number, so `printed` is 0: no change.
+  // The second run against the first on the same scene: the change of the share of wrong answers, or the
+  // change of the share of answered pixels, whichever is larger. Further runs are shown beside it, and not
+  // compared. The paper prints no number, so `printed` is 0: no change.
   kAccuracyChange,
 };
 

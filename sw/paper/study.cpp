@@ -57,7 +57,7 @@ std::string words_of(const BoardRun& run) {
   return text;
 }
 
-// All different runs of the claims: those of the computer if `camera`, else those of the core alone.
+// All different runs of the claims: with `camera` the runs of the computer, else the runs of the core alone.
 class Runs {
  public:
   Runs(const std::vector<Claim>& claims, bool camera) : run_{camera, 0, ""} {
@@ -138,8 +138,7 @@ class Progress {
  public:
   // `most`: upper limit for the number of boards of all parts.
   Progress(std::uint64_t most, const Means& means) : after_(most), means_(means) {}
-  // `most`: upper limit for the number of boards of the next part, which is included in that of the
-  // constructor.
+  // `most`: upper limit for the number of boards of the next part. The limit of the constructor includes it.
   void begin_part(std::uint64_t most) { after_ -= most; }
   // Reports the progress of the running part.
   bool keep_going(std::uint64_t done, std::uint64_t most_left) const {

@@ -77,7 +77,7 @@ struct Means {
   std::string version;
   unsigned jobs = 1;
   // Called several times a second with the number of boards that are done, and an upper limit for the number
-  // of those that are left. study() ends if it returns false.
+  // of boards that are left. study() ends if it returns false.
   std::function<bool(std::uint64_t done, std::uint64_t most_left)> keep_going;
 };
 
@@ -90,7 +90,7 @@ struct CostRow {
   std::string scene;
   std::string cost;  // "sad", "census 5"
   Quality quality;
-  Quality change;  // quality less that of the first run on the scene
+  Quality change;  // quality minus the quality of the first run on the scene
   double slices_percent = 0;
   std::optional<Verdict> verdict;  // nullopt: the run is not compared
   std::string command;

@@ -38,7 +38,7 @@ Verdict verdict_of(const Rule& rule, double printed, double modelled);
 
 // The verdict on the claim that `printed` banks are needed. `found` is the smallest number of banks that was
 // found to be enough. If it is below `printed`, the claim is not confirmed. Otherwise the claim is confirmed
-// if a proof shows that no fewer banks are enough, and open without such a proof.
+// if a proof shows that fewer banks are not enough, and open if there is no proof.
 Verdict verdict_of_need(int printed, int found, bool is_proved);
 
 // The verdict on a claim, from the verdicts on its cases. If all cases have the same verdict, the claim has

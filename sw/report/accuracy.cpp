@@ -21,7 +21,7 @@ double right_column(int x, int grey, double scale) { return std::floor(x - grey 
 std::vector<bool> known_and_visible(const media::Truth& truth, int y) {
   const int width = truth.grey.width;
   const auto inside = [width](double column) { return column >= 0 && column < width; };
-  // By right column: the largest truth of the left pixels that it shows.
+  // [right column]: the largest truth of the left pixels that match a pixel of this column.
   std::vector<int> nearest_grey(static_cast<std::size_t>(width), 0);
   for (int x = 0; x < width; ++x) {
     const int grey = truth.grey.at(x, y);

@@ -17,7 +17,7 @@ struct Accuracy {
   std::optional<double> answered_percent;  // share of the pixels that are answered: the density
 };
 
-// If more than this share of the answers is wrong by more than 1 disparity, the truth is probably that of
+// If more than this share of the answers is wrong by more than 1 disparity, the truth probably belongs to
 // another picture, or has another scale.
 inline constexpr double kDoubtfulBad1Percent = 50;
 

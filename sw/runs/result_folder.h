@@ -15,7 +15,7 @@ namespace stereotlm::runs {
 std::string frame_file_name(std::uint64_t frame);
 
 // Writes the folder of `run --out`, which holds one result and nothing else. Implemented by an OutputFolder
-// whose mark is run.json.
+// whose mark (the file that is moved into place last) is run.json.
 class ResultFolder {
  public:
   // Throws as OutputFolder does, and if DIR is neither empty nor a folder that holds run.json and only files

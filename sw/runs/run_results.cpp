@@ -53,7 +53,7 @@ std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Re
   return report::accuracy(last.disparity, *truth);
 }
 
-// `accuracy`: that against --truth.
+// `accuracy`: the accuracy of the last frame against --truth.
 void say_if_doubtful(const RunInput& input, const report::Accuracy& accuracy) {
   const double bad = accuracy.bad_1_percent.value_or(0);
   if (bad <= report::kDoubtfulBad1Percent) return;

@@ -1,5 +1,5 @@
 // A library for LD_PRELOAD that turns the folder FULL_DISK_FOLDER into a disk of FULL_DISK_BYTES: a write
-// that would need more than that for all files together fails with ENOSPC.
+// fails with ENOSPC if all files together would need more bytes.
 
 #include <dirent.h>
 #include <dlfcn.h>

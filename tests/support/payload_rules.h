@@ -6,7 +6,7 @@
 
 namespace stereotlm::test {
 
-// Rules of a link beyond those of the base protocol.
+// Rules of a link in addition to the rules of the base protocol.
 struct ProtocolOptions {
   // Data length, streaming width and address are whole 32-bit words, as on every memory-mapped socket here.
   bool whole_words = true;
@@ -30,7 +30,7 @@ Problems debug_request_problems(const tlm::tlm_generic_payload& payload);
 Problems debug_answer_problems(const tlm::tlm_generic_payload& payload, unsigned int bytes);
 
 Problems dmi_request_problems(const tlm::tlm_generic_payload& payload, const tlm::tlm_dmi& dmi);
-// `address` is the requested one; an interconnect may have translated that of the payload.
+// `address` is the requested address; an interconnect may have translated the address in the payload.
 Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uint64 address, bool granted,
                              const tlm::tlm_dmi& dmi);
 

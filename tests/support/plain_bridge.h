@@ -46,7 +46,7 @@ enum class PlainBridgeRegister : std::uint64_t {
   kPage1 = 1,
   kInterruptStatus = 4,
   kInterruptEnable = 5,
-  kDescriptor0 = 8,  // that of channel 1 is kPlainChannelWords further
+  kDescriptor0 = 8,  // of channel 0; the register of channel 1 is kPlainChannelWords further
   kControl0 = 9,
 };
 inline constexpr std::uint64_t kPlainChannelWords = 4;

@@ -61,8 +61,8 @@ class BankAndArbiter {
 
  private:
   struct Wait {
-    Cycle cycles = 0;           // asked without a grant, one after the other
-    std::optional<Cycle> last;  // of them
+    Cycle cycles = 0;           // number of consecutive cycles with a request and without a grant
+    std::optional<Cycle> last;  // the last of these cycles
   };
 
   // The age of a request in this cycle.
@@ -113,7 +113,7 @@ struct Slot {
   int column = 0;
   int row = 0;
   int k = 0;            // its place in its column; line_buffer: 0
-  bool begins = false;  // is the first of a strip; line_buffer: of a row
+  bool begins = false;  // is the first slot of a strip; line_buffer: of a row
 };
 
 std::vector<Slot> slots_of_a_frame(const PlainCycleInput& input) {
@@ -317,7 +317,7 @@ class ResultQueue {
   std::int64_t capacity_;
   std::int64_t words_of_frame_;
   std::int64_t words_of_row_;
-  std::deque<int> rows_of_words_;  // that are in the queue
+  std::deque<int> rows_of_words_;  // row of each word in the queue
   std::int64_t written_ = 0;
   std::vector<std::int64_t> written_in_row_;
 };

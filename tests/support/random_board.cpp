@@ -271,8 +271,8 @@ SplitMix64 random_of(const RandomBoard& board, std::uint64_t knob) {
   return SplitMix64(SplitMix64(board.seed).next() + knob);
 }
 
-// A long row, or a high column. Windows and disparities stay small, because the references look at every
-// pixel.
+// Sometimes makes the image very wide and at most 5 rows high, or very high and at most 8 columns wide.
+// Windows and disparities stay small, because the references compute every pixel one by one.
 void draw_large_image(RandomBoard& board, SplitMix64 random) {
   if (board.left_lut || board.right_lut || !random.chance(50)) return;
   const bool is_wide = random.chance(50);

@@ -82,7 +82,7 @@ struct ReferenceJointTable {
 // From the entries of two separate tables, which must fit.
 ReferenceJointTable reference_joint_table(int width, const std::vector<std::uint32_t>& left,
                                           const std::vector<std::uint32_t>& right);
-// The same entries as those of separate tables: 0 where they are not valid.
+// The entries of one side of a joint table, in the format of a separate table: 0 where an entry is not valid.
 std::vector<std::uint32_t> reference_left_entries(int width, const ReferenceJointTable& table);
 std::vector<std::uint32_t> reference_right_entries(int width, const ReferenceJointTable& table);
 

@@ -76,9 +76,9 @@ bool is_bank_words(const std::string& path) {
 
 }  // namespace
 
-// Compiles each text twice. First at the end of a statement: unbalanced quotes and brackets are errors there,
-// and SQLite's message quotes nothing but the text. Then in brackets: a clause behind the expression, such as
-// LIMIT, and a comment that does not end are errors there.
+// Compiles each text twice. The first time it ends a statement: then unbalanced quotes and brackets are
+// errors, and SQLite's message quotes only the text. The second time it stands in brackets: then a clause
+// behind the expression, such as LIMIT, and a comment that does not end are errors.
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);

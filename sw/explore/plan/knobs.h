@@ -39,8 +39,8 @@ struct KnobSteps {
 //   a number: up and down by one (the window by two); a word: each other one
 //   matcher.fetch: the line buffer takes matcher.rows back to 1 with it
 //   matcher.units: to the fewest modules that take fewer passes, to the fewest that take more, and to all
-//   fpga.tables: to joint tables in the bank of the left table, or in that of the right one; to separate ones
-//   with the right one in the first bank without buffers that can hold it, if there is one
+//   fpga.tables: to joint tables in the bank of the left table, or in the bank of the right table; to
+//   separate tables, with the right table in the first bank without buffers that can hold it, if there is one
 //   matcher.cost: each other one (census with 5 x 5 pixels); census also with the next sizes
 //   fpga.priority: two neighbours exchanged
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
@@ -51,7 +51,7 @@ struct KnobSteps {
 //   a bank less: all buffers of one bank move into another bank that is used
 // The size of the images, the depth of banks and the device do not change. `camera`: whether the knobs of the
 // computer around the board are included. `joint_problem`: why the tables of the board cannot be joined;
-// nullopt if they can.
+// nullopt if they can be joined.
 KnobSteps knob_steps(const platform::BoardConfig& board, bool camera,
                      const std::optional<std::string>& joint_problem);
 

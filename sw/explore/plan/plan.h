@@ -46,9 +46,9 @@ class Plan : public Points {
   const std::string& calibration() const { return calibration_; }
   const std::string& calibration_place() const { return calibration_place_; }
   // Gives all points the tables of a calibration for images of width x height, in place of the identity. A
-  // point whose board cannot have these tables becomes impossible. If that holds for all points, returns the
-  // broken rule, else nullopt. `sha256`: of the tables. `joint_problem`: why they cannot be joined; nullopt
-  // if they can.
+  // point whose board cannot have these tables becomes impossible. If all points become impossible, returns
+  // the broken rule, else nullopt. `sha256`: hash of the tables. `joint_problem`: why the tables cannot be
+  // joined; nullopt if they can be joined.
   std::optional<std::string> use_calibration(const std::string& sha256, int width, int height,
                                              const std::optional<std::string>& joint_problem);
 

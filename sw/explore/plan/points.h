@@ -29,8 +29,8 @@ struct PointRun {
 inline constexpr std::uint64_t kCameraFrames = 13;
 
 // The number of frames of a run: run.frames if it is not 0. The default is kCameraFrames for the whole
-// computer, and one turn of the allocation's lists for the board alone. If no frame affects the next, the
-// frame rate of one turn is that of any number of turns.
+// computer, and one turn of the allocation's lists for the board alone. If no frame affects the next, one
+// turn has the same frame rate as any number of turns.
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 
 // Whether the points of a plan may differ in this key of the run.

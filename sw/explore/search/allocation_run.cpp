@@ -11,8 +11,8 @@
 namespace stereotlm::explore {
 namespace {
 
-// Records the results of some boards in the search. Reads them from the database; a board that it does not
-// hold was given up.
+// Records the results of some boards in the search. Reads them from the database. The sweep has given up a
+// board that is not in the database.
 void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path,
                      AllocationSearch& search) {
   Database store(path, Database::Access::kRead);

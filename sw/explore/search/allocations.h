@@ -20,8 +20,8 @@ bool fits(const platform::BoardConfig& board, const Placement& placement);
 
 // Visits every placement of the board's buffers in at most `most_banks` of its banks. Among placements that
 // differ only by an exchange of equal banks (same depth, kind and turnaround), it visits only the one that
-// uses the equal banks in the board's order. The order is that of the first buffer's bank, then of the
-// second's, and so on. Placements that do not fit are visited too.
+// uses the equal banks in the board's order. Placements come in the order of the first buffer's bank, then of
+// the second buffer's bank, and so on. Placements that do not fit are visited too.
 void for_each_placement(const platform::BoardConfig& board, int most_banks,
                         const std::function<void(const Placement&)>& visit);
 
@@ -34,7 +34,7 @@ platform::BoardConfig placed(const platform::BoardConfig& board, const Placement
 bool frames_are_independent(const platform::BoardConfig& board);
 
 // A board that computes only frame number `frame` of the placement: it has only the buffers of that frame.
-// Each bank of the placement is replaced by the first equal bank that replaces no other. If
+// Each bank of the placement is replaced by the first equal bank that has not yet replaced another one. If
 // frames_are_independent(), two frames with the same such board take the same number of cycles, even if they
 // belong to different placements.
 platform::BoardConfig board_of_frame(const platform::BoardConfig& board, const Placement& placement,

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The name of the file is that of the store, then kMark, then kDigits hexadecimal digits. No other program
-// uses such names.
+// The name of the file is the name of the store, then kMark, then kDigits hexadecimal digits. No other
+// program uses such names.
 constexpr const char* kMark = ".merging-";
 constexpr std::size_t kDigits = 16;
 

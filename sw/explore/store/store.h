@@ -27,7 +27,7 @@ struct StoredPoint {
   std::string reason;  // for the status, unless it is "ok"
   std::string config;  // the board in full
   std::vector<platform::BoardValue> keys;     // of the board and the run; each has a column
-  std::vector<platform::BoardValue> figures;  // each has a column; no path is that of a key
+  std::vector<platform::BoardValue> figures;  // each has a column, and a path that no key has
   std::vector<StoredBlame> blame;
 };
 

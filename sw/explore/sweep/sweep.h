@@ -55,7 +55,7 @@ inline constexpr int kMostDeaths = 3;
 
 // Simulates all points that the stores do not have. `keep_going` is called several times a second with the
 // progress; after it has returned false no further point is begun. At the end merge_stores() gives the store
-// its final form, whose bytes depend on nothing but its points. A point whose worker dies is begun again,
+// its final form, whose bytes depend only on its points. A point whose worker dies is begun again,
 // until it counts as failed after kMostDeaths deaths; the reason in its row then says how to try it again.
 // Throws DatabaseError, also if another sweep uses the store; StoreGone (store_lock.h) once the file of the
 // store is gone; ConditionError (conditions.h) if a condition cannot be computed for a point;

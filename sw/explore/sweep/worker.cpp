@@ -35,8 +35,9 @@ void report_end(int to, Report::Kind kind, const std::string& text) {
   process::write_all(to, text.data(), text.size());
 }
 
-// Renames a figure whose path is also that of a key, because both have a column: bridge.posted_words is the
-// number of words that the bridge can hold, and bridge.posted_words.counted the number that it has taken.
+// Renames a figure that has the same path as a key, because both have a column: bridge.posted_words is the
+// number of words that the bridge can hold, bridge.posted_words.counted the number of words that it has
+// taken.
 void take_figures(Figures figures, StoredPoint& row) {
   for (platform::BoardValue& figure : figures.values) {
     const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };

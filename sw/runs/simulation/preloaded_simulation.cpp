@@ -15,8 +15,8 @@ platform::Statistics PreloadedSimulation::statistics() const {
   return platform::collect_statistics(board_, tables_, system_.board, counters_);
 }
 
-// Saves the counters at the end of each frame, because those of an interrupted run must not include a part of
-// the running frame.
+// Saves the counters at the end of each frame, because the counters of an interrupted run must not include a
+// part of the running frame.
 void PreloadedSimulation::take(std::uint64_t frame, const kernels::GrayImage& disparity) {
   counters_ = platform::counters_of(system_.board);
   add_result({frame, disparity});

@@ -44,7 +44,7 @@ double first_start_s(const platform::BoardConfig& board, const platform::Tables&
 // The result of simulate_pixels().
 struct PixelRun {
   std::string disparities_sha256;  // over the disparities of all frames
-  std::uint64_t cycles = 0;        // sum of those of all frames
+  std::uint64_t cycles = 0;        // sum over all frames
   kernels::GrayImage last;         // disparities of the last frame
 };
 

@@ -38,8 +38,8 @@ class Simulation {
   // events or stalls before the last frame is finished.
   std::vector<Result> advance();
 
-  // Reduces the frames of the run to those that are finished and those that have already changed the
-  // counters, so that the results equal those of a complete run with fewer frames.
+  // Reduces the run to the frames that are finished or have already changed the counters. The results then
+  // equal the results of a complete run with fewer frames.
   virtual void end_early() = 0;
 
   std::uint64_t frames() const { return frames_; }  // frames of the whole run

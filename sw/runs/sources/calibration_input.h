@@ -26,9 +26,10 @@ struct CalibrationInput {
 };
 
 // Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there
-// are any: a damaged file, a size other than that of the board's pictures, tables that were not written with
-// the calibration, a side without table on the board, tables that do not fit into joint ones. `board`: null
-// if unknown; the fit is then not checked. `named`: the option that gave the path, for messages.
+// are any: a damaged file, pictures of another size than the board's, tables that were not written with the
+// calibration, a side without table on the board, tables that cannot be joined for a board with joint tables.
+// `board`: null if unknown; the fit is then not checked. `named`: the option that gave the path, for
+// messages.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
                                                  const std::string& named = "--calibration");

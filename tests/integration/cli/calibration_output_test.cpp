@@ -146,7 +146,8 @@ class CalibrationOutputTest : public ::testing::Test {
     return files;
   }
 
-  // Whether a fault behind so many calls that go well kills a process that does this.
+  // Runs `work` in a process with a fault after `steps` calls that change the file system. Returns whether
+  // the fault killed the process.
   template <typename Work>
   static bool is_killed(Fault kind, int steps, const Work& work) {
     const auto end = test::run_in_child([&] {
@@ -159,8 +160,10 @@ class CalibrationOutputTest : public ::testing::Test {
     return end.exit_status == 128 + SIGKILL;
   }
 
-  // Lets each call in turn fail, from the first one to that where all go well. `attempt`: with the number of
-  // calls that go well; false if none has failed.
+  // Makes attempts with a fault at the first, second, .. call that changes the file system, until the fault
+  // is not reached. `attempt(steps, fresh)` writes `fresh` with a fault after `steps` calls, and returns
+  // whether the fault was reached. After each attempt the files must be the earlier or the fresh ones, and
+  // writing `fresh` again must succeed.
   template <typename Attempt>
   void at_every_step(const Files& earlier, const Files& fresh, const Attempt& attempt) const {
     int steps = 0;

@@ -110,7 +110,7 @@ std::string compare_core_run_with_references(const RandomBoard& board, Fidelity 
 
 using Comparison = std::string (*)(const RandomBoard& board, Fidelity fidelity);
 
-// Boards without the knobs of contract section 7, or with those that the models have.
+// Boards without the knobs of contract section 7, or with the knobs that the models have.
 class RandomBoards : public testing::TestWithParam<bool> {};
 
 INSTANTIATE_TEST_SUITE_P(Drawn, RandomBoards, testing::Bool(),
@@ -187,7 +187,7 @@ std::string text_of(const platform::Statistics& statistics) {
   return text + statistics.bound.core_limited_by;
 }
 
-// Leaves the heap full of `byte`, so that a value that nobody has set is not the same in two runs.
+// Leaves the heap full of `byte`, so that an uninitialised value differs between two runs.
 void dirty_heap(char byte) {
   for (std::size_t size = 16; size < (1U << 20U); size = size * 5 / 4) {
     const std::vector<std::string> blocks(8, std::string(size, byte));

@@ -102,9 +102,9 @@ TEST_F(CameraSimulationTest, EndsAtOnceBeforeTheFirstCapture) {
   EXPECT_EQ(simulation->frames(), 0U);
 }
 
-// Lines as fast as those of the paper's board, 640 pixels in 52.15 us, 24 of them. A third party keeps the
+// The camera sends 24 lines, as fast as on the paper's board: 640 pixels in 52.15 us. A third party keeps the
 // bus for 50 us from the first pixel of a line on: the FIFO of 140 words is full at pixel 560, 45.6 us after
-// the first.
+// the first pixel.
 TEST_F(CameraSimulationTest, KeepsTheOldPixelsWhereTheFifoWasFull) {
   constexpr int kRow = 10;
   constexpr int kFirstDropped = 560;

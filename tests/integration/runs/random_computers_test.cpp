@@ -268,7 +268,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming), testing::Bool()),
     suite_name);
 
-// Four local clocks a cycle and one word a burst: what lies between two words costs nothing.
+// Four local clocks per cycle of the FPGA and one word per burst: the clocks between two words cost no cycle.
 TEST(SaturatedLocalBus, StaysBelowItsBound) {
   const platform::BoardConfig board = platform::load_board(
       "fpl2003-no-calibration",

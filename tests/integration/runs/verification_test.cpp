@@ -1,4 +1,4 @@
-// What `--verify` says of a run that is not the same: here one that never was.
+// What `--verify` reports if the repeated run differs. The results of the first run are made up here.
 #include "sw/runs/verification.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ class VerificationTest : public testing::Test {
     input.timing_only = true;
     input.frames = 2;
   }
-  // What fails of this run, which did not take place: one line each.
+  // Verifies a run with these made-up results. Returns what fails, one line each.
   std::string failed_of(const std::vector<Result>& results, const platform::Statistics& statistics) {
     Verification verification(input, pictures);
     for (const Result& result : results) verification.add(result);

@@ -140,7 +140,8 @@ TEST(SsdArea, SquaresWithMultipliersAndSumsMoreBits) {
   EXPECT_EQ(all_of(core(kCost, kSsd, kFetch, Fetch::kLineBuffer), "column modules").multipliers, 80 * 7);
 }
 
-// 24 bits a pixel: 12 counts of 0..2, whose tree has adders of 3 bits (4 + 4), of 4 (2) and of 5 (1).
+// 24 bits per pixel give 12 counts of 0..2. Their tree has eight adders of 3 bits, two of 4 bits and one of
+// 5.
 TEST(CensusArea, CountsDifferentBitsInsteadOfDifferences) {
   constexpr int kPair = 24 + (4 * 3 + 4 * 3 + 2 * 4 + 5);
   expect_all("column modules", {{core(kCost, census(5)), 80 * Resources{kPair + 8, 8}}});

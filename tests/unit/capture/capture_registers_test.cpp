@@ -208,8 +208,8 @@ TEST_F(CaptureRegisters, CountTheDroppedPixelsOfTheLastCapture) {
 }
 
 TEST_F(CaptureRegisters, StartAFrameThatBeginsWhenTheLastCaptureEndsButNotEarlier) {
-  // A frame lasts 40 ms, a whole number of clocks, and has one burst. The burst of frame 0 ends at the
-  // beginning of frame 1, that of frame 1 a clock behind the beginning of frame 2.
+  // A frame lasts 40 ms, a whole number of clocks, and has one burst. The burst of frame 0 ends when frame 1
+  // begins. The burst of frame 1 ends one clock after frame 2 begins.
   camera = {4, 1, 25, CameraTrigger::kFreeRunning};
   clock_mhz = 40;
   build_and_arm();

@@ -279,7 +279,7 @@ TEST(CoreControl, NeedsNoTableLatencyWithoutTables) {
 TEST(CoreControl, StopsTheMatcherOnlyWhileTheResultQueueIsFull) {
   struct Queue {
     int words;
-    std::uint64_t refused_cycles;  // before which the result port is refused
+    std::uint64_t refused_cycles;  // the result port is refused in all cycles before this one
     std::uint64_t cycles;
     std::uint64_t stalls;
   };

@@ -32,9 +32,10 @@ class FrameCountsTest : public testing::Test {
                            AccessPattern(geometry(), PixelCache::kNone)};
 };
 
-// A control that has not done what it should is found: its counts are not those of the geometry.
+// Slots and words are taken from the control, so that a control that has done too little is found: its counts
+// differ from the counts of the geometry.
 TEST_F(FrameCountsTest, HaveTheSlotsAndWordsThatTheControlHasComeTo) {
-  // From cycle 4 on a slot is consumed a cycle, three of them a column.
+  // From cycle 4 on one slot is consumed per cycle. A column has three slots.
   const std::uint64_t columns = geometry().result_delay_columns + 8;
   struct Expected {
     std::uint64_t end;

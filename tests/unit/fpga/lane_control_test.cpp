@@ -25,12 +25,12 @@ struct LaneSetting {
   PixelCache cache = PixelCache::kNone;
 };
 
-// Cycles of a lane, one character a cycle.
+// Cycles of a lane, one character per cycle.
 struct Cycles {
   const char* claim;
   LaneSetting setting = {};
-  // Expected. Intents: R request, P pass, I idle, B blocked, S starved. Consumed: 1 a slot, 0 none. A shorter
-  // text says nothing about the later cycles.
+  // Expected. Intents: R request, P pass, I idle, B blocked, S starved. `consumed`: 1 if a slot is consumed,
+  // else 0. Cycles beyond the end of a text are not checked.
   std::string lut = "";
   std::string pixel = "";
   std::string consumed = "";

@@ -23,7 +23,7 @@ inline CoreConfig small_core(int width, int height, int disparities = 3, Fetch f
 }
 
 // Small cores for property tests: every way to fetch and filter, images lower than the window, short queues.
-// `widest`: pixels, a multiple of 4.
+// `widest`: largest width in pixels, a multiple of 4.
 inline CoreConfig random_core(test::SplitMix64& random, int widest) {
   CoreConfig config;
   config.width = 4 * random.mostly_small(1, 8, widest / 4);

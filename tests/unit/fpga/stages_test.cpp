@@ -125,7 +125,7 @@ class PixelReaderTest : public StageTest<PixelReader> {
     elaborate();
     stage.start_frame(8);
   }
-  // Three slots a column.
+  // Three slots per column.
   static CoreConfig core_of(PixelCache cache) {
     CoreConfig config = small_core(8, 4);
     config.pixel_cache = cache;
@@ -244,7 +244,7 @@ TEST(ResultPacker, BeginsAFrameWithAnEmptyWord) {
   EXPECT_EQ(words.beats[0].word, 0x5544'3322U);
 }
 
-// Two words a row, three rows a strip.
+// Two words per row, three rows per strip.
 TEST(ResultPacker, GivesEachWordItsPlaceInTheImage) {
   CoreConfig config = small_core(8, 6);
   config.rows = 3;

@@ -235,7 +235,7 @@ TEST_F(StereoCoreDirectAccess, TakenBackWithinAFrameIsReportedAndRaisesError) {
   EXPECT_EQ(status(), registers::kStatusDone | registers::kStatusError);
   EXPECT_EQ(result_words(), Words(kImageWords, 77));
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  // Its counts are those of the cycles.
+  // The stage has counted all writes, as many as the port was granted.
   EXPECT_EQ(core->datapath().result_writer().stats().writes, kImageWords);
   EXPECT_EQ(accesses(kResult), port(kResultPort).granted());
   start();
@@ -261,7 +261,7 @@ TEST_P(StereoCoreCatchUp, ShowsTheSlotsOfThePresent) {
     });
   }
   finish();
-  // With tables the matcher consumes from cycle 4 on, a slot a cycle; cycle 4 itself has begun.
+  // With tables the matcher consumes one slot per cycle from cycle 4 on. A cycle counts once it has begun.
   EXPECT_EQ(consumed, (std::vector<std::uint64_t>{0, 1, 2, 27, 87}));
   EXPECT_EQ(handled, (std::vector<std::uint64_t>{2, 3, 4, 29, 89}));
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});

@@ -1,5 +1,5 @@
 // The host port beside the ports of the core: bursts of the local bus before, in and after a frame. The bus
-// has the core's clock: a burst that begins at edge c requests from cycle c + kFirst on, a word a cycle.
+// has the core's clock: a burst that begins at edge c requests one word per cycle from cycle c + kFirst on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

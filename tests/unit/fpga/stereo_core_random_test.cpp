@@ -132,8 +132,8 @@ class HostedRun {
     sc_core::wait(sc_core::sc_time::from_value(ps));
   }
 
-  // Where the buffers of the next frame lie; now and then the disparities over the left image, so that it is
-  // done cycle by cycle.
+  // The places of the buffers of the next frame. Now and then the disparities overlap the left image, so that
+  // the frame is stepped cycle by cycle.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> bases(SplitMix64& random) const {
     const auto in_any_bank = [&](std::uint32_t word) {
       return registers::base(static_cast<std::uint32_t>(random.between(0, banks() - 1)), word);

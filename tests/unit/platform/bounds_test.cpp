@@ -98,7 +98,8 @@ TEST_F(FrameBounds, CountTheReadsOfLineBuffers) {
 TEST_F(FrameBounds, CountTheReadsOfALargeFilter) {
   board.matcher.filter = kernels::log7();  // two strips more, rows 0..5 of -2+3-1 = 0 on
   const uint64_t drain = uint64_t{3} * (3 - 1 + 1 + 3);
-  // Strips start at rows 0 .. 7: six rows of three, less those below the image.
+  // Strips start at rows 0 .. 7. Four have three rows inside the image, one has two, one has one, two have
+  // none.
   EXPECT_EQ(bound_of("bank bank0"), 16 * (4 * 3 + 2 + 1) + 2 + drain + 1 + kPipeline);
 }
 

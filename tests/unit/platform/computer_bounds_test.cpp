@@ -31,8 +31,8 @@ TEST_F(ComputerBounds, GiveCamerasTheirFrameClockOrOnDemandTheTimeToTheLastPixel
 }
 
 TEST_F(ComputerBounds, CountTheBusClocksOfCaptureToTheBoard) {
-  // 64 words a burst into the bridge, whose posted writes are less than a FIFO; 32 a burst back to memory,
-  // and a descriptor.
+  // Captures: bursts of 64 words, because the bridge holds fewer posted words than a FIFO. Result: a
+  // descriptor, and bursts of 32 words to memory.
   const double capture = 2 * (kPicture + 1200 * (1 + 4 + 1));
   const double result = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
   EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + result));
@@ -41,7 +41,7 @@ TEST_F(ComputerBounds, CountTheBusClocksOfCaptureToTheBoard) {
 TEST_F(ComputerBounds, CountTheBusClocksOfCaptureToHostMemoryAndOfTheCopy) {
   board.capture.destination = CaptureDestination::kHostMemory;
   board.bridge.dma_burst_words = 7;
-  const double capture = 2 * (kPicture + 549 * (1 + 8 + 1));       // 140 words a burst, the last has 80
+  const double capture = 2 * (kPicture + 549 * (1 + 8 + 1));       // bursts of 140 words, the last of 80
   const double copy = 2 * (14 + kPicture + 10'972 * (1 + 8 + 1));  // the last burst has 3 words
   const double result = 14 + kPicture + 10'972 * (1 + 8 + 1);
   EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + copy + result));
@@ -52,7 +52,7 @@ TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture + 4800 * 3)));
   board.bridge.local_clock_mhz = 20;
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 20e6 / (3 * (kPicture + 4800 * 3)));
-  // On a bus of four clocks a cycle the four clocks between two bursts hide in the cycle of the last grant.
+  // On a bus of four clocks per cycle the four clocks between two bursts hide in the cycle of the last grant.
   board.bridge.local_clock_mhz = 160;
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * kPicture));
   board.bridge.local_clock_mhz = 80;

@@ -164,7 +164,7 @@ TEST(BoardConfig, HandsOptionalKeysToTheCore) {
 
 TEST(BoardConfig, LaysBuffersOfOneBankOneBehindTheOther) {
   BoardConfig board;
-  board.image = {8, 3};  // 6 words an image, 24 a table
+  board.image = {8, 3};  // 6 words per image, 24 per table
   board.allocation.left_image = {"bank1", "bank0", "bank1"};
   board.allocation.right_image = {"bank0", "bank1", "bank2"};
   board.allocation.disparity = {"bank1", "bank1"};

@@ -96,7 +96,7 @@ class FakeMachine : public host::HostBus {
     bool under_way = false;
     std::uint32_t status = 0;
     std::uint32_t address = 0;
-    std::optional<std::uint32_t> board_word;  // that it fills; none in host memory
+    std::optional<std::uint32_t> board_word;  // the board word that it fills; nullopt for host memory
     std::uint64_t frame = 0;
   };
   std::uint64_t capture_base(std::size_t side) const {
