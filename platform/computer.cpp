@@ -27,6 +27,7 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
   pci::PciBusConfig config;
   config.clock_mhz = board.pci.clock_mhz;
   config.latency_timer_clocks = board.pci.latency_timer_clocks;
+  config.width_bits = board.pci.width_bits;
   config.masters = {"host", "left_capture", "right_capture", "bridge"};
   config.windows = {window(map.host_memory, host_memory_bytes, board.pci.memory_wait_clocks),
                     window(map.bridge_slave, pci::bridge::kSlaveWindowBytes, bridge_wait),

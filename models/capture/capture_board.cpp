@@ -182,11 +182,8 @@ void CaptureBoard::leave(CaptureFifo& fifo, const pci::BurstResult& transferred)
   const Clock& clock = pci->clock();
   fifo.leave(Clock::now_ps(), static_cast<int>(transferred.words),
              [&transferred, &clock](std::uint64_t time_ps) {
-               // One word leaves at each clock edge after the beginning of first_data_clock.
-               const std::uint64_t edges = clock.edge_at_or_after(time_ps + 1) - 1;
-               if (edges <= transferred.first_data_clock) return 0;
-               return static_cast<int>(
-                   std::min<std::uint64_t>(edges - transferred.first_data_clock, transferred.words));
+               const std::uint64_t running_clock = clock.edge_at_or_after(time_ps + 1) - 1;
+               return static_cast<int>(transferred.words_before(running_clock));
              });
 }
 

@@ -26,6 +26,7 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
       stops("stop", config.windows.size()),
       config_(checked(this->name(), config)),
       clock_(config.clock_mhz),
+      words_per_clock_(static_cast<std::size_t>(config.width_bits) / 32),
       requests_(config.masters.size()),
       last_granted_(config.masters.size() - 1),
       memories_(config.windows.size()) {
@@ -129,7 +130,8 @@ void PciBus::begin(std::size_t master, const PciBurst& burst) {
 
 void PciBus::begin_words(std::uint64_t first_clock, std::size_t words) {
   running_.result.first_data_clock = first_clock;
-  running_.end_clock = first_clock + words;
+  running_.result.words_per_clock = words_per_clock_;
+  running_.end_clock = first_clock + (words + words_per_clock_ - 1) / words_per_clock_;
   running_.transported = running_.burst.write && !memories_.has(running_.window);
   state_ = State::kWords;
   end_words_at(running_.end_clock);
@@ -140,10 +142,10 @@ void PciBus::begin_words(std::uint64_t first_clock, std::size_t words) {
 void PciBus::cut_words() {
   const std::uint64_t request = earliest_request(running_.master);
   if (request == kNever) return;
-  const std::uint64_t last_word =
+  const std::uint64_t last_data_clock =
       std::max({running_.address_clock + static_cast<std::uint64_t>(config_.latency_timer_clocks), request,
                 running_.result.first_data_clock});
-  if (last_word + 1 < running_.end_clock) end_words_at(last_word + 1);
+  if (last_data_clock + 1 < running_.end_clock) end_words_at(last_data_clock + 1);
 }
 
 void PciBus::end_words_at(std::uint64_t clock) {
@@ -153,10 +155,11 @@ void PciBus::end_words_at(std::uint64_t clock) {
 
 void PciBus::end_words() {
   state_ = State::kOccupied;
-  const std::uint64_t first = running_.result.first_data_clock;
-  const auto words = static_cast<std::size_t>(running_.end_clock - first);
   std::vector<std::uint32_t>& to = *running_.burst.words;
-  running_.result = {end_of(words, running_.accepted, to.size()), words, first};
+  running_.result.words = running_.accepted;
+  const std::size_t words = running_.result.words_before(running_.end_clock);
+  running_.result.words = words;
+  running_.result.end = end_of(words, running_.accepted, to.size());
   if (running_.burst.write) {
     access(to, words);
   } else {
@@ -274,8 +277,10 @@ void PciBus::count(std::size_t master, const BurstResult& result) {
 BurstResult PciBus::transferred(std::size_t master) const {
   if (!address_clock_ || running_.master != master) return {};
   BurstResult so_far = running_.result;
-  if (state_ == State::kWords && whole_clocks() > so_far.first_data_clock)
-    so_far.words = static_cast<std::size_t>(whole_clocks() - so_far.first_data_clock);
+  if (state_ == State::kWords) {
+    so_far.words = running_.accepted;
+    so_far.words = so_far.words_before(whole_clocks());
+  }
   return so_far;
 }
 

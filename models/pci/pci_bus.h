@@ -21,19 +21,20 @@ namespace stereotlm::pci {
 
 using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 
-// A 32-bit PCI bus (contract section 3). Targets see addresses relative to their window.
+// A PCI bus of 32 or 64 bits (contract sections 3 and 7.10). Targets see addresses relative to their window.
 //
-// Burst: an address clock, the target's wait clocks, one clock per word and an idle clock. The next address
-// clock can follow immediately, because arbitration is hidden behind the burst. A burst of any length costs
-// two events: its grant and its end. A request that cuts the burst moves the second one.
+// Burst: an address clock, the target's wait clocks, one data clock per word (64 bits: per two words) and an
+// idle clock. The next address clock can follow immediately, because arbitration is hidden behind the burst.
+// A burst of any length costs two events: its grant and its end. A request that cuts the burst moves the
+// second one.
 //
 // Arbitration: round robin, from the slot after the last one granted, at first from slot 0. It considers the
 // requests made at or before the beginning of the clock, and decides when nothing else is pending at that
 // time (DecisionPoint): requests and target registers count as they stand after everything that happens at
 // the clock's edge. If a master returns its grant unused, the next request is granted in the same clock.
 //
-// Latency timer: the address clock is clock 0. If another master waits, the burst ends with the first word
-// transferred in clock latency_timer_clocks or later. A request made during the burst counts from the first
+// Latency timer: the address clock is clock 0. If another master waits, the burst ends with the first data
+// clock that is clock latency_timer_clocks or later. A request made during the burst counts from the first
 // clock that begins at or after it.
 //
 // Write: the target receives one b_transport at the end of the last data clock, with the words transferred.
@@ -150,6 +151,7 @@ class PciBus : public sc_core::sc_module {
 
   PciBusConfig config_;
   Clock clock_;
+  std::size_t words_per_clock_;
   std::deque<Slot> slots_;
   std::vector<Request> requests_;  // [master]
   std::size_t last_granted_;       // index of the master that was granted last

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <systemc>
@@ -31,12 +32,19 @@ constexpr bool is_error(BurstEnd end) {
   return end == BurstEnd::kMasterAbort || end == BurstEnd::kTargetError;
 }
 
-// The result of a burst. Word i was transferred in bus clock first_data_clock + i, and left its sender at the
-// end of that clock.
+// The result of a burst. Word i was transferred in bus clock first_data_clock + i / words_per_clock, and left
+// its sender at the end of that clock.
 struct BurstResult {
   BurstEnd end = BurstEnd::kComplete;
   std::size_t words = 0;  // words transferred
   std::uint64_t first_data_clock = 0;
+  std::size_t words_per_clock = 1;  // 2 on a bus of 64 bits
+
+  // The number of words that were transferred in earlier clocks than this one.
+  std::size_t words_before(std::uint64_t clock) const {
+    if (clock <= first_data_clock) return 0;
+    return std::min<std::uint64_t>(words, (clock - first_data_clock) * words_per_clock);
+  }
 };
 
 // The interface of a master, called by the bus.

@@ -63,6 +63,7 @@ Board random_board(unsigned seed) {
   }
   const std::uint64_t period_ps = Clock(board.config.clock_mhz).edge_ps(1);
   board.masters.resize(1 + below(4));
+  if (seed % 2 == 1) board.config.width_bits = 64;
   for (auto& requests : board.masters) {
     for (unsigned i = 0; i < 40; ++i) {
       const std::uint64_t gap = below(3) == 0   ? 0
@@ -130,7 +131,8 @@ struct Outcome {
 
 Outcome literal(const Board& board) {
   test::PlainEvents events;
-  test::PlainPciBus bus(events, test::plain_number(board.mhz), board.config.latency_timer_clocks);
+  test::PlainPciBus bus(events, test::plain_number(board.mhz), board.config.latency_timer_clocks,
+                        board.config.width_bits);
   Outcome outcome;
   std::deque<PlainScript> masters;
   for (std::size_t i = 0; i < board.masters.size(); ++i)
