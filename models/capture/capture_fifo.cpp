@@ -40,12 +40,11 @@ void CaptureFifo::advance(std::uint64_t now_ps) {
 template <class LeftBy>
 void CaptureFifo::take(std::uint64_t now_ps, const LeftBy& left_by) {
   now_ps_ = now_ps;
-  while (next_line_ps_ <= now_ps) {
-    take_words(words_per_line_, left_by);
-    begin_line(row_ + 1);
+  for (;; begin_line(row_ + 1)) {
+    pixels_ = line_end_ps_ <= now_ps ? timing_->width() : timing_->pixels_by(row_, now_ps - begin_ps_);
+    take_words((pixels_ + kPixelsPerWord - 1) / kPixelsPerWord, left_by);
+    if (now_ps < next_line_ps_) return;
   }
-  pixels_ = line_end_ps_ <= now_ps ? timing_->width() : timing_->pixels_by(row_, now_ps - begin_ps_);
-  take_words((pixels_ + kPixelsPerWord - 1) / kPixelsPerWord, left_by);
 }
 
 template <class LeftBy>
