@@ -108,8 +108,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   std::uint64_t finish_ps_ = kNever;
   std::uint64_t next_ps_ = kNever;  // the earlier of the two
 
-  Capture
-      capture_;  // the running capture; until it ends, dropped_pixels is the sum over all earlier captures
+  Capture capture_;  // the running one; until it ends, dropped_pixels is the sum over all earlier captures
   std::uint64_t address_ = 0;  // bus address of its buffer
 
   BusState bus_state_ = BusState::kIdle;
