@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/kernel_time.h"
+
 namespace stereotlm::fpga {
 namespace {
 
@@ -9,7 +11,7 @@ constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
 // The largest number of cycles that one call of serve_contended() runs, after running ahead.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
-std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
+std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
 
 }  // namespace
 
@@ -83,7 +85,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
       return clock_.edge_ps(frames_.done_cycle());
     }
     if (!is_only_master_ && edge_ps >= now_ps &&
-        edge_ps >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
+        edge_ps >= now_ps + kernel_time::to_ps(sc_core::sc_time_to_pending_activity())) {
       count_words_outside();
       return edge_ps + 1;
     }
@@ -119,7 +121,7 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint6
     bus_.count_granted(1, edge_ps, usable_ps(cycle));
   } else {
     crossbar_.grant(kHostMask);
-    access(cycle, Clock::to_time(std::max(edge_ps, now_ps) - now_ps));
+    access(cycle, kernel_time::to_time(std::max(edge_ps, now_ps) - now_ps));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/kernel_time.h"
 #include "models/memory/crossbar.h"
 
 namespace stereotlm::fpga {
@@ -26,6 +27,7 @@ LocalBus::LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& co
       banks_(banks),
       buffers_(config.buffers),
       words_granted_(config.buffers) {
+  kernel_time::check_resolution();
   SC_HAS_PROCESS(LocalBus);
   memory::kBankCountRule.required("banks", static_cast<int>(banks));
   bus.bind(*this);
@@ -79,13 +81,13 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
   status_ = tlm::TLM_OK_RESPONSE;
   next_word_ = 0;
   ++stats_.bursts;
-  const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
+  const std::uint64_t now = kernel_time::to_ps(sc_core::sc_time_stamp());
   stats_.busy_clocks += idle_clock_ - address_clock_;
-  address_clock_ = clock_.edge_at_or_after(now + Clock::to_ps(delay));
+  address_clock_ = clock_.edge_at_or_after(now + kernel_time::to_ps(delay));
   idle_clock_ = kUnknown;
   request_ps_ = clock_.edge_ps(address_clock_ + kFirstWordClock + 1);
   if (is_register(access.get_address())) {
-    register_event_.notify(Clock::to_time(request_ps_ - now));
+    register_event_.notify(kernel_time::to_time(request_ps_ - now));
     return;
   }
   words_left_ = access.get_data_length() / 4;
@@ -93,7 +95,7 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
   route_out->push(
       {memory::bank_of_address(first), access.is_write(), first, first + access.get_data_length()});
   // The receiver of the push may have granted all words.
-  if (words_left_ != 0) request_event_.notify(Clock::to_time(request_ps_ - now));
+  if (words_left_ != 0) request_event_.notify(kernel_time::to_time(request_ps_ - now));
 }
 
 // Transfers one word of the burst, at `address` on the socket of `through`.
@@ -161,12 +163,12 @@ void LocalBus::access_register() {
   sc_core::sc_time delay;
   transfer(register_access_, burst_->get_address() - kLocalRegisters + next_word_ * 4, delay);
   ++stats_.register_accesses;
-  const std::uint64_t now = Clock::to_ps(sc_core::sc_time_stamp());
+  const std::uint64_t now = kernel_time::to_ps(sc_core::sc_time_stamp());
   if (next_word_ == burst_->get_data_length() / 4) {
     end(now);
     return;
   }
-  register_event_.notify(Clock::to_time(clock_.edge_ps(clock_.edge_at_or_after(now) + 1) - now));
+  register_event_.notify(kernel_time::to_time(clock_.edge_ps(clock_.edge_at_or_after(now) + 1) - now));
 }
 
 // Ends the burst; the bus is free after the idle clock.
@@ -176,7 +178,7 @@ void LocalBus::end(std::uint64_t last_clock_end_ps) {
   access.set_response_status(status_);
   responding_ = true;
   tlm::tlm_phase phase = tlm::BEGIN_RESP;
-  sc_core::sc_time delay = Clock::to_time(clock_.edge_ps(idle_clock_ + 1)) - sc_core::sc_time_stamp();
+  sc_core::sc_time delay = kernel_time::to_time(clock_.edge_ps(idle_clock_ + 1)) - sc_core::sc_time_stamp();
   const tlm::tlm_sync_enum answer = bus->nb_transport_bw(access, phase, delay);
   if (answer == tlm::TLM_COMPLETED || (answer == tlm::TLM_UPDATED && phase == tlm::END_RESP)) {
     responding_ = false;
@@ -187,7 +189,7 @@ void LocalBus::end(std::uint64_t last_clock_end_ps) {
 
 LocalBus::Stats LocalBus::stats() const {
   Stats stats = stats_;
-  stats.clocks = clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp()) + 1) - 1;
+  stats.clocks = clock_.edge_at_or_after(kernel_time::to_ps(sc_core::sc_time_stamp()) + 1) - 1;
   const std::uint64_t end = std::min(idle_clock_, stats.clocks);
   stats.busy_clocks += end > address_clock_ ? end - address_clock_ : 0;
   return stats;

@@ -16,6 +16,7 @@
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus.h"
 #include "models/fpga/register_file.h"
+#include "models/kernel_time.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
 
@@ -107,7 +108,7 @@ class StereoCore : public sc_core::sc_module {
   void run_cycles();
   bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
   bool host_reads_where_core_writes(memory::PortMask granted) const;
-  void wait_until(std::uint64_t time_ps) { wait(Clock::to_time(time_ps) - sc_core::sc_time_stamp()); }
+  void wait_until(std::uint64_t time_ps) { wait(kernel_time::to_time(time_ps) - sc_core::sc_time_stamp()); }
   void wait_for_request_until(std::uint64_t time_ps);
 
   StereoCoreConfig config_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "models/clock.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::pci {
 
@@ -61,7 +61,7 @@ void LocalBusMaster::wake(const sc_core::sc_time& delay) {
   if (!busy_) {
     work_.notify(delay);
   } else if (end_ps_ != kUnknown) {
-    work_.notify(Clock::to_time(end_ps_ - Clock::now_ps()));
+    work_.notify(kernel_time::to_time(end_ps_ - kernel_time::now_ps()));
   }
 }
 
@@ -127,7 +127,7 @@ tlm::tlm_sync_enum LocalBusMaster::respond(tlm::tlm_generic_payload& /*burst*/, 
 }
 
 void LocalBusMaster::end_after(const sc_core::sc_time& delay) {
-  end_ps_ = Clock::now_ps() + Clock::to_ps(delay);
+  end_ps_ = kernel_time::now_ps() + kernel_time::to_ps(delay);
   if (end_is_awaited()) work_.notify(delay);
 }
 
@@ -139,7 +139,7 @@ bool LocalBusMaster::end_is_awaited() const {
   });
 }
 
-bool LocalBusMaster::has_ended() const { return busy_ && end_ps_ <= Clock::now_ps(); }
+bool LocalBusMaster::has_ended() const { return busy_ && end_ps_ <= kernel_time::now_ps(); }
 
 void LocalBusMaster::settle() {
   if (!has_ended()) return;

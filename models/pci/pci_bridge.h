@@ -14,7 +14,7 @@
 #include "models/pci/dma_channel.h"
 #include "models/pci/local_bus_master.h"
 #include "models/pci/pci_config.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::pci {
