@@ -3,24 +3,17 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <systemc>
 
 #include "models/period.h"
 
 namespace stereotlm {
 
 // A clock without drift: edge k lies at round(k * 10^6 / f_mhz) ps, halves up (contract section 3). f_mhz is
-// the decimal number as written, not the binary number nearest to it.
+// the decimal number as written, not the binary number nearest to it. Plain C++.
 class Clock {
  public:
-  // Throws std::invalid_argument unless 0.001 <= mhz <= 1000 and the kernel's time resolution is 1 ps, its
-  // default.
-  explicit Clock(double mhz) : Clock(mhz, decimal_of(checked(mhz))) {
-    if (sc_core::sc_get_time_resolution() != sc_core::sc_time(1, sc_core::SC_PS)) {
-      throw std::invalid_argument("time resolution = " + sc_core::sc_get_time_resolution().to_string() +
-                                  ": must be 1 ps");
-    }
-  }
+  // Throws std::invalid_argument unless 0.001 <= mhz <= 1000.
+  explicit Clock(double mhz) : Clock(mhz, decimal_of(checked(mhz))) {}
 
   // Time of edge number `edge`, in ps.
   std::uint64_t edge_ps(std::uint64_t edge) const { return period_.times(edge); }
@@ -40,10 +33,6 @@ class Clock {
 
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
-
-  static sc_core::sc_time to_time(std::uint64_t ps) { return sc_core::sc_time::from_value(ps); }
-  static std::uint64_t to_ps(const sc_core::sc_time& time) { return time.value(); }
-  static std::uint64_t now_ps() { return to_ps(sc_core::sc_time_stamp()); }
 
  private:
   static double checked(double mhz) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "models/clock.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::capture {
 namespace {
@@ -17,7 +17,7 @@ std::string size_text(int width, int height) {
 
 Camera::Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source)
     : sc_module(name), timing_(config), trigger_mode_(config.trigger), source_(source) {
-  static_cast<void>(Clock(1));  // throws if the time resolution is not 1 ps
+  kernel_time::check_resolution();
   SC_HAS_PROCESS(Camera);
   SC_METHOD(begin_frame);
   sensitive << frame_begins_;
@@ -28,7 +28,7 @@ Camera::Camera(const sc_core::sc_module_name& name, const CameraConfig& config, 
 }
 
 void Camera::trigger(const Trigger& trigger) {
-  const std::uint64_t begin_ps = Clock::now_ps() + Clock::to_ps(trigger.delay);
+  const std::uint64_t begin_ps = kernel_time::now_ps() + kernel_time::to_ps(trigger.delay);
   if (trigger_mode_ == CameraTrigger::kFreeRunning || triggered_ || begin_ps < next_begin_ps_) {
     ++stats_.ignored_triggers;
     return;
@@ -39,12 +39,12 @@ void Camera::trigger(const Trigger& trigger) {
 
 void Camera::begin_frame() {
   triggered_ = false;
-  frame_begin_ps_ = Clock::now_ps();
+  frame_begin_ps_ = kernel_time::now_ps();
   next_begin_ps_ = frame_begin_ps_ + timing_.last_pixel_ps();
   image_ = nullptr;
   const std::uint64_t number = stats_.frames++;
   if (trigger_mode_ == CameraTrigger::kFreeRunning)
-    frame_begins_.notify(Clock::to_time(timing_.frame_ps(number + 1) - frame_begin_ps_));
+    frame_begins_.notify(kernel_time::to_time(timing_.frame_ps(number + 1) - frame_begin_ps_));
   frames_out->push({number, frame_begin_ps_, &timing_});
 }
 
@@ -72,7 +72,7 @@ void Camera::take(const TakeFrame& taken) {
 void Camera::send_line() {
   const int row = row_++;
   if (row_ < timing_.height())
-    line_begins_.notify(Clock::to_time(frame_begin_ps_ + timing_.row_ps(row_) - Clock::now_ps()));
+    line_begins_.notify(kernel_time::to_time(frame_begin_ps_ + timing_.row_ps(row_) - kernel_time::now_ps()));
   const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(timing_.width());
   lines_out->push({row, image_->pixels.data() + first});
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::capture {
@@ -34,9 +35,9 @@ CaptureBoard::Stats CaptureBoard::stats() const {
   Stats stats = stats_;
   CaptureFifo fifo = fifo_;
   if (bus_state_ == BusState::kBurst) {
-    leave(fifo, pci->transferred());
+    leave(fifo, pci->transferred(kernel_time::now_ps()));
   } else if (register_file_.capturing()) {
-    fifo.advance(Clock::now_ps());
+    fifo.advance(kernel_time::now_ps());
   }
   stats.dropped_pixels = fifo.dropped_pixels();
   return stats;
@@ -53,7 +54,7 @@ void CaptureBoard::take_frame(const VideoFrame& frame) {
   frame_ = frame;
   readiness_.reset();
   undecided_ = true;
-  decision_.notify(Clock::to_time(1));
+  decision_.notify(kernel_time::to_time(1));
 }
 
 CaptureBoard::Readiness CaptureBoard::readiness() {
@@ -117,7 +118,7 @@ void CaptureBoard::take_line(const VideoLine& line) {
 // needs it, or finishes the capture when the FIFO has finished.
 void CaptureBoard::proceed() {
   if (bus_state_ != BusState::kIdle) return;
-  const std::uint64_t now = Clock::now_ps();
+  const std::uint64_t now = kernel_time::now_ps();
   fifo_.advance(now);
   const auto next = fifo_.next_ps();
   if (!next) return;
@@ -126,7 +127,7 @@ void CaptureBoard::proceed() {
     requested_ps_ = *next;
     pci->request(*this, *next);
   } else if (*next > now) {
-    finish_due_.notify(Clock::to_time(*next - now));
+    finish_due_.notify(kernel_time::to_time(*next - now));
   } else {
     finish(now);
   }
@@ -180,7 +181,7 @@ bool CaptureBoard::fits(const pci::BurstResult& result) const {
 // Removes the words transferred by now from the FIFO, each at the end of its data clock.
 void CaptureBoard::leave(CaptureFifo& fifo, const pci::BurstResult& transferred) const {
   const Clock& clock = pci->clock();
-  fifo.leave(Clock::now_ps(), static_cast<int>(transferred.words),
+  fifo.leave(kernel_time::now_ps(), static_cast<int>(transferred.words),
              [&transferred, &clock](std::uint64_t time_ps) {
                // One word leaves at each clock edge after the beginning of first_data_clock.
                const std::uint64_t edges = clock.edge_at_or_after(time_ps + 1) - 1;
@@ -196,7 +197,7 @@ void CaptureBoard::end_burst(const pci::BurstResult& result) {
     return;
   }
   bus_state_ = BusState::kIdle;
-  const std::uint64_t now = Clock::now_ps();
+  const std::uint64_t now = kernel_time::now_ps();
   if (is_error(result.end)) {
     const int words = static_cast<int>(burst_words_.size());
     fifo_.leave(now, words, [now, words](std::uint64_t time_ps) { return time_ps < now ? 0 : words; });

@@ -13,7 +13,7 @@
 #include "models/capture/capture_register_file.h"
 #include "models/capture/capture_registers.h"
 #include "models/interrupt.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
 #include "models/stream.h"
 
 namespace stereotlm::capture {

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "models/capture/capture_registers.h"
-#include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/register_access.h"
 
 namespace stereotlm::capture {
@@ -37,7 +37,7 @@ bool CaptureRegisterFile::access(tlm::tlm_generic_payload& access, const sc_core
       clear(value);
       return false;
     default:
-      if ((value & registers::kControlArm) != 0) arm(Clock::now_ps() + Clock::to_ps(delay));
+      if ((value & registers::kControlArm) != 0) arm(kernel_time::now_ps() + kernel_time::to_ps(delay));
       return (value & registers::kControlTrigger) != 0;
   }
 }

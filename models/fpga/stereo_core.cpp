@@ -14,9 +14,9 @@ constexpr std::uint64_t kMostSteppedCycles = 8192;
 // The largest number of cycles between two returns to the kernel while the process fast-forwards.
 constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 
-std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
+std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
 // No event can occur before this time.
-std::uint64_t horizon_ps() { return present_ps() + Clock::to_ps(sc_core::sc_time_to_pending_activity()); }
+std::uint64_t horizon_ps() { return present_ps() + kernel_time::to_ps(sc_core::sc_time_to_pending_activity()); }
 
 memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
   if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
@@ -67,7 +67,7 @@ void StereoCore::start_frame(const FrameStart& start) {
   failed_ = false;
   next_check_ps_ = 0;
   // Cycle 0 is the first that begins at or after the strobe.
-  const std::uint64_t cycle = clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay));
+  const std::uint64_t cycle = clock_.edge_at_or_after(kernel_time::to_ps(sc_core::sc_time_stamp() + start.delay));
   is_direct_ = config_.fidelity != Fidelity::kCycle && works_directly(start);
   if (is_direct_) {
     frames_.start_direct(cycle, start.bases, direct_frame_.patterns());
@@ -212,7 +212,7 @@ void StereoCore::fast_forward() {
 void StereoCore::run_cycles() {
   const std::uint64_t now = present_ps();
   const std::uint64_t period_ps = clock_.edge_ps(1);
-  const sc_core::sc_time period = Clock::to_time(period_ps);
+  const sc_core::sc_time period = kernel_time::to_time(period_ps);
   std::uint64_t horizon = horizon_ps();
   sc_core::sc_time at;  // start of the cycle, from now; mostly one period after that of the cycle before
   std::uint64_t offset_before = 0;
@@ -239,7 +239,7 @@ void StereoCore::run_cycles() {
     }
     if (!frames_.is_running()) frames_.skip_to(next);
     const std::uint64_t offset = edge > now ? edge - now : 0;
-    at = offset == offset_before + period_ps ? at + period : Clock::to_time(offset);
+    at = offset == offset_before + period_ps ? at + period : kernel_time::to_time(offset);
     offset_before = offset;
     if (step(edge, at)) horizon = horizon_ps();  // the end of the burst may have made other events pending
   }
@@ -254,7 +254,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   bool burst_has_ended = false;
   const auto serve_host = [&] {
     host_is_served = true;
-    burst_has_ended = host_port_.access(cycle, at);
+    burst_has_ended = host_port_.access(cycle);
   };
   if (frames_.is_running()) {
     granted = frames_.step(host_requests, [&](const CoreControl::Decision& decision, PortMask grants) {
@@ -280,7 +280,7 @@ bool StereoCore::host_reads_where_core_writes(PortMask granted) const {
 }
 
 void StereoCore::wait_for_request_until(std::uint64_t time_ps) {
-  wait(Clock::to_time(time_ps) - sc_core::sc_time_stamp(), local_bus_.request_event());
+  wait(kernel_time::to_time(time_ps) - sc_core::sc_time_stamp(), local_bus_.request_event());
 }
 
 }  // namespace stereotlm::fpga

@@ -8,6 +8,7 @@
 
 #include "models/binder.h"
 #include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_datapath.h"
 #include "models/fpga/direct_frame.h"
@@ -107,7 +108,7 @@ class StereoCore : public sc_core::sc_module {
   void run_cycles();
   bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
   bool host_reads_where_core_writes(memory::PortMask granted) const;
-  void wait_until(std::uint64_t time_ps) { wait(Clock::to_time(time_ps) - sc_core::sc_time_stamp()); }
+  void wait_until(std::uint64_t time_ps) { wait(kernel_time::to_time(time_ps) - sc_core::sc_time_stamp()); }
   void wait_for_request_until(std::uint64_t time_ps);
 
   StereoCoreConfig config_;
@@ -117,7 +118,7 @@ class StereoCore : public sc_core::sc_module {
   RegisterFile register_file_{"register_file"};
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   CoreDatapath datapath_;
-  HostPort host_port_{local_bus_, crossbar_, frames_, clock_};
+  HostPort host_port_{local_bus_.control(), crossbar_, frames_, clock_};
   DirectFrame direct_frame_{config_.core, config_.fidelity == Fidelity::kFast};
   StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
   StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};

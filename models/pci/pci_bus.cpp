@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "models/checked.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::pci {
 namespace {
@@ -29,6 +30,7 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
       requests_(config.masters.size()),
       last_granted_(config.masters.size() - 1),
       memories_(config.windows.size()) {
+  kernel_time::check_resolution();
   SC_HAS_PROCESS(PciBus);
   for (std::size_t master = 0; master < slots.size(); ++master) {
     slots[master].bind(slots_.emplace_back(*this, master));
@@ -148,7 +150,7 @@ void PciBus::cut_words() {
 
 void PciBus::end_words_at(std::uint64_t clock) {
   running_.end_clock = clock;
-  (running_.transported ? transport_ : step_).notify(Clock::to_time(clock_.edge_ps(clock) - Clock::now_ps()));
+  (running_.transported ? transport_ : step_).notify(kernel_time::to_time(clock_.edge_ps(clock) - kernel_time::now_ps()));
 }
 
 void PciBus::end_words() {
@@ -178,6 +180,7 @@ void PciBus::end() {
   busy_clocks_ += running_.end_clock - running_.address_clock;
   count(running_.master, running_.result);
   free_clock_ = running_.end_clock + 1;
+  running_.result.end_ps = kernel_time::now_ps();
   requests_[running_.master].from->end_burst(running_.result);
   state_ = State::kFree;
   await_request();
@@ -220,11 +223,11 @@ void PciBus::transport() {
   access_.set_dmi_allowed(false);
   access_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   const std::uint64_t access_ps = clock_.edge_ps(access_clock());
-  sc_core::sc_time delay = Clock::to_time(access_ps - Clock::now_ps());
+  sc_core::sc_time delay = kernel_time::to_time(access_ps - kernel_time::now_ps());
   targets[running_.window]->b_transport(access_, delay);
   if (access_.is_dmi_allowed())
     memories_.request(running_.window, *targets[running_.window].operator->(), access_);
-  const std::uint64_t answer_ps = Clock::now_ps() + Clock::to_ps(delay);
+  const std::uint64_t answer_ps = kernel_time::now_ps() + kernel_time::to_ps(delay);
   end_access(access_.is_response_ok(),
              answer_ps == access_ps ? access_clock() : clock_.edge_at_or_after(answer_ps));
 }
@@ -271,19 +274,21 @@ void PciBus::count(std::size_t master, const BurstResult& result) {
 }
 
 // Outside the data clocks, running_.result has the number of words.
-BurstResult PciBus::transferred(std::size_t master) const {
+BurstResult PciBus::transferred(std::size_t master, std::uint64_t now_ps) const {
   if (!address_clock_ || running_.master != master) return {};
   BurstResult so_far = running_.result;
-  if (state_ == State::kWords && whole_clocks() > so_far.first_data_clock)
-    so_far.words = static_cast<std::size_t>(whole_clocks() - so_far.first_data_clock);
+  if (state_ == State::kWords && whole_clocks(now_ps) > so_far.first_data_clock)
+    so_far.words = static_cast<std::size_t>(whole_clocks(now_ps) - so_far.first_data_clock);
   return so_far;
 }
 
-std::uint64_t PciBus::whole_clocks() const { return clock_.edge_at_or_after(Clock::now_ps() + 1) - 1; }
+std::uint64_t PciBus::whole_clocks(std::uint64_t now_ps) const {
+  return clock_.edge_at_or_after(now_ps + 1) - 1;
+}
 
 PciBus::Stats PciBus::stats() const {
   Stats stats;
-  stats.clocks = whole_clocks();
+  stats.clocks = whole_clocks(kernel_time::now_ps());
   stats.busy_clocks = busy_clocks_ + (address_clock_ ? stats.clocks - *address_clock_ : 0);
   stats.masters = master_stats_;
   return stats;
@@ -303,6 +308,6 @@ std::optional<std::size_t> PciBus::window_of(const PciBurst& burst) const {
   return std::nullopt;
 }
 
-void PciBus::step_at(std::uint64_t time_ps) { step_.notify(Clock::to_time(time_ps - Clock::now_ps())); }
+void PciBus::step_at(std::uint64_t time_ps) { step_.notify(kernel_time::to_time(time_ps - kernel_time::now_ps())); }
 
 }  // namespace stereotlm::pci

@@ -15,7 +15,7 @@
 #include "models/pci/decision_point.h"
 #include "models/pci/direct_memories.h"
 #include "models/pci/pci_config.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
 
 namespace stereotlm::pci {
 
@@ -89,7 +89,9 @@ class PciBus : public sc_core::sc_module {
     void request(PciMasterIf& master, std::uint64_t from_ps) override {
       bus_.request(master_, master, from_ps);
     }
-    BurstResult transferred() const override { return bus_.transferred(master_); }
+    BurstResult transferred(std::uint64_t now_ps) const override {
+      return bus_.transferred(master_, now_ps);
+    }
     const Clock& clock() const override { return bus_.clock_; }
 
    private:
@@ -145,8 +147,8 @@ class PciBus : public sc_core::sc_module {
   void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) { memories_.forget(); }
 
   void count(std::size_t master, const BurstResult& result);
-  BurstResult transferred(std::size_t master) const;
-  std::uint64_t whole_clocks() const;
+  BurstResult transferred(std::size_t master, std::uint64_t now_ps) const;
+  std::uint64_t whole_clocks(std::uint64_t now_ps) const;
 
   PciBusConfig config_;
   Clock clock_;

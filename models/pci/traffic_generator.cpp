@@ -5,7 +5,7 @@
 #include <string>
 
 #include "models/checked.h"
-#include "models/clock.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::pci {
 
@@ -36,7 +36,7 @@ void TrafficGenerator::end_burst(const BurstResult& result) {
   words_done_ = 0;
   ++transfers_;
   const std::uint64_t due_ps = config_.first_request_ps + transfers_ * config_.interval_ps;
-  pci->request(*this, std::max(due_ps, Clock::now_ps()));
+  pci->request(*this, std::max(due_ps, kernel_time::now_ps()));
 }
 
 void TrafficGenerator::respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
@@ -48,7 +48,7 @@ void TrafficGenerator::respond(tlm::tlm_generic_payload& access, sc_core::sc_tim
     access.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
   } else {
     std::memset(access.get_data_ptr(), 0, access.get_data_length());
-    delay += Clock::to_time(config_.access_ps);
+    delay += kernel_time::to_time(config_.access_ps);
     access.set_response_status(tlm::TLM_OK_RESPONSE);
   }
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/pci/pci_config.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
 
 namespace stereotlm::pci {
 

@@ -1,4 +1,5 @@
 #include "models/clock.h"
+#include "models/kernel_time.h"
 
 #include <gtest/gtest.h>
 
@@ -99,8 +100,8 @@ TEST(Clock, RefusesAFrequencyOutsideItsRange) {
 }
 
 TEST(Clock, CountsSimulatedTimeInPicoseconds) {
-  EXPECT_EQ(Clock::to_time(25'000), sc_core::sc_time(25, sc_core::SC_NS));
-  EXPECT_EQ(Clock::to_ps(sc_core::sc_time(3, sc_core::SC_US)), 3'000'000U);
+  EXPECT_EQ(kernel_time::to_time(25'000), sc_core::sc_time(25, sc_core::SC_NS));
+  EXPECT_EQ(kernel_time::to_ps(sc_core::sc_time(3, sc_core::SC_US)), 3'000'000U);
 }
 
 }  // namespace

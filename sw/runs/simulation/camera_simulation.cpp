@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "models/clock.h"
+#include "models/kernel_time.h"
 #include "sw/driver/board_driver.h"
 
 namespace stereotlm::runs {
@@ -64,7 +64,7 @@ platform::Statistics CameraSimulation::statistics() const {
 
 void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   const auto begin = begins_ps_.find(frame.camera_frame);
-  deliveries_.push_back({begin->second, Clock::to_ps(sc_core::sc_time_stamp())});
+  deliveries_.push_back({begin->second, kernel_time::to_ps(sc_core::sc_time_stamp())});
   begins_ps_.erase(begins_ps_.begin(), std::next(begin));
   if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
   kernels::GrayImage disparity;

@@ -6,7 +6,7 @@
 #include <systemc>
 #include <utility>
 
-#include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/fpga/stereo_core.h"
 
 namespace stereotlm::runs {
@@ -63,7 +63,7 @@ const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
 
 void Simulation::add_result(Result result) {
   ++frames_done_;
-  result.time_ps = Clock::to_ps(sc_core::sc_time_stamp());
+  result.time_ps = kernel_time::to_ps(sc_core::sc_time_stamp());
   cycles_of_done_ = cycles();
   last_ = result;
   new_.push_back(std::move(result));

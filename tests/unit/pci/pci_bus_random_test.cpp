@@ -149,7 +149,7 @@ std::string modelled(const Board& board, bool announced) {
   for (std::size_t window = 0; window < board.config.windows.size(); ++window) {
     // Less than its clocks by what the rounding of edges can add.
     const auto clocks = static_cast<std::uint64_t>(board.read_clocks[window]);
-    bench.targets[window]->read_delays = Clock::to_time(clocks == 0 ? 0 : bench.edge(clocks) - 1);
+    bench.targets[window]->read_delays = kernel_time::to_time(clocks == 0 ? 0 : bench.edge(clocks) - 1);
   }
   for (std::size_t i = 0; i < board.masters.size(); ++i) {
     TestMaster& master = *bench.masters[i];
@@ -159,7 +159,7 @@ std::string modelled(const Board& board, bool announced) {
       if (master.bursts.empty()) return;
       const std::uint64_t gap_ps = board.masters[i][board.masters[i].size() - master.bursts.size()].gap_ps;
       if (announced || gap_ps == 0) {
-        master.pci->request(master, Clock::now_ps() + gap_ps);
+        master.pci->request(master, kernel_time::now_ps() + gap_ps);
       } else {
         bench.at(gap_ps, [&master] { master.request(); });
       }
