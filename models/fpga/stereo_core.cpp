@@ -16,7 +16,9 @@ constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 
 std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
 // No event can occur before this time.
-std::uint64_t horizon_ps() { return present_ps() + kernel_time::to_ps(sc_core::sc_time_to_pending_activity()); }
+std::uint64_t horizon_ps() {
+  return present_ps() + kernel_time::to_ps(sc_core::sc_time_to_pending_activity());
+}
 
 memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
   if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
@@ -67,7 +69,8 @@ void StereoCore::start_frame(const FrameStart& start) {
   failed_ = false;
   next_check_ps_ = 0;
   // Cycle 0 is the first that begins at or after the strobe.
-  const std::uint64_t cycle = clock_.edge_at_or_after(kernel_time::to_ps(sc_core::sc_time_stamp() + start.delay));
+  const std::uint64_t cycle =
+      clock_.edge_at_or_after(kernel_time::to_ps(sc_core::sc_time_stamp() + start.delay));
   is_direct_ = config_.fidelity != Fidelity::kCycle && works_directly(start);
   if (is_direct_) {
     frames_.start_direct(cycle, start.bases, direct_frame_.patterns());

@@ -8,7 +8,6 @@
 
 #include "models/binder.h"
 #include "models/clock.h"
-#include "models/kernel_time.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_datapath.h"
 #include "models/fpga/direct_frame.h"
@@ -17,6 +16,7 @@
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus.h"
 #include "models/fpga/register_file.h"
+#include "models/kernel_time.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
 

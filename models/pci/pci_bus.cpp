@@ -150,7 +150,8 @@ void PciBus::cut_words() {
 
 void PciBus::end_words_at(std::uint64_t clock) {
   running_.end_clock = clock;
-  (running_.transported ? transport_ : step_).notify(kernel_time::to_time(clock_.edge_ps(clock) - kernel_time::now_ps()));
+  (running_.transported ? transport_ : step_)
+      .notify(kernel_time::to_time(clock_.edge_ps(clock) - kernel_time::now_ps()));
 }
 
 void PciBus::end_words() {
@@ -308,6 +309,8 @@ std::optional<std::size_t> PciBus::window_of(const PciBurst& burst) const {
   return std::nullopt;
 }
 
-void PciBus::step_at(std::uint64_t time_ps) { step_.notify(kernel_time::to_time(time_ps - kernel_time::now_ps())); }
+void PciBus::step_at(std::uint64_t time_ps) {
+  step_.notify(kernel_time::to_time(time_ps - kernel_time::now_ps()));
+}
 
 }  // namespace stereotlm::pci

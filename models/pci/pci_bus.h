@@ -89,9 +89,7 @@ class PciBus : public sc_core::sc_module {
     void request(PciMasterIf& master, std::uint64_t from_ps) override {
       bus_.request(master_, master, from_ps);
     }
-    BurstResult transferred(std::uint64_t now_ps) const override {
-      return bus_.transferred(master_, now_ps);
-    }
+    BurstResult transferred(std::uint64_t now_ps) const override { return bus_.transferred(master_, now_ps); }
     const Clock& clock() const override { return bus_.clock_; }
 
    private:

@@ -1,5 +1,4 @@
 #include "models/clock.h"
-#include "models/kernel_time.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/kernel_time.h"
 #include "tests/support/plain_clock.h"
 
 namespace stereotlm {

@@ -6,8 +6,8 @@
 #include <systemc>
 #include <utility>
 
-#include "models/kernel_time.h"
 #include "models/fpga/stereo_core.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::runs {
 namespace {

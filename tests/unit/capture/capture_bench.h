@@ -92,7 +92,8 @@ struct CaptureSide {
 // Runs up to a time, including everything that happens at that time.
 inline void run_to(std::uint64_t time_ps) {
   if (!sc_core::sc_start_of_simulation_invoked()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
-  if (time_ps > kernel_time::now_ps()) sc_core::sc_start(kernel_time::to_time(time_ps - kernel_time::now_ps()));
+  if (time_ps > kernel_time::now_ps())
+    sc_core::sc_start(kernel_time::to_time(time_ps - kernel_time::now_ps()));
   while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
 }
 
@@ -119,7 +120,8 @@ class CaptureBench : public testing::Test {
   void grant_in(std::size_t request, std::uint64_t clock) {
     side->bus.plan = [=](std::size_t number) {
       test::BusTurn turn;
-      if (number == request) turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(kernel_time::now_ps());
+      if (number == request)
+        turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(kernel_time::now_ps());
       return turn;
     };
   }

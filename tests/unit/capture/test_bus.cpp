@@ -62,9 +62,7 @@ void TestBus::begin() {
 
 pci::BurstResult TestBus::transferred(std::uint64_t now_ps) const {
   pci::BurstResult so_far = bursts.back().result;
-  const auto has_left = [this, now_ps](std::size_t word) {
-    return left_ps(bursts.back(), word) <= now_ps;
-  };
+  const auto has_left = [this, now_ps](std::size_t word) { return left_ps(bursts.back(), word) <= now_ps; };
   while (so_far.words > 0 && !has_left(so_far.words - 1)) --so_far.words;
   return so_far;
 }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "models/clock.h"
-#include "models/kernel_time.h"
 #include "models/fpga/register_map.h"
 #include "models/fpga/stereo_core.h"
+#include "models/kernel_time.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/ssram_bank.h"
 #include "tests/support/monitoring_binder.h"

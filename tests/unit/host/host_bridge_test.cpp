@@ -71,7 +71,8 @@ TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
   target().writable = [&refusals](auto, auto count) { return refusals-- > 0 ? 0U : count; };
   simulate([this] {
     write_words();
-    EXPECT_EQ(kernel_time::now_ps(), edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
+    EXPECT_EQ(kernel_time::now_ps(),
+              edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
   });
   EXPECT_EQ(stats().retries, 3U);
   ASSERT_EQ(target().accesses.size(), 1U);
