@@ -35,8 +35,8 @@ void HostPort::join() {
   crossbar_.arbitration().route(kHostPort, *burst_.bank, burst_.write);
 }
 
-bool HostPort::access(std::uint64_t cycle, const sc_core::sc_time& at) {
-  bus_.access(at, clock_.edge_ps(cycle), usable_ps(cycle));
+bool HostPort::access(std::uint64_t cycle) {
+  bus_.access(clock_.edge_ps(cycle), usable_ps(cycle));
   return !bus_.word_waits();
 }
 
@@ -46,7 +46,6 @@ bool HostPort::is_contended() const {
 }
 
 void HostPort::serve_contended() {
-  const std::uint64_t now_ps = present_ps();
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
   frames_.run_ahead(first);  // before join(): the route of the host prevents skipping
@@ -56,7 +55,7 @@ void HostPort::serve_contended() {
     const std::uint64_t cycle = frames_.cycle();
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
     const memory::PortMask granted = frames_.step(bus_.requests(edge_ps));
-    if ((granted & kHostMask) != 0) serve_word(cycle, edge_ps, now_ps);
+    if ((granted & kHostMask) != 0) serve_word(cycle, edge_ps);
   }
 }
 
@@ -91,7 +90,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
     }
     const memory::BankArbiter::Outcome outcome = decide(cycle);
     served_.push_back({cycle, 1, outcome});
-    if (arbitration.grants(bank, outcome)) serve_word(cycle, edge_ps, now_ps);
+    if (arbitration.grants(bank, outcome)) serve_word(cycle, edge_ps);
     ++cycle;
   }
   if (!frames_.is_running()) count_words_outside();
@@ -116,12 +115,12 @@ void HostPort::move_burst() {
 }
 
 // The waiting word is granted in `cycle`.
-void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps) {
+void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
   if (is_moved_) {
     bus_.count_granted(1, edge_ps, usable_ps(cycle));
   } else {
     crossbar_.grant(kHostMask);
-    access(cycle, kernel_time::to_time(std::max(edge_ps, now_ps) - now_ps));
+    access(cycle);
   }
 }
 

@@ -2,12 +2,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <systemc>
 #include <vector>
 
 #include "models/clock.h"
 #include "models/fpga/frame_run.h"
-#include "models/fpga/local_bus.h"
+#include "models/fpga/local_bus_control.h"
 #include "models/memory/crossbar.h"
 #include "models/words_by_range.h"
 
@@ -22,13 +21,13 @@ namespace stereotlm::fpga {
 class HostPort {
  public:
   // All of these outlive this object.
-  HostPort(LocalBus& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
+  HostPort(LocalBusControl& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
       : bus_(bus), crossbar_(crossbar), frames_(frames), clock_(clock) {}
 
   // Sets whether only the local bus can start frames. If so, no frame starts within a burst. Default: false.
   void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
 
-  // To be called when a burst begins or has ended; see LocalBus::route_out.
+  // To be called when a burst begins or has ended; see LocalBusControl::Core.
   void route(const HostRoute& route);
   const HostRoute& burst() const { return burst_; }
   // The addresses of the words of the burst that are not granted yet.
@@ -36,9 +35,8 @@ class HostPort {
 
   // Lets the burst take part in the arbitration of its bank from now on.
   void join();
-  // Transfers the waiting word, which has been granted in `cycle`. The cycle begins `at` from now. Returns
-  // true if the burst has ended.
-  bool access(std::uint64_t cycle, const sc_core::sc_time& at);
+  // Transfers the waiting word, which has been granted in `cycle`. Returns true if the burst has ended.
+  bool access(std::uint64_t cycle);
 
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
@@ -67,7 +65,7 @@ class HostPort {
   };
 
   void move_burst();
-  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps);
+  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
   void serve_in_step(std::uint64_t first_cycle);
   memory::BankArbiter::Outcome decide(std::uint64_t cycle);
   void count_served(std::uint64_t end_cycle, bool in_frame);
@@ -75,7 +73,7 @@ class HostPort {
     return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));
   }
 
-  LocalBus& bus_;
+  LocalBusControl& bus_;
   memory::Crossbar& crossbar_;
   FrameRun& frames_;
   const Clock& clock_;

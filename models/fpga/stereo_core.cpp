@@ -257,7 +257,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   bool burst_has_ended = false;
   const auto serve_host = [&] {
     host_is_served = true;
-    burst_has_ended = host_port_.access(cycle, at);
+    burst_has_ended = host_port_.access(cycle);
   };
   if (frames_.is_running()) {
     granted = frames_.step(host_requests, [&](const CoreControl::Decision& decision, PortMask grants) {

@@ -118,7 +118,7 @@ class StereoCore : public sc_core::sc_module {
   RegisterFile register_file_{"register_file"};
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   CoreDatapath datapath_;
-  HostPort host_port_{local_bus_, crossbar_, frames_, clock_};
+  HostPort host_port_{local_bus_.control(), crossbar_, frames_, clock_};
   DirectFrame direct_frame_{config_.core, config_.fidelity == Fidelity::kFast};
   StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
   StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};

@@ -49,7 +49,7 @@ class LocalBusTest : public testing::Test {
   // Grants a word in the cycle of the core that begins at `grant_ps`; usable two cycles later.
   void grant(std::uint64_t grant_ps) {
     ASSERT_TRUE(bus.requests(grant_ps));
-    bus.access(kernel_time::to_time(grant_ps) - sc_core::sc_time_stamp(), grant_ps, grant_ps + 2 * kCorePs);
+    bus.control().access(grant_ps, grant_ps + 2 * kCorePs);
   }
   // Reports that do not throw: the address sanitizer cannot follow an exception through the processes.
   void expect_out_of_order(const std::function<void()>& action, std::size_t violations) {
@@ -232,12 +232,6 @@ TEST(LocalBus, RefusesAClockOrBanksOutsideTheirRange) {
   EXPECT_THROW(LocalBus("d", {1000.5}, 1), std::invalid_argument);
   EXPECT_THROW(LocalBus("e", {40}, 0), std::invalid_argument);
   EXPECT_THROW(LocalBus("f", {40}, 65), std::invalid_argument);
-}
-
-TEST(LocalBus, IsInStepWithAClockThatHasItsEdges) {
-  const LocalBus bus("bus", {40, {}}, kBanks);
-  EXPECT_TRUE(bus.is_in_step_with(Clock(40)));
-  EXPECT_FALSE(bus.is_in_step_with(Clock(80)));
 }
 
 }  // namespace
