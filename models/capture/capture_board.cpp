@@ -4,6 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "models/kernel_time.h"
 #include "models/kernels/words.h"
@@ -87,7 +88,7 @@ unsigned CaptureBoard::debug_registers(tlm::tlm_generic_payload& access) {
 }
 
 void CaptureBoard::take_frame(const VideoFrame& frame) {
-  words_per_line_ = frame.timing->width() / kernels::kPixelsPerWord;
+  begun_ = frame;
   control_.begin_frame(frame);
   follow();
 }
@@ -98,18 +99,24 @@ void CaptureBoard::take_line(const VideoLine& line) {
     return;
   }
   lines_.push_back(line.pixels);
+  next_line_ps_ =
+      line.row + 1 < frame_.timing->height() ? frame_.begin_ps + frame_.timing->row_ps(line.row + 1) : kNever;
+  pass_request();
 }
 
 void CaptureBoard::take(std::uint64_t number) {
+  frame_ = begun_;
   lines_.clear();
+  next_line_ps_ = frame_.begin_ps;
   takes_out->push({number});
 }
 
 void CaptureBoard::copy_words(int first, int count, std::uint32_t* to) const {
-  int row = first / words_per_line_;
-  int word = first % words_per_line_;
+  const int words_per_line = frame_.timing->width() / kernels::kPixelsPerWord;
+  int row = first / words_per_line;
+  int word = first % words_per_line;
   while (count > 0) {
-    const int here = std::min(count, words_per_line_ - word);
+    const int here = std::min(count, words_per_line - word);
     const std::uint8_t* const line = lines_[static_cast<std::size_t>(row++)];
     kernels::words_of_pixels(line + std::ptrdiff_t{word} * kernels::kPixelsPerWord, here, to);
     to += here;
@@ -124,7 +131,15 @@ void CaptureBoard::trigger(std::uint64_t begin_ps) {
 }
 
 void CaptureBoard::request(pci::PciMasterIf& /*control*/, std::uint64_t from_ps) {
-  pci->request(*this, from_ps);
+  request_ps_ = from_ps;
+  pass_request();
+}
+
+// The control requests the bus in advance. A request that needs a line waits until the line has begun, which
+// it never does if the camera is in error.
+void CaptureBoard::pass_request() {
+  if (request_ps_ >= next_line_ps_) return;
+  pci->request(*this, std::exchange(request_ps_, kNever));
 }
 
 pci::PciBurst CaptureBoard::begin_burst(std::uint64_t address_clock_ps) {

@@ -91,6 +91,8 @@ class CaptureBoard : public sc_core::sc_module,
   bool is_asserted() const override { return control_.interrupt(); }
   const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
 
+  void pass_request();
+
   // The control calls these.
   void request(pci::PciMasterIf& master, std::uint64_t from_ps) override;
   pci::BurstResult transferred(std::uint64_t now_ps) const override { return pci->transferred(now_ps); }
@@ -103,8 +105,11 @@ class CaptureBoard : public sc_core::sc_module,
   StepEvent step_due_{"step_due"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
   bool interrupt_before_ = false;
-  int words_per_line_ = 0;                  // of the last frame that has begun
-  std::vector<const std::uint8_t*> lines_;  // [row]: pixels of the lines of the taken frame that have begun
+  VideoFrame begun_;                        // the last frame that has begun
+  VideoFrame frame_;                        // the frame that is captured
+  std::vector<const std::uint8_t*> lines_;  // [row]: pixels of its lines that have begun
+  std::uint64_t next_line_ps_ = kNever;     // the next line begins; kNever: all lines have begun
+  std::uint64_t request_ps_ = kNever;       // a request of the bus that waits for a line; kNever: none
 };
 
 }  // namespace stereotlm::capture
