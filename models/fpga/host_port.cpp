@@ -73,7 +73,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
-  if (is_moved_ && !arbitration.needs_turnaround(bank) && bus_.is_in_step_with(clock_)) serve_in_step(cycle);
+  if (is_moved_ && !arbitration.needs_turnaround(bank) && is_in_step_) serve_in_step(cycle);
   while (bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);

@@ -22,7 +22,11 @@ class HostPort {
  public:
   // All of these outlive this object.
   HostPort(LocalBusControl& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
-      : bus_(bus), crossbar_(crossbar), frames_(frames), clock_(clock) {}
+      : bus_(bus),
+        crossbar_(crossbar),
+        frames_(frames),
+        clock_(clock),
+        is_in_step_(bus.is_in_step_with(clock)) {}
 
   // Sets whether only the local bus can start frames. If so, no frame starts within a burst. Default: false.
   void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
@@ -77,6 +81,7 @@ class HostPort {
   memory::Crossbar& crossbar_;
   FrameRun& frames_;
   const Clock& clock_;
+  bool is_in_step_;  // the clocks of the local bus begin with those of the core
   bool is_only_master_ = false;
   HostRoute burst_;
   int read_latency_cycles_ = 2;  // of the burst's bank

@@ -69,7 +69,7 @@ void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& d
   burst_ = &access;
   status_ = tlm::TLM_OK_RESPONSE;
   const std::uint64_t now_ps = kernel_time::now_ps();
-  control_.begin_burst(now_ps + kernel_time::to_ps(delay), burst_of(access));
+  control_.begin(now_ps + kernel_time::to_ps(delay), burst_of(access));
   // The receiver of the route may have granted all words.
   if (control_.word_waits()) request_event_.notify(kernel_time::to_time(control_.request_ps() - now_ps));
   await_register();

@@ -44,6 +44,11 @@ bool LocalBusControl::begin_burst(std::uint64_t now_ps, const LocalBurst& burst)
     count_error();
     return false;
   }
+  begin(now_ps, burst);
+  return true;
+}
+
+void LocalBusControl::begin(std::uint64_t now_ps, const LocalBurst& burst) {
   burst_ = burst;
   ok_ = true;
   next_word_ = 0;
@@ -52,7 +57,8 @@ bool LocalBusControl::begin_burst(std::uint64_t now_ps, const LocalBurst& burst)
   // Bursts often follow each other without a pause.
   address_clock_ = now_ps == free_ps_ ? idle_clock_ + 1 : clock_.edge_at_or_after(now_ps);
   idle_clock_ = kUnknown;
-  request_ps_ = clock_.edge_ps(address_clock_ + kFirstWordClock + 1);
+  request_clock_ = address_clock_ + kFirstWordClock + 1;
+  request_ps_ = clock_.edge_ps(request_clock_);
   if (is_register(burst.address)) {
     next_ps_ = request_ps_;
   } else {
@@ -60,7 +66,6 @@ bool LocalBusControl::begin_burst(std::uint64_t now_ps, const LocalBurst& burst)
     core_.route({memory::bank_of_address(burst.address), burst.write, burst.address,
                  burst.address + 4 * burst.words});
   }
-  return true;
 }
 
 void LocalBusControl::access(std::uint64_t grant_ps, std::uint64_t usable_ps) {
@@ -92,12 +97,17 @@ void LocalBusControl::count_granted(std::size_t words, std::uint64_t grant_ps, s
 void LocalBusControl::advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
   next_word_ += words;
   words_left_ -= words;
+  // Mostly each word is granted at once, in a cycle that begins with a clock of the bus.
+  const std::uint64_t at_once = request_clock_ + words - 1;
+  const std::uint64_t clock =
+      clock_.edge_ps(at_once) == grant_ps ? at_once : clock_.edge_at_or_after(grant_ps);
   if (words_left_ != 0) {
-    request_ps_ = clock_.edge_ps(clock_.edge_at_or_after(grant_ps) + 1);
+    request_clock_ = clock + 1;
+    request_ps_ = clock_.edge_ps(request_clock_);
     return;
   }
   core_.route({});
-  end(burst_.write || !ok_ ? grant_ps : usable_ps);
+  end(burst_.write || !ok_ ? clock : clock_.edge_at_or_after(usable_ps));
 }
 
 // Accesses the next register of the burst.
@@ -109,10 +119,10 @@ void LocalBusControl::step(std::uint64_t now_ps) {
   ++stats_.register_accesses;
   ++next_word_;
   if (next_word_ < burst_.words) {
-    next_ps_ = clock_.edge_ps(clock_.edge_at_or_after(now_ps) + 1);
+    next_ps_ = clock_.edge_ps(++request_clock_);
   } else {
     next_ps_ = kNever;
-    end(now_ps);
+    end(request_clock_);
   }
 }
 
@@ -122,8 +132,8 @@ void LocalBusControl::refuse_word() {
 }
 
 // Ends the burst; the bus is free after the idle clock.
-void LocalBusControl::end(std::uint64_t last_clock_end_ps) {
-  idle_clock_ = clock_.edge_at_or_after(last_clock_end_ps);
+void LocalBusControl::end(std::uint64_t idle_clock) {
+  idle_clock_ = idle_clock;
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);
   master_->end_burst_at(free_ps_, ok_);
 }

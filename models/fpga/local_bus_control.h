@@ -39,7 +39,7 @@ struct HostRoute {
 //
 // The words of the banks need no step here: whoever grants the port of the host calls access(), or
 // move_words() and count_granted(). A register is accessed at the end of its word's clock, by step().
-class LocalBusControl : public LocalBusIf {
+class LocalBusControl final : public LocalBusIf {
  public:
   struct Stats {
     std::uint64_t bursts = 0;
@@ -78,6 +78,8 @@ class LocalBusControl : public LocalBusIf {
   bool begin_burst(std::uint64_t now_ps, const LocalBurst& burst) override;
   // Why begin_burst() refuses the burst.
   Refusal refusal_of(const LocalBurst& burst) const;
+  // An alternative to begin_burst(), for a burst that is known not to be refused.
+  void begin(std::uint64_t now_ps, const LocalBurst& burst);
   // Counts a burst that was refused before it came here.
   void count_error() { ++stats_.errors; }
 
@@ -116,7 +118,7 @@ class LocalBusControl : public LocalBusIf {
   std::uint64_t next_address() const { return burst_.address + 4 * next_word_; }
   void advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   void refuse_word();
-  void end(std::uint64_t last_clock_end_ps);
+  void end(std::uint64_t idle_clock);
 
   Clock clock_;
   std::size_t banks_;
@@ -129,7 +131,8 @@ class LocalBusControl : public LocalBusIf {
   std::uint64_t address_clock_ = 0;  // number of the last burst's address clock
   std::uint64_t idle_clock_ = 0;     // number of its idle clock; kUnknown until its last grant
   std::uint64_t free_ps_ = kNever;   // end of that clock
-  std::uint64_t request_ps_ = 0;     // end of the waiting word's clock
+  std::uint64_t request_clock_ = 0;  // number of the first clock behind the waiting word's clock
+  std::uint64_t request_ps_ = 0;     // its beginning
   std::uint64_t next_ps_ = kNever;
   std::vector<AddressRange> buffers_;
   WordsByRange words_granted_;

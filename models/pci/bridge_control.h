@@ -24,7 +24,7 @@ namespace stereotlm::pci {
 // - LocalBusMaster arbitrates the local bus.
 //
 // Errors of posted writes and of DMA set bits of kInterruptStatus.
-class BridgeControl : public PciMasterIf, private LocalBusMaster::Listener {
+class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener {
  public:
   struct Stats {
     std::uint64_t posted_words = 0;       // words of writes that the slave window took
@@ -49,7 +49,7 @@ class BridgeControl : public PciMasterIf, private LocalBusMaster::Listener {
   BridgeControl(const PciBridgeConfig& config, PciSlot& slot, LocalBusIf& local_bus, Host& host);
 
   // The receiver of the local bus's answers.
-  LocalBusMasterIf& local_bus_master() { return local_bus_; }
+  LocalBusMaster& local_bus_master() { return local_bus_; }
 
   // The slave window. `offset`: a multiple of 4; the words are inside the window.
   //

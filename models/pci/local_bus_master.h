@@ -17,7 +17,7 @@ namespace stereotlm::pci {
 //
 // The end of a burst costs a step only if the burst was refused or something waits for its end. Otherwise the
 // end takes effect in the next call of settle().
-class LocalBusMaster : public LocalBusMasterIf {
+class LocalBusMaster final : public LocalBusMasterIf {
  public:
   // Receives the end of a burst when it takes effect.
   class Listener {
