@@ -61,6 +61,19 @@ TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
     use_two_banks(board);
     board.matcher.rows = 4;
   });
+  expect_preset("wvga-60hz", [](BoardConfig& board) {
+    board.image = {752, 480};
+    board.cameras.frame_rate_hz = 60;
+    board.matcher.fetch = fpga::Fetch::kLineBuffer;
+  });
+  expect_preset("megapixel-pci64", [](BoardConfig& board) {
+    board.image = {1280, 960};
+    board.cameras.frame_rate_hz = 30;
+    board.pci.clock_mhz = 66.667;
+    board.pci.width_bits = 64;
+    for (BankConfig& bank : board.banks) bank.words = 2097152;
+    board.matcher.fetch = fpga::Fetch::kLineBuffer;
+  });
 }
 
 TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
