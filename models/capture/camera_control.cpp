@@ -34,13 +34,13 @@ void CameraControl::step(std::uint64_t now_ps) {
   const std::uint64_t number = stats_.frames++;
   frame_begin_ps_ = now_ps;
   earliest_trigger_ps_ = now_ps + timing_.last_pixel_ps();
-  picture_ = nullptr;
+  taken_ = false;
   next_ps_ = trigger_mode_ == CameraTrigger::kFreeRunning ? timing_.frame_ps(number + 1) : kNever;
   board_.begin_frame({number, now_ps, &timing_});
 }
 
 void CameraControl::take(std::uint64_t number) {
-  if (number + 1 != stats_.frames || picture_ != nullptr) {
+  if (number + 1 != stats_.frames || taken_) {
     throw std::logic_error("frame " + std::to_string(number) + " taken: must be the running one, once; " +
                            std::to_string(stats_.frames) + " have begun");
   }
@@ -50,6 +50,7 @@ void CameraControl::take(std::uint64_t number) {
                            size_text(picture.width, picture.height) + ": must be " +
                            size_text(timing_.width(), timing_.height()));
   }
+  taken_ = true;
   picture_ = &picture;
 }
 

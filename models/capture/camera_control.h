@@ -45,7 +45,7 @@ class CameraControl : public FrameCamera {
   const CameraTiming& timing() const { return timing_; }
   // The running frame.
   std::uint64_t frame_begin_ps() const { return frame_begin_ps_; }
-  // Pixels of a row of the running frame, which has been taken.
+  // Pixels of a row of the last frame taken.
   const std::uint8_t* row(int row) const;
   const Stats& stats() const { return stats_; }
 
@@ -57,7 +57,8 @@ class CameraControl : public FrameCamera {
   std::uint64_t next_ps_;
   std::uint64_t earliest_trigger_ps_ = 0;
   std::uint64_t frame_begin_ps_ = 0;
-  const kernels::GrayImage* picture_ = nullptr;  // of the running frame; null: not taken
+  bool taken_ = false;                           // the running frame
+  const kernels::GrayImage* picture_ = nullptr;  // of the last frame taken
   Stats stats_;
 };
 

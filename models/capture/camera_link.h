@@ -27,8 +27,8 @@ class FrameCamera {
   virtual ~FrameCamera() = default;
   // The board takes frame `number`, which is the running one. To be called before its first word is complete.
   virtual void take(std::uint64_t number) = 0;
-  // Copies `count` words of the taken frame, from word `first` on. Word 0 has the frame's first pixels. The
-  // pixels of the words must have arrived.
+  // Copies `count` words of the last frame taken, from word `first` on. Word 0 has the frame's first pixels.
+  // The pixels of the words must have arrived. The next frame may have begun.
   virtual void copy_words(int first, int count, std::uint32_t* to) const = 0;
   // A camera on demand is to begin a frame at `begin_ps`, now or later.
   virtual void trigger(std::uint64_t begin_ps) = 0;

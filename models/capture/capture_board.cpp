@@ -14,13 +14,11 @@ namespace stereotlm::capture {
 namespace {
 
 tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) {
-  const std::uint64_t address = access.get_address();
   const tlm::tlm_response_status status = check_register_access(access, registers::kEnd);
   if (status != tlm::TLM_OK_RESPONSE) return status;
-  const bool write_only = address == registers::kControl;
-  const bool read_only = address >= registers::kFrameNumberLow;
-  if (access.is_read() ? write_only : read_only) return tlm::TLM_COMMAND_ERROR_RESPONSE;
-  return tlm::TLM_OK_RESPONSE;
+  return CaptureRegisterFile::allows(access.is_write(), access.get_address())
+             ? tlm::TLM_OK_RESPONSE
+             : tlm::TLM_COMMAND_ERROR_RESPONSE;
 }
 
 }  // namespace

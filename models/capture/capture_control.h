@@ -57,6 +57,9 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
 
   // The time at which step() is to be called next; kNever: a call may change it.
   std::uint64_t next_ps() const { return next_ps_; }
+  // Whether it decides about a frame, from the state after everything else that happens at that time. Else it
+  // ends a capture.
+  bool decides_next() const { return decision_ps_ <= finish_ps_; }
   void step(std::uint64_t now_ps);
 
   // Accesses of registers that can be read or written. A write takes effect at `time_ps`, now or later.

@@ -18,6 +18,12 @@ bool CaptureRegisterFile::write(std::uint64_t time_ps, std::uint64_t address, st
   }
 }
 
+bool CaptureRegisterFile::allows(bool write, std::uint64_t address) {
+  const bool write_only = address == registers::kControl;
+  const bool read_only = address >= registers::kFrameNumberLow;
+  return write ? !read_only : !write_only;
+}
+
 std::uint32_t CaptureRegisterFile::read(std::uint64_t address) const {
   const Capture last = last_capture_.value_or(Capture{});
   switch (address) {

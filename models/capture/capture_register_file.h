@@ -18,6 +18,8 @@ struct Capture {
 // interrupt. Plain C++.
 class CaptureRegisterFile {
  public:
+  // Whether the register has this direction. `address`: a multiple of 4 below registers::kEnd.
+  static bool allows(bool write, std::uint64_t address);
   // `address`: of a register that can be read.
   std::uint32_t read(std::uint64_t address) const;
   // `address`: of a register that can be written. Returns whether the write triggers the cameras.

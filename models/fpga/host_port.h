@@ -7,23 +7,26 @@
 #include "models/clock.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/local_bus_control.h"
-#include "models/memory/crossbar.h"
+#include "models/memory/arbitration.h"
+#include "models/memory/direct_banks.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
-// The host port of the banks: serves the bursts of the local bus, beside the frames of the core. It has no
-// process and never waits; the core's process calls it.
+// The host port of the banks: serves the bursts of the local bus, beside the frames of the core. It never
+// waits; whoever runs the core calls it.
 //
 // A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
 // An uncontended burst is served independently of the frame. Its words are counted later, when it is known
-// whether their cycles belong to the frame.
+// whether their cycles belong to the frame. Plain C++.
 class HostPort {
  public:
   // All of these outlive this object.
-  HostPort(LocalBusControl& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
+  HostPort(LocalBusControl& bus, memory::DirectBanks& banks, memory::Arbitration& arbitration,
+           FrameRun& frames, const Clock& clock)
       : bus_(bus),
-        crossbar_(crossbar),
+        banks_(banks),
+        arbitration_(arbitration),
         frames_(frames),
         clock_(clock),
         is_in_step_(bus.is_in_step_with(clock)) {}
@@ -48,10 +51,11 @@ class HostPort {
   // Runs the frame ahead to the waiting word. Then steps the frame and serves the words of the burst, to the
   // end of the burst or of the frame, but not more than 8192 cycles.
   void serve_contended();
-  // Serves the words of an uncontended burst. A word may be served early, but never before a pending event
-  // that could start a frame on its bank. Returns the time to call again, in ps: either a later time, or the
-  // end of the finishing frame, which must be ended first. Returns nothing if no word waits any more.
-  std::optional<std::uint64_t> serve_uncontended();
+  // Serves the words of an uncontended burst. A word may be served early, but another master of the registers
+  // could start a frame on its bank from `horizon_ps` on. Returns the time to call again, in ps: either a
+  // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word waits
+  // any more.
+  std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
@@ -78,7 +82,8 @@ class HostPort {
   }
 
   LocalBusControl& bus_;
-  memory::Crossbar& crossbar_;
+  memory::DirectBanks& banks_;
+  memory::Arbitration& arbitration_;
   FrameRun& frames_;
   const Clock& clock_;
   bool is_in_step_;  // the clocks of the local bus begin with those of the core

@@ -75,6 +75,7 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
 
   // When step() is to be called: the local bus ends a burst that something waits for, or chooses a burst.
   std::uint64_t next_ps() const { return local_bus_.next_ps(); }
+  bool ends_next() const { return local_bus_.ends_next(); }
   void step(std::uint64_t now_ps) { local_bus_.step(now_ps); }
 
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;

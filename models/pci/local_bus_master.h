@@ -59,6 +59,8 @@ class LocalBusMaster final : public LocalBusMasterIf {
   }
 
   std::uint64_t next_ps() const { return next_ps_; }
+  // Whether step() ends a burst; else it chooses one.
+  bool ends_next() const { return busy_; }
   void step(std::uint64_t now_ps);
 
   void end_burst_at(std::uint64_t end_ps, bool ok) override;

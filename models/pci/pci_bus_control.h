@@ -66,6 +66,7 @@ class PciBusControl {
   // The target of each window outlives the bus. To be called before the first burst.
   void bind(std::size_t window, PciTarget& target) { windows_[window].target = &target; }
   PciSlot& slot(std::size_t master) { return slots_[master]; }
+  const PciSlot& slot(std::size_t master) const { return slots_[master]; }
   const Clock& clock() const { return clock_; }
 
   // The time of the next step() or decide().

@@ -37,7 +37,7 @@ struct BurstResult {
   BurstEnd end = BurstEnd::kComplete;
   std::size_t words = 0;  // words transferred
   std::uint64_t first_data_clock = 0;
-  std::uint64_t end_ps = 0;  // time of the call of end_burst()
+  std::uint64_t end_ps = 0;         // time of the call of end_burst()
   std::size_t words_per_clock = 1;  // 2 on a bus of 64 bits
 
   // The number of words that were transferred in earlier clocks than this one.

@@ -6,7 +6,6 @@
 #include <systemc>
 #include <utility>
 
-#include "models/fpga/stereo_core.h"
 #include "models/kernel_time.h"
 
 namespace stereotlm::runs {
@@ -47,10 +46,6 @@ std::uint64_t Simulation::cycles() const {
   return static_cast<std::uint64_t>(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6 +
                                     0.5);
 }
-
-void Simulation::record_rows() { core().record_rows(); }
-
-std::vector<fpga::RowProfile> Simulation::take_rows() { return core().take_rows(); }
 
 const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
   try {
