@@ -48,6 +48,10 @@ function(stereotlm_add_test name)
   if(NOT arg_LABELS STREQUAL "slow")
     add_dependencies(quick_tests ${name})
   endif()
-  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
+  # ctest begins with the tests of the greatest cost, which would else be left alone at the end.
+  string(REPLACE unit 1 cost "${arg_LABELS}")
+  string(REPLACE integration 10 cost "${cost}")
+  string(REPLACE slow 100 cost "${cost}")
+  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} COST "${cost}"
     DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -15,43 +15,11 @@ namespace {
 
 using kernels::RectificationTable;
 
-// The number of strips that fetch each row of the image: [row].
-std::vector<std::uint64_t> fetches_of_rows(const fpga::FrameGeometry& geometry) {
-  std::vector<std::uint64_t> fetches(static_cast<std::size_t>(geometry.height));
-  for (int strip = 0; strip < geometry.strips; ++strip) {
-    for (int k = 0; k < geometry.slots_per_column; ++k) {
-      const int row = geometry.first_row_of(strip) + k;
-      if (row >= 0 && row < geometry.height) ++fetches[static_cast<std::size_t>(row)];
-    }
-  }
-  return fetches;
-}
-
-PortAccesses accesses_with_cache(const fpga::FrameGeometry& geometry,
-                                 const std::optional<RectificationTable>& table) {
-  fpga::AccessPattern pattern(geometry, fpga::PixelCache::kWord);
-  if (table) pattern.set_entries(table->entries.data());
-  return {table ? geometry.slots - pattern.empty_slots() : 0, pattern.pixel_accesses()};
-}
-
 PortAccesses accesses_of(const fpga::CoreConfig& core, const std::optional<RectificationTable>& table) {
   const fpga::FrameGeometry geometry(core);
-  if (core.pixel_cache == fpga::PixelCache::kWord) return accesses_with_cache(geometry, table);
-  const auto width = static_cast<std::uint64_t>(geometry.width);
-  const std::vector<std::uint64_t> fetches = fetches_of_rows(geometry);
-  PortAccesses accesses;
-  for (std::size_t row = 0; row < fetches.size(); ++row) {
-    if (!table) {
-      accesses.pixel += fetches[row] * width;
-      continue;
-    }
-    accesses.lut += fetches[row] * width;
-    const std::uint32_t* const entries = table->entries.data() + row * width;
-    std::uint32_t valid = 0;  // a sum of this form is vectorised by compilers
-    for (std::size_t column = 0; column < width; ++column) valid += entries[column] / kernels::kEntryValid;
-    accesses.pixel += fetches[row] * valid;
-  }
-  return accesses;
+  fpga::AccessPattern pattern(geometry, core.pixel_cache);
+  if (table) pattern.set_entries(table->entries.data());
+  return {table ? geometry.slots - pattern.empty_slots() : 0, pattern.pixel_accesses()};
 }
 
 // The fewest bursts of at most `burst_words` words that hold `words` words.

@@ -28,7 +28,7 @@ struct Core {
         geometry(config),
         columns_of_pixels(config.fetch == Fetch::kLineBuffer),
         passes(fpga::passes_of(config)),
-        units(config.units.value_or(config.disparities)),
+        units(fpga::units_of(config)),
         pair(pair_arithmetic(config.cost)),
         disparity_bits(bits_of(config.disparities - 1)) {}
 
@@ -117,8 +117,8 @@ void add_filter(const Core& core, Items& items) {
 void add_census(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (config.cost.kind != kernels::CostKind::kCensus) return;
-  const int before_bits = (config.cost.census_size - 1) * kPixelBits;
-  add("census bits", 2, 2 * census_bits(config.cost.census_size, !core.columns_of_pixels), items);
+  const int before_bits = 2 * config.cost.half() * kPixelBits;
+  add("census bits", 2, 2 * census_bits(config.cost, !core.columns_of_pixels), items);
   if (!core.columns_of_pixels)
     add("census columns", 2, 2 * memory(core.geometry.slots_per_column, before_bits), items);
   add("census line memories", 2, 2 * memory(config.width, before_bits), items);

@@ -20,17 +20,18 @@ PairArithmetic pair_arithmetic(const kernels::MatchingCost& cost) {
     case CostKind::kZncc:
       return {product(kPixelBits, kPixelBits), kMostProduct, kPixelBits};
     case CostKind::kCensus: {
-      const int bits = cost.census_size * cost.census_size - 1;
+      const int bits = cost.census_bits();
       return {Resources{bits} + adder_tree(bits / 2, 2), bits, bits};
     }
   }
   return {absolute_difference(kPixelBits), kMostPixel, kPixelBits};
 }
 
-Resources census_bits(int census_size, bool moves_down) {
-  const int kept = census_size * (census_size - 1) * kPixelBits;
-  const int above = (census_size - 1) * (census_size - 1) * kPixelBits;
-  Resources bits = (census_size * census_size - 1) * comparator(kPixelBits) + registers(kept);
+Resources census_bits(const kernels::MatchingCost& cost, bool moves_down) {
+  const int before = 2 * cost.half();
+  const int kept = cost.census_size * before * kPixelBits;
+  const int above = before * before * kPixelBits;
+  Resources bits = cost.census_bits() * comparator(kPixelBits) + registers(kept);
   if (moves_down) bits += selector(kept) + registers(above);
   return bits;
 }

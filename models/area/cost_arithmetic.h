@@ -26,7 +26,7 @@ PairArithmetic pair_arithmetic(const kernels::MatchingCost& cost);
 // comparators, and registers for the pixels that the next position needs too. Behind a line buffer the
 // neighbourhood moves to the right. In columns it moves down. At the top of a column it takes the c - 1 rows
 // above from the line memories, and those of the c - 1 columns before from registers: a selector a bit.
-Resources census_bits(int census_size, bool moves_down);
+Resources census_bits(const kernels::MatchingCost& cost, bool moves_down);
 
 // zncc: the widths that follow from the window, and the parts for one pixel or candidate. N is the number of
 // pixels of a window.

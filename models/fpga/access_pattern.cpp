@@ -15,13 +15,16 @@ AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
       counts_(static_cast<std::size_t>(geometry.height)),
       needs_all_pixels_(!has_cache_),
       passes_before_strip_(static_cast<std::size_t>(geometry.strips)) {
-  // A row is a sequence of words.
-  static_assert(kernels::kPixelsPerWord == 4);
+  std::vector<std::uint64_t> row_bits(words_);
+  RowCounts row_counts;
+  for (int column = 0; column < geometry.width; ++column) {
+    if (has_cache_ && !begins_word(column)) continue;
+    row_bits[static_cast<std::size_t>(column) / 64] |= std::uint64_t{1} << column % 64;
+    ++row_counts.accesses;
+  }
   for (int row = 0; row < geometry.height; ++row) {
-    std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
-    set_all(bits);
-    for (std::size_t word = 0; has_cache_ && word < words_; ++word) bits[word] &= 0x1111'1111'1111'1111U;
-    counts_[static_cast<std::size_t>(row)] = {geometry.columns_per_strip() / (has_cache_ ? 4U : 1U), 0};
+    std::copy(row_bits.begin(), row_bits.end(), pixels_.begin() + static_cast<std::ptrdiff_t>(words_) * row);
+    counts_[static_cast<std::size_t>(row)] = row_counts;
   }
   count();
 }
@@ -58,8 +61,18 @@ bool AccessPattern::set_row(int row, const std::uint32_t* entries) {
   counts = {};
   for (std::size_t word = 0; word < words_; ++word) {
     const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
+    common = ~std::uint32_t{0};
+    std::uint32_t any = 0;
+    for (int i = 0; i < count; ++i) {
+      common &= entries[i];
+      any |= entries[i];
+    }
     std::uint64_t found = 0;
-    for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
+    if (kernels::entry_is_valid(common)) {
+      found = ~std::uint64_t{0} >> (64 - count);
+    } else if (kernels::entry_is_valid(any)) {
+      for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
+    }
     bits[word] = found;
     counts.accesses += static_cast<std::uint64_t>(__builtin_popcountll(found));
     entries += count;
@@ -103,7 +116,7 @@ void AccessPattern::count() {
     passes_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
     for (int k = 0; k < geometry_.slots_per_column; ++k) {
       const int row = geometry_.first_row_of(strip) + k;
-      if (!inside(row)) {
+      if (!geometry_.is_inside(row)) {
         empty_slots_ += geometry_.columns_per_strip();
         continue;
       }
@@ -122,7 +135,7 @@ void AccessPattern::set_slots() const {
         static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() * slots_per_column;
     for (int k = 0; k < geometry_.slots_per_column; ++k) {
       const int row = geometry_.first_row_of(strip) + k;
-      if (!inside(row)) continue;
+      if (!geometry_.is_inside(row)) continue;
       const std::uint64_t* const bits = pixels_of_row(row);
       for (std::size_t word = 0; word < words_; ++word) {
         const std::uint64_t first = first_slot + word * 64 * slots_per_column + static_cast<std::uint64_t>(k);
@@ -147,7 +160,7 @@ void AccessPattern::find_changes_of_strip(int strip) const {
   std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row_of(strip) + k;
-    if (!inside(row)) continue;
+    if (!geometry_.is_inside(row)) continue;
     const std::uint64_t* const bits = pixels_of_row(row);
     std::uint64_t before = bits[0] & 0xfU;  // see below for the first four columns
     for (std::size_t word = 0; word < words_; ++word) {
@@ -178,8 +191,9 @@ bool AccessPattern::begins_alike(int strip, int column) const {
   for (int k = 0; k < geometry_.slots_per_column; ++k) {
     const int row = geometry_.first_row_of(strip) + k;
     const int row_before = geometry_.first_row_of(strip - 1) + k;
-    if (inside(row) != inside(row_before)) return false;
-    if (inside(row) && needs_pixel(column, row) != needs_pixel(column_before, row_before)) return false;
+    if (geometry_.is_inside(row) != geometry_.is_inside(row_before)) return false;
+    if (geometry_.is_inside(row) && needs_pixel(column, row) != needs_pixel(column_before, row_before))
+      return false;
   }
   return true;
 }
@@ -192,13 +206,13 @@ std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
     return geometry_.slots - empty_slots_ - pixel_accesses_;
   std::uint64_t passes = passes_before_strip_[strip];
   for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot) {
-    const Place place = place_of(slot);
-    if (inside(place.row) && !needs_pixel(place.column, place.row)) ++passes;
+    const PixelPosition pixel = position_of(slot);
+    if (geometry_.is_inside(pixel.row) && !needs_pixel(pixel.column, pixel.row)) ++passes;
   }
   return passes;
 }
 
-AccessPattern::Place AccessPattern::place_of(std::uint64_t slot) const {
+AccessPattern::PixelPosition AccessPattern::position_of(std::uint64_t slot) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   const std::uint64_t column = slot / slots_per_column;
   const std::uint64_t strip = column / geometry_.columns_per_strip();

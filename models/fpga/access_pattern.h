@@ -14,7 +14,7 @@ namespace stereotlm::fpga {
 // the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid
 // and the word cache does not have its word. Columns are uniform if each makes the same accesses as the
 // fourth column before it, slot for slot: with a word cache the accesses repeat every four columns at best.
-// What only some frames ask for is computed when it is asked for.
+// Uniform columns, and the bits of pixels_of_slots(), are computed at the first query: few frames need them.
 class AccessPattern {
  public:
   // At first every entry is its own source, as on a side without table.
@@ -56,8 +56,7 @@ class AccessPattern {
   const std::uint64_t* pixels_of_row(int row) const {
     return pixels_.data() + static_cast<std::size_t>(row) * words_;
   }
-  bool inside(int row) const { return row >= 0 && row < geometry_.height; }
-  struct Place {
+  struct PixelPosition {
     int column;
     int row;
   };
@@ -66,7 +65,7 @@ class AccessPattern {
     std::uint64_t accesses = 0;
     std::uint64_t invalid = 0;
   };
-  Place place_of(std::uint64_t slot) const;
+  PixelPosition position_of(std::uint64_t slot) const;
   void set_all(std::uint64_t* row_bits) const;
   bool set_row(int row, const std::uint32_t* entries);
   bool set_row_cached(int row, const std::uint32_t* entries);
@@ -85,7 +84,7 @@ class AccessPattern {
   bool needs_all_pixels_ = false;
   std::uint64_t version_ = 0;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
-  // These are empty until they are asked for.
+  // These are empty until the first query.
   mutable std::vector<std::uint64_t> slots_;  // bit i of the sequence: slot i accesses its pixel
   mutable std::vector<std::uint64_t>
       changes_;  // [strip][word]: columns that differ from the fourth one before

@@ -8,8 +8,7 @@ Census::Census(const sc_core::sc_module_name& name, const CoreConfig& config)
     : sc_module(name),
       filter_half_(config.filter ? config.filter->half() : 0),
       first_row_(FrameGeometry(config).first_row - filter_half_),
-      census_(config.width, config.height, FrameGeometry(config).slots_per_column, config.rows,
-              config.cost.census_size) {
+      census_(config.width, config.height, FrameGeometry(config).slots_per_column, config.rows, config.cost) {
   start_frame();
 }
 

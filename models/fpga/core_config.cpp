@@ -19,12 +19,12 @@ std::vector<std::string> problems(const CoreConfig& config) {
   kernels::kDisparitiesRule.check("disparities", config.disparities, found);
   if (config.units) {
     kUnitsRule.check("units", *config.units, found);
-    if (*config.units > config.disparities)
+    if (!has_units_for(config.units, config.disparities))
       found.push_back("units = " + std::to_string(*config.units) +
                       ": must be at most disparities, which is " + std::to_string(config.disparities));
   }
   kRowsRule.check("rows", config.rows, found);
-  if (config.rows != 1 && config.fetch == Fetch::kLineBuffer)
+  if (!can_fetch_rows(config.fetch, config.rows))
     found.push_back("rows = " + std::to_string(config.rows) + ": must be 1 with the line buffer");
   for (const std::string& problem : kernels::problems(config.cost)) found.push_back("cost: " + problem);
   if (config.joint_tables && !(config.left_table && config.right_table))
@@ -33,7 +33,7 @@ std::vector<std::string> problems(const CoreConfig& config) {
   kLaneFifoRule.check("lane_fifo_slots", config.lane_fifo_slots, found);
   kResultFifoRule.check("result_fifo_words", config.result_fifo_words, found);
   if (kResultFifoRule.allows(config.result_fifo_words) && kRowsRule.allows(config.rows) &&
-      config.result_fifo_words < config.rows)
+      !can_queue_rows(config.result_fifo_words, config.rows))
     found.push_back("result_fifo_words = " + std::to_string(config.result_fifo_words) +
                     ": must be at least rows, which is " + std::to_string(config.rows));
   kPipelineLatencyRule.check("pipeline_latency_cycles", config.pipeline_latency_cycles, found);

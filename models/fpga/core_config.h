@@ -35,8 +35,8 @@ inline constexpr kernels::IntegerRule kPipelineLatencyRule{0, 1024};
 
 // The parameters that the FPGA is synthesised with. Defaults: the board of the paper.
 struct CoreConfig {
-  int width = 640;           // pixels, kWidthRule; see also below
-  int height = 480;          // pixels, kHeightRule; see also below
+  int width = 640;           // pixels, kWidthRule; with a look-up table kWidthWithTableRule
+  int height = 480;          // pixels, kHeightRule; with a look-up table kHeightWithTableRule
   int window = 7;            // n: kWindowRule
   int disparities = 80;      // D: candidates, kDisparitiesRule
   std::optional<int> units;  // U: window modules, kUnitsRule, at most D; nullopt: one for each candidate
@@ -45,9 +45,7 @@ struct CoreConfig {
   std::optional<kernels::FilterKernel> filter = kernels::log7();  // nullopt: no filter
   Fetch fetch = Fetch::kColumn;
   std::optional<int> lr_tolerance = 0;  // kLrToleranceRule; nullopt: no left-right check
-  // false: the side has no look-up table. With a table the image follows kWidthWithTableRule and
-  // kHeightWithTableRule.
-  bool left_table = true;
+  bool left_table = true;               // false: the side has no look-up table
   bool right_table = true;
   bool joint_tables = false;  // one table for both sides, which both have one then (contract 7.3)
   PixelCache pixel_cache = PixelCache::kNone;
@@ -57,11 +55,18 @@ struct CoreConfig {
   int pipeline_latency_cycles = 16;  // cycles, kPipelineLatencyRule, after the last write
 };
 
-// S: the number of cycles in which the matcher works on a slot (contract 7.1).
-inline int passes_of(const CoreConfig& config) {
-  const int units = config.units.value_or(config.disparities);
-  return (config.disparities + units - 1) / units;
+// U, the number of window modules, and S, that of the cycles in which the matcher works on a slot (contract
+// 7.1).
+inline int units_of(const CoreConfig& config) { return config.units.value_or(config.disparities); }
+inline int passes_of(int disparities, int units) { return (disparities + units - 1) / units; }
+inline int passes_of(const CoreConfig& config) { return passes_of(config.disparities, units_of(config)); }
+
+// The rules between parameters (contract 7.1, 7.2).
+inline bool has_units_for(std::optional<int> units, int disparities) {
+  return !units || *units <= disparities;
 }
+inline bool can_fetch_rows(Fetch fetch, int rows) { return fetch == Fetch::kColumn || rows == 1; }
+inline bool can_queue_rows(int result_fifo_words, int rows) { return result_fifo_words >= rows; }
 
 // Every broken rule as `field = value: rule`; empty if the core can be built.
 std::vector<std::string> problems(const CoreConfig& config);

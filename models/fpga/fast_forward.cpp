@@ -13,7 +13,7 @@ std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
   std::uint64_t empty = 0;
   for (int k = 0; k < geometry.slots_per_column; ++k) {
     const int row = geometry.first_row_of(strip) + k;
-    empty |= std::uint64_t{row < 0 || row >= geometry.height} << k;
+    empty |= std::uint64_t{!geometry.is_inside(row)} << k;
   }
   return empty;
 }
@@ -97,6 +97,7 @@ std::uint64_t FastForward::skip_known(std::uint64_t cycle, std::uint64_t end) {
     Progress skipped = room;
     skipped.subtract(left);
     cycle += skipped.cycles;
+    skipped_cycles_ += skipped.cycles;
     CoreControl& control = stepper_.control();
     known_.count_followed(control, arbitration);
     control.count_host(false, false, skipped.cycles);

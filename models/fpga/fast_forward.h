@@ -35,6 +35,8 @@ class FastForward {
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
+  // The number of cycles that were skipped and not stepped, over all frames.
+  std::uint64_t skipped_cycles() const { return skipped_cycles_; }
 
  private:
   using StateNumber = TransitionCache::StateNumber;
@@ -52,7 +54,6 @@ class FastForward {
     std::uint64_t match;  // MatchControl::state()
   };
 
-  std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
   // A transition that was followed at some group of the frame. It is followed there again, if the state is
   // the same: frame after frame the slots make the same accesses.
   struct Followed {
@@ -60,6 +61,7 @@ class FastForward {
     TransitionCache::Transition transition;
   };
 
+  std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
   StateNumber walk(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
@@ -86,6 +88,7 @@ class FastForward {
   AssumedAccesses accesses_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
+  std::uint64_t skipped_cycles_ = 0;
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index of the strips in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.

@@ -4,8 +4,18 @@
 #include <cstdint>
 
 #include "models/fpga/core_config.h"
+#include "models/kernels/words.h"
 
 namespace stereotlm::fpga {
+
+// Whether an image of `height` rows has this row.
+inline bool is_row_of_image(int row, int height) {
+  return static_cast<unsigned>(row) < static_cast<unsigned>(height);
+}
+
+// Whether a word of an image begins with this column. On a side without table the word cache has the words of
+// all other columns (contract 7.4): a strip begins with a word, and its columns follow one another.
+inline bool begins_word(int column) { return column % kernels::kPixelsPerWord == 0; }
 
 // The slots of a frame (contract section 2, "Slots" and "Matcher"): strips of columns, and the delay of a
 // result behind its slots.
@@ -55,6 +65,8 @@ struct FrameGeometry {
 
   // The row of the first slot of each column of a strip; may lie outside the image.
   int first_row_of(int strip) const { return first_row + strip * rows; }
+  // Whether a row lies inside the image. A slot outside it makes no access, but takes its turn.
+  bool is_inside(int row) const { return is_row_of_image(row, height); }
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
 };
 
@@ -78,8 +90,8 @@ class SlotCursor {
     return static_cast<std::uint64_t>(strip_) * static_cast<std::uint64_t>(width_) +
            static_cast<std::uint64_t>(column_);
   }
-  // A slot outside the image makes no access, but takes its turn.
-  bool empty() const { return static_cast<unsigned>(row()) >= static_cast<unsigned>(height_); }
+  // See FrameGeometry::is_inside().
+  bool empty() const { return !is_row_of_image(row(), height_); }
 
   void advance() {
     --left_;

@@ -67,6 +67,8 @@ class FrameRun {
   const CoreControl& control() const { return stepper_.control(); }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }
+  // See FastForward.
+  std::uint64_t skipped_cycles() const { return fast_forward_.skipped_cycles(); }
   // See StallWatchdog.
   std::uint64_t stalled_cycles() { return watchdog_.stalled_cycles(cycle_, control().work()); }
   // Text for messages: the frame that runs, and what its ports wait for.

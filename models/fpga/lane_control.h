@@ -4,7 +4,6 @@
 
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/port_cycles.h"
-#include "models/kernels/words.h"
 #include "models/memory/bank_traits.h"
 
 namespace stereotlm::fpga {
@@ -135,9 +134,8 @@ class LaneControl {
     if (taken_ - consumed_ >= fifo_slots_) return Intent::kBlocked;
     return next_slot_.empty() || (!has_table_ && has_cached_word()) ? Intent::kPass : Intent::kRequest;
   }
-  // Whether the cache of a side without table has the word of the next slot: a strip begins with a word, and
-  // its columns follow one another.
-  bool has_cached_word() const { return has_cache_ && next_slot_.column() % kernels::kPixelsPerWord != 0; }
+  // Whether the cache of a side without table has the word of the next slot.
+  bool has_cached_word() const { return has_cache_ && !begins_word(next_slot_.column()); }
   Intent handle_intent() const {
     if (arrived_entries_ > handled_) {
       return (marks_ >> handled_ % kMostSlots & 1U) != 0 ? Intent::kRequest : Intent::kPass;

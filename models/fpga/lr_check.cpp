@@ -11,18 +11,17 @@ LrCheck::LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)
             Row{kernels::LrCheck(config.disparities, config.lr_tolerance)}) {}
 
 void LrCheck::start_frame() {
-  for (std::size_t index = 0; index < rows_.size(); ++index) {
-    Row& row = rows_[index];
+  for (Row& row : rows_) {
     row.check.start_frame();
-    // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
-    // before this stage, cause a part of that delay.
-    row.columns_to_skip =
-        geometry_.result_delay_columns - static_cast<std::uint64_t>(geometry_.half + geometry_.radius);
-    row.column = 0;
-    row.image_row = static_cast<int>(index);
     row.have_right = false;
     row.have_left = false;
   }
+  // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
+  // before this stage, cause a part of that delay.
+  columns_to_skip_ =
+      geometry_.result_delay_columns - static_cast<std::uint64_t>(geometry_.half + geometry_.radius);
+  column_ = 0;
+  first_row_ = 0;
 }
 
 void LrCheck::take_right(const RightMatch& match) {
@@ -42,20 +41,24 @@ void LrCheck::take_left(const LeftMatch& match) {
 void LrCheck::finish_column(Row& row) {
   row.have_right = false;
   row.have_left = false;
-  const Disparity checked{row.left.row,
+  const int index = row.left.row;
+  const Disparity checked{index,
                           row.check.step(row.left.disparity, row.left.left_valid, row.right.disparity)};
-  if (row.columns_to_skip > 0) {
-    --row.columns_to_skip;
+  if (columns_to_skip_ == 0 && geometry_.is_inside(first_row_ + index)) {
+    ++(checked.value == kernels::kInvalidDisparity ? stats_.invalid : stats_.answered);
+    disparities_out->push(checked);
+  }
+  if (index + 1 == geometry_.rows) next_column();
+}
+
+void LrCheck::next_column() {
+  if (columns_to_skip_ > 0) {
+    --columns_to_skip_;
     return;
   }
-  const bool is_inside = row.image_row < geometry_.height;
-  if (++row.column == geometry_.width) {
-    row.column = 0;
-    row.image_row += geometry_.rows;
-  }
-  if (!is_inside) return;
-  ++(checked.value == kernels::kInvalidDisparity ? stats_.invalid : stats_.answered);
-  disparities_out->push(checked);
+  if (++column_ < geometry_.width) return;
+  column_ = 0;
+  first_row_ += geometry_.rows;
 }
 
 }  // namespace stereotlm::fpga

@@ -45,9 +45,6 @@ class LrCheck : public sc_core::sc_module {
  private:
   struct Row {
     kernels::LrCheck check;
-    std::uint64_t columns_to_skip = 0;
-    int column = 0;  // position of the next result
-    int image_row = 0;
     RightMatch right{};
     LeftMatch left{};
     bool have_right = false;
@@ -55,9 +52,13 @@ class LrCheck : public sc_core::sc_module {
   };
 
   void finish_column(Row& row);
+  void next_column();
 
   FrameGeometry geometry_;
-  std::vector<Row> rows_;
+  std::vector<Row> rows_;  // of a strip; their matches come in this order, column by column
+  std::uint64_t columns_to_skip_ = 0;
+  int column_ = 0;     // position of the next results
+  int first_row_ = 0;  // of their strip
   Stats stats_;
 };
 

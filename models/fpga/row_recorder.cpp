@@ -1,7 +1,5 @@
 #include "models/fpga/row_recorder.h"
 
-#include <algorithm>
-
 namespace stereotlm::fpga {
 
 void RowRecorder::start_frame(const CoreControl& control) {
@@ -24,7 +22,8 @@ std::uint64_t RowRecorder::words_up_to(std::size_t row) const {
   const auto rows = static_cast<std::size_t>(geometry_.rows);
   const std::size_t strip_row = row / rows * rows;
   const std::uint64_t row_words = geometry_.columns_per_strip() / 4;
-  const std::size_t rows_inside = std::min(rows, rows_.size() - strip_row);
+  const bool is_last_strip = strip_row + rows >= rows_.size();
+  const auto rows_inside = static_cast<std::size_t>(is_last_strip ? geometry_.last_rows : geometry_.rows);
   return strip_row * row_words + (row_words - 1) * rows_inside + (row - strip_row) + 1;
 }
 

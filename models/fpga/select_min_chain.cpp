@@ -1,14 +1,19 @@
 #include "models/fpga/select_min_chain.h"
 
+#include "models/kernels/column_scores.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::fpga {
 
 SelectMinChain::SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config)
     : sc_module(name) {
+  const bool has_scores = kernels::ColumnScorer::is_needed(config.window, config.cost);
   for (int row = 0; row < config.rows; ++row) {
-    chains_.emplace_back(config.disparities);
-    score_chains_.emplace_back(config.disparities);
+    if (has_scores) {
+      score_chains_.emplace_back(config.disparities);
+    } else {
+      chains_.emplace_back(config.disparities);
+    }
   }
 }
 

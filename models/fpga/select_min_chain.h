@@ -39,9 +39,9 @@ class SelectMinChain : public sc_core::sc_module {
   const Stats& stats() const { return stats_; }
 
  private:
-  // [row]
+  // [row]; one of them is empty.
   std::vector<kernels::SelectMinChain> chains_;
-  std::vector<kernels::ScoreChain> score_chains_;  // for beats with scores
+  std::vector<kernels::ScoreChain> score_chains_;  // if the beats have scores
   Stats stats_;
 };
 

@@ -20,7 +20,7 @@ class Hash {
   std::uint64_t hash_ = 0;
 };
 
-constexpr std::size_t kFirstPlaces = 1024;
+constexpr std::size_t kFirstBuckets = 1024;
 
 }  // namespace
 
@@ -75,8 +75,8 @@ void TransitionCache::clear() {
   progress_.clear();
   followed_.clear();
   transitions_ = 0;
-  mask_ = kFirstPlaces - 1;
-  places_.assign(kFirstPlaces * words_of_place(), 0);
+  mask_ = kFirstBuckets - 1;
+  buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
 }
 
 TransitionCache::StateNumber TransitionCache::number_of(const State& state) {
@@ -113,50 +113,50 @@ TransitionCache::Accesses TransitionCache::key_of(StateNumber from, const Access
   return key;
 }
 
-// Returns the first word of the place of this key, or of the free place where it belongs.
-std::size_t TransitionCache::place_of(StateNumber from, const Accesses& key) const {
+// Returns the first word of the bucket of this key, or of the free bucket where it belongs.
+std::size_t TransitionCache::bucket_of(StateNumber from, const Accesses& key) const {
   const std::uint64_t first = std::uint64_t{from} + 1;
   Hash hash;
   hash.mix(first);
   for (std::size_t word = 0; word < words_; ++word) hash.mix(key[word]);
   for (std::size_t number = hash.value();; ++number) {
-    const std::size_t place = (number & mask_) * words_of_place();
-    const std::uint64_t* const words = places_.data() + place;
-    if (words[0] == 0) return place;
-    if (words[0] == first && std::equal(words + 1, words + 1 + words_, key.begin())) return place;
+    const std::size_t bucket = (number & mask_) * words_of_bucket();
+    const std::uint64_t* const words = buckets_.data() + bucket;
+    if (words[0] == 0) return bucket;
+    if (words[0] == first && std::equal(words + 1, words + 1 + words_, key.begin())) return bucket;
   }
 }
 
 std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from,
                                                                  const Accesses& accesses) const {
-  const std::size_t place = place_of(from, key_of(from, accesses));
-  if (places_[place] == 0) return std::nullopt;
-  const std::uint64_t transition = places_[place + 1 + words_];
+  const std::size_t bucket = bucket_of(from, key_of(from, accesses));
+  if (buckets_[bucket] == 0) return std::nullopt;
+  const std::uint64_t transition = buckets_[bucket + 1 + words_];
   return Transition{static_cast<StateNumber>(transition), static_cast<std::uint32_t>(transition >> 32U)};
 }
 
 void TransitionCache::record(StateNumber from, const Accesses& accesses, StateNumber next,
                              const Effect& effect) {
-  if (2 * (transitions_ + 1) > mask_) double_places();
+  if (2 * (transitions_ + 1) > mask_) double_buckets();
   const Accesses key = key_of(from, accesses);
-  std::uint64_t* const words = places_.data() + place_of(from, key);
+  std::uint64_t* const words = buckets_.data() + bucket_of(from, key);
   if (words[0] == 0) ++transitions_;
   words[0] = std::uint64_t{from} + 1;
   std::copy_n(key.begin(), words_, words + 1);
   words[1 + words_] = std::uint64_t{number_of_effect(effect)} << 32U | next;
 }
 
-void TransitionCache::double_places() {
-  std::vector<std::uint64_t> old(2 * places_.size(), 0);
-  old.swap(places_);
+void TransitionCache::double_buckets() {
+  std::vector<std::uint64_t> old(2 * buckets_.size(), 0);
+  old.swap(buckets_);
   mask_ = 2 * mask_ + 1;
   Accesses key{};
-  for (std::size_t place = 0; place < old.size(); place += words_of_place()) {
-    if (old[place] == 0) continue;
-    const auto first = old.begin() + static_cast<std::ptrdiff_t>(place);
+  for (std::size_t bucket = 0; bucket < old.size(); bucket += words_of_bucket()) {
+    if (old[bucket] == 0) continue;
+    const auto first = old.begin() + static_cast<std::ptrdiff_t>(bucket);
     std::copy_n(first + 1, words_, key.begin());
-    const std::size_t to = place_of(static_cast<StateNumber>(old[place] - 1), key);
-    std::copy_n(first, words_of_place(), places_.begin() + static_cast<std::ptrdiff_t>(to));
+    const std::size_t to = bucket_of(static_cast<StateNumber>(old[bucket] - 1), key);
+    std::copy_n(first, words_of_bucket(), buckets_.begin() + static_cast<std::ptrdiff_t>(to));
   }
 }
 

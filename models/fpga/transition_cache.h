@@ -126,13 +126,13 @@ class TransitionCache {
     std::size_t operator()(const Effect& effect) const;
   };
 
-  // A place in the table of transitions: the number of the state plus one (0: the place is free), the
+  // A bucket of the table of transitions: the number of the state plus one (0: the bucket is free), the
   // accesses of key_of(), the transition.
-  std::size_t words_of_place() const { return words_ + 2; }
+  std::size_t words_of_bucket() const { return words_ + 2; }
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
-  std::size_t place_of(StateNumber from, const Accesses& key) const;
+  std::size_t bucket_of(StateNumber from, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
-  void double_places();
+  void double_buckets();
 
   std::size_t words_;  // of the accesses
   std::size_t most_;
@@ -144,8 +144,8 @@ class TransitionCache {
   std::vector<Progress> progress_;       // [number of the effect]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
-  std::vector<std::uint64_t> places_;
-  std::size_t mask_ = 0;  // number of places - 1; they are a power of two
+  std::vector<std::uint64_t> buckets_;
+  std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;
 };
 

@@ -14,8 +14,9 @@ namespace stereotlm::kernels {
 // 2h rows above the new ones come from line memories.
 class CensusColumns {
  public:
-  // Throws std::invalid_argument as ColumnNeighbourhood does, or if `census_size` is outside kCensusSizeRule.
-  CensusColumns(int width, int height, int rows_per_column, int rows_per_strip, int census_size);
+  // Throws std::invalid_argument as ColumnNeighbourhood does, or if the size of the census `cost` is outside
+  // kCensusSizeRule.
+  CensusColumns(int width, int height, int rows_per_column, int rows_per_strip, const MatchingCost& cost);
 
   // Begins a frame. `first_row`: see ColumnNeighbourhood.
   void start_frame(int first_row) { pixels_.start_frame(first_row); }
@@ -25,7 +26,7 @@ class CensusColumns {
   PixelColumn output() const { return {output_.data(), output_valid_}; }
 
  private:
-  int size_;
+  int half_;
   int rows_;
   ColumnNeighbourhood<std::uint8_t> pixels_;
   std::vector<std::uint8_t> output_;

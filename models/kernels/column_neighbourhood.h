@@ -34,7 +34,7 @@ class ColumnNeighbourhood {
     line_stride_ = static_cast<std::size_t>(padded_rows(2 * half_));
     line_values_.resize(static_cast<std::size_t>(width_) * line_stride_);
     line_valid_.resize(static_cast<std::size_t>(width_));
-    // The filter loops read beyond the last row, and copies of whole blocks write there.
+    // Padded, because ColumnFilter reads whole blocks of rows, and copy_blocks() writes them.
     stride_ = line_stride_ + static_cast<std::size_t>(padded_rows(rows_));
     columns_.resize((kColumnsBetweenMoves + size - 1) * stride_);
     columns_valid_.resize(kColumnsBetweenMoves + size - 1);

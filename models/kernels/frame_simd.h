@@ -99,10 +99,10 @@ struct FrameSimd {
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
   // The reverse of to_lanes(), with bytes as output.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
-  // The census bits of one row (contract 7.6). `rows`: the size x size neighbourhood of the first pixel, by
-  // rows, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order
+  // The census bits of one row (contract 7.6). `rows`: the 2 * half + 1 rows and columns around the first
+  // pixel, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order
   // of the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
-  void (*census_row)(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out);
+  void (*census_row)(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 
   // The loops of each cost for windows of `window` x `window` pixels. kUndecided comes from zncc_loops()
   // only.

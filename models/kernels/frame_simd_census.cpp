@@ -112,14 +112,13 @@ MatchLoops census_loops(int planes, int window) {
   }
 }
 
-void census_row(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out) {
-  const int half = (size - 1) / 2;
+void census_row(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out) {
   for (std::ptrdiff_t u = 0; u < width; u += kBytes) {
     const auto middle = load<SignedBytes>(rows[half] + half + u);
     Bytes set{};
     int bit = 0;
-    for (int row = 0; row < size; ++row) {
-      for (int column = 0; column < size; ++column) {
+    for (int row = 0; row <= 2 * half; ++row) {
+      for (int column = 0; column <= 2 * half; ++column) {
         if (row == half && column == half) continue;
         const auto is_less = reinterpret_cast<Bytes>(load<SignedBytes>(rows[row] + column + u) < middle);
         set |= is_less & bytes(1 << bit % 8);

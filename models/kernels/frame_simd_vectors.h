@@ -14,6 +14,8 @@ static_assert(kBytes <= kMostFrameVectorBytes);
 using Bytes = std::uint8_t __attribute__((vector_size(kBytes)));
 using Int16s = std::int16_t __attribute__((vector_size(kBytes)));
 using Int32s = std::int32_t __attribute__((vector_size(kBytes)));
+using Doubles = double __attribute__((vector_size(kBytes)));
+using HalfInt32s = std::int32_t __attribute__((vector_size(kBytes / 2)));
 using HalfVectorBytes = std::uint8_t __attribute__((vector_size(kBytes / 2)));
 
 inline Int16s int16s(int value) { return Int16s{} + static_cast<std::int16_t>(value); }
@@ -24,6 +26,19 @@ inline Int32s even_lanes(Int16s lanes) { return reinterpret_cast<Int32s>(lanes) 
 inline Int32s odd_lanes(Int16s lanes) { return reinterpret_cast<Int32s>(lanes) >> 16; }
 inline Int16s join_lanes(Int32s even, Int32s odd) {
   return reinterpret_cast<Int16s>((even & 0xFFFF) | odd << 16);
+}
+
+// By an intrinsic, because GCC's own conversion takes several instructions.
+inline Doubles to_doubles(HalfInt32s lanes) {
+#if defined(__AVX512BW__)
+  return reinterpret_cast<Doubles>(_mm512_maskz_cvtepi32_pd(0xFF, reinterpret_cast<__m256i>(lanes)));
+#elif defined(__AVX2__)
+  return reinterpret_cast<Doubles>(_mm256_cvtepi32_pd(reinterpret_cast<__m128i>(lanes)));
+#elif defined(__SSE2__)
+  return reinterpret_cast<Doubles>(_mm_cvtepi32_pd(_mm_cvtsi64_si128(reinterpret_cast<std::int64_t>(lanes))));
+#else
+  return __builtin_convertvector(lanes, Doubles);
+#endif
 }
 
 // Values of 32 bits, in separate vectors for even and odd lanes.

@@ -21,8 +21,6 @@ namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 
 using Floats = float __attribute__((vector_size(kBytes)));
-using Doubles = double __attribute__((vector_size(kBytes)));
-using HalfInt32s = std::int32_t __attribute__((vector_size(kBytes / 2)));
 using HalfFloats = float __attribute__((vector_size(kBytes / 2)));
 
 // Values of 32-bit lanes as doubles: of the lower and of the upper half of the lanes.
@@ -42,7 +40,7 @@ DoublePair doubles_of(Int32s lanes) {
   const HalfInt32s lower = __builtin_shufflevector(lanes, lanes, 0, 1);
   const HalfInt32s upper = __builtin_shufflevector(lanes, lanes, 2, 3);
 #endif
-  return {__builtin_convertvector(lower, Doubles), __builtin_convertvector(upper, Doubles)};
+  return {to_doubles(lower), to_doubles(upper)};
 }
 
 Floats floats_of(const DoublePair& values) {

@@ -91,12 +91,12 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
       return;
     case CostKind::kZncc:
       loops_ = simd_.zncc_loops(plan_.window);
-      exact_.emplace(width_, plan_.window, plan_.disparities);
+      exact_.emplace(width_, plan_.window, plan_.disparities, simd);
       return;
     case CostKind::kCensus:
       pixel_bytes_ = cost.pixel_bytes();
       loops_ = simd_.census_loops(pixel_bytes_, plan_.window);
-      for (Side* side : {&left_, &right_}) side->census.emplace(width_, height_, cost.census_size, simd);
+      for (Side* side : {&left_, &right_}) side->census.emplace(width_, height_, cost, simd);
   }
 }
 
@@ -191,6 +191,7 @@ void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
 void ImageMatcher::decide(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
                           std::uint8_t* right_disparity) {
   static_assert(kUndecided == kInvalidDisparity);  // no window is invalid
+  exact_->set_images(left, right);
   for (int row = 0; row < windows_down_; ++row) {
     bool row_is_set = false;
     const auto decide_side = [&](std::uint8_t* disparities, auto best) {
@@ -200,7 +201,7 @@ void ImageMatcher::decide(const std::uint8_t* left, const std::uint8_t* right, s
             std::memchr(disparities + column, kUndecided, static_cast<std::size_t>(windows_across_ - column));
         if (found == nullptr) return;
         column = static_cast<int>(static_cast<const std::uint8_t*>(found) - disparities);
-        if (!row_is_set) exact_->set_row(left, right, row);
+        if (!row_is_set) exact_->set_row(row);
         row_is_set = true;
         disparities[column] = best(column);
       }

@@ -25,8 +25,10 @@ struct MatchingCost {
 
   // The rows and columns beyond the window that the cost reads on each side, in pixels.
   int half() const { return kind == CostKind::kCensus ? (census_size - 1) / 2 : 0; }
+  // The census bits of a pixel, one for each neighbour; only with kCensus.
+  int census_bits() const { return census_size * census_size - 1; }
   // The bytes of a pixel that is compared: a grey level, or census bits.
-  int pixel_bytes() const { return kind == CostKind::kCensus ? (census_size * census_size - 1) / 8 : 1; }
+  int pixel_bytes() const { return kind == CostKind::kCensus ? census_bits() / 8 : 1; }
 
   friend bool operator==(const MatchingCost& a, const MatchingCost& b) {
     return a.kind == b.kind && a.census_size == b.census_size;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "models/kernels/column_simd.h"
+#include "models/kernels/correlation_simd.h"
 #include "models/kernels/frame_simd.h"
 
 namespace stereotlm::kernels {
@@ -13,6 +14,7 @@ struct Simd {
   const char* name;
   FrameSimd frame;
   ColumnSimd column;
+  CorrelationSimd correlation;
 };
 
 // Returns the instruction sets of this machine from `best` on, in the order avx512, avx2, base; all of them

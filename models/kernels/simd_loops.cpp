@@ -11,6 +11,7 @@ constexpr Simd kSimd = {
     {int{kLanes}, rectify, add_rows, filter_row, pair_pixels, to_lanes, from_lanes, census_row, sad_loops,
      ssd_loops, zncc_loops, census_loops},
     {sad_windows, census_windows, ssd_windows, product_windows, step_chain, smallest_key, filter_column},
+    {add_products, best_candidate},
 };
 
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "models/kernels/column_simd.h"
+#include "models/kernels/correlation_simd.h"
 #include "models/kernels/frame_simd.h"
 
 // The functions of one instruction set, which FrameSimd and ColumnSimd describe.
@@ -15,7 +16,7 @@ void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int wid
 void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int width, std::int16_t* out);
 void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out);
 void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out);
-void census_row(const std::int8_t* const* rows, int size, int width, std::uint8_t* const* out);
+void census_row(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 MatchLoops sad_loops(int window);
 MatchLoops ssd_loops(int window);
 MatchLoops zncc_loops(int window);
@@ -34,5 +35,10 @@ void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::
 std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes);
 void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
                    int shift, std::uint8_t* out);
+
+void add_products(const std::uint8_t* const* rows, const std::int16_t* own, int pairs, int lanes,
+                  std::int32_t* column, const std::int32_t* leaving, std::int32_t* window);
+int best_candidate(const Candidates& candidates, const std::int32_t* products, double pixels, double own_sum,
+                   double* quotients);
 
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -29,7 +29,6 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
   if (config.filter) filter_.emplace(width, height, *config.filter, simd);
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   for (Side* side : {&left_, &right_}) {
-    side->rectified.resize(pixels);
     if (filter_) side->filtered.resize(pixels + ImageFilter::kPadding);
     side->disparity.resize(pixels);
   }
@@ -39,6 +38,7 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
 const std::uint8_t* StereoPipeline::prepare(Side& side, const std::uint8_t* image,
                                             const std::uint32_t* table) {
   if (table != nullptr) {
+    side.rectified.resize(side.disparity.size());
     simd_.rectify(image, table, width_ * height_, width_, side.rectified.data());
     image = side.rectified.data();
   }

@@ -13,7 +13,7 @@ namespace stereotlm::kernels {
 
 // Computes the disparity images of many frames (contract sections 1 and 7.6): rectifies, filters, matches
 // and checks whole images. Used by disparity_image() and fpga::DirectFrame. The constructor allocates all
-// memory.
+// memory but that of rectified pictures, which comes with the first table.
 class StereoPipeline {
  public:
   // Throws std::invalid_argument if the configuration has problems, or if the images are empty but are to be

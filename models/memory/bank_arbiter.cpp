@@ -26,24 +26,24 @@ const SsramBankConfig& checked(const SsramBankConfig& bank) {
 BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
     : table_(make_policy(config)),
       has_separate_ports_(has_separate_ports(checked(bank).kind)),
-      places_{Place{&table_.row_of(0)}, Place{&table_.row_of(0)}},
+      positions_{PolicyPosition{&table_.row_of(0)}, PolicyPosition{&table_.row_of(0)}},
       other_direction_cycles_(has_separate_ports_ ? 0
                                                   : static_cast<std::uint64_t>(bank.turnaround_cycles) + 1) {}
 
 // Fills a missing row or decision, then decides. Seldom called, and out of line so that decide() stays small.
-BankArbiter::Outcome BankArbiter::prepare_and_decide(Place& place, std::uint64_t cycle, PortMask requests,
-                                                     PortMask writes) {
-  place = {&place.at(cycle), cycle};
-  table_.fill(*place.row, requests);
-  return decide_at(place, cycle, requests, writes);
+BankArbiter::Outcome BankArbiter::prepare_and_decide(PolicyPosition& position, std::uint64_t cycle,
+                                                     PortMask requests, PortMask writes) {
+  position = {&position.at(cycle), cycle};
+  table_.fill(*position.row, requests);
+  return decide_at(position, cycle, requests, writes);
 }
 
 BankArbiter::Outcome BankArbiter::decide_each_direction(std::uint64_t cycle, PortMask requests,
                                                         PortMask writes) {
   const auto reading = static_cast<PortMask>(requests & ~writes);
   const auto writing = static_cast<PortMask>(requests & writes);
-  const Outcome reads = reading == 0 ? kNothing : decide_at(places_[0], cycle, reading, 0);
-  const Outcome written = writing == 0 ? kNothing : decide_at(places_[1], cycle, writing, writing);
+  const Outcome reads = reading == 0 ? kNothing : decide_at(positions_[0], cycle, reading, 0);
+  const Outcome written = writing == 0 ? kNothing : decide_at(positions_[1], cycle, writing, writing);
   return reads | written << kHalf;
 }
 
@@ -70,24 +70,24 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
 // The first grant moves the state. Each further one acts as a cycle without request does (see
 // ArbitrationPolicy).
 void BankArbiter::grant_alone(PortMask port, bool write) {
-  Place& place = place_of(write);
-  table_.fill(*place.row, port);
-  place.row = place.row->decisions[port].if_granted;
-  ++place.next_cycle;
+  PolicyPosition& position = position_of(write);
+  table_.fill(*position.row, port);
+  position.row = position.row->decisions[port].if_granted;
+  ++position.next_cycle;
 }
 
 std::uint64_t BankArbiter::state(std::uint64_t cycle) const {
   const auto wait = [cycle](std::uint64_t ready) { return ready > cycle ? ready - cycle : 0; };
-  const std::uint64_t state = places_[0].at(cycle).state;
-  if (has_separate_ports_) return state | std::uint64_t{places_[1].at(cycle).state} << 32U;
+  const std::uint64_t state = positions_[0].at(cycle).state;
+  if (has_separate_ports_) return state | std::uint64_t{positions_[1].at(cycle).state} << 32U;
   return state | wait(ready_cycle_[0]) << 32U | wait(ready_cycle_[1]) << 48U;
 }
 
 void BankArbiter::skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles) {
   static_assert(kTurnaroundRule.max < 0xffff);
-  places_[0] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state)), cycle};
+  positions_[0] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state)), cycle};
   if (has_separate_ports_) {
-    places_[1] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state >> 32U)), cycle};
+    positions_[1] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state >> 32U)), cycle};
   } else {
     ready_cycle_ = {cycle + (state >> 32U & 0xffffU), cycle + (state >> 48U)};
   }

@@ -46,7 +46,7 @@ class BankArbiter {
   // the order of the cycles.
   Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
     return has_separate_ports_ ? decide_each_direction(cycle, requests, writes)
-                               : decide_at(places_[0], cycle, requests, writes) | kNothing << kHalf;
+                               : decide_at(positions_[0], cycle, requests, writes) | kNothing << kHalf;
   }
   // The ports that were granted: at most one, with separate ports at most one in each direction; none if the
   // bank was turning round.
@@ -91,7 +91,7 @@ class BankArbiter {
   static constexpr std::size_t kMasks = std::size_t{1} << kMostPorts;
 
   // A state of the policy.
-  struct Place {
+  struct PolicyPosition {
     DecisionTable::Row* row;       // row of the state in next_cycle
     std::uint64_t next_cycle = 0;  // first cycle that is not decided
 
@@ -112,23 +112,24 @@ class BankArbiter {
     return static_cast<PortMask>(1U << (half >> (kMostPorts + 1)) & (kMasks - 1));
   }
 
-  Outcome decide_at(Place& place, std::uint64_t cycle, PortMask requests, PortMask writes) {
-    const bool is_idle_over = cycle == place.next_cycle || place.row->after_idle == place.row;
-    const DecisionTable::Decision& decision = place.row->decisions[requests];
-    if (!is_idle_over || !decision.is_known()) return prepare_and_decide(place, cycle, requests, writes);
-    place.next_cycle = cycle + 1;
+  Outcome decide_at(PolicyPosition& position, std::uint64_t cycle, PortMask requests, PortMask writes) {
+    const bool is_idle_over = cycle == position.next_cycle || position.row->after_idle == position.row;
+    const DecisionTable::Decision& decision = position.row->decisions[requests];
+    if (!is_idle_over || !decision.is_known()) return prepare_and_decide(position, cycle, requests, writes);
+    position.next_cycle = cycle + 1;
     const std::size_t write = writes >> decision.winner & 1U;
     if (cycle < ready_cycle_[write]) {
-      place.row = decision.if_refused;
+      position.row = decision.if_refused;
       return outcome_of(requests, ArbiterStats::kTurnaround, 0);
     }
-    place.row = decision.if_granted;
+    position.row = decision.if_granted;
     ready_cycle_[1 - write] = cycle + other_direction_cycles_;
     return outcome_of(requests, decision.winner, write);
   }
-  Outcome prepare_and_decide(Place& place, std::uint64_t cycle, PortMask requests, PortMask writes);
+  Outcome prepare_and_decide(PolicyPosition& position, std::uint64_t cycle, PortMask requests,
+                             PortMask writes);
   Outcome decide_each_direction(std::uint64_t cycle, PortMask requests, PortMask writes);
-  Place& place_of(bool write) { return places_[has_separate_ports_ && write ? 1 : 0]; }
+  PolicyPosition& position_of(bool write) { return positions_[has_separate_ports_ && write ? 1 : 0]; }
   void add(Outcome outcome, std::uint64_t cycles) {
     outcomes_[outcome & kHalfMask] += cycles;
     if (has_separate_ports_) add_writes(outcome, cycles);
@@ -140,7 +141,8 @@ class BankArbiter {
 
   DecisionTable table_;
   bool has_separate_ports_;
-  std::array<Place, 2> places_;           // of [0] reads, [1] writes; without separate ports [0] is of both
+  // Of [0] reads, [1] writes. Without separate ports [0] is of both.
+  std::array<PolicyPosition, 2> positions_;
   std::uint64_t other_direction_cycles_;  // from an access to the first possible one in the other direction
   std::array<std::uint64_t, 2> ready_cycle_{};  // first cycle in which [0] a read, [1] a write can be granted
   bool counting_ = false;

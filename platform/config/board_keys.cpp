@@ -51,9 +51,9 @@ void set_enum(BoardConfig& board, int index) {
   field = static_cast<std::remove_reference_t<decltype(field)>>(index);
 }
 
-Key integer(const char* path, const char* meaning, const char* unit, IntegerRule rule,
+Key integer(const char* path, std::string meaning, const char* unit, IntegerRule rule,
             int& (*field)(BoardConfig&)) {
-  return {path, meaning, unit, IntegerKey{rule, field}, rule.text()};
+  return {path, std::move(meaning), unit, IntegerKey{rule, field}, rule.text()};
 }
 
 Key decimal(const char* path, const char* meaning, const char* unit, double min, double max,
@@ -124,10 +124,38 @@ std::string priority_meaning() {
   return fmt::format("the ports, {}", fmt::join(meanings, "; "));
 }
 
+std::string size_meaning(const char* size, const IntegerRule& with_table) {
+  return fmt::format("{} of the images, at most {} with a look-up table", size, with_table.max);
+}
+
 std::string port_names() {
   std::vector<std::string> names;
   for (const fpga::CorePort& port : fpga::kPorts) names.emplace_back(port.name);
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<int> census_sizes() {
+  const IntegerRule& rule = kernels::kCensusSizeRule;
+  std::vector<int> sizes;
+  for (std::int64_t size = rule.min; size <= rule.max; size += rule.step)
+    sizes.push_back(static_cast<int>(size));
+  return sizes;
+}
+
+// Every cost.
+std::vector<std::string> cost_texts() {
+  using kernels::CostKind;
+  std::vector<std::string> texts;
+  for (const CostKind kind : {CostKind::kSad, CostKind::kSsd, CostKind::kZncc})
+    texts.push_back(cost_text({kind, 0}));
+  for (const int size : census_sizes()) texts.push_back(cost_text({CostKind::kCensus, size}));
+  return texts;
+}
+
+std::vector<std::string> census_size_texts() {
+  std::vector<std::string> texts;
+  for (const int size : census_sizes()) texts.push_back(std::to_string(size));
+  return texts;
 }
 
 std::vector<Key> make_keys() {
@@ -148,10 +176,10 @@ std::vector<Key> make_keys() {
       other("name", "the board's name, as results give it", "",
             "a text of one or more characters without control characters; quoted if it could be read as "
             "a number, a truth value or null"),
-      integer("image.width", "width of the images, at most 2048 with a look-up table", "pixels",
-              fpga::kWidthRule, member<&B::image, &ImageConfig::width>),
-      integer("image.height", "height of the images, at most 2048 with a look-up table", "pixels",
-              fpga::kHeightRule, member<&B::image, &ImageConfig::height>),
+      integer("image.width", size_meaning("width", fpga::kWidthWithTableRule), "pixels", fpga::kWidthRule,
+              member<&B::image, &ImageConfig::width>),
+      integer("image.height", size_meaning("height", fpga::kHeightWithTableRule), "pixels", fpga::kHeightRule,
+              member<&B::image, &ImageConfig::height>),
       decimal("cameras.frame_rate_hz", "frame rate of both cameras; on demand that of their line times", "Hz",
               0.1, 1000, member<&B::cameras, &CamerasConfig::frame_rate_hz>),
       word<&B::cameras, &CamerasConfig::trigger>(
@@ -262,9 +290,9 @@ std::vector<Key> make_keys() {
                   "it 1",
                   "rows", fpga::kRowsRule, member<&B::matcher, &MatcherConfig::rows>)),
       optional(other("matcher.cost", "how two windows are compared; optional, without it sad", "",
-                     "sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}")),
+                     listed(cost_texts()))),
       other_integer("matcher.cost.census", "rows and columns of the neighbourhood of the census bits",
-                    "pixels", kernels::kCensusSizeRule, "3, 5 or 7"),
+                    "pixels", kernels::kCensusSizeRule, listed(census_size_texts())),
   };
 }
 
@@ -455,6 +483,11 @@ std::string listed(const std::vector<std::string>& words) {
     out += words[i];
   }
   return out;
+}
+
+std::string cost_text(const kernels::MatchingCost& cost) {
+  const char* const name = kernels::name_of(cost.kind);
+  return cost.kind == kernels::CostKind::kCensus ? fmt::format("{{{}: {}}}", name, cost.census_size) : name;
 }
 
 const std::vector<std::string>& bank_kind_names() {

@@ -83,6 +83,9 @@ std::string schema_path(const std::string& path);
 // Joins words: "a, b or c".
 std::string listed(const std::vector<std::string>& words);
 
+// A cost as a board file has it: "sad", "{census: 5}".
+std::string cost_text(const kernels::MatchingCost& cost);
+
 inline constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 

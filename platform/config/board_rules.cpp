@@ -55,9 +55,9 @@ class RuleChecker {
     const std::int64_t most_pairs = kMostBytes / (std::int64_t{2} * image.width * image.height);
     if (board_.capture.host_frames <= most_pairs) return;
     found_.push_back(
-        {fmt::format("capture.host_frames = {}: the ring in host memory has {} MiB, which hold {} "
-                     "pairs of {}x{} pixels",
-                     board_.capture.host_frames, kMostBytes >> 20, most_pairs, image.width, image.height),
+        {fmt::format("capture.host_frames = {}: at most {} pairs of {}x{} pixels, because the ring in host "
+                     "memory may have {} MiB",
+                     board_.capture.host_frames, most_pairs, image.width, image.height, kMostBytes >> 20),
          involved});
   }
 
@@ -85,7 +85,7 @@ class RuleChecker {
   void check_units() {
     const MatcherConfig& matcher = board_.matcher;
     const std::vector<std::string> involved = {"matcher.units", "matcher.disparities"};
-    if (!all_valid(involved) || !matcher.units || *matcher.units <= matcher.disparities) return;
+    if (!all_valid(involved) || fpga::has_units_for(matcher.units, matcher.disparities)) return;
     found_.push_back({fmt::format("matcher.units = {}: 1..disparities, which is {}, or all", *matcher.units,
                                   matcher.disparities),
                       involved});
@@ -94,14 +94,14 @@ class RuleChecker {
   void check_rows() {
     const MatcherConfig& matcher = board_.matcher;
     const std::vector<std::string> with_fetch = {"matcher.rows", "matcher.fetch"};
-    if (matcher.rows != 1 && matcher.fetch == fpga::Fetch::kLineBuffer && all_valid(with_fetch)) {
+    if (!fpga::can_fetch_rows(matcher.fetch, matcher.rows) && all_valid(with_fetch)) {
       found_.push_back({fmt::format("matcher.rows = {}: must be 1 where matcher.fetch is line_buffer; with "
                                     "column it may be {}",
                                     matcher.rows, fpga::kRowsRule.text()),
                         with_fetch});
     }
     const std::vector<std::string> with_queue = {"fpga.result_fifo_words", "matcher.rows"};
-    if (board_.fpga.result_fifo_words < matcher.rows && all_valid(with_queue)) {
+    if (!fpga::can_queue_rows(board_.fpga.result_fifo_words, matcher.rows) && all_valid(with_queue)) {
       found_.push_back(
           {fmt::format("fpga.result_fifo_words = {}: at least {}, a word for each of the rows that "
                        "are computed at once; or fewer matcher.rows",

@@ -46,11 +46,6 @@ std::string filter_flow_text(const kernels::FilterKernel& filter) {
   return fmt::format("{{kernel: {}, shift: {}}}", list_text(filter_rows(filter)), filter.shift);
 }
 
-std::string cost_text(const kernels::MatchingCost& cost) {
-  const char* const name = kernels::name_of(cost.kind);
-  return cost.kind == kernels::CostKind::kCensus ? fmt::format("{{{}: {}}}", name, cost.census_size) : name;
-}
-
 class BoardWriter {
  public:
   explicit BoardWriter(const BoardConfig& board) : board_(board), writable_(board) {}

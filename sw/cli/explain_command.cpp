@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -79,7 +80,7 @@ class Explanation {
       : board_(board),
         tables_(tables),
         run_{camera, 0, ""},
-        steps_(explore::knob_steps(board, camera)),
+        steps_(explore::knob_steps(board, camera, joint_problem(tables))),
         points_(boards(), run_) {}
 
   // Returns false if interrupted.
@@ -107,6 +108,10 @@ class Explanation {
   }
 
  private:
+  static std::optional<std::string> joint_problem(const platform::Tables& tables) {
+    return tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt;
+  }
+
   std::vector<BoardConfig> boards() const {
     std::vector<BoardConfig> all = {board_};
     for (const KnobStep& step : steps_.possible) all.push_back(step.board);

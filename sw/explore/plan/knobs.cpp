@@ -22,6 +22,7 @@ namespace {
 using platform::BankConfig;
 using platform::BoardConfig;
 using platform::Buffer;
+using platform::cost_text;
 using platform::Key;
 using platform::PlacedBuffer;
 
@@ -34,14 +35,6 @@ std::string counted(std::size_t buffers) {
   return fmt::format("{} buffer{}", buffers, buffers == 1 ? "" : "s");
 }
 
-// The value of `matcher.cost` as a board file has it.
-std::string cost_text(const BoardConfig& board) {
-  for (const platform::BoardValue& value : values_of(board)) {
-    if (value.path == "matcher.cost") return std::get<std::string>(value.value);
-  }
-  return "";
-}
-
 bool is_of_computer(const std::string& path) {
   return begins_with(path, "cameras.") || begins_with(path, "capture.") || begins_with(path, "pci.") ||
          begins_with(path, "bridge.");
@@ -49,7 +42,8 @@ bool is_of_computer(const std::string& path) {
 
 class Steps {
  public:
-  explicit Steps(const BoardConfig& board) : board_(board) {}
+  Steps(const BoardConfig& board, const std::optional<std::string>& joint_problem)
+      : board_(board), joint_problem_(joint_problem) {}
 
   void add_keys(bool camera) {
     for (const Key& key : platform::board_keys()) {
@@ -66,28 +60,25 @@ class Steps {
     if (!(board_.matcher.filter == kernels::log7())) add_filter(kernels::log7(), "log7");
   }
 
+  // Only the number of passes changes the time.
   void add_units() {
-    const auto& units = board_.matcher.units;
+    const auto& now = board_.matcher.units;
     const int disparities = board_.matcher.disparities;
+    const auto fewest = [disparities](int passes) { return (disparities + passes - 1) / passes; };
     const auto add_to = [&](const std::optional<int>& other) {
       const auto text = [](const std::optional<int>& value) {
         return value ? std::to_string(*value) : "all";
       };
       BoardConfig changed = board_;
       changed.matcher.units = other;
-      add({"matcher.units", text(units), text(other), std::move(changed)});
+      add({"matcher.units", text(now), text(other), std::move(changed)});
     };
-    if (units) {
-      add_to(*units + 1);
-      add_to(*units - 1);
-      add_to(std::nullopt);
-    } else if (disparities > 1) {
-      add_to((disparities + 1) / 2);
-    }
+    const int passes = fpga::passes_of(disparities, now.value_or(disparities));
+    if (passes > 2) add_to(fewest(passes - 1));
+    if (fewest(passes) > 1) add_to(fewest(fpga::passes_of(disparities, fewest(passes) - 1)));
+    if (now) add_to(std::nullopt);
   }
 
-  // Joint tables go into the bank of either table. Of separate ones the right one goes into the first bank
-  // without buffers that can hold it.
   void add_tables() {
     const auto& left = board_.allocation.left_lut;
     const auto& right = board_.allocation.right_lut;
@@ -103,9 +94,9 @@ class Steps {
     }
     BoardConfig changed = board_;
     changed.fpga.joint_tables = false;
-    const std::int64_t words = std::int64_t{board_.image.width} * board_.image.height;
+    const std::uint64_t words = buffer_words(platform::buffers(changed).back(), board_.image);  // right_lut
     const auto free = std::find_if(board_.banks.begin(), board_.banks.end(), [&](const BankConfig& bank) {
-      return buffers_in(bank.name) == 0 && bank.words >= words;
+      return buffers_in(bank.name) == 0 && static_cast<std::uint64_t>(bank.words) >= words;
     });
     if (free != board_.banks.end()) changed.allocation.right_lut = free->name;
     std::string to = "separate, right_lut in " + *changed.allocation.right_lut;
@@ -125,8 +116,7 @@ class Steps {
       if (cost == now || (is_other_size && now.kind != CostKind::kCensus)) continue;
       BoardConfig changed = board_;
       changed.matcher.cost = cost;
-      const std::string to = cost_text(changed);
-      add({"matcher.cost", cost_text(board_), to, std::move(changed), true});
+      add({"matcher.cost", cost_text(now), cost_text(cost), std::move(changed), true});
     }
   }
 
@@ -249,7 +239,11 @@ class Steps {
   void add(KnobStep step) {
     const std::vector<std::string> problems = platform::problems(step.board);
     if (problems.empty()) {
-      steps_.push_back(std::move(step));
+      if (step.board.fpga.joint_tables && joint_problem_) {
+        forbid(step, *joint_problem_);
+      } else {
+        steps_.push_back(std::move(step));
+      }
       return;
     }
     std::set<std::string> rules;
@@ -258,7 +252,10 @@ class Steps {
       rules.insert(rule.text);
     const auto is_rule = [&](const std::string& problem) { return rules.count(problem) > 0; };
     if (!std::all_of(problems.begin(), problems.end(), is_rule)) return;  // out of the range of its key
-    forbidden_.push_back({{step.knob, step.from, step.to, problems.front()}, step.only_best});
+    forbid(step, problems.front());
+  }
+  void forbid(const KnobStep& step, const std::string& reason) {
+    forbidden_.push_back({{step.knob, step.from, step.to, reason}, step.only_best});
   }
   // One of several alternatives.
   void add_best(KnobStep step) {
@@ -324,14 +321,15 @@ class Steps {
   }
 
   const BoardConfig& board_;
+  const std::optional<std::string>& joint_problem_;
   std::vector<KnobStep> steps_;
   std::vector<std::pair<ForbiddenStep, bool>> forbidden_;  // second: only_best of the step
 };
 
 }  // namespace
 
-KnobSteps knob_steps(const BoardConfig& board, bool camera) {
-  Steps steps(board);
+KnobSteps knob_steps(const BoardConfig& board, bool camera, const std::optional<std::string>& joint_problem) {
+  Steps steps(board, joint_problem);
   steps.add_keys(camera);
   steps.add_units();
   steps.add_tables();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,12 @@ struct KnobStep {
   bool only_best = false;
 };
 
-// A step that a rule between several keys forbids.
+// A step that a rule between several keys forbids, or that the tables forbid.
 struct ForbiddenStep {
   std::string knob;
   std::string from;
   std::string to;
-  std::string reason;  // the problem of the changed board
+  std::string reason;  // the problem of the changed board, or of the tables
 };
 
 struct KnobSteps {
@@ -37,9 +38,9 @@ struct KnobSteps {
 // One step of every knob of a board, as long as the value is in the range of its key:
 //   a number: up and down by one (the window by two); a word: each other one
 //   matcher.fetch: the line buffer takes matcher.rows back to 1 with it
-//   matcher.units: from all to half of them; from a number up and down by one, and back to all
-//   fpga.tables: joint tables are in the bank of either table; of separate ones the right one gets a bank
-//   without buffers, if there is one that can hold it
+//   matcher.units: to the fewest modules that take fewer passes, to the fewest that take more, and to all
+//   fpga.tables: to joint tables in the bank of the left table, or in that of the right one; to separate ones
+//   with the right one in the first bank without buffers that can hold it, if there is one
 //   matcher.cost: each other one (census with 5 x 5 pixels); census also with the next sizes
 //   fpga.priority: two neighbours exchanged
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
@@ -49,8 +50,10 @@ struct KnobSteps {
 //   a bank more: a buffer that shares its bank gets a new bank, which is like the shared one
 //   a bank less: all buffers of one bank move into another bank that is used
 // The size of the images, the depth of banks and the device do not change. `camera`: whether the knobs of the
-// computer around the board are included.
-KnobSteps knob_steps(const platform::BoardConfig& board, bool camera);
+// computer around the board are included. `joint_problem`: why the tables of the board cannot be joined;
+// nullopt if they can.
+KnobSteps knob_steps(const platform::BoardConfig& board, bool camera,
+                     const std::optional<std::string>& joint_problem);
 
 // A list of boards as points, in the order of the list.
 class BoardPoints : public Points {

@@ -47,9 +47,10 @@ class Plan : public Points {
   const std::string& calibration_place() const { return calibration_place_; }
   // Gives all points the tables of a calibration for images of width x height, in place of the identity. A
   // point whose board cannot have these tables becomes impossible. If that holds for all points, returns the
-  // broken rule, else nullopt. `sha256`: of the tables.
+  // broken rule, else nullopt. `sha256`: of the tables. `joint_problem`: why they cannot be joined; nullopt
+  // if they can.
   std::optional<std::string> use_calibration(const std::string& sha256, int width, int height,
-                                             const std::optional<std::string>& joint_problem = std::nullopt);
+                                             const std::optional<std::string>& joint_problem);
 
  private:
   friend class PlanReader;

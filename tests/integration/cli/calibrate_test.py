@@ -1,9 +1,11 @@
 """calibrate, and --calibration, on a rig that is made up."""
 
+import hashlib
 import os
 import re
 import shutil
 import signal
+import struct
 import time
 
 import program
@@ -95,6 +97,7 @@ class Made(CalibrateTest):
         pair = f"'{self.pictures / 'left_01.png'}' with '{self.pictures / 'right_02.png'}'"
         self.assertIn(f"{pair}: do they belong together?", process.stderr)
 
+    @program.slow
     def test_writes_nothing_where_it_is_interrupted(self):
         command = ["calibrate", "--synthetic", 3, *GRID, "--out", self.folder / "rig.yaml"]
         for number, has_earlier, delay in (
@@ -208,6 +211,25 @@ class RefusedCalibrations(CalibrateTest):
         for command in ("check", "bounds", "explain"):
             self.refused(run(command, "fpl2003", "--calibration", rig), problem)
         self.assertFalse(self.out.exists())
+
+    @program.slow
+    def test_tables_that_cannot_be_joined_are_refused_by_joint_boards_and_are_no_step_of_others(self):
+        rig = self.copy_of_rig()
+        table = self.folder / "rig_left.lut"
+        entries = bytearray(table.read_bytes())
+        entries[:4] = struct.pack("<I", 1 << 31 | 639)  # the first pixel has its source in the last column
+        table.write_bytes(entries)
+        digest = hashlib.sha256(entries).hexdigest()
+        rig.write_text(re.sub(r"(left_lut_sha256:) .*", rf'\1 "{digest}"', rig.read_text()))
+        problem = r"left table: its displacements in x are .*, a range of \d+: joint tables have 256"
+        process = run("check", "two-banks", "--calibration", rig)
+        self.refused(process, f"error: --calibration '{rig}': left table: ")
+        self.assertRegex(process.stderr, problem)
+        text = self.succeeds(run("explain", "fpl2003", *PRELOADED, "--calibration", rig))
+        text = re.sub(r"\n  (?=\w)", " ", text)
+        step = "not possible here: fpga.tables: separate -> joint in bank6, because"
+        self.assertRegex(text, rf"(?m)^{step} {problem}$")
+        self.assertNotIn("failed", text)
 
     def test_missing_and_damaged_ones_are_refused(self):
         rig = self.copy_of_rig()

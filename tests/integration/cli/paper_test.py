@@ -250,6 +250,7 @@ class Meanwhile(PaperTest):
         wait_until((self.out / ".partial" / "new").exists)
         return process
 
+    @program.slow
     def test_an_interrupt_leaves_nothing_behind(self):
         process = self.begin()
         time.sleep(0.3)

@@ -195,9 +195,9 @@ void dirty_heap(char byte) {
   }
 }
 
-TEST(RandomRuns, GiveTheSameStatisticsAgain) {
-  for (std::uint64_t seed = 10'000; seed < 10'020; ++seed) {
-    const RandomBoard board = make_random_board(seed);
+TEST_P(RandomBoards, GiveTheSameStatisticsAgain) {
+  for (std::uint64_t seed = 10'000; seed < 10'010; ++seed) {
+    const RandomBoard board = board_of(seed, GetParam());
     SCOPED_TRACE(describe(board));
     std::vector<std::string> runs;
     for (const char byte : {'\x5A', '\xFF'}) {
@@ -225,6 +225,7 @@ std::vector<platform::BoardConfig> allocations_of(const RandomBoard& board) {
   for (auto* lut : {&spread.left_lut, &spread.right_lut}) {
     if (*lut) *lut = next++;
   }
+  if (spread.joint_tables) spread.right_lut = spread.left_lut;
   spread.banks.assign(static_cast<std::size_t>(next), PlainBank{PlainBankKind::kZbtFlowThrough, 0});
   for (auto* lut : {&one_bank.left_lut, &one_bank.right_lut}) {
     if (*lut) *lut = 0;
@@ -232,9 +233,9 @@ std::vector<platform::BoardConfig> allocations_of(const RandomBoard& board) {
   return {board_config(board), board_config(one_bank), board_config(spread)};
 }
 
-TEST(RandomRuns, GiveTheSameDisparityImageWithAnyAllocation) {
-  for (std::uint64_t seed = 20'000; seed < 20'020; ++seed) {
-    const RandomBoard board = make_random_board(seed);
+TEST_P(RandomBoards, GiveTheSameDisparityImageWithAnyAllocation) {
+  for (std::uint64_t seed = 20'000; seed < 20'010; ++seed) {
+    const RandomBoard board = board_of(seed, GetParam());
     SCOPED_TRACE(describe(board));
     std::vector<std::string> images;
     for (const platform::BoardConfig& config : allocations_of(board))

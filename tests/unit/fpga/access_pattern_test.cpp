@@ -86,7 +86,7 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
     const FrameGeometry geometry(config);
     std::uint64_t passes = 0;
     std::uint64_t slot = 0;
-    std::vector<bool> pixels(geometry.slots + 256 + 64);  // beyond the end of the frame there are none
+    std::vector<bool> pixels(geometry.slots + 256 + 1);  // beyond the end of the frame there are none
     for (SlotCursor place(geometry); !place.done(); place.advance(), ++slot) {
       const Access access = columns[place.frame_column()][slot % columns.front().size()];
       if (access != Access::kNone) {
@@ -99,9 +99,9 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
       if (access == Access::kTable || access == Access::kTableAndCache) ++passes;
     }
     ASSERT_EQ(pattern.passes_before(geometry.slots), passes);
-    for (slot = 0; slot <= geometry.slots + 256; ++slot) {
-      std::uint64_t expected = 0;
-      for (std::size_t bit = 0; bit < 64; ++bit) expected |= std::uint64_t{pixels[slot + bit]} << bit;
+    std::uint64_t expected = 0;
+    for (slot = pixels.size(); slot-- > 0;) {
+      expected = expected << 1U | std::uint64_t{pixels[slot]};
       ASSERT_EQ(pattern.pixels_of_slots(slot), expected) << slot;
     }
   }

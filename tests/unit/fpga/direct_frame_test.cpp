@@ -129,5 +129,104 @@ TEST_F(DirectFrameMemory, HasTheAccessesOfATableThatMayHaveChanged) {
   EXPECT_FALSE(reads_left_entry(kernels::make_entry(8, 0), false));
 }
 
+// Joint tables, whose sides need different offsets, in a frame of their own.
+class DirectFrameJointTables : public DirectFrameMemory {
+ protected:
+  DirectFrameJointTables() {
+    test::SplitMix64 random(1);
+    for (std::uint8_t& pixel : image) pixel = static_cast<std::uint8_t>(random.between(0, 255));
+    for (int row = 0; row < 5; ++row) {
+      for (int column = 0; column < 7; ++column) {
+        const std::size_t pixel = static_cast<std::size_t>(8 * row + column);
+        tables[0][pixel] = kernels::make_entry(column + 1, row);
+        tables[1][pixel] = kernels::make_entry(column, row + 1);
+      }
+    }
+    tables[1][9] = 0;
+    joint = kernels::join_tables({8, 6, tables[0]}, {8, 6, tables[1]});
+    joint_memory = memory;
+    joint_memory.tables = {};
+    joint_memory.tables[0].entries = joint.words.data();
+    joint_memory.joint_offsets = joint.offsets;
+  }
+  static CoreConfig config(bool has_joint_tables) {
+    CoreConfig core = small_core(8, 6);
+    core.joint_tables = has_joint_tables;
+    core.pixel_cache = PixelCache::kWord;
+    return core;
+  }
+  // Expects the accesses and disparities of the separate tables.
+  void expect_separate() {
+    DirectFrame separate(config(false), true);
+    ASSERT_TRUE(separate.read(memory));
+    std::array<std::vector<std::uint8_t>, 2> written{disparities, disparities};
+    separate.write(written[0].data());
+    joint_frame.write(written[1].data());
+    EXPECT_EQ(written[1], written[0]);
+    for (const std::size_t side : {0U, 1U}) {
+      const AccessPattern& found = joint_frame.patterns()[side];
+      EXPECT_EQ(found.invalid_slots(), separate.patterns()[side].invalid_slots()) << side;
+      EXPECT_EQ(found.pixel_accesses(), separate.patterns()[side].pixel_accesses()) << side;
+    }
+  }
+  bool reads(std::size_t pixel, std::uint32_t word, bool may_have_changed = true) {
+    joint.words[pixel] = word;
+    joint_memory.tables[0].may_have_changed = may_have_changed;
+    return joint_frame.read(joint_memory);
+  }
+
+  kernels::JointTable joint;
+  DirectFrame::Memory joint_memory;
+  DirectFrame joint_frame{config(true), true};
+};
+
+TEST_F(DirectFrameJointTables, AreDecodedForBothSides) {
+  ASSERT_TRUE(joint_frame.read(joint_memory));
+  expect_separate();
+}
+
+TEST_F(DirectFrameJointTables, AreDecodedInTheFirstFrameAlsoIfTheyHaveNotChanged) {
+  joint_memory.tables[0].may_have_changed = false;
+  ASSERT_TRUE(joint_frame.read(joint_memory));
+  expect_separate();
+}
+
+TEST_F(DirectFrameJointTables, AreDecodedAgainOnlyIfTheyOrARegisterMayHaveChanged) {
+  ASSERT_TRUE(joint_frame.read(joint_memory));
+  EXPECT_TRUE(reads(0, 0, false));
+  expect_separate();
+  EXPECT_TRUE(reads(0, 0));
+  tables[0][0] = tables[1][0] = 0;
+  expect_separate();
+  // One pixel to the right, in place of one to the left.
+  for (std::uint32_t& word : joint.words)
+    if ((word >> 31U) != 0) word -= 1U << 16U;
+  ++joint_memory.joint_offsets[0].columns;
+  ASSERT_TRUE(reads(0, 0, false));
+  expect_separate();
+}
+
+TEST_F(DirectFrameJointTables, AreNotReadIfAnEntryOfEitherSidePointsOutsideTheImage) {
+  ASSERT_TRUE(joint_frame.read(joint_memory));
+  constexpr std::uint32_t kNowhere = 0x7FFF;  // the largest displacements
+  const std::uint32_t word = joint.words[0];
+  for (const unsigned side : {16U, 0U}) {
+    const std::uint32_t other = word & ~(0xFFFFU << side);
+    EXPECT_TRUE(reads(0, other | kNowhere << side)) << "not valid";
+    EXPECT_FALSE(reads(0, other | (0x8000U | kNowhere) << side));
+    EXPECT_FALSE(reads(0, other | (0x8000U | kNowhere) << side, false));
+    EXPECT_TRUE(reads(0, word));
+  }
+  // A register moves all sources of a side.
+  for (kernels::JointOffset& offset : joint_memory.joint_offsets) {
+    offset.rows += 6;
+    EXPECT_FALSE(reads(0, word, false));
+    offset.rows -= 6;
+    EXPECT_TRUE(reads(0, word, false));
+  }
+  joint_memory.tables[0].entries = nullptr;
+  EXPECT_FALSE(joint_frame.read(joint_memory));
+}
+
 }  // namespace
 }  // namespace stereotlm::fpga

@@ -70,6 +70,17 @@ Setting bank_for_each_port(int width, int height) {
   return setting;
 }
 
+// Joint tables in one bank, pictures and disparities in another, and a word cache.
+Setting two_banks() {
+  Setting setting = bank_for_each_port(640, 480);
+  setting.core.joint_tables = true;
+  setting.core.pixel_cache = PixelCache::kWord;
+  setting.banks.resize(2);
+  setting.bases.fill(registers::base(1, 0));
+  setting.bases[0] = registers::base(0, 0);
+  return setting;
+}
+
 // A core with its arbiters, frame after frame.
 class Core {
  public:
@@ -126,6 +137,7 @@ class Core {
     for (const RowProfile& frame : frames_.take_rows()) rows_ = frame;
   }
 
+  std::uint64_t skipped_cycles() const { return frames_.skipped_cycles(); }
   // Of the last frame.
   const RowProfile& rows() const { return rows_; }
   std::string figures() const {
@@ -240,6 +252,39 @@ TEST(FastForward, RecordsInWhichRowsAPortIsStalled) {
       EXPECT_EQ(rows[row].cycles - rows[row - 1].cycles, 2U * 640 * 7) << row;
       EXPECT_EQ(rows[row].stalls[0] - rows[row - 1].stalls[0], 640U * 7) << row;
     }
+  }
+}
+
+// The number of cycles that are stepped in each of three frames.
+std::vector<std::uint64_t> stepped_cycles(const Setting& setting) {
+  Core core(setting, Core::Way::kAhead);
+  std::vector<std::uint64_t> stepped;
+  for (int frame = 0; frame < 3; ++frame) {
+    const std::uint64_t begin = core.cycle() - core.skipped_cycles();
+    core.start(core.cycle());
+    core.advance(kNever);
+    stepped.push_back(core.cycle() - core.skipped_cycles() - begin);
+    core.finish();
+  }
+  return stepped;
+}
+
+// A frame has 2.15 million cycles. Those around its first row, its last row and its end are always stepped.
+TEST(FastForward, StepsFewCyclesOfAFrameOnceItsTransitionsAreRecorded) {
+  const std::vector<std::uint64_t> identity = stepped_cycles(two_banks());
+  EXPECT_LT(identity[0], 1000U);
+  Setting slanted = two_banks();
+  for (int row = 0; row < 480; ++row) {
+    for (int column = 0; column < 640; ++column) {
+      slanted.left_entries[place_of(slanted.core, column, row)] = kernels::make_entry(
+          std::min(639, column + column / 100 + row / 70), std::min(479, row + column / 80));
+    }
+  }
+  const std::vector<std::uint64_t> irregular = stepped_cycles(slanted);
+  EXPECT_LT(irregular[0], 50'000U);
+  for (const auto& stepped : {identity, irregular}) {
+    EXPECT_LT(stepped[1], 1000U);
+    EXPECT_EQ(stepped[2], stepped[1]);
   }
 }
 

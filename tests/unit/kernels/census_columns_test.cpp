@@ -46,14 +46,15 @@ void expect_census(int width, const std::vector<std::uint8_t>& found,
 TEST(CensusTransform, EqualsTheLiteralBitsWithEachInstructionSet) {
   SplitMix64 random(21);
   for (const int size : {3, 5, 7}) {
-    const int bytes = MatchingCost{CostKind::kCensus, size}.pixel_bytes();
+    const MatchingCost cost{CostKind::kCensus, size};
+    const int bytes = cost.pixel_bytes();
     for (const auto& [width, height] :
          {std::pair(4, 1), std::pair(8, 3), std::pair(68, 9), std::pair(140, 5)}) {
       for (const int levels : {2, 256}) {
         const auto image = test::noise_board(width, height, 3, random, levels).pictures[0].left;
         const auto expected = test::reference_census(width, height, image, size);
         for (const Simd* simd : simd_sets()) {
-          CensusTransform census(width, height, size, *simd);
+          CensusTransform census(width, height, cost, *simd);
           census.run(image.data());
           std::vector<std::uint8_t> found;
           for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
@@ -72,9 +73,10 @@ TEST(CensusTransform, EqualsTheLiteralBitsWithEachInstructionSet) {
 void expect_columns(int size, int rows_per_column, int rows_per_strip, int first_row, SplitMix64& random) {
   constexpr int kWidth = 20;
   constexpr int kHeight = 11;
-  const int half = (size - 1) / 2;
-  const int bytes = MatchingCost{CostKind::kCensus, size}.pixel_bytes();
-  CensusColumns census(kWidth, kHeight, rows_per_column, rows_per_strip, size);
+  const MatchingCost cost{CostKind::kCensus, size};
+  const int half = cost.half();
+  const int bytes = cost.pixel_bytes();
+  CensusColumns census(kWidth, kHeight, rows_per_column, rows_per_strip, cost);
   for (int frame = 0; frame < 2; ++frame) {
     const auto image = test::noise_board(kWidth, kHeight, 3, random, 5).pictures[0].left;
     const auto expected = test::reference_census(kWidth, kHeight, image, size);
@@ -130,13 +132,13 @@ TEST(CensusColumns, EqualTheLiteralBitsInEveryOrderOfFetching) {
 }
 
 TEST(Census, RefusesSizesOutsideTheirRange) {
-  EXPECT_NO_THROW(CensusColumns(4, 1, 3, 1, 7));
-  EXPECT_NO_THROW(CensusTransform(4, 1, 3));
+  EXPECT_NO_THROW(CensusColumns(4, 1, 3, 1, {CostKind::kCensus, 7}));
+  EXPECT_NO_THROW(CensusTransform(4, 1, {CostKind::kCensus, 3}));
   for (const int size : {1, 4, 9}) {
-    EXPECT_THROW(CensusColumns(4, 1, 3, 1, size), std::invalid_argument);
-    EXPECT_THROW(CensusTransform(4, 1, size), std::invalid_argument);
+    EXPECT_THROW(CensusColumns(4, 1, 3, 1, {CostKind::kCensus, size}), std::invalid_argument);
+    EXPECT_THROW(CensusTransform(4, 1, {CostKind::kCensus, size}), std::invalid_argument);
   }
-  EXPECT_THROW(CensusTransform(0, 1, 3), std::invalid_argument);
+  EXPECT_THROW(CensusTransform(0, 1, {CostKind::kCensus, 3}), std::invalid_argument);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using test::SplitMix64;
 
 // Sends all pictures of the board through one pipeline for each instruction set, forwards and backwards: no
 // frame may leave a trace in the next.
-void expect_reference(const RandomBoard& board) {
+void expect_literal_frame(const RandomBoard& board) {
   const auto entries = [](const std::optional<std::vector<std::uint32_t>>& table) {
     return table ? table->data() : nullptr;
   };
@@ -50,7 +50,7 @@ TEST(StereoPipeline, EqualsTheReferenceOnRandomBoardsWithEachInstructionSet) {
     board.cost = test::any_cost(static_cast<int>(seed));
     board.frames = static_cast<int>(board.pictures.size());
     SCOPED_TRACE(describe(board));
-    ASSERT_NO_FATAL_FAILURE(expect_reference(board));
+    ASSERT_NO_FATAL_FAILURE(expect_literal_frame(board));
   }
 }
 
@@ -63,31 +63,47 @@ void expect_noise_matches(int width, int height, int window, int disparities, in
   board.lr_tolerance = 1;
   board.cost = test::any_cost(cost);
   SCOPED_TRACE(name_of(test::matching_cost(board.cost).kind));
-  expect_reference(board);
+  expect_literal_frame(board);
 }
 
 // In wide images a lane's segment is several vectors long, and many disparities reach over more than one.
-// Other costs than SAD get fewer candidates, because the reference is slow for them.
+// High images have a band for each lane. The reference is slow: it compares each window pixel by pixel.
 TEST(StereoPipeline, EqualsTheReferenceOnWideAndOnHighImages) {
   SplitMix64 random(11);
   int cost = 0;
-  for (int window = 3; window <= 31; window += 2) {
-    for (const auto& [width, height] : {std::pair(4 * random.between(50, 110), window + random.between(0, 1)),
-                                        std::pair(4 * random.between(8, 14), random.between(50, 150))}) {
-      const int most = cost % test::kCosts == 0 ? 254 : 12;
-      ASSERT_NO_FATAL_FAILURE(
-          expect_noise_matches(width, height, window, random.between(1, most), cost++, random));
-    }
+  for (int window = 3; window <= 31; window += 4, ++cost) {
+    const int most = window <= 7 ? 254 : 24;
+    ASSERT_NO_FATAL_FAILURE(expect_noise_matches(4 * random.between(50, 110), window, window,
+                                                 random.between(17, most), cost, random));
+    ASSERT_NO_FATAL_FAILURE(expect_noise_matches(window + 4 * random.between(1, 6) + 1,
+                                                 window + random.between(20, 60), window,
+                                                 random.between(1, 12), cost + 3, random));
   }
 }
 
-TEST(StereoPipeline, EqualsTheReferenceForEachCountOfDisparities) {
+// Disparities are matched in groups, of which the last may be smaller. The windows lie on both sides of those
+// whose sums fit into the narrowest keys.
+TEST(StereoPipeline, EqualsTheReferenceForEachSizeOfTheLastGroupOfDisparities) {
   SplitMix64 random(12);
-  for (int disparities = 1; disparities <= 254; ++disparities) {
-    const int window = 2 * random.between(1, 6) + 1;
-    const int width = 4 * random.between(1, 40);
-    const int cost = disparities % 5 == 0 ? disparities / 5 : 0;  // others than SAD are slow in the reference
-    ASSERT_NO_FATAL_FAILURE(expect_noise_matches(width, window + 1, window, disparities, cost, random));
+  for (int cost = 0; cost < test::kCosts; ++cost) {
+    for (const int window : {3, 9, 19, 27}) {
+      for (int disparities = 1; disparities <= 8; ++disparities) {
+        const int width = 4 * ((window + disparities + 6) / 4);
+        ASSERT_NO_FATAL_FAILURE(expect_noise_matches(width, window, window, disparities, cost, random));
+      }
+    }
+    for (int disparities = 251; disparities <= 254; ++disparities)
+      ASSERT_NO_FATAL_FAILURE(expect_noise_matches(260, 3, 3, disparities, cost, random));
+  }
+}
+
+TEST(StereoPipeline, EqualsTheReferenceOnImagesOfTheLargestWidth) {
+  constexpr int kLargestWidth = 8192;
+  SplitMix64 random(15);
+  for (int cost = 0; cost < test::kCosts; ++cost) {
+    for (const auto& [window, disparities] : {std::pair(3, 9), std::pair(13, 1)})
+      ASSERT_NO_FATAL_FAILURE(
+          expect_noise_matches(kLargestWidth, window + 1, window, disparities, cost, random));
   }
 }
 

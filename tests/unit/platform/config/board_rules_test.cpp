@@ -51,14 +51,14 @@ TEST(BoardHostRing, HasAtMostAGibibyte) {
   EXPECT_EQ(ring("host_memory", 8, "width: 8192, height: 8192"), "");
   EXPECT_EQ(
       ring("host_memory", 9, "width: 8192, height: 8192"),
-      "board.yaml:2:50: capture.host_frames = 9: the ring in host memory has 1024 MiB, which hold 8 pairs of "
-      "8192x8192 pixels");
+      "board.yaml:2:50: capture.host_frames = 9: at most 8 pairs of 8192x8192 pixels, because the ring in "
+      "host memory may have 1024 MiB");
   EXPECT_EQ(ring("board", 64, "width: 8192, height: 8192"), "");
   EXPECT_EQ(ring("host_memory", 64, "width: 4096, height: 2048"), "");
-  EXPECT_EQ(ring("host_memory", 64, "width: 4096, height: 2049"),
-            "board.yaml:2:50: capture.host_frames = 64: the ring in host memory has 1024 MiB, which hold 63 "
-            "pairs of "
-            "4096x2049 pixels");
+  EXPECT_EQ(
+      ring("host_memory", 64, "width: 4096, height: 2049"),
+      "board.yaml:2:50: capture.host_frames = 64: at most 63 pairs of 4096x2049 pixels, because the ring "
+      "in host memory may have 1024 MiB");
 }
 
 TEST(BoardBanks, TakeTheirWordsUpToBothLimits) {

@@ -37,7 +37,7 @@ std::string burst(const std::string& bank, int cycles) {
 
 std::vector<KnobStep> steps_of(const std::string& knob, const BoardConfig& board) {
   std::vector<KnobStep> found;
-  for (const KnobStep& step : knob_steps(board, true).possible) {
+  for (const KnobStep& step : knob_steps(board, true, std::nullopt).possible) {
     if (step.knob == knob) found.push_back(step);
   }
   return found;
@@ -70,8 +70,11 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {"matcher.units", {}, "all -> 40; "},
       {"matcher.units", {"matcher.disparities=3"}, "all -> 2; "},
       {"matcher.units", {"matcher.disparities=1"}, ""},
-      {"matcher.units", {"matcher.units=40"}, "40 -> 41; 40 -> 39; 40 -> all; "},
-      {"matcher.units", {"matcher.units=80"}, "80 -> 79; 80 -> all; "},
+      {"matcher.units", {"matcher.units=40"}, "40 -> 27; 40 -> all; "},
+      {"matcher.units", {"matcher.units=79"}, "79 -> 27; 79 -> all; "},
+      {"matcher.units", {"matcher.units=27"}, "27 -> 40; 27 -> 20; 27 -> all; "},
+      {"matcher.units", {"matcher.units=80"}, "80 -> 40; 80 -> all; "},
+      {"matcher.units", {"matcher.units=2", "matcher.disparities=5"}, "2 -> 3; 2 -> 1; 2 -> all; "},
       {"matcher.units", {"matcher.units=1"}, "1 -> 2; 1 -> all; "},
       {"matcher.cost", {}, "sad -> ssd; sad -> zncc; sad -> {census: 5}; "},
       {"matcher.cost", {"matcher.cost=zncc"}, "zncc -> sad; zncc -> ssd; zncc -> {census: 5}; "},
@@ -170,7 +173,7 @@ TEST(KnobSteps, AreValidBoardsThatDifferAndAreMarkedByTheirEffect) {
   const BoardConfig board = board_with({"allocation.disparity=[bank0, bank5]"});
   EXPECT_EQ(steps_of("fpga.priority", board).size(), 5U);
   EXPECT_EQ(steps_of("a bank less", board_with({})).size(), 8U * 7 - 2) << "no bank holds both tables";
-  for (const KnobStep& step : knob_steps(board, true).possible) {
+  for (const KnobStep& step : knob_steps(board, true, std::nullopt).possible) {
     EXPECT_THAT(platform::problems(step.board), IsEmpty()) << step.knob;
     EXPECT_FALSE(step.board == board) << step.knob;
     EXPECT_EQ(step.only_best, step.knob.find("a bank ") == 0 || step.knob == "fpga.tables") << step.knob;
@@ -183,7 +186,8 @@ TEST(KnobSteps, AreValidBoardsThatDifferAndAreMarkedByTheirEffect) {
 TEST(KnobSteps, AreForbiddenWhereAnotherKeyForbidsThem) {
   const auto forbidden = [](const std::string& preset, const Texts& sets) {
     Texts texts;
-    for (const ForbiddenStep& step : knob_steps(platform::load_board(preset, sets), false).forbidden)
+    for (const ForbiddenStep& step :
+         knob_steps(platform::load_board(preset, sets), false, std::nullopt).forbidden)
       texts.push_back(fmt::format("{}: {} -> {}: {}", step.knob, step.from, step.to, step.reason));
     return texts;
   };
@@ -202,6 +206,15 @@ TEST(KnobSteps, AreForbiddenWhereAnotherKeyForbidsThem) {
   EXPECT_EQ(all[3].substr(0, 31), "a bank less: bank0 -> into bank");
 }
 
+TEST(KnobSteps, AreForbiddenWhereTheTablesCannotBeJoined) {
+  const KnobSteps steps = knob_steps(board_with({kJoint[2]}), false, "too wide");
+  ASSERT_EQ(steps.forbidden.size(), 1U) << "the first of the steps to either bank";
+  EXPECT_EQ(steps.forbidden[0].knob, "fpga.tables");
+  EXPECT_EQ(steps.forbidden[0].to, "joint in bank6");
+  EXPECT_EQ(steps.forbidden[0].reason, "too wide");
+  for (const KnobStep& step : steps.possible) EXPECT_FALSE(step.board.fpga.joint_tables) << step.knob;
+}
+
 TEST(KnobSteps, GiveNoBankANameThatDiffersFromAnotherOnlyInCase) {
   BoardConfig shared = board_with({"ssram.banks={New_Bank: {}, b: {words: 1048576}}",
                                    "allocation={left_image: New_Bank, right_image: b, disparity: b, "
@@ -215,7 +228,8 @@ TEST(KnobSteps, GiveNoBankANameThatDiffersFromAnotherOnlyInCase) {
 
 TEST(KnobSteps, OfTheBoardAloneDoNotChangeTheComputer) {
   std::set<std::string> knobs;
-  for (const KnobStep& step : knob_steps(board_with({}), false).possible) knobs.insert(step.knob);
+  for (const KnobStep& step : knob_steps(board_with({}), false, std::nullopt).possible)
+    knobs.insert(step.knob);
   for (const char* const knob :
        {"pci.clock_mhz", "cameras.trigger", "capture.fifo_words", "bridge.posted_words", "image.width"})
     EXPECT_THAT(knobs, Not(Contains(knob)));
