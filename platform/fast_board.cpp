@@ -47,7 +47,7 @@ FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbel
 
 void FastBoard::step(std::uint64_t now_ps) {
   now_ps_ = now_ps;
-  next_ps_ = fast_core_.advance(now_ps, now_ps);
+  next_ps_ = fast_core_.advance(now_ps);
 }
 
 void FastBoard::catch_up(std::uint64_t now_ps) {

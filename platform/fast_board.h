@@ -54,8 +54,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
   }
   // Whether that step ends a frame. Else it comes after everything else that happens at its time.
   bool ends_frame_next() const { return frames_.is_finishing(); }
-  // Advances the core. Throws std::runtime_error if a frame
-  // stalls or needs Fidelity::kCycle.
+  // Advances the core. Throws std::runtime_error if a frame stalls or needs Fidelity::kCycle.
   void step(std::uint64_t now_ps);
 
   // See FrameRun.
@@ -75,6 +74,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
 
   void start_frame(const fpga::FrameStart& start) override;
 
+  std::uint64_t horizon_ps() const override { return now_ps_; }
   fpga::DirectFrame::Memory direct_memory(const fpga::DirectFrame::Buffers& buffers,
                                           const kernels::JointOffsets& offsets) override;
   std::uint8_t* direct_disparities() override { return disparities_; }

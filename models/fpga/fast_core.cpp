@@ -63,13 +63,13 @@ void FastCore::fail(const std::string& why) {
   board_.failed(why);
 }
 
-std::uint64_t FastCore::advance(std::uint64_t now_ps, std::uint64_t horizon_ps) {
+std::uint64_t FastCore::advance(std::uint64_t now_ps) {
   for (;;) {
     if (frames_.is_running()) {
       if (const std::uint64_t cycles = frames_.stalled_cycles(); cycles != 0) board_.stalled(cycles);
     }
     if (local_bus_.word_waits() && !host_port_.is_contended()) {
-      const auto next_ps = host_port_.serve_uncontended(horizon_ps);
+      const auto next_ps = host_port_.serve_uncontended(board_.horizon_ps());
       if (next_ps && *next_ps > now_ps) return *next_ps;
       if (next_ps) end_frame();
       continue;
@@ -87,7 +87,7 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps, std::uint64_t horizon_ps) 
       return next_check_ps_;
     } else {
       const std::uint64_t most_ps = clock_.edge_ps(frames_.cycle() + kMostCyclesAhead);
-      frames_.run_ahead(clock_.edge_at_or_after(std::min(horizon_ps, most_ps)));
+      frames_.run_ahead(clock_.edge_at_or_after(std::min(board_.horizon_ps(), most_ps)));
     }
     if (frames_.control().frame_done()) {
       finish_frame();

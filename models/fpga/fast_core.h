@@ -28,6 +28,8 @@ class FastCore {
   class Board {
    public:
     virtual ~Board() = default;
+    // Nothing else can happen before this time, which is not before the present.
+    virtual std::uint64_t horizon_ps() const = 0;
     // Direct access to the buffers of a frame.
     virtual DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
                                               const kernels::JointOffsets& offsets) = 0;
@@ -54,11 +56,10 @@ class FastCore {
   // To be called instead of HostPort::route() unless a stepped frame runs.
   void route(const HostRoute& route);
 
-  // Does what is due at `now_ps`. Nothing else can happen before `horizon_ps`, which is not before now.
-  // Returns the time of the next call; kNever: the next call is due when a frame starts. When a burst begins
-  // to request, a call is due in any case. An event at the time of an edge belongs to the cycle that begins
-  // there.
-  std::uint64_t advance(std::uint64_t now_ps, std::uint64_t horizon_ps);
+  // Does what is due at `now_ps`. Returns the time of the next call; kNever: the next call is due when a frame
+  // starts. When a burst begins to request, a call is due in any case. An event at the time of an edge belongs
+  // to the cycle that begins there.
+  std::uint64_t advance(std::uint64_t now_ps);
 
  private:
   bool works_directly(const FrameStart& start);

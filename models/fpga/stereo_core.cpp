@@ -13,10 +13,6 @@ using memory::PortMask;
 constexpr std::uint64_t kMostSteppedCycles = 8192;
 
 std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
-// No event can occur before this time.
-std::uint64_t horizon_ps() {
-  return present_ps() + kernel_time::to_ps(sc_core::sc_time_to_pending_activity());
-}
 
 memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
   if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
@@ -104,6 +100,10 @@ void StereoCore::failed(const std::string& why) {
   SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + why).c_str());
 }
 
+std::uint64_t StereoCore::horizon_ps() const {
+  return present_ps() + kernel_time::to_ps(sc_core::sc_time_to_pending_activity());
+}
+
 void StereoCore::run() {
   for (;;) {
     if (fast_forwards()) {
@@ -132,7 +132,7 @@ void StereoCore::catch_up() {
 // Does what is due now, then waits for the next event.
 void StereoCore::fast_forward() {
   const std::uint64_t now = present_ps();
-  const std::uint64_t next = fast_core_.advance(now, horizon_ps());
+  const std::uint64_t next = fast_core_.advance(now);
   if (next == kNever) {
     wait(start_event_ | local_bus_.request_event());
   } else {

@@ -96,6 +96,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   void finish_frame();
   void route_host(const HostRoute& route);
 
+  std::uint64_t horizon_ps() const override;
   DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
                                     const kernels::JointOffsets& offsets) override {
     return datapath_.direct_memory(buffers, offsets);

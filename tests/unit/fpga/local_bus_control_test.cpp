@@ -10,7 +10,7 @@
 namespace stereotlm::fpga {
 namespace {
 
-constexpr std::size_t kBanks = 2;
+constexpr std::size_t kBankCount = 2;
 
 class LocalBusControlTest : public testing::Test, public LocalBusControl::Core, public LocalBusMasterIf {
  protected:
@@ -35,7 +35,7 @@ class LocalBusControlTest : public testing::Test, public LocalBusControl::Core, 
     oks.push_back(ok);
   }
 
-  LocalBusControl bus{{40, {}}, kBanks, *this};
+  LocalBusControl bus{{40, {}}, kBankCount, *this};
   std::vector<std::uint32_t> words;
   std::vector<HostRoute> routes;
   std::vector<std::uint64_t> register_accesses_ps;
@@ -45,7 +45,7 @@ class LocalBusControlTest : public testing::Test, public LocalBusControl::Core, 
 
 TEST_F(LocalBusControlTest, RefusesABurstWithoutBeginningIt) {
   EXPECT_FALSE(begin(0, 2, 1));
-  EXPECT_FALSE(begin(0, std::uint64_t{kBanks} << 28U, 1));
+  EXPECT_FALSE(begin(0, std::uint64_t{kBankCount} << 28U, 1));
   EXPECT_FALSE(begin(0, (1U << 28U) - 4, 2));
   EXPECT_EQ(bus.stats(0).errors, 3U);
   EXPECT_EQ(bus.stats(0).bursts, 0U);
@@ -77,7 +77,7 @@ TEST_F(LocalBusControlTest, BeginsEachBurstWithTheFirstClockAtOrAfterItsTime) {
   std::mt19937_64 random(1);
   for (const double mhz : {40.0, 33.333, 66.667, 29.97}) {
     const Clock clock(mhz);
-    LocalBusControl control({mhz, {}}, kBanks, *this);
+    LocalBusControl control({mhz, {}}, kBankCount, *this);
     control.bind(*this);
     std::uint64_t now_ps = 0;
     for (int burst = 0; burst < 1000; ++burst) {
