@@ -1,6 +1,5 @@
 #include "models/period.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -11,6 +10,20 @@ Wide power_of_ten(int exponent) {
   Wide power = 1;
   for (; exponent > 0; --exponent) power *= 10;
   return power;
+}
+
+// Returns a / b in 2^-64, rounded down. a < b < 2^127.
+std::uint64_t fraction_of(Wide a, Wide b) {
+  std::uint64_t fraction = 0;
+  for (int bit = 0; bit < 64; ++bit) {
+    a <<= 1U;
+    fraction <<= 1U;
+    if (a >= b) {
+      a -= b;
+      ++fraction;
+    }
+  }
+  return fraction;
 }
 
 }  // namespace
@@ -35,8 +48,7 @@ DecimalNumber decimal_of(double value) {
   return {digits * power_of_ten(-decimals), power_of_ten(decimals)};
 }
 
-Period::Period(Wide numerator, Wide denominator)
-    : approximate_(static_cast<double>(numerator) / static_cast<double>(denominator)) {
+Period::Period(Wide numerator, Wide denominator) {
   Wide divisor = denominator;
   for (Wide rest = numerator; rest != 0;) {
     const Wide next = divisor % rest;
@@ -46,20 +58,22 @@ Period::Period(Wide numerator, Wide denominator)
   denominator_ = denominator / divisor;
   whole_ = static_cast<std::uint64_t>(numerator / denominator);
   rest_ = numerator / divisor % denominator_;
-  constexpr Wide kNarrow = UINT64_MAX;
-  narrow_counts_ =
-      denominator_ > kNarrow ? 0 : static_cast<std::uint64_t>(kNarrow / std::max(Wide{1}, 2 * rest_));
+  fraction_ = fraction_of(rest_, denominator_);
 }
 
-// Returns 2 * rest_ * count / denominator_. The dividend may have more than 128 bits, so the product with the
-// upper bits of the count is divided first.
-std::uint64_t Period::doubled_rest_of(std::uint64_t count) const {
+// The number of half ps in the rest, 2 * rest_ * count / denominator_, has a dividend that may have more than
+// 128 bits. The product with the upper bits of the count is therefore divided first.
+std::uint64_t Period::exact_times(std::uint64_t count) const {
   constexpr unsigned kLowerBits = 20;
   const Wide upper = 2 * rest_ * (count >> kLowerBits);
   const Wide lower = 2 * rest_ * (count & ((std::uint64_t{1} << kLowerBits) - 1));
   const Wide remainder = upper % denominator_ << kLowerBits;
-  return static_cast<std::uint64_t>(((upper / denominator_) << kLowerBits) +
-                                    (remainder + lower) / denominator_);
+  const auto half_ps =
+      static_cast<std::uint64_t>(((upper / denominator_) << kLowerBits) + (remainder + lower) / denominator_);
+  return whole_ * count + (half_ps + 1) / 2;
 }
+
+PeriodCounter::PeriodCounter(Wide numerator, Wide denominator)
+    : per_ps_(fraction_of(denominator, numerator)) {}
 
 }  // namespace stereotlm

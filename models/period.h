@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include "models/rounding.h"
-
 namespace stereotlm {
 
 __extension__ typedef unsigned __int128 Wide;
@@ -28,14 +26,13 @@ class Period {
 
   // The time of `count` periods, in ps.
   std::uint64_t times(std::uint64_t count) const {
-    if (rest_ == 0) return whole_ * count;
-    if (const auto time = rounded_if_certain(static_cast<double>(count) * approximate_)) return *time;
-    // A division of 128-bit numbers takes several times as long as one of 64-bit numbers.
-    const std::uint64_t doubled_rest =
-        count <= narrow_counts_
-            ? 2 * static_cast<std::uint64_t>(rest_) * count / static_cast<std::uint64_t>(denominator_)
-            : doubled_rest_of(count);
-    return whole_ * count + (doubled_rest + 1) / 2;
+    const Wide product = Wide{fraction_} * count;
+    // The exact time is beyond whole ps by at least `least` and by less than `most`, in 2^-64 ps.
+    const auto least = static_cast<std::uint64_t>(product);
+    const std::uint64_t most = least + count;
+    constexpr unsigned kHalf = 63;
+    if (most < least || least >> kHalf != most >> kHalf) return exact_times(count);
+    return whole_ * count + static_cast<std::uint64_t>(product >> 64U) + (least >> kHalf);
   }
 
   friend bool operator==(const Period& a, const Period& b) {
@@ -43,13 +40,35 @@ class Period {
   }
 
  private:
-  std::uint64_t doubled_rest_of(std::uint64_t count) const;
+  std::uint64_t exact_times(std::uint64_t count) const;
 
-  double approximate_;   // ps, rounded to a double
-  std::uint64_t whole_;  // whole ps
-  Wide rest_;            // the rest is rest_ / denominator_ ps, in lowest terms
+  std::uint64_t whole_;     // whole ps
+  std::uint64_t fraction_;  // the rest in 2^-64 ps, rounded down
+  Wide rest_;               // the rest is rest_ / denominator_ ps, in lowest terms
   Wide denominator_;
-  std::uint64_t narrow_counts_;  // largest count for which 64-bit arithmetic is enough
+};
+
+// Counts how many periods fit into a time.
+class PeriodCounter {
+ public:
+  // A period of numerator / denominator ps, at least 4 ps. The numerator is below 2^127.
+  PeriodCounter(Wide numerator, Wide denominator);
+
+  struct Count {
+    std::uint64_t whole = 0;  // whole periods
+    // Whether a time up to 1 ps longer or shorter would have as many. If not, `whole` may be wrong by one.
+    bool certain = false;
+  };
+  // `time_ps`: below 2^62.
+  Count in(std::uint64_t time_ps) const {
+    const Wide product = Wide{per_ps_} * time_ps;
+    const auto fraction = static_cast<std::uint64_t>(product);
+    const std::uint64_t doubt = 2 * per_ps_ + time_ps;
+    return {static_cast<std::uint64_t>(product >> 64U), fraction > doubt && fraction < ~doubt};
+  }
+
+ private:
+  std::uint64_t per_ps_;  // periods in a ps, in 2^-64, rounded down
 };
 
 }  // namespace stereotlm

@@ -22,11 +22,19 @@ PortAccesses accesses_of(const fpga::CoreConfig& core, const std::optional<Recti
   return {table ? geometry.slots - pattern.empty_slots() : 0, pattern.pixel_accesses()};
 }
 
-// The clocks that a bus needs for `words` words in bursts of at most `burst_words`: one per word, and
-// `clocks_a_burst` more per burst.
-std::uint64_t bus_clocks(std::uint64_t words, int burst_words, int clocks_a_burst) {
+// The fewest bursts of at most `burst_words` words that hold `words` words.
+std::uint64_t bursts_of(std::uint64_t words, int burst_words) {
   const auto burst = static_cast<std::uint64_t>(burst_words);
-  return words + (words + burst - 1) / burst * static_cast<std::uint64_t>(clocks_a_burst);
+  return (words + burst - 1) / burst;
+}
+
+// The clocks that the PCI bus needs for `words` words in bursts of at most `burst_words`: one per word (64
+// bits: one per two words), and `clocks_a_burst` more per burst.
+std::uint64_t pci_clocks_of(const BoardConfig& board, std::uint64_t words, int burst_words,
+                            int clocks_a_burst) {
+  const auto words_a_clock = static_cast<std::uint64_t>(board.pci.width_bits / 32);
+  return (words + words_a_clock - 1) / words_a_clock +
+         bursts_of(words, burst_words) * static_cast<std::uint64_t>(clocks_a_burst);
 }
 
 double camera_rate(const BoardConfig& board) {
@@ -141,12 +149,12 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
   constexpr int kAddressAndIdle = 2;
   const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
   // The clocks of one DMA transfer: a descriptor of 4 words, then a picture or result.
-  const std::uint64_t moved =
-      bus_clocks(4, 4, memory_burst) + bus_clocks(picture, board.bridge.dma_burst_words, memory_burst);
+  const std::uint64_t moved = pci_clocks_of(board, 4, 4, memory_burst) +
+                              pci_clocks_of(board, picture, board.bridge.dma_burst_words, memory_burst);
   const std::uint64_t captured =
-      to_host ? bus_clocks(picture, board.capture.fifo_words, memory_burst)
-              : bus_clocks(picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
-                           kAddressAndIdle + board.pci.bridge_wait_clocks);
+      to_host ? pci_clocks_of(board, picture, board.capture.fifo_words, memory_burst)
+              : pci_clocks_of(board, picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
+                              kAddressAndIdle + board.pci.bridge_wait_clocks);
   const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
   // The local bus moves the result, and the pair either by DMA or as it was captured. A cycle of the FPGA
   // grants one word at most. From one word of a burst to the next it takes at least one local clock. From the
@@ -154,7 +162,7 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pict
   const double local_pictures = to_host || whole_pictures ? 3 : 1;
   const double words = local_pictures * static_cast<double>(picture);
   const double bursts =
-      local_pictures * static_cast<double>(bus_clocks(picture, board.bridge.dma_burst_words, 1) - picture);
+      local_pictures * static_cast<double>(bursts_of(picture, board.bridge.dma_burst_words));
   const double local_us = 1 / board.bridge.local_clock_mhz;
   const double fpga_us = 1 / board.fpga.clock_mhz;
   const double bridge_us =

@@ -6,6 +6,7 @@
 
 #include "platform/audit.h"
 #include "platform/bounds.h"
+#include "platform/computer_parts.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
@@ -16,14 +17,9 @@ constexpr double kPsPerMs = 1e9;
 
 double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
 
-ComputerCounters::Camera camera_counters(const capture::Camera& camera,
-                                         const capture::CaptureBoard& grabber) {
-  return {camera.stats().frames, grabber.undecided(), grabber.stats()};
-}
-
 // A frame that begins just when the run ends counts as dropped (not armed), because no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
-  const capture::CaptureBoard::Stats& capture = camera.capture;
+  const capture::CaptureControl::Stats& capture = camera.capture;
   CameraStatistics statistics;
   statistics.name = name;
   statistics.frames = camera.frames;
@@ -73,7 +69,7 @@ void audit_cameras(const ComputerStatistics& computer, const ComputerCounters& c
                 camera.captured_frames + camera.dropped_frames);
   }
   for (std::size_t side = 0; side < computer.cameras.size(); ++side) {
-    const std::size_t master = side == 0 ? Computer::kLeftCapture : Computer::kRightCapture;
+    const std::size_t master = side == 0 ? kLeftCapture : kRightCapture;
     audit.equal("camera " + computer.cameras[side].name + ": words written",
                 counters.cameras[side].capture.words, "words of its PCI master",
                 counters.pci.masters[master].words);
@@ -82,21 +78,16 @@ void audit_cameras(const ComputerStatistics& computer, const ComputerCounters& c
 
 }  // namespace
 
-ComputerCounters counters_of(const Computer& computer) {
-  const fpga::LocalBus& local_bus = computer.board.core.local_bus_port();
-  return {counters_of(computer.board),
-          computer.pci_bus.stats(),
-          computer.bridge.stats(),
-          local_bus.stats(),
-          {computer.bridge.words_taken().words(), computer.bridge.words_held().words(),
-           local_bus.words_to_grant().words(), local_bus.words_granted().words()},
-          {camera_counters(computer.left_camera, computer.left_capture),
-           camera_counters(computer.right_camera, computer.right_capture)}};
+std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
+  std::uint64_t words = 0;
+  for (std::size_t master = 0; master < kTrafficGenerator; ++master) words += bus.masters[master].words;
+  return words;
 }
 
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
+                              const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries) {
-  Statistics statistics = collect_statistics(config, tables, computer.board, counters.board);
+  Statistics statistics = collect_statistics(config, tables, fidelity, frame_cycles, counters.board);
   const double delivered = static_cast<double>(deliveries.size());
   const Delivery& first = deliveries.front();
   const Delivery& last = deliveries.back();
@@ -110,7 +101,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   ComputerStatistics& around = statistics.computer.emplace();
   around.pci_clocks = counters.pci.clocks;
   around.pci_busy_clocks = counters.pci.busy_clocks;
-  for (const pci::PciBus::MasterStats& master : counters.pci.masters) {
+  for (const pci::PciBusControl::MasterStats& master : counters.pci.masters) {
     around.pci_masters.push_back({master.name, master.transactions, master.words, master.wait_clocks});
   }
   around.posted_words = counters.bridge.posted_words;

@@ -2,14 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "models/capture/capture_board.h"
-#include "models/fpga/local_bus.h"
-#include "models/pci/pci_bridge.h"
-#include "models/pci/pci_bus.h"
+#include "models/capture/capture_control.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/pci/bridge_control.h"
+#include "models/pci/pci_bus_control.h"
 #include "platform/collect.h"
-#include "platform/computer.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/statistics.h"
@@ -35,23 +35,26 @@ struct ComputerCounters {
   struct Camera {
     std::uint64_t frames = 0;  // frames that have begun
     bool undecided = false;    // the last frame began just now, and it is not decided whether it is captured
-    capture::CaptureBoard::Stats capture;
+    capture::CaptureControl::Stats capture;
   };
 
   BoardCounters board;
-  pci::PciBus::Stats pci;
-  pci::PciBridge::Stats bridge;
-  fpga::LocalBus::Stats local_bus;
+  pci::PciBusControl::Stats pci;
+  pci::BridgeControl::Stats bridge;
+  fpga::LocalBusControl::Stats local_bus;
   Words words;
   std::array<Camera, 2> cameras;  // left, right
 };
 
-ComputerCounters counters_of(const Computer& computer);
+// What the PCI masters have transferred for results. The words of the traffic generator do not count.
+std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus);
 
 // Returns the figures and the bounds of a run that ended with the last of `deliveries`. Checks the identities
 // of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken at the end of
-// the run. `deliveries` has one entry for each frame that they cover, at least one.
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Computer& computer,
+// the run. `deliveries` has one entry for each frame that they cover, at least one. `frame_cycles`: the length
+// of each frame of the core.
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
+                              const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries);
 
 }  // namespace stereotlm::platform

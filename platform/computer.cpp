@@ -1,75 +1,19 @@
 #include "platform/computer.h"
 
-#include <cmath>
-
-#include "platform/config/buffer_layout.h"
+#include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
 namespace {
 
-enum Window : std::size_t {
-  kHostMemory,
-  kBridgeSlave,
-  kBridgeRegisters,
-  kLeftRegisters,
-  kRightRegisters,
-  kTrafficDevice
-};
 enum Interrupt : std::size_t { kBridgeInterrupt, kLeftInterrupt, kRightInterrupt, kInterruptCount };
-
-// The registers of the capture boards have as many wait clocks as the bridge.
-pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes) {
-  const DeviceMap map;
-  const auto window = [](std::uint64_t base, std::uint64_t bytes, int wait_clocks) {
-    return pci::PciWindow{static_cast<std::uint32_t>(base), static_cast<std::uint32_t>(bytes), wait_clocks};
-  };
-  const int bridge_wait = board.pci.bridge_wait_clocks;
-  pci::PciBusConfig config;
-  config.clock_mhz = board.pci.clock_mhz;
-  config.latency_timer_clocks = board.pci.latency_timer_clocks;
-  config.masters = {"host", "left_capture", "right_capture", "bridge"};
-  config.windows = {window(map.host_memory, host_memory_bytes, board.pci.memory_wait_clocks),
-                    window(map.bridge_slave, pci::bridge::kSlaveWindowBytes, bridge_wait),
-                    window(map.bridge_registers, pci::bridge::kRegisterWindowBytes, bridge_wait),
-                    window(map.left_capture, capture::registers::kEnd, bridge_wait),
-                    window(map.right_capture, capture::registers::kEnd, bridge_wait)};
-  if (board.pci.load) {
-    config.masters.emplace_back("load");
-    config.windows.push_back(
-        window(map.traffic_generator, 4 * static_cast<std::uint64_t>(board.pci.load->burst_words), 0));
-  }
-  return config;
-}
-
-std::unique_ptr<pci::TrafficGenerator> make_traffic_generator(const std::optional<PciLoadConfig>& load) {
-  if (!load) return nullptr;
-  const auto ps = [](double us) { return static_cast<std::uint64_t>(std::llround(us * 1e6)); };
-  const pci::TrafficGeneratorConfig config = {static_cast<std::uint32_t>(DeviceMap().traffic_generator),
-                                              load->burst_words, ps(load->first_us), ps(load->interval_us),
-                                              ps(load->access_us)};
-  return std::make_unique<pci::TrafficGenerator>("load", config);
-}
-
-pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
-  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters,
-          buffer_ranges(board)};
-}
-
-capture::CameraConfig camera_config(const BoardConfig& board) {
-  return {board.image.width, board.image.height, board.cameras.frame_rate_hz, board.cameras.trigger};
-}
-
-capture::CaptureBoardConfig capture_config(const BoardConfig& board) {
-  return {board.capture.fifo_words, board.capture.fifo_trigger_words};
-}
 
 }  // namespace
 
 Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                    std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
-                   capture::CameraSource& right, Binder& binder, fpga::Fidelity fidelity)
+                   capture::CameraSource& right, Binder& binder)
     : sc_module(name),
-      board("board", config, binder, fidelity),
+      board("board", config, binder),
       pci_bus("pci_bus", pci_config(config, host_memory_bytes)),
       bridge("bridge", bridge_config(config)),
       host_memory("host_memory", host_memory_bytes),
@@ -78,8 +22,9 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
       left_camera("left_camera", camera_config(config), left),
       right_camera("right_camera", camera_config(config), right),
       left_capture("left_capture", capture_config(config)),
-      right_capture("right_capture", capture_config(config)),
-      traffic_generator(make_traffic_generator(config.pci.load)) {
+      right_capture("right_capture", capture_config(config)) {
+  if (const auto traffic = traffic_config(config))
+    traffic_generator = std::make_unique<pci::TrafficGenerator>("load", *traffic);
   bind_pci(binder);
   bind_capture();
   binder.bind(cpu.bus, host_bridge.cpu, "cpu_to_host_bridge");
@@ -90,6 +35,25 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
   cpu.interrupts[kBridgeInterrupt].bind(bridge.interrupt);
   cpu.interrupts[kLeftInterrupt].bind(left_capture.interrupt);
   cpu.interrupts[kRightInterrupt].bind(right_capture.interrupt);
+}
+
+ComputerCounters Computer::counters() const {
+  const auto camera_counters = [](const capture::Camera& camera, const capture::CaptureBoard& grabber) {
+    return ComputerCounters::Camera{camera.stats().frames, grabber.undecided(), grabber.stats()};
+  };
+  const fpga::LocalBus& local_bus = board.core.local_bus_port();
+  return {counters_of(board),
+          pci_bus.stats(),
+          bridge.stats(),
+          local_bus.stats(),
+          {bridge.words_taken().words(), bridge.words_held().words(), local_bus.words_to_grant().words(),
+           local_bus.words_granted().words()},
+          {camera_counters(left_camera, left_capture), camera_counters(right_camera, right_capture)}};
+}
+
+std::uint64_t Computer::work_done() {
+  board.core.catch_up();
+  return board.core.control().work() + words_for_results(pci_bus.stats());
 }
 
 void Computer::bind_pci(Binder& binder) {

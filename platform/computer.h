@@ -16,6 +16,7 @@
 #include "models/pci/pci_bus.h"
 #include "models/pci/traffic_generator.h"
 #include "platform/board.h"
+#include "platform/computer_view.h"
 #include "platform/config/board_config.h"
 #include "platform/device_map.h"
 
@@ -23,17 +24,20 @@ namespace stereotlm::platform {
 
 // The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board
 // behind its PCI bridge, host memory, and the processor that runs `program`. The board key `pci.load` adds a
-// traffic generator. DeviceMap has the addresses of the devices.
-class Computer : public sc_core::sc_module {
+// traffic generator. At Fidelity::kCycle; see FastComputer for the others. DeviceMap has the addresses of the devices.
+class Computer : public sc_core::sc_module, public ComputerView {
  public:
-  // Masters of the PCI bus: indices of its slots and of its statistics.
-  enum Master : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kTrafficGenerator };
-
   // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has
   // problems, or `host_memory_bytes` is out of range.
   Computer(const sc_core::sc_module_name& name, const BoardConfig& config, std::uint64_t host_memory_bytes,
-           host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder,
-           fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
+           host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder);
+
+  ComputerCounters counters() const override;
+  const fpga::FrameRun& core_frames() const override { return board.core.frames(); }
+  std::uint64_t work_done() override;
+  std::string waits() const override { return board.core.waits(); }
+  void record_rows() override { board.core.record_rows(); }
+  std::vector<fpga::RowProfile> take_rows() override { return board.core.take_rows(); }
 
   Board board;
   pci::PciBus pci_bus;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -10,11 +9,11 @@
 
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/buffer_bases.h"
-#include "models/fpga/frame_counts.h"
 #include "models/fpga/frame_run.h"
 #include "models/memory/arbitration.h"
 #include "platform/collect.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/frame_sums.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -37,7 +36,6 @@ class CoreRun {
         frames_(config_, banks_, arbitration_, stall_timeout_cycles) {
     if (tables.left) patterns_[0].set_entries(tables.left->entries.data());
     if (tables.right) patterns_[1].set_entries(tables.right->entries.data());
-    accesses_.resize(banks_.size());
   }
 
   void run_frame() {
@@ -47,7 +45,7 @@ class CoreRun {
       if (frames_.stalled_cycles() != 0) throw_stuck();
     }
     frames_.finish();
-    count_frame();
+    sums_.add({config_, patterns_, frames_, std::nullopt}, arbitration_);
     frames_.end();
   }
 
@@ -55,24 +53,11 @@ class CoreRun {
 
   BoardCounters counters() const {
     BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
-    for (std::size_t bank = 0; bank < banks_.size(); ++bank) counters.banks[bank].accesses = accesses_[bank];
-    counters.left.issued = issued_[0];
-    counters.right.issued = issued_[1];
-    counters.packed_words = packed_words_;
-    counters.written_words = written_words_;
+    sums_.put_into(counters);
     return counters;
   }
 
  private:
-  void count_frame() {
-    const fpga::FrameCounts counts(config_, patterns_, frames_, std::nullopt);
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      accesses_[arbitration_.bank_of(port)] += counts.accesses[port];
-    for (std::size_t side = 0; side < issued_.size(); ++side) issued_[side] += counts.lanes[side].slots.slots;
-    packed_words_ += counts.packed.words;
-    written_words_ += counts.result.writes;
-  }
-
   [[noreturn]] void throw_stuck() const {
     throw std::runtime_error(
         fmt::format("frame {} of the core: no slot consumed and no result written for {} cycles",
@@ -87,11 +72,7 @@ class CoreRun {
   fpga::FrameRun frames_;
   fpga::AccessPatterns patterns_{fpga::AccessPattern(frames_.control().geometry(), config_.pixel_cache),
                                  fpga::AccessPattern(frames_.control().geometry(), config_.pixel_cache)};
-  // Sums over all frames.
-  std::vector<std::uint64_t> accesses_;    // [bank]
-  std::array<std::uint64_t, 2> issued_{};  // [side]: slots
-  std::uint64_t packed_words_ = 0;
-  std::uint64_t written_words_ = 0;
+  FrameSums sums_{banks_.size()};
 };
 
 }  // namespace

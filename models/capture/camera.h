@@ -4,19 +4,11 @@
 #include <systemc>
 
 #include "models/capture/camera_beats.h"
-#include "models/kernels/gray_image.h"
+#include "models/capture/camera_control.h"
+#include "models/step_event.h"
 #include "models/stream.h"
 
 namespace stereotlm::capture {
-
-// Supplies the pictures of a camera.
-class CameraSource {
- public:
-  virtual ~CameraSource() = default;
-  // Returns the picture of camera frame `number`, which began at `begin_ps`. It has the camera's size and
-  // stays valid until the next call. Called only for taken frames, in their order.
-  virtual const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t begin_ps) = 0;
-};
 
 // The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it is
 // triggered. A frame that the capture board takes is sent line by line, with blanking. Cost: one event per
@@ -28,12 +20,9 @@ class CameraSource {
 //
 // SC_REPORT_ERROR (type /stereotlm/camera) reports: a picture of another size; TakeFrame for a frame that is
 // not the running one or has been taken already.
-class Camera : public sc_core::sc_module {
+class Camera : public sc_core::sc_module, private FrameReceiver {
  public:
-  struct Stats {
-    std::uint64_t frames = 0;  // frames that have begun
-    std::uint64_t ignored_triggers = 0;
-  };
+  using Stats = CameraControl::Stats;
 
   StreamOut<VideoFrame> frames_out{"frames_out"};
   StreamOut<VideoLine> lines_out{"lines_out"};
@@ -50,24 +39,18 @@ class Camera : public sc_core::sc_module {
   // kernel's time resolution is not 1 ps.
   Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source);
 
-  const CameraTiming& timing() const { return timing_; }
-  const Stats& stats() const { return stats_; }
+  const CameraTiming& timing() const { return control_.timing(); }
+  const Stats& stats() const { return control_.stats(); }
 
  private:
-  void begin_frame();
+  void begin_frame(const VideoFrame& frame) override { frames_out->push(frame); }
+  void step();
   void send_line();
 
-  CameraTiming timing_;
-  CameraTrigger trigger_mode_;
-  CameraSource& source_;
-  sc_core::sc_event frame_begins_{"frame_begins"};
+  CameraControl control_;
+  StepEvent step_due_{"step_due"};
   sc_core::sc_event line_begins_{"line_begins"};
-  bool triggered_ = false;           // a triggered frame is about to begin
-  std::uint64_t next_begin_ps_ = 0;  // earliest beginning of a triggered frame
-  std::uint64_t frame_begin_ps_ = 0;
-  const kernels::GrayImage* image_ = nullptr;  // picture of the running frame; null: not taken
-  int row_ = 0;                                // next row to send
-  Stats stats_;
+  int row_ = 0;  // next row to send
 };
 
 }  // namespace stereotlm::capture

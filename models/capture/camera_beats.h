@@ -3,18 +3,11 @@
 #include <cstdint>
 #include <systemc>
 
-#include "models/capture/camera_timing.h"
+#include "models/capture/camera_link.h"
 
-// Messages between a camera and its capture board.
+// Messages between a camera and its capture board. The first one is VideoFrame: a frame begins now. The camera
+// sends its lines only if the receiver sends TakeFrame before the frame's first word is complete.
 namespace stereotlm::capture {
-
-// A frame begins now. The camera sends its lines only if the receiver sends TakeFrame before the
-// frame's first word is complete.
-struct VideoFrame {
-  std::uint64_t number = 0;  // 0 for the camera's first frame
-  std::uint64_t begin_ps = 0;
-  const CameraTiming* timing = nullptr;  // timing of its pixels; lives as long as the camera
-};
 
 // The capture board takes the running frame.
 struct TakeFrame {

@@ -18,20 +18,17 @@ CameraTiming::CameraTiming(const CameraConfig& config, const DecimalNumber& rate
       frame_(Wide{1'000'000'000'000} * rate_hz.denominator, rate_hz.numerator),
       step_(Wide{32'000'000'000'000} * rate_hz.denominator,
             Wide{35} * row_steps_ * static_cast<std::uint64_t>(config.height) * rate_hz.numerator),
-      steps_per_ps_(35.0 / 32e12 * static_cast<double>(row_steps_) * config.height * config.frame_rate_hz) {}
+      pixels_(Wide{32'000'000'000'000} * kPixelSteps * rate_hz.denominator,
+              Wide{35} * row_steps_ * static_cast<std::uint64_t>(config.height) * rate_hz.numerator) {}
 
+// Rounding moves the beginning of the row and the arrival of a pixel by at most half a ps each.
 int CameraTiming::pixels_by(int row, std::uint64_t since_begin_ps) const {
-  const double steps = static_cast<double>(since_begin_ps) * steps_per_ps_;
-  const double row_steps = static_cast<double>(row_steps_ * static_cast<std::uint64_t>(row));
-  constexpr double kPixelsPerStep = 1.0 / kPixelSteps;
-  const double arrived = (steps - row_steps) * kPixelsPerStep + 1;
-  int pixels = static_cast<int>(std::clamp(arrived, 0.0, static_cast<double>(width_)));
-  // Rounding moves an arrival by at most half a ps. The estimate is therefore certain if it lies farther from
-  // an arrival than 1 ps plus the error of `steps`.
-  const double doubt = (steps_per_ps_ + steps * 0x1p-49) * kPixelsPerStep;
-  const double past_pixel = arrived - pixels;
-  if (past_pixel > doubt && past_pixel < 1 - doubt) return pixels;
-  while (pixels > 0 && pixel_ps(pixels - 1, row) > since_begin_ps) --pixels;
+  const std::uint64_t begin_ps = row_ps(row);
+  if (since_begin_ps < begin_ps) return 0;
+  const auto [periods, certain] = pixels_.in(since_begin_ps - begin_ps);
+  int pixels = static_cast<int>(std::min(periods + 1, static_cast<std::uint64_t>(width_)));
+  if (certain) return pixels;
+  while (pixel_ps(pixels - 1, row) > since_begin_ps) --pixels;
   while (pixels < width_ && pixel_ps(pixels, row) <= since_begin_ps) ++pixels;
   return pixels;
 }

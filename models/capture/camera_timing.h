@@ -47,7 +47,7 @@ class CameraTiming {
   std::uint64_t row_steps_;  // steps of a line time
   Period frame_;
   Period step_;
-  double steps_per_ps_;  // approximate
+  PeriodCounter pixels_;  // time between two pixels of a row
 };
 
 }  // namespace stereotlm::capture

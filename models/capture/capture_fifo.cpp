@@ -9,116 +9,126 @@ namespace stereotlm::capture {
 
 using kernels::kPixelsPerWord;
 
+// While a burst runs, ranges for fifo_words further words may enter before its own words are removed.
 CaptureFifo::CaptureFifo(const CaptureBoardConfig& config)
-    : fifo_words_(checked("capture", config).fifo_words), trigger_words_(config.fifo_trigger_words) {}
+    : fifo_words_(checked("capture", config).fifo_words),
+      trigger_words_(config.fifo_trigger_words),
+      ranges_(2 * static_cast<std::size_t>(fifo_words_)) {}
 
 void CaptureFifo::begin_frame(const CameraTiming& timing, std::uint64_t begin_ps) {
   timing_ = &timing;
   begin_ps_ = begin_ps;
   now_ps_ = begin_ps;
   words_per_line_ = timing.width() / kPixelsPerWord;
-  row_ = 0;
-  word_ = 0;
+  begin_line(0);
+}
+
+void CaptureFifo::begin_line(int row) {
+  row_ = row;
+  first_word_ = row * words_per_line_;
+  line_end_ps_ = arrival_ps(timing_->width() - 1, row);
+  next_line_ps_ = row + 1 < timing_->height() ? arrival_ps(0, row + 1) : kNever;
+  pixels_ = 0;
+  taken_ = 0;
   drops_line_ = false;
 }
 
-void CaptureFifo::advance(std::uint64_t now_ps) { take(now_ps, nullptr); }
+void CaptureFifo::advance(std::uint64_t now_ps) {
+  take(now_ps, [](std::uint64_t /*time_ps*/) { return 0; });
+}
 
-void CaptureFifo::take(std::uint64_t now_ps, const LeftBy* left_by) {
+template <class LeftBy>
+void CaptureFifo::take(std::uint64_t now_ps, const LeftBy& left_by) {
   now_ps_ = now_ps;
-  const std::uint64_t since_begin_ps = now_ps - begin_ps_;
-  for (;;) {
-    if (word_ < words_per_line_) {
-      const int pixels = timing_->pixels_by(row_, since_begin_ps);
-      take_words((pixels + kPixelsPerWord - 1) / kPixelsPerWord, left_by);
-    }
-    if (word_ < words_per_line_ || row_ + 1 == timing_->height() ||
-        timing_->row_ps(row_ + 1) > since_begin_ps)
-      return;
-    ++row_;
-    word_ = 0;
-    drops_line_ = false;
+  for (;; begin_line(row_ + 1)) {
+    pixels_ = line_end_ps_ <= now_ps ? timing_->width() : timing_->pixels_by(row_, now_ps - begin_ps_);
+    take_words((pixels_ + kPixelsPerWord - 1) / kPixelsPerWord, left_by);
+    if (now_ps < next_line_ps_) return;
   }
 }
 
-void CaptureFifo::take_words(int end, const LeftBy* left_by) {
+template <class LeftBy>
+void CaptureFifo::take_words(int end, const LeftBy& left_by) {
+  if (drops_line_) return;
   // No word before this one can find the FIFO full, even if no word leaves.
-  int word = std::min(end, word_ + std::max(0, fifo_words_ - occupancy_));
+  int word = std::min(end, taken_ + std::max(0, fifo_words_ - occupancy_));
   const auto finds_it_full = [&] {
-    const int left = left_by == nullptr ? 0 : (*left_by)(arrival_ps(word * kPixelsPerWord, row_));
-    return occupancy_ + (word - word_) - left >= fifo_words_;
+    return occupancy_ + (word - taken_) - left_by(arrival_ps(word * kPixelsPerWord, row_)) >= fifo_words_;
   };
   while (word < end && !finds_it_full()) ++word;
-  const int taken = word - word_;
-  if (taken > 0) {
-    if (lines_.empty() || lines_.back().row != row_) lines_.push_back({row_, word_, 0});
-    lines_.back().count += taken;
-    occupancy_ += taken;
-  }
-  word_ = word;
+  append(word - taken_);
   if (word == end) return;
-  dropped_pixels_ += static_cast<std::uint64_t>(timing_->width() - word * kPixelsPerWord);
-  word_ = words_per_line_;
   drops_line_ = true;
+  dropped_pixels_ += static_cast<std::uint64_t>(timing_->width() - word * kPixelsPerWord);
+}
+
+// The next words of the arriving line enter.
+void CaptureFifo::append(int words) {
+  if (words == 0) return;
+  const int first = first_word_ + taken_;
+  if (occupancy_ == 0) {
+    ranges_[oldest_] = {first, 0};
+    newest_ = oldest_;
+  } else if (ranges_[newest_].first + ranges_[newest_].count != first) {
+    newest_ = newest_ + 1 < ranges_.size() ? newest_ + 1 : 0;
+    ranges_[newest_] = {first, 0};
+  }
+  ranges_[newest_].count += words;
+  taken_ += words;
+  occupancy_ += words;
+}
+
+// Words of the oldest range leave.
+void CaptureFifo::remove(int words) {
+  FrameWords& range = ranges_[oldest_];
+  range.first += words;
+  range.count -= words;
+  occupancy_ -= words;
+  owed_ -= words;
+  if (range.count == 0 && occupancy_ > 0) oldest_ = oldest_ + 1 < ranges_.size() ? oldest_ + 1 : 0;
 }
 
 std::uint64_t CaptureFifo::dropped_pixels() const {
-  if (!drops_line_) return dropped_pixels_;
-  const int arrived = timing_->pixels_by(row_, now_ps_ - begin_ps_);
-  return dropped_pixels_ - static_cast<std::uint64_t>(timing_->width() - arrived);
+  return drops_line_ ? dropped_pixels_ - static_cast<std::uint64_t>(timing_->width() - pixels_)
+                     : dropped_pixels_;
 }
 
-int CaptureFifo::complete_words() const {
-  if (lines_.empty()) return 0;
-  const LineWords& last = lines_.back();
-  const int last_column = (last.first + last.count) * kPixelsPerWord - 1;
-  return occupancy_ - (arrival_ps(last_column, last.row) > now_ps_ ? 1 : 0);
-}
+// Only the last word of the arriving line can be incomplete.
+int CaptureFifo::complete_words() const { return occupancy_ - (taken_ * kPixelsPerWord > pixels_ ? 1 : 0); }
 
-int CaptureFifo::grant(std::vector<LineWords>& burst) {
-  burst.clear();
+FrameWords CaptureFifo::grant() {
   owed_ = complete_words();
-  int granted = 0;
-  for (const LineWords& line : lines_) {
-    const bool contiguous = burst.empty() || (line.row == burst.back().row + 1 &&
-                                              burst.back().first + burst.back().count == words_per_line_);
-    const int count = std::min(owed_ - granted, line.count);
-    if (!contiguous || count == 0) break;
-    burst.push_back({line.row, line.first, count});
-    granted += count;
-  }
-  return granted;
+  const FrameWords& range = ranges_[oldest_];
+  return {range.first, std::min(range.count, owed_)};
 }
 
-void CaptureFifo::leave(std::uint64_t now_ps, int words, const LeftBy& left_by) {
-  take(now_ps, &left_by);
-  occupancy_ -= words;
-  owed_ -= words;
-  while (words > 0) {
-    LineWords& line = lines_.front();
-    const int count = std::min(words, line.count);
-    line.first += count;
-    line.count -= count;
-    words -= count;
-    if (line.count == 0) lines_.pop_front();
-  }
+void CaptureFifo::transfer(std::uint64_t now_ps, const pci::BurstResult& transferred, const Clock& clock) {
+  take(now_ps, [&](std::uint64_t time_ps) {
+    const std::uint64_t running_clock = clock.edge_at_or_after(time_ps + 1) - 1;
+    return static_cast<int>(transferred.words_before(running_clock));
+  });
+  remove(static_cast<int>(transferred.words));
 }
 
-std::optional<std::uint64_t> CaptureFifo::next_ps() const {
-  if (owed_ > 0 || complete_words() >= trigger_words_ || finished()) return now_ps_;
-  if (!lines_.empty() && line_end_ps(lines_.front().row) <= now_ps_) return now_ps_;
+void CaptureFifo::lose(std::uint64_t now_ps, int words) {
+  take(now_ps, [=](std::uint64_t time_ps) { return time_ps < now_ps ? 0 : words; });
+  remove(words);
+}
+
+std::uint64_t CaptureFifo::next_ps() const {
+  const bool line_has_ended = line_end_ps_ <= now_ps_;
+  if (occupancy_ > 0) {
+    const bool holds_ended_line = line_has_ended || ranges_[oldest_].first < first_word_;
+    if (owed_ > 0 || holds_ended_line || complete_words() >= trigger_words_) return now_ps_;
+  } else if (line_has_ended || drops_line_) {
+    // Nothing happens before the next line, which finds the FIFO empty.
+    if (next_line_ps_ == kNever) return std::max(now_ps_, line_end_ps_);
+    return arrival_ps(std::min(trigger_words_, words_per_line_) * kPixelsPerWord - 1, row_ + 1);
+  }
   // Below the trigger, all words are of the arriving line, and none of its next words finds the FIFO full.
-  const int triggering = word_ + trigger_words_ - occupancy_ - 1;
-  if (triggering < words_per_line_) return arrival_ps((triggering + 1) * kPixelsPerWord - 1, row_);
-  const std::uint64_t line_end = line_end_ps(row_);
-  if (line_end <= now_ps_) return std::nullopt;
-  const bool has_words = occupancy_ > 0 || word_ < words_per_line_;
-  if (has_words || row_ + 1 == timing_->height()) return line_end;
-  return std::nullopt;
-}
-
-bool CaptureFifo::finished() const {
-  return lines_.empty() && row_ + 1 == timing_->height() && line_end_ps(row_) <= now_ps_;
+  const int triggering = taken_ + trigger_words_ - occupancy_;
+  return drops_line_ || triggering >= words_per_line_ ? line_end_ps_
+                                                      : arrival_ps(triggering * kPixelsPerWord - 1, row_);
 }
 
 }  // namespace stereotlm::capture

@@ -2,10 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <systemc>
-#include <tlm>
-
-#include "models/interrupt.h"
 
 namespace stereotlm::capture {
 
@@ -18,16 +14,16 @@ struct Capture {
   std::uint64_t lost_words = 0;
 };
 
-// The registers of a capture board (capture_registers.h): decodes accesses, keeps the armed capture and the
-// status, and drives the interrupt.
-class CaptureRegisterFile : public InterruptIf {
+// The registers of a capture board (capture_registers.h): the armed capture, the status and the level of the
+// interrupt. Plain C++.
+class CaptureRegisterFile {
  public:
-  // Carries out an access and sets its response status. A refused access has no effect; fpga/register_file.h
-  // lists what is refused. Arming takes effect at the time of the access, `delay` from now. Returns whether
-  // the access triggers the cameras.
-  bool access(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
-  // Debug transport, which only reads.
-  unsigned debug(tlm::tlm_generic_payload& access) const;
+  // Whether the register has this direction. `address`: a multiple of 4 below registers::kEnd.
+  static bool allows(bool write, std::uint64_t address);
+  // `address`: of a register that can be read.
+  std::uint32_t read(std::uint64_t address) const;
+  // `address`: of a register that can be written. Returns whether the write triggers the cameras.
+  bool write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
 
   // Whether a capture is armed, and was armed at `time_ps` already.
   bool armed_at(std::uint64_t time_ps) const { return armed_ && armed_ps_ <= time_ps; }
@@ -35,18 +31,15 @@ class CaptureRegisterFile : public InterruptIf {
   // Starts the armed capture, and returns its buffer address.
   std::uint32_t start();
   // To be called when words of the running capture are lost, because the bus did not take them.
-  void lose_words();
+  void lose_words() { words_lost_ = true; }
   // Ends the running capture.
   void finish(const Capture& capture);
   // The last capture that has ended; none before the first one ends.
   const std::optional<Capture>& last_capture() const { return last_capture_; }
 
-  bool is_asserted() const override { return done_ || words_lost_; }
-  const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
+  bool interrupt() const { return done_ || words_lost_; }
 
  private:
-  static tlm::tlm_response_status check(const tlm::tlm_generic_payload& access);
-  std::uint32_t read(std::uint64_t address) const;
   void arm(std::uint64_t time_ps);
   void clear(std::uint32_t status_bits);
 
@@ -59,7 +52,6 @@ class CaptureRegisterFile : public InterruptIf {
   bool words_lost_ = false;
   bool arm_refused_ = false;
   std::optional<Capture> last_capture_;
-  sc_core::sc_event interrupt_changed_{"interrupt_changed"};
 };
 
 }  // namespace stereotlm::capture

@@ -9,8 +9,6 @@ constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
 // The largest number of cycles that one call of serve_contended() runs, after running ahead.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
-std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-
 }  // namespace
 
 void HostPort::route(const HostRoute& route) {
@@ -18,11 +16,10 @@ void HostPort::route(const HostRoute& route) {
   is_moved_ = false;
   if (route.bank) {
     read_latency_cycles_ = frames_.read_latency_cycles(*route.bank);
-    crossbar_.aim(kHostPort, *route.bank, route.write);
   } else if (is_joined_) {
     is_joined_ = false;
     frames_.host_route_changes();
-    crossbar_.unroute(kHostPort);
+    arbitration_.unroute(kHostPort);
   }
 }
 
@@ -30,21 +27,19 @@ void HostPort::join() {
   if (!burst_.bank || is_joined_) return;
   is_joined_ = true;
   frames_.host_route_changes();
-  crossbar_.arbitration().route(kHostPort, *burst_.bank, burst_.write);
+  arbitration_.route(kHostPort, *burst_.bank, burst_.write);
 }
 
-bool HostPort::access(std::uint64_t cycle, const sc_core::sc_time& at) {
-  bus_.access(at, clock_.edge_ps(cycle), usable_ps(cycle));
+bool HostPort::access(std::uint64_t cycle) {
+  bus_.access(clock_.edge_ps(cycle), usable_ps(cycle));
   return !bus_.word_waits();
 }
 
 bool HostPort::is_contended() const {
-  return frames_.is_running() &&
-         (!is_only_master_ || crossbar_.arbitration().is_used_beside(kHostPort, *burst_.bank));
+  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(kHostPort, *burst_.bank));
 }
 
 void HostPort::serve_contended() {
-  const std::uint64_t now_ps = present_ps();
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
   frames_.run_ahead(first);  // before join(): the route of the host prevents skipping
@@ -54,17 +49,15 @@ void HostPort::serve_contended() {
     const std::uint64_t cycle = frames_.cycle();
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
     const memory::PortMask granted = frames_.step(bus_.requests(edge_ps));
-    if ((granted & kHostMask) != 0) serve_word(cycle, edge_ps, now_ps);
+    if ((granted & kHostMask) != 0) serve_word(cycle, edge_ps);
   }
 }
 
 void HostPort::serve_new_burst() {
-  if (is_only_master_ && !is_contended()) serve_uncontended();
+  if (is_only_master_ && !is_contended()) serve_uncontended(kNever);
 }
 
-std::optional<std::uint64_t> HostPort::serve_uncontended() {
-  const memory::Arbitration& arbitration = crossbar_.arbitration();
-  const std::uint64_t now_ps = present_ps();
+std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_ps) {
   const std::size_t bank = *burst_.bank;
   count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
   served_bank_ = bank;
@@ -72,7 +65,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
-  if (is_moved_ && !arbitration.needs_turnaround(bank) && bus_.is_in_step_with(clock_)) serve_in_step(cycle);
+  if (is_moved_ && !arbitration_.needs_turnaround(bank) && is_in_step_) serve_in_step(cycle);
   while (bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
@@ -82,14 +75,13 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
       count_words_outside();
       return clock_.edge_ps(frames_.done_cycle());
     }
-    if (!is_only_master_ && edge_ps >= now_ps &&
-        edge_ps >= now_ps + Clock::to_ps(sc_core::sc_time_to_pending_activity())) {
+    if (!is_only_master_ && edge_ps >= horizon_ps) {
       count_words_outside();
       return edge_ps + 1;
     }
     const memory::BankArbiter::Outcome outcome = decide(cycle);
     served_.push_back({cycle, 1, outcome});
-    if (arbitration.grants(bank, outcome)) serve_word(cycle, edge_ps, now_ps);
+    if (arbitration_.grants(bank, outcome)) serve_word(cycle, edge_ps);
     ++cycle;
   }
   if (!frames_.is_running()) count_words_outside();
@@ -97,7 +89,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended() {
 }
 
 memory::BankArbiter::Outcome HostPort::decide(std::uint64_t cycle) {
-  return crossbar_.arbitration().decide_unrouted(*burst_.bank, cycle, kHostPort, burst_.write);
+  return arbitration_.decide_unrouted(*burst_.bank, cycle, kHostPort, burst_.write);
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
@@ -105,21 +97,21 @@ memory::BankArbiter::Outcome HostPort::decide(std::uint64_t cycle) {
 void HostPort::move_burst() {
   const std::uint64_t bytes = burst_.end - burst_.first;
   if (is_moved_ || !is_only_master_ || bus_.words_left() * 4 != bytes) return;
-  unsigned char* const words = crossbar_.direct(burst_.first, bytes);
+  unsigned char* const words = banks_.direct(burst_.first, bytes);
   if (words == nullptr) return;
   bus_.move_words(words);
-  if (burst_.write) crossbar_.changes(burst_.first, bytes);
-  crossbar_.count_direct(*burst_.bank, bytes / 4);
+  if (burst_.write) banks_.changes(burst_.first, bytes);
+  banks_.count_direct(*burst_.bank, bytes / 4);
   is_moved_ = true;
 }
 
 // The waiting word is granted in `cycle`.
-void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps) {
+void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
   if (is_moved_) {
     bus_.count_granted(1, edge_ps, usable_ps(cycle));
   } else {
-    crossbar_.grant(kHostMask);
-    access(cycle, Clock::to_time(std::max(edge_ps, now_ps) - now_ps));
+    banks_.allow_access(kHostPort);
+    access(cycle);
   }
 }
 
@@ -135,12 +127,11 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
 }
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
-  memory::Arbitration& arbitration = crossbar_.arbitration();
   auto next = served_.begin();
   for (; next != served_.end() && next->cycle < end_cycle; ++next) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
-    arbitration.count_unrouted(served_bank_, next->cycle, next->outcome, cycles);
-    if (in_frame) frames_.control().host_was_busy(arbitration.grants(served_bank_, next->outcome), cycles);
+    arbitration_.count_unrouted(served_bank_, next->cycle, next->outcome, cycles);
+    if (in_frame) frames_.control().host_was_busy(arbitration_.grants(served_bank_, next->outcome), cycles);
     next->cycle += cycles;
     next->cycles -= cycles;
     if (next->cycles != 0) break;

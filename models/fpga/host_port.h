@@ -2,33 +2,39 @@
 
 #include <cstdint>
 #include <optional>
-#include <systemc>
 #include <vector>
 
 #include "models/clock.h"
 #include "models/fpga/frame_run.h"
-#include "models/fpga/local_bus.h"
-#include "models/memory/crossbar.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/memory/arbitration.h"
+#include "models/memory/direct_banks.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
-// The host port of the banks: serves the bursts of the local bus, beside the frames of the core. It has no
-// process and never waits; the core's process calls it.
+// The host port of the banks: serves the bursts of the local bus, beside the frames of the core. It never
+// waits; whoever runs the core calls it.
 //
 // A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
 // An uncontended burst is served independently of the frame. Its words are counted later, when it is known
-// whether their cycles belong to the frame.
+// whether their cycles belong to the frame. Plain C++.
 class HostPort {
  public:
   // All of these outlive this object.
-  HostPort(LocalBus& bus, memory::Crossbar& crossbar, FrameRun& frames, const Clock& clock)
-      : bus_(bus), crossbar_(crossbar), frames_(frames), clock_(clock) {}
+  HostPort(LocalBusControl& bus, memory::DirectBanks& banks, memory::Arbitration& arbitration,
+           FrameRun& frames, const Clock& clock)
+      : bus_(bus),
+        banks_(banks),
+        arbitration_(arbitration),
+        frames_(frames),
+        clock_(clock),
+        is_in_step_(bus.is_in_step_with(clock)) {}
 
   // Sets whether only the local bus can start frames. If so, no frame starts within a burst. Default: false.
   void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
 
-  // To be called when a burst begins or has ended; see LocalBus::route_out.
+  // To be called when a burst begins or has ended; see LocalBusControl::Core.
   void route(const HostRoute& route);
   const HostRoute& burst() const { return burst_; }
   // The addresses of the words of the burst that are not granted yet.
@@ -36,9 +42,8 @@ class HostPort {
 
   // Lets the burst take part in the arbitration of its bank from now on.
   void join();
-  // Transfers the waiting word, which has been granted in `cycle`. The cycle begins `at` from now. Returns
-  // true if the burst has ended.
-  bool access(std::uint64_t cycle, const sc_core::sc_time& at);
+  // Transfers the waiting word, which has been granted in `cycle`. Returns true if the burst has ended.
+  bool access(std::uint64_t cycle);
 
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
@@ -46,10 +51,11 @@ class HostPort {
   // Runs the frame ahead to the waiting word. Then steps the frame and serves the words of the burst, to the
   // end of the burst or of the frame, but not more than 8192 cycles.
   void serve_contended();
-  // Serves the words of an uncontended burst. A word may be served early, but never before a pending event
-  // that could start a frame on its bank. Returns the time to call again, in ps: either a later time, or the
-  // end of the finishing frame, which must be ended first. Returns nothing if no word waits any more.
-  std::optional<std::uint64_t> serve_uncontended();
+  // Serves the words of an uncontended burst. A word may be served early, but another master of the registers
+  // could start a frame on its bank from `horizon_ps` on. Returns the time to call again, in ps: either a
+  // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word waits
+  // any more.
+  std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
@@ -67,7 +73,7 @@ class HostPort {
   };
 
   void move_burst();
-  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps, std::uint64_t now_ps);
+  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
   void serve_in_step(std::uint64_t first_cycle);
   memory::BankArbiter::Outcome decide(std::uint64_t cycle);
   void count_served(std::uint64_t end_cycle, bool in_frame);
@@ -75,10 +81,12 @@ class HostPort {
     return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));
   }
 
-  LocalBus& bus_;
-  memory::Crossbar& crossbar_;
+  LocalBusControl& bus_;
+  memory::DirectBanks& banks_;
+  memory::Arbitration& arbitration_;
   FrameRun& frames_;
   const Clock& clock_;
+  bool is_in_step_;  // the clocks of the local bus begin with those of the core
   bool is_only_master_ = false;
   HostRoute burst_;
   int read_latency_cycles_ = 2;  // of the burst's bank

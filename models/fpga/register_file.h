@@ -2,24 +2,14 @@
 
 #include <tlm_utils/simple_target_socket.h>
 
-#include <array>
 #include <cstdint>
 #include <systemc>
 #include <tlm>
 
-#include "models/fpga/core_ports.h"
-#include "models/fpga/register_map.h"
-#include "models/kernels/joint_table.h"
+#include "models/fpga/core_registers.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
-
-// A start strobe, with the values of the registers at its time.
-struct FrameStart {
-  FrameBases bases{};
-  kernels::JointOffsets joint_offsets{};
-  sc_core::sc_time delay{};  // time of the strobe, from now
-};
 
 // The register file of register_map.h: start strobe, status, bases and offsets of a frame, done interrupt.
 // An access takes no time; there is no DMI. A start strobe takes effect at the annotated time of its access.
@@ -31,7 +21,7 @@ struct FrameStart {
 // | a length other than 4, or a streaming width below it                           | burst error        |
 // | byte enables                                                                   | byte enable error  |
 // | a read of a write-only register, a write of a read-only one, any other command | command error      |
-class RegisterFile : public sc_core::sc_module {
+class RegisterFile : public sc_core::sc_module, private CoreRegisters::Starter {
  public:
   struct Stats {
     std::uint64_t reads = 0;
@@ -48,28 +38,20 @@ class RegisterFile : public sc_core::sc_module {
   explicit RegisterFile(const sc_core::sc_module_name& name);
 
   // To be called by the receiver of start_out to refuse the strobe.
-  void refuse_start();
-  // To be called when the frame has ended. `error`: memory refused an access, or the result may differ from
-  // that at Fidelity::kCycle.
+  void refuse_start() { control_.refuse_start(); }
+  // See CoreRegisters.
   void finish_frame(std::uint64_t frame_cycles, bool error);
   const Stats& stats() const { return stats_; }
 
  private:
   void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
   unsigned debug(tlm::tlm_generic_payload& access);
-  tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
-  std::uint32_t read(std::uint64_t address) const;
-  void write(std::uint64_t address, std::uint32_t value, const sc_core::sc_time& delay);
-  void start(const sc_core::sc_time& delay);
+  static tlm::tlm_response_status check(const tlm::tlm_generic_payload& access);
+  void start_frame(const FrameStart& start) override { start_out->push(start); }
   void drive_done();
 
-  // [(address - kLeftImageBase) / 4]: bases, then offsets
-  std::array<std::uint32_t, (registers::kEnd - registers::kLeftImageBase) / 4> frame_{};
-  bool busy_ = false;
-  bool done_ = false;
+  CoreRegisters control_{*this};
   sc_core::sc_event done_changed_{"done_changed"};
-  bool error_ = false;
-  std::uint64_t frame_cycles_ = 0;
   Stats stats_;
 };
 

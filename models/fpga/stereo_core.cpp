@@ -11,12 +11,8 @@ using memory::PortMask;
 // The largest number of cycles between two returns to the kernel while the process steps. After each return
 // the process checks for a stall.
 constexpr std::uint64_t kMostSteppedCycles = 8192;
-// The largest number of cycles between two returns to the kernel while the process fast-forwards.
-constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 
-std::uint64_t present_ps() { return Clock::to_ps(sc_core::sc_time_stamp()); }
-// No event can occur before this time.
-std::uint64_t horizon_ps() { return present_ps() + Clock::to_ps(sc_core::sc_time_to_pending_activity()); }
+std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
 
 memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
   if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
@@ -64,14 +60,10 @@ void StereoCore::start_frame(const FrameStart& start) {
   }
   datapath_.start_frame(start.bases, start.joint_offsets);
   errors_before_ = datapath_.errors();
-  failed_ = false;
-  next_check_ps_ = 0;
   // Cycle 0 is the first that begins at or after the strobe.
-  const std::uint64_t cycle = clock_.edge_at_or_after(Clock::to_ps(sc_core::sc_time_stamp() + start.delay));
-  is_direct_ = config_.fidelity != Fidelity::kCycle && works_directly(start);
-  if (is_direct_) {
-    frames_.start_direct(cycle, start.bases, direct_frame_.patterns());
-  } else {
+  const std::uint64_t cycle = clock_.edge_at_or_after(start.time_ps);
+  is_direct_ = config_.fidelity != Fidelity::kCycle && fast_core_.start_frame(cycle, start);
+  if (!is_direct_) {
     ++stepped_frames_;
     frames_.start_stepped(cycle, start.bases);
     host_port_.join();
@@ -79,89 +71,54 @@ void StereoCore::start_frame(const FrameStart& start) {
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// Reads the data of the frame. Returns false if the frame cannot work directly on memory.
-bool StereoCore::works_directly(const FrameStart& start) {
-  direct_frame_.set_buffers(start.bases);
-  const HostRoute& burst = host_port_.burst();
-  if (burst.bank && direct_frame_.hazard_with(host_port_.words_left(), burst.write)) return false;
-  return direct_frame_.disparities_are_apart() &&
-         direct_frame_.read(datapath_.direct_memory(direct_frame_.buffers(), start.joint_offsets));
-}
-
-// Called after the cycle in which the last write of the frame was granted.
+// Called after the cycle in which the last write of a stepped frame was granted.
 void StereoCore::finish_frame() {
   host_port_.count_words_in_frame();
   frames_.finish();
   host_port_.count_words_outside();
-  if (is_direct_) write_directly();
 }
 
-// Called with the last write of the frame. The disparities cannot change a table: disparities_are_apart().
-void StereoCore::write_directly() {
-  if (direct_frame_.has_pixels()) {
-    std::uint8_t* const disparities = datapath_.direct_disparities();
-    if (disparities == nullptr) {
-      fail("direct access to the disparities was taken back within a frame");
-    } else {
-      direct_frame_.write(disparities);
-    }
-  }
-  datapath_.count({config_.core, direct_frame_.patterns(), frames_, direct_frame_.answered()});
+void StereoCore::frame_finished(const DirectFrame& frame) {
+  datapath_.count({config_.core, frame.patterns(), frames_, frame.answered()});
 }
 
-void StereoCore::end_frame() {
-  frames_.end();
-  register_file_.finish_frame(frames_.frame_cycles().back(), failed_ || datapath_.errors() != errors_before_);
+void StereoCore::frame_ended(bool failed) {
+  register_file_.finish_frame(frames_.frame_cycles().back(), failed || datapath_.errors() != errors_before_);
 }
 
 void StereoCore::route_host(const HostRoute& route) {
-  host_port_.route(route);
-  if (!route.bank) return;
-  if (!fast_forwards()) {
+  if (route.bank) crossbar_.aim(kHostPort, *route.bank, route.write);
+  if (fast_forwards()) {
+    fast_core_.route(route);
+  } else {
+    host_port_.route(route);
     host_port_.join();
-    return;
   }
-  if (frames_.is_running()) {
-    if (const auto port = direct_frame_.hazard_with(host_port_.words_left(), route.write))
-      report_hazard(route, *port);
-  }
-  host_port_.serve_new_burst();
 }
 
-// A burst of the local bus is a hazard: it accesses the buffer of this port.
-void StereoCore::report_hazard(const HostRoute& burst, memory::Port port) {
-  const auto word = [](std::uint64_t address) {
-    return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
-  };
-  fail("a burst of the local bus " + std::string(burst.write ? "writes" : "reads") + " words " +
-       word(burst.first) + ".." + word(burst.end - 4) + " of bank number " + std::to_string(*burst.bank) +
-       ", where the running frame has its " + kPorts[port].buffer + ": needs fidelity cycle");
+void StereoCore::failed(const std::string& why) {
+  SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + why).c_str());
 }
 
-// Reports that the result of the running frame may differ from that at Fidelity::kCycle. If the report is not
-// thrown, the frame ends with the error flag.
-void StereoCore::fail(const std::string& text) {
-  failed_ = true;
-  SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": " + text).c_str());
+std::uint64_t StereoCore::horizon_ps() const {
+  return present_ps() + kernel_time::to_ps(sc_core::sc_time_to_pending_activity());
 }
 
 void StereoCore::run() {
   for (;;) {
-    if (frames_.is_running()) check_progress();
     if (fast_forwards()) {
       fast_forward();
-    } else {
-      run_cycles();
+      continue;
     }
+    if (frames_.is_running()) {
+      if (const std::uint64_t cycles = frames_.stalled_cycles(); cycles != 0) stalled(cycles);
+    }
+    run_cycles();
   }
 }
 
-void StereoCore::check_progress() {
-  const std::uint64_t cycles = frames_.stalled_cycles();
-  if (cycles == 0) return;
-  SC_REPORT_ERROR("/stereotlm/core", (std::string(name()) + ": no slot consumed and no result written for " +
-                                      std::to_string(cycles) + " cycles; " + waits())
-                                         .c_str());
+void StereoCore::stalled(std::uint64_t cycles) {
+  failed("no slot consumed and no result written for " + std::to_string(cycles) + " cycles; " + waits());
 }
 
 bool StereoCore::fast_forwards() const {
@@ -172,38 +129,14 @@ void StereoCore::catch_up() {
   if (frames_.is_running() && is_direct_) frames_.run_ahead(clock_.edge_at_or_after(present_ps()));
 }
 
-// Does what is due now, then waits for the next event. An event at the time of an edge belongs to the cycle
-// that begins there.
+// Does what is due now, then waits for the next event.
 void StereoCore::fast_forward() {
   const std::uint64_t now = present_ps();
-  if (local_bus_.word_waits() && !host_port_.is_contended()) {
-    const auto next_ps = host_port_.serve_uncontended();
-    if (next_ps && *next_ps > now) wait_until(*next_ps);
-    if (next_ps && *next_ps <= now) end_frame();
-    return;
-  }
-  if (frames_.is_finishing()) {
-    const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
-    end_ps > now ? wait_for_request_until(end_ps) : end_frame();
-    return;
-  }
-  if (!frames_.is_running()) {
+  const std::uint64_t next = fast_core_.advance(now);
+  if (next == kNever) {
     wait(start_event_ | local_bus_.request_event());
-    return;
-  }
-  if (local_bus_.word_waits()) {
-    host_port_.serve_contended();
-  } else if (now < next_check_ps_) {
-    wait_for_request_until(next_check_ps_);
-    return;
   } else {
-    const std::uint64_t most_ps = clock_.edge_ps(frames_.cycle() + kMostCyclesAhead);
-    frames_.run_ahead(clock_.edge_at_or_after(std::min(horizon_ps(), most_ps)));
-  }
-  if (control().frame_done()) {
-    finish_frame();
-  } else {
-    next_check_ps_ = clock_.edge_ps(control().earliest_last_write(frames_.cycle())) + 1;
+    wait_for_request_until(next);
   }
 }
 
@@ -212,7 +145,7 @@ void StereoCore::fast_forward() {
 void StereoCore::run_cycles() {
   const std::uint64_t now = present_ps();
   const std::uint64_t period_ps = clock_.edge_ps(1);
-  const sc_core::sc_time period = Clock::to_time(period_ps);
+  const sc_core::sc_time period = kernel_time::to_time(period_ps);
   std::uint64_t horizon = horizon_ps();
   sc_core::sc_time at;  // start of the cycle, from now; mostly one period after that of the cycle before
   std::uint64_t offset_before = 0;
@@ -224,7 +157,12 @@ void StereoCore::run_cycles() {
       if (pending) next = std::max(next, clock_.edge_at_or_after(local_bus_.request_ps()));
       if (frames_.is_finishing() && (!pending || next >= frames_.done_cycle())) {
         const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
-        end_ps > now ? wait_for_request_until(end_ps) : end_frame();
+        if (end_ps > now) {
+          wait_for_request_until(end_ps);
+        } else {
+          frames_.end();
+          frame_ended(false);
+        }
         return;
       }
       if (!pending) {
@@ -239,7 +177,7 @@ void StereoCore::run_cycles() {
     }
     if (!frames_.is_running()) frames_.skip_to(next);
     const std::uint64_t offset = edge > now ? edge - now : 0;
-    at = offset == offset_before + period_ps ? at + period : Clock::to_time(offset);
+    at = offset == offset_before + period_ps ? at + period : kernel_time::to_time(offset);
     offset_before = offset;
     if (step(edge, at)) horizon = horizon_ps();  // the end of the burst may have made other events pending
   }
@@ -254,7 +192,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   bool burst_has_ended = false;
   const auto serve_host = [&] {
     host_is_served = true;
-    burst_has_ended = host_port_.access(cycle, at);
+    burst_has_ended = host_port_.access(cycle);
   };
   if (frames_.is_running()) {
     granted = frames_.step(host_requests, [&](const CoreControl::Decision& decision, PortMask grants) {
@@ -280,7 +218,7 @@ bool StereoCore::host_reads_where_core_writes(PortMask granted) const {
 }
 
 void StereoCore::wait_for_request_until(std::uint64_t time_ps) {
-  wait(Clock::to_time(time_ps) - sc_core::sc_time_stamp(), local_bus_.request_event());
+  wait(kernel_time::to_time(time_ps) - sc_core::sc_time_stamp(), local_bus_.request_event());
 }
 
 }  // namespace stereotlm::fpga

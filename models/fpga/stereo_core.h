@@ -10,12 +10,13 @@
 #include "models/clock.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_datapath.h"
-#include "models/fpga/direct_frame.h"
+#include "models/fpga/fast_core.h"
 #include "models/fpga/fidelity.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus.h"
 #include "models/fpga/register_file.h"
+#include "models/kernel_time.h"
 #include "models/memory/crossbar.h"
 #include "models/stream.h"
 
@@ -53,7 +54,7 @@ struct StereoCoreConfig {
 // A frame stalls if the matcher does not work and no result is written for stall_timeout_cycles: the arbiters
 // never grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core), at most
 // 8192 cycles late at Fidelity::kCycle, at most 2^22 at the others.
-class StereoCore : public sc_core::sc_module {
+class StereoCore : public sc_core::sc_module, private FastCore::Board {
  public:
   // The registers of register_map.h, accessed without the local bus and without its time; may stay unbound.
   tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1, sc_core::SC_ZERO_OR_MORE_BOUND> registers{
@@ -92,22 +93,27 @@ class StereoCore : public sc_core::sc_module {
   void end_of_elaboration() override { host_port_.set_only_master(registers.size() == 0); }
 
   void start_frame(const FrameStart& start);
-  bool works_directly(const FrameStart& start);
   void finish_frame();
-  void write_directly();
-  void end_frame();
   void route_host(const HostRoute& route);
-  void report_hazard(const HostRoute& burst, memory::Port port);
-  void fail(const std::string& text);
+
+  std::uint64_t horizon_ps() const override;
+  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
+                                    const kernels::JointOffsets& offsets) override {
+    return datapath_.direct_memory(buffers, offsets);
+  }
+  std::uint8_t* direct_disparities() override { return datapath_.direct_disparities(); }
+  void frame_finished(const DirectFrame& frame) override;
+  void frame_ended(bool failed) override;
+  void failed(const std::string& why) override;
+  void stalled(std::uint64_t cycles) override;
 
   void run();
-  void check_progress();
   bool fast_forwards() const;
   void fast_forward();
   void run_cycles();
   bool step(std::uint64_t edge_ps, const sc_core::sc_time& at);
   bool host_reads_where_core_writes(memory::PortMask granted) const;
-  void wait_until(std::uint64_t time_ps) { wait(Clock::to_time(time_ps) - sc_core::sc_time_stamp()); }
+  void wait_until(std::uint64_t time_ps) { wait(kernel_time::to_time(time_ps) - sc_core::sc_time_stamp()); }
   void wait_for_request_until(std::uint64_t time_ps);
 
   StereoCoreConfig config_;
@@ -117,15 +123,15 @@ class StereoCore : public sc_core::sc_module {
   RegisterFile register_file_{"register_file"};
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   CoreDatapath datapath_;
-  HostPort host_port_{local_bus_, crossbar_, frames_, clock_};
-  DirectFrame direct_frame_{config_.core, config_.fidelity == Fidelity::kFast};
+  HostPort host_port_{local_bus_.control(), crossbar_, crossbar_.arbitration(), frames_, clock_};
+  FastCore fast_core_{
+      config_.core, config_.fidelity == Fidelity::kFast, frames_, host_port_, local_bus_.control(), clock_,
+      *this};
   StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
   StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};
 
   bool is_direct_ = false;           // the frame that was started last works directly on memory
-  bool failed_ = false;              // the result of that frame may differ from that at Fidelity::kCycle
   std::uint64_t errors_before_ = 0;  // refused accesses before that frame
-  std::uint64_t next_check_ps_ = 0;  // that frame cannot have ended before this time
   std::uint64_t stepped_frames_ = 0;
   sc_core::sc_event start_event_{"start_event"};
 };

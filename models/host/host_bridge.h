@@ -7,7 +7,7 @@
 #include <tlm>
 #include <vector>
 
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
 
 namespace stereotlm::host {
 

@@ -38,6 +38,9 @@ class HostMemory : public sc_core::sc_module, private tlm::tlm_fw_transport_if<>
   // Throws std::invalid_argument if `bytes` breaks kHostMemoryRule.
   HostMemory(const sc_core::sc_module_name& name, std::uint64_t bytes);
 
+  // The stored bytes, for the owner of the memory.
+  unsigned char* data() { return ram_.data(); }
+
   std::uint64_t bytes() const { return ram_.bytes(); }
   const Stats& stats() const { return stats_; }
 

@@ -20,6 +20,11 @@ constexpr std::uint32_t word_of_pixels(const std::uint8_t* pixels) {
          static_cast<std::uint32_t>(pixels[2]) << 16U | static_cast<std::uint32_t>(pixels[3]) << 24U;
 }
 
+// Packs the pixels of `words` consecutive words.
+inline void words_of_pixels(const std::uint8_t* pixels, int words, std::uint32_t* to) {
+  for (int word = 0; word < words; ++word, pixels += kPixelsPerWord) to[word] = word_of_pixels(pixels);
+}
+
 constexpr std::uint32_t insert_pixel(std::uint32_t word, std::size_t pixel_index, std::uint8_t pixel) {
   const unsigned shift = 8U * static_cast<unsigned>(pixel_index % kPixelsPerWord);
   return (word & ~(0xFFU << shift)) | static_cast<std::uint32_t>(pixel) << shift;

@@ -71,12 +71,8 @@ void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core
 }
 
 bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
-  Watch& watch = watches_[port];
-  const bool is_new = watch.first != first || watch.end != end;
   const bool is_open = (open_banks_ >> bank_of_address(first) & 1U) != 0;
-  const bool changed = watch.changed || is_open || is_new;
-  watch = {first, end, false};
-  return changed;
+  return watch_.may_have_changed(port, first, end) || is_open;
 }
 
 unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
@@ -94,10 +90,7 @@ unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
   return dmi->get_dmi_ptr() + (first - dmi->get_start_address());
 }
 
-void Crossbar::changes(std::uint64_t first, std::uint64_t bytes) {
-  for (Watch& watch : watches_)
-    watch.changed = watch.changed || (first < watch.end && watch.first < first + bytes);
-}
+void Crossbar::changes(std::uint64_t first, std::uint64_t bytes) { watch_.changes(first, bytes); }
 
 void Crossbar::refuse(tlm::tlm_generic_payload& access) const {
   access.set_response_status(has_bank(access.get_address()) ? tlm::TLM_GENERIC_ERROR_RESPONSE

@@ -11,16 +11,12 @@
 #include <vector>
 
 #include "models/memory/arbitration.h"
+#include "models/memory/change_watch.h"
+#include "models/memory/crossbar_address.h"
+#include "models/memory/direct_banks.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::memory {
-
-// A byte address on the crossbar: bits 28 and up are the bank, the lower bits the byte in that bank.
-inline constexpr unsigned kBankAddressBits = 28;
-constexpr std::uint64_t crossbar_address(std::uint64_t bank, std::uint64_t word) {
-  return bank << kBankAddressBits | word << 2U;
-}
-constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address >> kBankAddressBits; }
 
 struct CrossbarConfig {
   ArbiterConfig arbiter;
@@ -39,7 +35,7 @@ struct CrossbarConfig {
 // the port's route, and every nb_transport. TLM_ADDRESS_ERROR_RESPONSE refuses an address of a bank that does
 // not exist. Refused accesses reach no bank; other errors are responses of the bank. Debug transport and DMI
 // reach every bank without a grant.
-class Crossbar : public sc_core::sc_module {
+class Crossbar : public sc_core::sc_module, public DirectBanks {
  public:
   sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
                                             sc_core::SC_ZERO_OR_MORE_BOUND>>
@@ -68,13 +64,11 @@ class Crossbar : public sc_core::sc_module {
   // Whether the words at byte addresses first .. end - 1 on the crossbar may have changed since the last call
   // for this port. True in the first call, and if the last call was for other addresses.
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
-  // To be called when these words have been written by direct access.
-  void changes(std::uint64_t first, std::uint64_t bytes);
-  // Returns a pointer to these bytes, for immediate use only; null if the bank does not grant direct access
-  // to all of them. The caller reports writes with changes(), and accesses with count_direct().
-  unsigned char* direct(std::uint64_t address, std::uint64_t bytes);
+  void changes(std::uint64_t first, std::uint64_t bytes) override;
+  unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
   // Adds to direct_accesses().
-  void count_direct(std::size_t bank, std::uint64_t accesses) { direct_accesses_[bank] += accesses; }
+  void count_direct(std::size_t bank, std::uint64_t accesses) override { direct_accesses_[bank] += accesses; }
+  void allow_access(Port port) override { grant(mask_of(port)); }
   std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
 
   void begin_counting(std::uint64_t first_cycle) { arbitration_.begin_counting(first_cycle); }
@@ -105,13 +99,6 @@ class Crossbar : public sc_core::sc_module {
     std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };
-  // The words that a port watches with may_have_changed().
-  struct Watch {
-    std::uint64_t first = 0;
-    std::uint64_t end = 0;
-    bool changed = true;
-  };
-
   void refuse(tlm::tlm_generic_payload& access) const;
   unsigned debug(tlm::tlm_generic_payload& access);
   bool grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi);
@@ -120,7 +107,7 @@ class Crossbar : public sc_core::sc_module {
 
   Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  std::array<Watch, kMostPorts> watches_{};
+  ChangeWatch watch_;
   PortMask silent_ports_;
   std::uint64_t open_banks_ = 0;  // bit `bank`: a silent port has direct access to the bank
   std::vector<std::uint64_t> direct_accesses_;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "models/clock.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::memory {
 
@@ -21,8 +22,9 @@ const SsramBankConfig& checked(const char* name, const SsramBankConfig& config) 
 
 SsramBank::SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
     : sc_module(name), config_(checked(this->name(), config)), ram_(std::uint64_t{config.words} * 4) {
+  kernel_time::check_resolution();
   const auto latency = static_cast<std::uint64_t>(read_latency_cycles(config.kind));
-  read_time_ = Clock::to_time(Clock(config.clock_mhz).edge_ps(latency));
+  read_time_ = kernel_time::to_time(Clock(config.clock_mhz).edge_ps(latency));
   port.bind(*this);
 }
 

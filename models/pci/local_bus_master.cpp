@@ -1,165 +1,129 @@
 #include "models/pci/local_bus_master.h"
 
 #include <algorithm>
-#include <cstring>
-
-#include "models/clock.h"
 
 namespace stereotlm::pci {
+namespace {
 
-LocalBusMaster::LocalBusMaster(const sc_core::sc_module_name& name, const PciBridgeConfig& config,
-                               DmaChannels& channels, Listener& listener)
-    : sc_module(name),
-      burst_words_(static_cast<std::size_t>(config.dma_burst_words)),
-      places_(static_cast<std::size_t>(config.posted_words)),
+unsigned char* data_of(std::uint32_t* words) { return reinterpret_cast<unsigned char*>(words); }
+
+}  // namespace
+
+LocalBusMaster::LocalBusMaster(const PciBridgeConfig& config, DmaChannels& channels, LocalBusIf& bus,
+                               Listener& listener)
+    : burst_words_(static_cast<std::size_t>(config.dma_burst_words)),
       channels_(channels),
+      bus_(bus),
       listener_(listener),
-      posted_(places_) {
-  SC_HAS_PROCESS(LocalBusMaster);
-  bus.register_nb_transport_bw(this, &LocalBusMaster::respond);
-  SC_METHOD(work);
-  sensitive << work_;
-  dont_initialize();
+      posted_(static_cast<std::size_t>(config.posted_words)) {}
+
+std::size_t LocalBusMaster::free_places(std::uint64_t now_ps) const {
+  const std::size_t sent = has_ended(now_ps) ? posted_.words_being_sent() : 0;
+  return posted_.places() - (posted_.words() - sent);
 }
 
-std::size_t LocalBusMaster::free_places() const {
-  const std::size_t sent = has_ended() ? posted_.words_being_sent() : 0;
-  return places_ - (posted_.words() - sent);
-}
-
-void LocalBusMaster::post(std::uint64_t address, const void* words, std::size_t count) {
-  posted_.push(address, words, count);
-}
-
-void LocalBusMaster::send_posted(const sc_core::sc_time& delay) {
-  if (busy_ || delay != sc_core::SC_ZERO_TIME) {
-    wake(delay);
+void LocalBusMaster::send_posted(std::uint64_t now_ps) {
+  if (busy_) {
+    plan();
   } else {
-    serve();  // posted writes are served first
+    serve(now_ps);  // posted writes are served first
   }
 }
 
-bool LocalBusMaster::read(std::uint64_t address, void* words, std::size_t count) {
+void LocalBusMaster::read(std::uint64_t now_ps, std::uint64_t address, std::size_t count) {
   read_.address = address;
   read_.words.resize(count);
-  start(read_);
-  while (read_.under_way) wait(read_ended_);
-  if (read_.failed) return false;
-  std::memcpy(words, read_.words.data(), 4 * count);
-  return true;
+  start(now_ps, read_);
 }
 
-void LocalBusMaster::start(BridgeTransfer& transfer) {
-  settle();
+void LocalBusMaster::start(std::uint64_t now_ps, BridgeTransfer& transfer) {
+  settle(now_ps);
   transfer.under_way = true;
   transfer.failed = false;
-  wake();
-}
-
-// Schedules work() for the time at which the bus is free, if that time is known.
-void LocalBusMaster::wake(const sc_core::sc_time& delay) {
-  if (!busy_) {
-    work_.notify(delay);
-  } else if (end_ps_ != kUnknown) {
-    work_.notify(Clock::to_time(end_ps_ - Clock::now_ps()));
+  if (busy_) {
+    plan();
+  } else {
+    next_ps_ = now_ps;  // other transfers may start at this time, before the bus chooses
   }
 }
 
-void LocalBusMaster::work() {
-  if (!busy_) {
-    serve();
-  } else if (has_ended()) {
-    settle();
+void LocalBusMaster::step(std::uint64_t now_ps) {
+  next_ps_ = kNever;
+  if (busy_) {
+    settle(now_ps);
   } else {
-    wake();  // this call was scheduled before the end was known
+    serve(now_ps);
   }
 }
 
 // Begins the next burst. Returns false if nothing waits. A transfer that starts later at the current time is
 // not considered.
-bool LocalBusMaster::serve() {
+bool LocalBusMaster::serve(std::uint64_t now_ps) {
   if (posted_.waits()) {
     const PostedWrites::Burst burst = posted_.send(burst_words_);
-    begin(nullptr, true, burst.address, burst.words, burst.count);
+    begin(now_ps, nullptr, {true, burst.address, data_of(burst.words), burst.count});
     return true;
   }
-  if (serve(read_)) return true;
+  if (serve(now_ps, read_)) return true;
   for (std::size_t tried = 0; tried < channels_.size(); ++tried) {
     const std::size_t channel = (turn_ + tried) % channels_.size();
-    if (!serve(channels_[channel].on_local_bus())) continue;
+    if (!serve(now_ps, channels_[channel].on_local_bus())) continue;
     turn_ = (channel + 1) % channels_.size();
     return true;
   }
   return false;
 }
 
-bool LocalBusMaster::serve(BridgeTransfer& transfer) {
+bool LocalBusMaster::serve(std::uint64_t now_ps, BridgeTransfer& transfer) {
   if (!transfer.under_way) return false;
-  begin(&transfer, transfer.write, transfer.address, transfer.words.data(), transfer.words.size());
+  begin(now_ps, &transfer,
+        {transfer.write, transfer.address, data_of(transfer.words.data()), transfer.words.size()});
   return true;
 }
 
-void LocalBusMaster::begin(BridgeTransfer* transfer, bool write, std::uint64_t address, std::uint32_t* words,
-                           std::size_t count) {
+void LocalBusMaster::begin(std::uint64_t now_ps, BridgeTransfer* transfer, const LocalBurst& burst) {
   busy_ = true;
   running_ = transfer;
-  end_ps_ = kUnknown;
-  const auto bytes = static_cast<unsigned>(count * 4);
-  burst_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
-  burst_.set_address(address);
-  burst_.set_data_ptr(reinterpret_cast<unsigned char*>(words));
-  burst_.set_data_length(bytes);
-  burst_.set_streaming_width(bytes);
-  burst_.set_byte_enable_ptr(nullptr);
-  burst_.set_dmi_allowed(false);
-  burst_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-  tlm::tlm_phase phase = tlm::BEGIN_REQ;
-  sc_core::sc_time delay;
-  burst_.acquire();
-  if (bus->nb_transport_fw(burst_, phase, delay) == tlm::TLM_COMPLETED) end_after(delay);
+  ok_ = true;
+  end_ps_ = kNever;
+  next_ps_ = kNever;
+  if (!bus_.begin_burst(now_ps, burst)) end_burst_at(now_ps, false);
 }
 
-tlm::tlm_sync_enum LocalBusMaster::respond(tlm::tlm_generic_payload& /*burst*/, tlm::tlm_phase& phase,
-                                           sc_core::sc_time& delay) {
-  if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
-  end_after(delay);
-  return tlm::TLM_COMPLETED;
+void LocalBusMaster::end_burst_at(std::uint64_t end_ps, bool ok) {
+  end_ps_ = end_ps;
+  ok_ = ok;
+  plan();
 }
 
-void LocalBusMaster::end_after(const sc_core::sc_time& delay) {
-  end_ps_ = Clock::now_ps() + Clock::to_ps(delay);
-  if (end_is_awaited()) work_.notify(delay);
-}
+// Names the time of the next step while a burst runs.
+void LocalBusMaster::plan() { next_ps_ = end_is_awaited() ? end_ps_ : kNever; }
 
 bool LocalBusMaster::end_is_awaited() const {
-  if (!burst_.is_response_ok() || posted_.waits() || read_.under_way) return true;
+  if (!ok_ || posted_.waits() || read_.under_way) return true;
   return std::any_of(channels_.begin(), channels_.end(), [this](const DmaChannel& channel) {
     const BridgeTransfer& transfer = channel.on_local_bus();
     return runs(transfer) ? channel.waits_for_local_bus() : transfer.under_way;
   });
 }
 
-bool LocalBusMaster::has_ended() const { return busy_ && end_ps_ <= Clock::now_ps(); }
-
-void LocalBusMaster::settle() {
-  if (!has_ended()) return;
-  const bool ok = burst_.is_response_ok();
+void LocalBusMaster::end(std::uint64_t now_ps) {
   BridgeTransfer* const transfer = running_;
-  burst_.release();
   busy_ = false;
   running_ = nullptr;
+  next_ps_ = kNever;
   if (transfer == nullptr) {
     posted_.sent();
-    if (!ok) listener_.posted_write_refused();
+    if (!ok_) listener_.posted_write_refused(now_ps);
   } else {
     transfer->under_way = false;
-    transfer->failed = !ok;
+    transfer->failed = !ok_;
   }
-  if (!serve()) turn_ = (turn_ + 1) % channels_.size();
+  if (!serve(now_ps)) turn_ = (turn_ + 1) % channels_.size();
   if (transfer == &read_) {
-    read_ended_.notify(sc_core::SC_ZERO_TIME);
+    listener_.slave_read_ended(now_ps, read_);
   } else if (transfer != nullptr) {
-    listener_.local_transfer_ended(*transfer->channel);
+    listener_.local_transfer_ended(now_ps, *transfer->channel);
   }
 }
 

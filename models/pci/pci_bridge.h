@@ -1,99 +1,103 @@
 #pragma once
 
+#include <tlm_utils/simple_initiator_socket.h>
 #include <tlm_utils/simple_target_socket.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <systemc>
 #include <tlm>
-#include <vector>
 
 #include "models/interrupt.h"
-#include "models/pci/bridge_register_file.h"
-#include "models/pci/dma_channel.h"
-#include "models/pci/local_bus_master.h"
+#include "models/pci/bridge_control.h"
 #include "models/pci/pci_config.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
+#include "models/step_event.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::pci {
 
-// The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge"). Its
-// registers and descriptors are in bridge_registers.h.
+// The bridge between the PCI bus and the local bus of the FPGA board (contract section 3, "Bridge"): the
+// sockets of a BridgeControl. Its registers and descriptors are in bridge_registers.h.
 //
-// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. The
-//   bridge takes as many words of a burst as it has free places at the address clock (`stop`). A word frees
-//   its place when its burst on the local bus ends. A read waits until all writes before it have left, and
-//   blocks until its words have arrived.
-// - A DMA channel fetches a descriptor, then moves its words in bursts (dma_channel.h). Both channels share
-//   one PCI master, which serves their transfers in the order in which they start.
-// - LocalBusMaster arbitrates the local bus.
+// - The bridge takes as many words of a posted write as it has free places at the address clock (`stop`).
+// - A read of the slave window blocks until its words have arrived.
 //
-// Errors of posted writes and of DMA set bits of kInterruptStatus. These accesses have an error response and
-// no effect: a register access that is not one aligned word or has the wrong direction, a slave access
-// outside the window, and a posted write of more words than there are free places.
+// These accesses have an error response and no effect: a register access that is not one aligned word or has
+// the wrong direction, a slave access outside the window, and a posted write of more words than there are free
+// places.
 class PciBridge : public sc_core::sc_module,
+                  private PciSlot,
                   private PciMasterIf,
                   private PciStopIf,
-                  private LocalBusMaster::Listener {
+                  private InterruptIf,
+                  private LocalBusIf,
+                  private BridgeControl::Host {
  public:
-  struct Stats {
-    std::uint64_t posted_words = 0;       // words of writes that the slave window took
-    std::uint64_t slave_reads = 0;        // words read through the slave window
-    std::uint64_t dma_words = 0;          // words whose write by a DMA channel has begun, both directions
-    std::uint64_t most_posted_words = 0;  // the most posted words that waited at one time
-    std::uint64_t errors = 0;             // refused accesses and raised errors
-  };
+  using Stats = BridgeControl::Stats;
 
   tlm_utils::simple_target_socket<PciBridge> slave{"slave"};
   tlm_utils::simple_target_socket<PciBridge> registers{"registers"};
-  sc_core::sc_export<PciStopIf> stop{"stop"};    // STOP# of the slave window
-  PciMasterPort pci{"pci"};                      // bus mastering of the DMA channels
-  tlm::tlm_initiator_socket<32> local{"local"};  // to fpga/local_bus.h
-  sc_core::sc_in<bool> doorbell{"doorbell"};     // from the FPGA; its rising edge raises kDoorbell
-  InterruptOut interrupt{"interrupt"};           // INTA#
+  sc_core::sc_export<PciStopIf> stop{"stop"};                    // STOP# of the slave window
+  PciMasterPort pci{"pci"};                                      // bus mastering of the DMA channels
+  tlm_utils::simple_initiator_socket<PciBridge> local{"local"};  // to fpga/local_bus.h
+  sc_core::sc_in<bool> doorbell{"doorbell"};  // from the FPGA; its rising edge raises kDoorbell
+  InterruptOut interrupt{"interrupt"};        // INTA#
 
   // Throws std::invalid_argument if the configuration has problems.
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
-  const Stats& stats() const { return stats_; }
-  // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
-  const WordsByRange& words_taken() const { return words_taken_; }
-  // The part of words_taken() that still waits in the bridge for the local bus.
-  WordsByRange words_held() const;
+  const Stats& stats() const { return control_.stats(); }
+  // See BridgeControl.
+  const WordsByRange& words_taken() const { return control_.words_taken(); }
+  WordsByRange words_held() const { return control_.words_held(); }
 
  private:
   // These serve the slave window and the register window.
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override;
   void access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  tlm::tlm_response_status check_slave(const tlm::tlm_generic_payload& access) const;
-  void post(std::uint64_t offset, const unsigned char* data, std::uint64_t bytes,
-            const sc_core::sc_time& delay);
-  std::uint64_t local_address_of(std::uint64_t offset) const;
-  void count_for_banks(WordsByRange& counts, std::uint64_t address, std::size_t words) const;
+  static tlm::tlm_response_status check_slave(const tlm::tlm_generic_payload& access);
+  bool read_slave(std::uint64_t offset, unsigned char* data, std::size_t words);
+  void slave_read_ended(std::uint64_t now_ps, bool ok) override;
   void access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  void ring() { raise(bridge::kDoorbell); }
-  void raise(std::uint32_t interrupts);
 
-  // These run the DMA channels.
-  void run(const DmaChannel::Step& step);
-  void advance(DmaChannel& channel);
-  void start_on_pci(BridgeTransfer& transfer);
-  PciBurst begin_burst(std::uint64_t address_clock_ps) override;
+  // These are the interrupt line and the doorbell.
+  bool is_asserted() const override { return control_.interrupts(); }
+  const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
+  void interrupt_changed(std::uint64_t /*now_ps*/) override {
+    interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
+  }
+  void ring();
+
+  // These are the two ends of the slot of the PCI bus.
+  void request(PciMasterIf& /*control*/, std::uint64_t from_ps) override { pci->request(*this, from_ps); }
+  BurstResult transferred(std::uint64_t now_ps) const override { return pci->transferred(now_ps); }
+  const Clock& clock() const override { return pci->clock(); }
+  PciBurst begin_burst(std::uint64_t address_clock_ps) override {
+    return control_.begin_burst(address_clock_ps);
+  }
   void end_burst(const BurstResult& result) override;
-  void local_transfer_ended(DmaChannel& channel) override { advance(channel); }
-  void posted_write_refused() override { raise(bridge::kPostedError); }
 
-  PciBridgeConfig config_;
-  DmaChannels channels_;
-  BridgeRegisterFile register_file_{channels_};
-  LocalBusMaster local_bus_;
-  std::deque<BridgeTransfer*> pci_queue_;  // DMA transfers on PCI; the first one runs
-  std::size_t pci_done_ = 0;               // words of the running transfer that have been transferred
-  std::vector<std::uint32_t> pci_words_;   // words of its burst
-  WordsByRange words_taken_;
-  Stats stats_;
+  // These are the two ends of the local bus.
+  bool begin_burst(std::uint64_t now_ps, const LocalBurst& burst) override;
+  tlm::tlm_sync_enum respond(tlm::tlm_generic_payload& burst, tlm::tlm_phase& phase, sc_core::sc_time& delay);
+  void end_local_burst(const sc_core::sc_time& delay);
+
+  void step();
+  void await_step() { step_.set(control_.next_ps()); }
+
+  class Manager : public tlm::tlm_mm_interface {
+    void free(tlm::tlm_generic_payload* /*payload*/) override {}
+  };
+
+  BridgeControl control_;
+  StepEvent step_{"next_step"};
+  sc_core::sc_event interrupt_changed_{"interrupt_changed"};
+  bool reads_ = false;  // a read of the slave window is under way
+  bool read_ok_ = false;
+  sc_core::sc_event read_ended_{"read_ended"};
+  Manager manager_;
+  tlm::tlm_generic_payload burst_{&manager_};  // on the local bus
 };
 
 }  // namespace stereotlm::pci

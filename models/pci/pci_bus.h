@@ -14,26 +14,29 @@
 #include "models/clock.h"
 #include "models/pci/decision_point.h"
 #include "models/pci/direct_memories.h"
+#include "models/pci/pci_bus_control.h"
 #include "models/pci/pci_config.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
+#include "models/step_event.h"
 
 namespace stereotlm::pci {
 
 using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 
-// A 32-bit PCI bus (contract section 3). Targets see addresses relative to their window.
+// A PCI bus of 32 or 64 bits (contract sections 3 and 7.10). Targets see addresses relative to their window.
 //
-// Burst: an address clock, the target's wait clocks, one clock per word and an idle clock. The next address
-// clock can follow immediately, because arbitration is hidden behind the burst. A burst of any length costs
-// two events: its grant and its end. A request that cuts the burst moves the second one.
+// Burst: an address clock, the target's wait clocks, one data clock per word (64 bits: per two words) and an
+// idle clock. The next address clock can follow immediately, because arbitration is hidden behind the burst.
+// A burst of any length costs two events: its grant and its end. A request that cuts the burst moves the
+// second one.
 //
 // Arbitration: round robin, from the slot after the last one granted, at first from slot 0. It considers the
 // requests made at or before the beginning of the clock, and decides when nothing else is pending at that
 // time (DecisionPoint): requests and target registers count as they stand after everything that happens at
 // the clock's edge. If a master returns its grant unused, the next request is granted in the same clock.
 //
-// Latency timer: the address clock is clock 0. If another master waits, the burst ends with the first word
-// transferred in clock latency_timer_clocks or later. A request made during the burst counts from the first
+// Latency timer: the address clock is clock 0. If another master waits, the burst ends with the first data
+// clock that is clock latency_timer_clocks or later. A request made during the burst counts from the first
 // clock that begins at or after it.
 //
 // Write: the target receives one b_transport at the end of the last data clock, with the words transferred.
@@ -54,19 +57,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // asked.
 class PciBus : public sc_core::sc_module {
  public:
-  struct MasterStats {
-    std::string name;
-    std::uint64_t transactions = 0;  // bursts, counted at their end
-    std::uint64_t words = 0;         // words transferred
-    std::uint64_t wait_clocks = 0;   // from the first clock at or after a request to its address clock
-    std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
-    std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
-  };
-  struct Stats {
-    std::uint64_t clocks = 0;          // whole clocks since time 0
-    std::uint64_t busy_clocks = 0;     // address, wait and data clocks among them
-    std::vector<MasterStats> masters;  // [slot]
-  };
+  using MasterStats = PciBusControl::MasterStats;
+  using Stats = PciBusControl::Stats;
 
   sc_core::sc_vector<PciSlotExport> slots;  // [master]; an unused slot may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket<PciBus>> targets;  // [window]
@@ -75,98 +67,63 @@ class PciBus : public sc_core::sc_module {
   // Throws std::invalid_argument if the configuration has problems.
   PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config);
 
-  const Clock& clock() const { return clock_; }
+  const Clock& clock() const { return control_.clock(); }
   // Counts up to the current time.
-  Stats stats() const;
+  Stats stats() const { return control_.stats(kernel_time::now_ps()); }
 
  private:
-  static constexpr std::uint64_t kNever = UINT64_MAX;
-
-  class Slot : public PciSlotIf {
+  // A slot, between the control and the master in it.
+  class Slot : public PciSlotIf, private PciMasterIf {
    public:
-    Slot(PciBus& bus, std::size_t master) : bus_(bus), master_(master) {}
+    Slot(PciBus& bus, std::size_t master) : bus_(bus), slot_(bus.control_.slot(master)) {}
     using PciSlotIf::request;
-    void request(PciMasterIf& master, std::uint64_t from_ps) override {
-      bus_.request(master_, master, from_ps);
+    void request(PciMasterIf& master, std::uint64_t from_ps) override;
+    BurstResult transferred(std::uint64_t now_ps) const override { return slot_.transferred(now_ps); }
+    const Clock& clock() const override { return slot_.clock(); }
+
+   private:
+    PciBurst begin_burst(std::uint64_t address_clock_ps) override;
+    void end_burst(const BurstResult& result) override { master_->end_burst(result); }
+
+    PciBus& bus_;
+    PciSlot& slot_;
+    PciMasterIf* master_ = nullptr;
+  };
+  // A target, between the control and the sockets of its window.
+  class Target : public PciTarget {
+   public:
+    Target(PciBus& bus, std::size_t window) : bus_(bus), window_(window) {}
+    std::size_t writable_words(std::uint64_t now_ps, std::uint64_t address, std::size_t words) override;
+    PciAnswer access(std::uint64_t /*now_ps*/, const PciAccess& access, std::uint64_t at_ps) override {
+      return bus_.access(window_, access, at_ps);
     }
-    BurstResult transferred() const override { return bus_.transferred(master_); }
-    const Clock& clock() const override { return bus_.clock_; }
 
    private:
     PciBus& bus_;
-    std::size_t master_;
-  };
-  struct Request {
-    PciMasterIf* from = nullptr;
-    std::uint64_t clock = kNever;  // the first clock that can be granted; kNever: no request
-  };
-  enum class State : std::uint8_t {
-    kFree,      // step_ is due when a request can be granted
-    kOccupied,  // a master or a target is being called; requests are recorded
-    kWords,     // step_ or transport_ is due at the end of the last data clock; a request may cut the words
-    kEnding,    // step_ is due at the end of the burst, which no request changes
-  };
-  struct Running {
-    std::size_t master = 0;
-    PciBurst burst;
-    std::size_t window = 0;
-    std::size_t accepted = 0;  // words that the target takes of a write; all words of a read
-    std::uint64_t address_clock = 0;
-    std::uint64_t end_clock = 0;  // the idle clock, as planned so far
-    bool transported = false;     // transport_, not step_, is due at the end of the last data clock
-    BurstResult result;
+    std::size_t window_;
   };
 
-  // These take requests.
-  void request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps);
-  void await_request();
-  std::uint64_t earliest_request(std::size_t except) const;
-
-  // These step through a burst.
+  void await_step();
   void step();
-  void arbitrate();
-  void begin(std::size_t master, const PciBurst& burst);
-  void begin_words(std::uint64_t first_clock, std::size_t words);
-  void cut_words();
-  void end_words_at(std::uint64_t clock);
-  void end_words();
-  void end_at(std::uint64_t clock, const BurstResult& result);
-  void end();
-  void step_at(std::uint64_t time_ps);
-
-  // These access the target.
-  std::optional<std::size_t> window_of(const PciBurst& burst) const;
-  std::size_t writable_words() const;
-  void access(std::vector<std::uint32_t>& words, std::size_t count);
-  std::uint64_t access_clock() const;
+  void decide();
   void run_transports();
-  void transport();
-  void end_access(bool ok, std::uint64_t clock);
+  PciAnswer access(std::size_t window, const PciAccess& access, std::uint64_t at_ps);
+  PciAnswer transport();
   void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) { memories_.forget(); }
 
-  void count(std::size_t master, const BurstResult& result);
-  BurstResult transferred(std::size_t master) const;
-  std::uint64_t whole_clocks() const;
-
-  PciBusConfig config_;
-  Clock clock_;
+  PciBusControl control_;
   std::deque<Slot> slots_;
-  std::vector<Request> requests_;  // [master]
-  std::size_t last_granted_;       // index of the master that was granted last
-  DecisionPoint arbitration_{"arbitration", [this] { arbitrate(); }};
-  State state_ = State::kFree;
-  std::uint64_t free_clock_ = 0;           // the first clock that can be an address clock
-  std::uint64_t decision_clock_ = kNever;  // in kFree: the clock that arbitrate() is to grant
-  Running running_;
-  sc_core::sc_event step_{"next_step"};
-  sc_core::sc_event transport_{"next_transport"};
-  bool transport_is_due_ = false;
+  std::deque<Target> targets_;
+  DecisionPoint decision_{"decision", [this] { decide(); }};
+  bool decides_ = false;  // the decision has been requested
+  StepEvent step_{"next_step"};
+  StepEvent transport_{"next_transport"};  // of a step or an access that calls b_transport
+  bool in_thread_ = false;                 // that step is being taken
+  std::size_t window_ = 0;                 // of access_
+  std::uint64_t access_ps_ = 0;
   tlm::tlm_generic_payload access_;
+  bool access_is_due_ = false;
   DirectMemories memories_;
-  std::vector<std::uint32_t> read_words_;
-  std::optional<std::uint64_t> address_clock_;  // address clock of the running burst; none: no burst runs
-  std::uint64_t busy_clocks_ = 0;               // clocks of the bursts that have ended
-  std::vector<MasterStats> master_stats_;
 };
 
 }  // namespace stereotlm::pci

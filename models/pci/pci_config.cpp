@@ -47,6 +47,7 @@ std::vector<std::string> problems(const PciBusConfig& config) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");
   }
   kLatencyTimerRule.check("latency_timer_clocks", config.latency_timer_clocks, found);
+  kWidthRule.check("width_bits", config.width_bits, found);
   check_masters(config.masters, found);
   check_windows(config.windows, found);
   return found;

@@ -11,6 +11,7 @@ namespace stereotlm::pci {
 
 inline constexpr kernels::IntegerRule kLatencyTimerRule{0, 255};
 inline constexpr kernels::IntegerRule kWaitClocksRule{0, 255};
+inline constexpr kernels::IntegerRule kWidthRule{32, 64, 32};
 inline constexpr kernels::IntegerRule kMasterCountRule{1, 64};
 inline constexpr kernels::IntegerRule kAddressRule{0, (std::int64_t{1} << 32) - 4, 4};
 inline constexpr kernels::IntegerRule kWindowBytesRule{4, std::int64_t{1} << 31, 4};
@@ -32,6 +33,7 @@ struct PciBusConfig {
   int latency_timer_clocks = 64;     // latency timer of every master, kLatencyTimerRule
   std::vector<std::string> masters;  // unique names for the statistics; kMasterCountRule
   std::vector<PciWindow> windows;    // without overlap
+  int width_bits = 32;               // of the data bus, kWidthRule
 };
 
 struct PciBridgeConfig {

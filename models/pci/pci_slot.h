@@ -1,14 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <systemc>
 #include <vector>
 
 #include "models/clock.h"
 
 // The protocol between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Targets
-// use the base protocol.
+// use the base protocol. Plain C++; pci_slot_if.h has the sockets.
 namespace stereotlm::pci {
 
 // The burst for which a master uses its grant.
@@ -31,12 +31,20 @@ constexpr bool is_error(BurstEnd end) {
   return end == BurstEnd::kMasterAbort || end == BurstEnd::kTargetError;
 }
 
-// The result of a burst. Word i was transferred in bus clock first_data_clock + i, and left its sender at the
-// end of that clock.
+// The result of a burst. Word i was transferred in bus clock first_data_clock + i / words_per_clock, and left
+// its sender at the end of that clock.
 struct BurstResult {
   BurstEnd end = BurstEnd::kComplete;
   std::size_t words = 0;  // words transferred
   std::uint64_t first_data_clock = 0;
+  std::uint64_t end_ps = 0;         // time of the call of end_burst()
+  std::size_t words_per_clock = 1;  // 2 on a bus of 64 bits
+
+  // The number of words that were transferred in earlier clocks than this one.
+  std::size_t words_before(std::uint64_t clock) const {
+    if (clock <= first_data_clock) return 0;
+    return std::min<std::uint64_t>(words, (clock - first_data_clock) * words_per_clock);
+  }
 };
 
 // The interface of a master, called by the bus.
@@ -51,27 +59,16 @@ class PciMasterIf {
 };
 
 // The interface of a slot of the bus, called by the master in the slot.
-class PciSlotIf : public virtual sc_core::sc_interface {
+class PciSlot {
  public:
+  virtual ~PciSlot() = default;
   // REQ#, asserted until the bus is granted. The request counts from the first clock that begins at or after
   // `from_ps`, now or later. A second request before the grant changes nothing.
-  void request(PciMasterIf& master) { request(master, Clock::now_ps()); }
   virtual void request(PciMasterIf& master, std::uint64_t from_ps) = 0;
-  // The words of the master's running burst that have been transferred by now, and the clock of the first
-  // word. `end` has no meaning yet.
-  virtual BurstResult transferred() const = 0;
+  // The words of the master's running burst that have been transferred by `now_ps`, and the clock of the first
+  // word. `end` and `end_ps` have no meaning yet.
+  virtual BurstResult transferred(std::uint64_t now_ps) const = 0;
   virtual const Clock& clock() const = 0;
-};
-
-// Sockets of the slot: `capture.pci.bind(bus.slots[0])`.
-using PciMasterPort = sc_core::sc_port<PciSlotIf>;
-using PciSlotExport = sc_core::sc_export<PciSlotIf>;
-
-// STOP#, which the base protocol has no phase for. A target without it takes bursts of any length.
-class PciStopIf : public virtual sc_core::sc_interface {
- public:
-  // Called at the address clock of a write. Returns how many of its `words` words the target takes, 0..words.
-  virtual std::size_t writable_words(std::uint64_t address, std::size_t words) const = 0;
 };
 
 }  // namespace stereotlm::pci

@@ -25,10 +25,11 @@ class PostedWrites {
 
   explicit PostedWrites(std::size_t places);
 
-  std::size_t words() const { return words_.size(); }
+  std::size_t places() const { return places_; }
+  std::size_t words() const { return count_; }
   std::size_t words_being_sent() const { return sending_; }
   // Whether there are words that are not being sent.
-  bool waits() const { return words_.size() > sending_; }
+  bool waits() const { return count_ > sending_; }
   // The words that wait and are not being sent.
   std::vector<Run> waiting() const;
 
@@ -41,8 +42,22 @@ class PostedWrites {
   void sent();
 
  private:
+  // The place that is `count` places behind `place`.
+  std::size_t behind(std::size_t place, std::size_t count) const {
+    const std::size_t next = place + count;
+    return next < places_ ? next : next - places_;
+  }
+  Run& last_run() { return runs_[behind(first_run_, run_count_ - 1)]; }
+
+  std::size_t places_;
+  // A ring of places_ words. Behind it are as many places for copies of its first words: a burst that begins
+  // before the end of the ring is contiguous.
   std::vector<std::uint32_t> words_;
-  std::vector<Run> runs_;    // addresses of words_; contiguous words are one run
+  std::size_t first_ = 0;  // place of the oldest word
+  std::size_t count_ = 0;
+  std::vector<Run> runs_;  // a ring of places_ runs: addresses of words_; contiguous words are one run
+  std::size_t first_run_ = 0;
+  std::size_t run_count_ = 0;
   std::size_t sending_ = 0;  // words of the burst that is being sent
 };
 

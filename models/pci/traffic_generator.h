@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <systemc>
 #include <tlm>
-#include <vector>
 
 #include "models/pci/pci_config.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
+#include "models/pci/traffic_control.h"
 
 namespace stereotlm::pci {
 
@@ -29,15 +29,32 @@ class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
   TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config);
 
  private:
-  PciBurst begin_burst(std::uint64_t address_clock_ps) override;
+  PciBurst begin_burst(std::uint64_t address_clock_ps) override {
+    return control_.begin_burst(address_clock_ps);
+  }
   void end_burst(const BurstResult& result) override;
-  void start_of_simulation() override { pci->request(*this, config_.first_request_ps); }
+  void start_of_simulation() override { control_.start(slot_); }
   void respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
-  TrafficGeneratorConfig config_;
-  std::vector<std::uint32_t> words_;
-  std::size_t words_done_ = 0;   // words of the running transfer that have been read
-  std::uint64_t transfers_ = 0;  // completed
+  // The slot, in which this module stands before the control.
+  class Slot : public PciSlot {
+   public:
+    explicit Slot(TrafficGenerator& generator) : generator_(generator) {}
+    void request(PciMasterIf& /*control*/, std::uint64_t from_ps) override {
+      generator_.pci->request(generator_, from_ps);
+    }
+    BurstResult transferred(std::uint64_t now_ps) const override {
+      return generator_.pci->transferred(now_ps);
+    }
+    const Clock& clock() const override { return generator_.pci->clock(); }
+
+   private:
+    TrafficGenerator& generator_;
+  };
+
+  TrafficControl control_;
+  Slot slot_{*this};
+  std::uint64_t access_ps_;
 };
 
 }  // namespace stereotlm::pci

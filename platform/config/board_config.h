@@ -50,6 +50,7 @@ struct PciConfig {
   int latency_timer_clocks = 64;                     // 0..255
   int bridge_wait_clocks = 4;                        // 0..255
   int memory_wait_clocks = 8;                        // 0..255
+  int width_bits = 32;                               // 32 or 64
   std::optional<PciLoadConfig> load = std::nullopt;  // nullopt: none
 };
 

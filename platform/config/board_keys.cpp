@@ -201,6 +201,8 @@ std::vector<Key> make_keys() {
               member<&B::pci, &PciConfig::bridge_wait_clocks>),
       integer("pci.memory_wait_clocks", "wait clocks of host memory as a PCI target", "clocks", {0, 255},
               member<&B::pci, &PciConfig::memory_wait_clocks>),
+      optional(integer("pci.width_bits", "width of the PCI bus; optional, without it 32", "bits",
+                       pci::kWidthRule, member<&B::pci, &PciConfig::width_bits>)),
       optional(other("pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
                      "none or a map of burst_words, interval_us, first_us, access_us")),
       integer("pci.load.burst_words", "words that each transfer of the load reads", "words",

@@ -40,28 +40,29 @@ std::string system_lines(const platform::Statistics& statistics) {
          bound_line("system bound", *statistics.bound.system, statistics.bound.system_limited_by);
 }
 
-std::string pci_lines(const platform::ComputerStatistics& computer, double clock_mhz) {
-  const double peak = kBytesPerWord * clock_mhz;
+std::string pci_lines(const platform::ComputerStatistics& computer, const BoardClocks& clocks) {
+  const double words_a_clock = clocks.pci_width_bits / 32.0;
+  const double peak = words_a_clock * kBytesPerWord * clocks.pci_mhz;
   std::size_t width = 12;
   for (const platform::PciMasterStatistics& master : computer.pci_masters)
     width = std::max(width, master.name.size());
   std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9} {:>12}\n", "pci master", width,
                                  "transactions", "words", "use %", "MB/s", "peak MB/s", "mean wait us");
   for (const platform::PciMasterStatistics& master : computer.pci_masters) {
-    const double use = share(master.words, computer.pci_clocks);
+    const double use = share(master.words, computer.pci_clocks) / words_a_clock;
     text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>12.3f}\n", master.name, width,
                         master.transactions, master.words, 100 * use, use * peak, peak,
-                        share(master.wait_clocks, master.transactions) / clock_mhz);
+                        share(master.wait_clocks, master.transactions) / clocks.pci_mhz);
   }
   return text;
 }
 
-std::string computer_lines(const platform::ComputerStatistics& computer, const ClocksMhz& clocks_mhz) {
-  std::string text = pci_lines(computer, clocks_mhz.pci);
+std::string computer_lines(const platform::ComputerStatistics& computer, const BoardClocks& clocks) {
+  std::string text = pci_lines(computer, clocks);
   text += fmt::format("{:<12} busy {:.2f} % of its clocks\n", "pci bus",
                       100 * share(computer.pci_busy_clocks, computer.pci_clocks));
   const std::uint64_t words = computer.posted_words + computer.dma_words;
-  const double peak = kBytesPerWord * clocks_mhz.local;
+  const double peak = kBytesPerWord * clocks.local_mhz;
   text += fmt::format(
       "{:<12} busy {:.2f} % of its clocks, {:.2f} of {:.2f} MB/s: {} words posted, {} by DMA\n", "local bus",
       100 * share(computer.local_busy_clocks, computer.local_clocks),
@@ -114,11 +115,10 @@ std::string accuracy_line(const Accuracy& accuracy) {
 
 }  // namespace
 
-std::string console_table(const platform::Statistics& statistics, const ClocksMhz& clocks_mhz,
+std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
                           const std::optional<Accuracy>& accuracy) {
-  return rate_lines(statistics) + system_lines(statistics) + bank_lines(statistics, clocks_mhz.fpga) +
-         stall_line(statistics) +
-         (statistics.computer ? computer_lines(*statistics.computer, clocks_mhz) : "") +
+  return rate_lines(statistics) + system_lines(statistics) + bank_lines(statistics, clocks.fpga_mhz) +
+         stall_line(statistics) + (statistics.computer ? computer_lines(*statistics.computer, clocks) : "") +
          (accuracy ? accuracy_line(*accuracy) : "");
 }
 

@@ -8,22 +8,23 @@
 
 namespace stereotlm::report {
 
-// The clocks of a board, by which the table converts cycles to rates.
-struct ClocksMhz {
-  double fpga = 40;
-  double pci = 33.333;
-  double local = 40;
+// The clocks of a board, and the width of its PCI bus, by which the table converts cycles to rates.
+struct BoardClocks {
+  double fpga_mhz = 40;
+  double pci_mhz = 33.333;
+  double local_mhz = 40;
+  int pci_width_bits = 32;
 };
 
 // The table that a run prints:
 // - Frames per second and their bounds.
 // - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).
 // - The largest row of blame.
-// - For a computer: each PCI master's traffic, its share of the peak of one word per clock and its mean wait
-//   for the bus; the use of both buses; dropped camera frames by reason; the latency.
+// - For a computer: each PCI master's traffic, its share of the peak (one word per clock, or two) and its mean
+//   wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - The accuracy, if given.
 // Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names.
-std::string console_table(const platform::Statistics& statistics, const ClocksMhz& clocks_mhz,
+std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
                           const std::optional<Accuracy>& accuracy);
 
 }  // namespace stereotlm::report

@@ -93,7 +93,8 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
     process::say("error", "identity does not hold: " + identity);
   const platform::BoardConfig& board = input.board;
   process::print(report::console_table(
-      statistics, {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz},
+      statistics,
+      {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz, board.pci.width_bits},
       accuracy_to_show(input, last, accuracy)));
   if (accuracy) say_if_doubtful(input, *accuracy);
   for (const std::string& difference : differences) process::say("error", difference);

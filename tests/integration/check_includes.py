@@ -50,6 +50,7 @@ FILES_OR_YAML = re.compile(r"(fstream|filesystem|(yaml-cpp|nlohmann)/.*)$")
 FREE_OF = [
     (re.compile(r"models/(kernels|area)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/.*(_config|register_map|registers)\.h$"), SYSTEMC, "SystemC"),
+    (re.compile(r"models/.*_control\.(h|cpp)$"), SYSTEMC, "SystemC"),
     (re.compile(r"(sw/(driver|explore|files|media|paper|process|report)|calib)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
     (re.compile(r"(models|platform)/"), EIGEN, "Eigen"),

@@ -164,6 +164,7 @@ platform::BoardConfig board_config(const RandomComputer& computer) {
   board.pci.latency_timer_clocks = input.latency_timer_clocks;
   board.pci.bridge_wait_clocks = input.bridge_wait_clocks;
   board.pci.memory_wait_clocks = input.memory_wait_clocks;
+  board.pci.width_bits = input.pci_width_bits;
   if (input.load) {
     board.pci.load = platform::PciLoadConfig{input.load->burst_words, us_of(input.load->interval_ps),
                                              us_of(input.load->first_ps), us_of(input.load->access_ps)};

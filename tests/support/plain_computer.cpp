@@ -83,7 +83,7 @@ class Computer {
   explicit Computer(const PlainComputerInput& input)
       : input_(input),
         places_(plain_places(input.board.core)),
-        bus_(events_, input.pci_clock_mhz, input.latency_timer_clocks),
+        bus_(events_, input.pci_clock_mhz, input.latency_timer_clocks, input.pci_width_bits),
         processor_(events_, bus_, [this] { return bridge_.interrupt() || left_.done() || right_.done(); }),
         left_(events_, bus_, capture_config(input)),
         right_(events_, bus_, capture_config(input)),

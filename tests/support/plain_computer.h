@@ -31,6 +31,7 @@ struct PlainComputerInput {
   int latency_timer_clocks = 64;
   int bridge_wait_clocks = 4;
   int memory_wait_clocks = 8;
+  int pci_width_bits = 32;
   std::optional<PlainLoad> load;
   PlainNumber local_clock_mhz;
   int dma_burst_words = 32;

@@ -69,22 +69,24 @@ void PlainPciBus::begin(std::uint64_t clock) {
 
 void PlainPciBus::begin_words(std::uint64_t clock, std::size_t words) {
   words_taken_ = words;
-  await_word(clock);
+  await_data(clock);
 }
 
-void PlainPciBus::await_word(std::uint64_t clock) {
-  events_.at(clock_.edge(clock + 1), PlainPhase::kEffects, [this, clock] { end_word(clock); });
+void PlainPciBus::await_data(std::uint64_t clock) {
+  events_.at(clock_.edge(clock + 1), PlainPhase::kEffects, [this, clock] { end_data(clock); });
 }
 
 // The data clock `clock` ends.
-void PlainPciBus::end_word(std::uint64_t clock) {
-  ++words_done_;
-  slots_[owner_].master->word_gone();
+void PlainPciBus::end_data(std::uint64_t clock) {
+  for (int word = 0; word < words_in_a_clock_ && words_done_ < words_taken_; ++word) {
+    ++words_done_;
+    slots_[owner_].master->word_gone();
+  }
   const bool cut = clock >= address_clock_ + latency_timer_clocks_ && another_waits(clock);
   if (words_done_ == words_taken_ || cut) {
     end(clock + 1);
   } else {
-    await_word(clock + 1);
+    await_data(clock + 1);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "tests/support/plain_clock.h"
 #include "tests/support/plain_events.h"
 
-// The PCI bus of contract section 3, one word at a time.
+// The PCI bus of contract sections 3 and 7.10, one data clock at a time.
 namespace stereotlm::test {
 
 using PlainWords = std::vector<std::uint32_t>;
@@ -66,10 +66,11 @@ class PlainPciBus : public PlainBus {
     std::uint64_t wait_clocks = 0;
   };
 
-  PlainPciBus(PlainEvents& events, const PlainNumber& mhz, int latency_timer_clocks)
+  PlainPciBus(PlainEvents& events, const PlainNumber& mhz, int latency_timer_clocks, int width_bits)
       : events_(events),
         clock_(mhz),
-        latency_timer_clocks_(static_cast<std::uint64_t>(latency_timer_clocks)) {}
+        latency_timer_clocks_(static_cast<std::uint64_t>(latency_timer_clocks)),
+        words_in_a_clock_(width_bits == 64 ? 2 : 1) {}
 
   std::size_t add(PlainMaster& master) override;
   void request(std::size_t master) override;
@@ -90,14 +91,15 @@ class PlainPciBus : public PlainBus {
   void grant(std::uint64_t clock);
   void begin(std::uint64_t clock);
   void begin_words(std::uint64_t clock, std::size_t words);
-  void await_word(std::uint64_t clock);
-  void end_word(std::uint64_t clock);
+  void await_data(std::uint64_t clock);
+  void end_data(std::uint64_t clock);
   bool another_waits(std::uint64_t clock) const;
   void end(std::uint64_t idle_clock);
 
   PlainEvents& events_;
   PlainClock clock_;
   std::uint64_t latency_timer_clocks_;
+  int words_in_a_clock_;
   std::vector<Slot> slots_;
   std::size_t next_turn_ = 0;
   std::uint64_t free_clock_ = 0;  // the first that can be an address clock

@@ -57,8 +57,9 @@ struct RandomKnobs {
   bool word_cache = false;
   bool qdr = false;
   bool cost = false;
+  bool wide_pci = false;  // of computers: 64 bits
 
-  static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true}; }
+  static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true}; }
 };
 
 // Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a

@@ -53,6 +53,10 @@ RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs
     load.access_ps = one_of<PlainTime>(random, {0, 0, kPsOfUs, 60 * kPsOfUs});
     input.load = load;
   }
+  if (knobs.wide_pci) {
+    SplitMix64 random_width(seed + 2'000'000);
+    input.pci_width_bits = random_width.chance(50) ? 64 : 32;
+  }
   input.pictures = [board](std::uint64_t frame) { return camera_pictures(board, frame); };
   return {board, input};
 }

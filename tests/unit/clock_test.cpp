@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/kernel_time.h"
 #include "tests/support/plain_clock.h"
 
 namespace stereotlm {
@@ -99,8 +100,8 @@ TEST(Clock, RefusesAFrequencyOutsideItsRange) {
 }
 
 TEST(Clock, CountsSimulatedTimeInPicoseconds) {
-  EXPECT_EQ(Clock::to_time(25'000), sc_core::sc_time(25, sc_core::SC_NS));
-  EXPECT_EQ(Clock::to_ps(sc_core::sc_time(3, sc_core::SC_US)), 3'000'000U);
+  EXPECT_EQ(kernel_time::to_time(25'000), sc_core::sc_time(25, sc_core::SC_NS));
+  EXPECT_EQ(kernel_time::to_ps(sc_core::sc_time(3, sc_core::SC_US)), 3'000'000U);
 }
 
 }  // namespace

@@ -264,7 +264,7 @@ class Steps {
   }
 
   void add_key(const Key& key, const platform::IntegerKey& integer) {
-    const int step = key.path == "matcher.window" ? 2 : 1;
+    const int step = static_cast<int>(integer.rule.step);
     for (const int change : {step, -step}) {
       BoardConfig changed = board_;
       int& value = integer.field(changed);

@@ -43,9 +43,10 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
 // The first process to open the file creates the tables.
 void Store::create() {
   if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
-    // Pages are small, because a point changes some pages, and each changed page is written to the journal as
-    // a whole.
-    database_.execute("PRAGMA page_size = 1024");
+    database_.execute("PRAGMA synchronous = OFF");  // an empty store has nothing that could be lost
+    // Small pages: a point changes some pages, and each changed page is written to the journal as a whole.
+    // Not smaller: a row that does not fit into its page makes every column that the merge reads slow.
+    database_.execute("PRAGMA page_size = 2048");
     wait_for_writers(database_);
     // With this journal readers do not wait for a writer, and nothing is lost when a process ends, whatever
     // ends it.
@@ -128,13 +129,29 @@ Statement& Store::insertion(const StoredPoint& point,
 
 void Store::add_columns(const StoredPoint& point) {
   read_columns();  // another process may have added some
+  std::vector<std::string> missing;
   for (const auto* values : {&point.keys, &point.figures}) {
     for (const platform::BoardValue& value : *values) {
       if (!columns_.insert(value.path).second) continue;
-      database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(value.path));
+      missing.push_back(value.path);
       if (values == &point.keys) insert_board_key(database_, value.path);
     }
   }
+  if (missing.empty()) return;
+  // SQLite reads the whole schema again for each column that is added. A table without points is made anew
+  // instead, with all columns at once.
+  if (database_.number("SELECT EXISTS(SELECT 1 FROM points)") == 0) {
+    std::vector<std::string> columns(columns_.begin(), columns_.end());
+    const auto is_first = [](const std::string& column) {
+      return std::find(kFirstColumns.begin(), kFirstColumns.end(), column) != kFirstColumns.end();
+    };
+    columns.erase(std::remove_if(columns.begin(), columns.end(), is_first), columns.end());
+    database_.execute("DROP TABLE points");
+    create_points(database_, columns);
+    return;
+  }
+  for (const std::string& column : missing)
+    database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(column));
 }
 
 }  // namespace stereotlm::explore

@@ -20,17 +20,21 @@ bool has_point(Statement& find, const std::string& hash) {
 }
 
 void create_tables(Database& database, const std::vector<std::string>& further_columns) {
-  std::string columns =
-      "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
-      "version TEXT NOT NULL, config TEXT NOT NULL";
-  for (const std::string& name : further_columns) columns += ", " + quoted_name(name);
   database.execute(
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kLayout));
-  database.execute(fmt::format("CREATE TABLE points({})", columns));
+  create_points(database, further_columns);
   database.execute(
       "CREATE TABLE blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
       "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID");
   database.execute("CREATE TABLE keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID");
+}
+
+void create_points(Database& database, const std::vector<std::string>& further_columns) {
+  std::string columns =
+      "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
+      "version TEXT NOT NULL, config TEXT NOT NULL";
+  for (const std::string& name : further_columns) columns += ", " + quoted_name(name);
+  database.execute(fmt::format("CREATE TABLE points({})", columns));
 }
 
 void check_layout(Database& database) {

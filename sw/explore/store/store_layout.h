@@ -21,6 +21,8 @@ bool has_point(Statement& find, const std::string& hash);
 
 // Creates the tables in an empty database.
 void create_tables(Database& database, const std::vector<std::string>& further_columns);
+// Creates table `points` alone.
+void create_points(Database& database, const std::vector<std::string>& further_columns);
 // Throws if the file is not a store, or has another layout.
 void check_layout(Database& database);
 // Throws if the store holds points of another version of the program.

@@ -19,20 +19,12 @@
 namespace stereotlm::explore {
 namespace {
 
-// A message of a worker: a point has ended, or the worker ends because of an error. The text of the error,
-// `text_bytes` long, follows the message.
-struct Report {
-  enum class Kind : std::uint8_t { kPoint, kFailure, kConditionError };
+// The kind of the error for which a worker had to stop: the first byte of its pipe.
+enum class ErrorKind : char { kOther = 'e', kCondition = 'c' };
 
-  Kind kind = Kind::kPoint;
-  PointEnd end = PointEnd::kNotBegun;
-  std::uint32_t text_bytes = 0;
-};
-
-void report_end(int to, Report::Kind kind, const std::string& text) {
-  const Report report = {kind, PointEnd::kNotBegun, static_cast<std::uint32_t>(text.size())};
-  process::write_all(to, &report, sizeof report);
-  process::write_all(to, text.data(), text.size());
+void report(int to, ErrorKind kind, const std::string& text) {
+  const std::string message = static_cast<char>(kind) + text;
+  process::write_all(to, message.data(), message.size());
 }
 
 // Renames a figure that has the same path as a key, because both have a column: bridge.posted_words is the
@@ -60,18 +52,15 @@ constexpr int kOutOfMemory = 75;  // the exit status of a worker
 // Runs in the process of the worker: simulates and stores points.
 class PointRunner {
  public:
-  PointRunner(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-              const process::SharedState& shared)
-      : points_(points),
-        evaluate_(evaluate),
-        shared_(shared),
-        conditions_(points.conditions()),
-        store_(options.store, options.version, options.busy_timeout) {
-    if (!options.known.empty()) known_.emplace(options.known, options.version);
+  explicit PointRunner(const SweepState& state)
+      : state_(state),
+        conditions_(state.points.conditions()),
+        store_(state.options.store, state.options.version, state.options.busy_timeout) {
+    if (!state.options.known.empty()) known_.emplace(state.options.known, state.options.version);
   }
 
   PointEnd run(std::uint64_t number) {
-    const Point point = points_.point(number);
+    const Point point = state_.points.point(number);
     if (!conditions_.hold(point.values)) return PointEnd::kExcluded;
     if (store_.has(point.hash) || (known_ && known_->has(point.hash))) return PointEnd::kKnown;
     StoredPoint row = row_of(point);
@@ -82,7 +71,7 @@ class PointRunner {
       row.reason = point.reason;
     } else {
       try {
-        take_figures(evaluate_(point), row);
+        take_figures(state_.evaluate(point), row);
         row.status = "ok";
       } catch (const GivenUp&) {
         return PointEnd::kGivenUp;
@@ -97,35 +86,28 @@ class PointRunner {
         row = failed_point(point, error.what());
       }
     }
-    const process::SharedState::Turn turn(shared_);
+    const process::SharedLock::Turn turn(state_.writing);
     return store_.add(row) ? end : PointEnd::kKnown;
   }
 
  private:
-  const Points& points_;
-  const Evaluate& evaluate_;
-  const process::SharedState& shared_;
+  const SweepState& state_;
   Conditions conditions_;
   Store store_;
   std::optional<FinishedStore> known_;
 };
 
 // Runs in the process of the worker; returns its exit status.
-int run_worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-               const process::SharedState& shared, int from, int to) {
-  // Ctrl-C in a terminal goes to all processes. Only the parent process, which gives the orders, handles it.
+int run_worker(SweepState& state, std::size_t place, int to) {
+  // Ctrl-C in a terminal goes to all processes. Only the parent process, which stops the sweep, handles it.
   signal(SIGINT, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
-  Report report;
   try {
-    PointRunner runner(points, evaluate, options, shared);
-    WorkOrder order;
-    while (process::read_all(from, &order, sizeof order)) {
-      for (std::uint64_t i = 0; i < order.count; ++i) {
-        report.end = shared.stop() ? PointEnd::kNotBegun : runner.run(order.first + i * order.step);
-        if (!process::write_all(to, &report, sizeof report)) return 1;
-      }
-    }
+    auto claim = state.claims.begin(place);
+    if (!claim) return 0;
+    PointRunner runner(state);
+    for (; claim; claim = state.claims.begin(place))
+      state.claims.end(place, runner.run(state.number_of(*claim)));
     return 0;
   } catch (const process::EndedBySignal& error) {
     signal(error.signal(), SIG_DFL);
@@ -134,10 +116,10 @@ int run_worker(const Points& points, const Evaluate& evaluate, const SweepOption
   } catch (const std::bad_alloc&) {
     return kOutOfMemory;
   } catch (const ConditionError& error) {
-    report_end(to, Report::Kind::kConditionError, error.what());
+    report(to, ErrorKind::kCondition, error.what());
     return 1;
   } catch (const std::exception& error) {
-    report_end(to, Report::Kind::kFailure, error.what());
+    report(to, ErrorKind::kOther, error.what());
     return 1;
   }
 }
@@ -151,44 +133,26 @@ StoredPoint failed_point(const Point& point, const std::string& reason) {
   return row;
 }
 
-Worker::Worker(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
-               const process::SharedState& shared)
+Worker::Worker(SweepState& state, std::size_t place)
     : process_([&] {
-        orders_.close_write_end();
-        reports_.close_read_end();
-        return run_worker(points, evaluate, options, shared, orders_.read_end(), reports_.write_end());
+        error_.close_read_end();
+        return run_worker(state, place, error_.write_end());
       }) {
-  orders_.close_read_end();
-  reports_.close_write_end();
+  error_.close_write_end();
 }
 
-void Worker::send(const WorkOrder& order) {
-  order_ = order;
-  process::write_all(orders_.write_end(), &order, sizeof order);  // receive() finds out if the worker is dead
-}
-
-std::optional<PointEnd> Worker::receive() {
-  Report report;
-  if (!process::read_all(descriptor(), &report, sizeof report)) {
-    const int status = process_.wait();
-    if (WIFSIGNALED(status)) {
-      death_ = fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-    } else if (WEXITSTATUS(status) == kOutOfMemory) {
-      death_ = "run out of memory";
-    } else {
-      death_ = fmt::format("ended with exit status {}", WEXITSTATUS(status));
-    }
-    return std::nullopt;
-  }
-  if (report.kind != Report::Kind::kPoint) {
-    std::string text(report.text_bytes, '\0');
-    process::read_all(descriptor(), text.data(), text.size());
-    if (report.kind == Report::Kind::kConditionError) throw ConditionError(text, text);
-    throw std::runtime_error(text);
-  }
-  order_.first += order_.step;
-  --order_.count;
-  return report.end;
+std::optional<std::string> Worker::wait() {
+  std::string error;
+  for (char c = 0; process::read_all(descriptor(), &c, 1);) error += c;
+  const int status = process_.wait();
+  if (WIFSIGNALED(status))
+    return fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  if (WEXITSTATUS(status) == 0) return std::nullopt;
+  if (WEXITSTATUS(status) == kOutOfMemory) return "run out of memory";
+  if (error.empty()) return fmt::format("ended with exit status {}", WEXITSTATUS(status));
+  const std::string text = error.substr(1);
+  if (error.front() == static_cast<char>(ErrorKind::kCondition)) throw ConditionError(text, text);
+  throw std::runtime_error(text);
 }
 
 }  // namespace stereotlm::explore

@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "models/clock.h"
+#include "models/kernel_time.h"
+#include "platform/fast_computer.h"
 #include "sw/driver/board_driver.h"
 
 namespace stereotlm::runs {
@@ -32,10 +33,12 @@ CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const pla
                                    fpga::Fidelity fidelity)
     : Simulation(board, pairs, frames, fidelity),
       board_(board),
+      fidelity_(fidelity),
       tables_(tables),
       driver_(driver::driver_config(board, frames), entries_of(tables.left), entries_of(tables.right), *this),
-      computer_("computer", board, driver::host_memory_bytes(driver::driver_config(board, frames)), driver_,
-                left_, right_, binder, fidelity),
+      computer_(platform::make_computer("computer", board,
+                                        driver::host_memory_bytes(driver::driver_config(board, frames)),
+                                        driver_, left_, right_, binder, fidelity)),
       stall_timeout_seconds_(stall_timeout_seconds(board)) {}
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
@@ -59,16 +62,17 @@ platform::Statistics CameraSimulation::statistics() const {
     throw std::logic_error(
         fmt::format("statistics of {} frames requested while the core is busy", deliveries_.size()));
   }
-  return platform::collect_statistics(board_, tables_, computer_, counters_, deliveries_);
+  return platform::collect_statistics(board_, tables_, fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
+                                      computer_->core_frames().frame_cycles(), counters_, deliveries_);
 }
 
 void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   const auto begin = begins_ps_.find(frame.camera_frame);
-  deliveries_.push_back({begin->second, Clock::to_ps(sc_core::sc_time_stamp())});
+  deliveries_.push_back({begin->second, kernel_time::to_ps(sc_core::sc_time_stamp())});
   begins_ps_.erase(begins_ps_.begin(), std::next(begin));
-  if (driver_.frames_started() == frame.frame + 1) counters_ = platform::counters_of(computer_);
+  if (driver_.frames_started() == frame.frame + 1) counters_ = computer_->counters();
   kernels::GrayImage disparity;
-  if (computer_.board.core.fidelity() != fpga::Fidelity::kTiming) {
+  if (fidelity_ != fpga::Fidelity::kTiming) {
     disparity.width = board_.image.width;
     disparity.height = board_.image.height;
     const std::ptrdiff_t pixels = std::ptrdiff_t{disparity.width} * disparity.height;
@@ -77,18 +81,8 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   add_result({frame.camera_frame, std::move(disparity)});
 }
 
-// A measure of progress towards a result. The words of the traffic generator do not count.
-std::uint64_t CameraSimulation::work_done() {
-  computer_.board.core.catch_up();
-  std::uint64_t work = computer_.board.core.control().work();
-  const pci::PciBus::Stats bus = computer_.pci_bus.stats();
-  for (std::size_t master = 0; master < platform::Computer::kTrafficGenerator; ++master)
-    work += bus.masters[master].words;
-  return work;
-}
-
 void CameraSimulation::check_progress() {
-  if (const std::uint64_t work = work_done(); work != last_work_) {
+  if (const std::uint64_t work = computer_->work_done(); work != last_work_) {
     last_work_ = work;
     last_work_at_ = sc_core::sc_time_stamp();
     return;
@@ -98,7 +92,7 @@ void CameraSimulation::check_progress() {
   throw std::runtime_error(
       fmt::format("no progress for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
                   "for: {}; {}",
-                  idle, frames_done(), frames(), driver_.under_way(), computer_.board.core.waits()));
+                  idle, frames_done(), frames(), driver_.under_way(), computer_->waits()));
 }
 
 }  // namespace stereotlm::runs

@@ -2,12 +2,13 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "models/binder.h"
 #include "models/capture/camera.h"
 #include "platform/collect_computer.h"
-#include "platform/computer.h"
+#include "platform/computer_view.h"
 #include "sw/driver/stereo_driver.h"
 #include "sw/runs/simulation/simulation.h"
 
@@ -24,8 +25,10 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
                    fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   void end_early() override;
+  void record_rows() override { computer_->record_rows(); }
+  std::vector<fpga::RowProfile> take_rows() override { return computer_->take_rows(); }
   platform::Statistics statistics() const override;
-  const platform::Computer& computer() const { return computer_; }
+  const platform::ComputerView& computer() const { return *computer_; }
   // The number of frames that the core has started.
   std::uint64_t frames_started() const { return driver_.frames_started(); }
 
@@ -45,15 +48,13 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
-  fpga::StereoCore& core() override { return computer_.board.core; }
-  std::uint64_t work_done();
-
   const platform::BoardConfig& board_;
+  fpga::Fidelity fidelity_;
   const platform::Tables& tables_;
   View left_{*this, &host::StereoPair::left};
   View right_{*this, &host::StereoPair::right};
   driver::StereoDriver driver_;
-  platform::Computer computer_;
+  std::unique_ptr<platform::ComputerView> computer_;
   const host::StereoPair* pair_ = nullptr;  // pair of the last captured frame
   // Start time of each captured camera frame that is not delivered yet, by its number.
   std::map<std::uint64_t, std::uint64_t> begins_ps_;

@@ -21,12 +21,13 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   void end_early() override { set_frames(frames_done()); }
+  void record_rows() override { system_.board.core.record_rows(); }
+  std::vector<fpga::RowProfile> take_rows() override { return system_.board.core.take_rows(); }
   platform::Statistics statistics() const override;
 
  private:
   const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
   void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
-  fpga::StereoCore& core() override { return system_.board.core; }
 
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;

@@ -49,9 +49,8 @@ std::optional<Json> simulate_computer(const explore::Point& point, const platfor
   while (!simulation->finished()) {
     simulation->advance();
     if (!hopeless || simulation->frames_started() == 0) continue;
-    const fpga::StereoCore& core = simulation->computer().board.core;
-    if (hopeless({simulation->frames_started() - 1, seconds(board, core.frames().first_cycle())}))
-      return std::nullopt;
+    const std::uint64_t begin = simulation->computer().core_frames().first_cycle();
+    if (hopeless({simulation->frames_started() - 1, seconds(board, begin)})) return std::nullopt;
   }
   return document_of(simulation->statistics());
 }
@@ -86,7 +85,7 @@ double first_start_s(const platform::BoardConfig& board, const platform::Tables&
     BlankPairs blank(board);
     CameraSimulation simulation(board, tables, blank, 1, binder, fpga::Fidelity::kTiming);
     while (!simulation.finished()) simulation.advance();
-    tell(std::to_string(simulation.computer().board.core.frames().first_cycle()));
+    tell(std::to_string(simulation.computer().core_frames().first_cycle()));
   });
   const std::uint64_t cycle = std::stoull(child.next().value());
   child.next();

@@ -6,8 +6,7 @@
 #include <systemc>
 #include <utility>
 
-#include "models/clock.h"
-#include "models/fpga/stereo_core.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -48,10 +47,6 @@ std::uint64_t Simulation::cycles() const {
                                     0.5);
 }
 
-void Simulation::record_rows() { core().record_rows(); }
-
-std::vector<fpga::RowProfile> Simulation::take_rows() { return core().take_rows(); }
-
 const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
   try {
     return pairs_.pair(number);
@@ -63,7 +58,7 @@ const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
 
 void Simulation::add_result(Result result) {
   ++frames_done_;
-  result.time_ps = Clock::to_ps(sc_core::sc_time_stamp());
+  result.time_ps = kernel_time::to_ps(sc_core::sc_time_stamp());
   cycles_of_done_ = cycles();
   last_ = result;
   new_.push_back(std::move(result));

@@ -11,10 +11,6 @@
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
 
-namespace stereotlm::fpga {
-class StereoCore;
-}
-
 namespace stereotlm::runs {
 
 // The result of a frame.
@@ -50,10 +46,10 @@ class Simulation {
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }
 
   // Starts recording row profiles, with the next frame of the core.
-  void record_rows();
+  virtual void record_rows() = 0;
   // The row profiles of the frames that the core has finished since the last call, in the order of the
   // results. A whole computer delivers these results later.
-  std::vector<fpga::RowProfile> take_rows();
+  virtual std::vector<fpga::RowProfile> take_rows() = 0;
 
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.
@@ -70,7 +66,6 @@ class Simulation {
   // throws it.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
-  virtual fpga::StereoCore& core() = 0;
   // Called by advance(). Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 

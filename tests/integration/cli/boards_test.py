@@ -17,6 +17,8 @@ PRESETS = [
     "half-the-modules",
     "two-banks",
     "two-banks-four-rows",
+    "wvga-60hz",
+    "megapixel-pci64",
 ]
 SHARED = sets("allocation.left_lut=bank0")  # the bank of every second left picture
 # Knobs whose step is not a value of one key: lists, and tables that move to another bank.

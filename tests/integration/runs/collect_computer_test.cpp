@@ -28,10 +28,11 @@ class CollectComputer : public testing::Test {
   CollectComputer() {
     while (!simulation.finished()) simulation.advance();
     // The core is idle: as many frames as deliveries.
-    counters = platform::counters_of(simulation.computer());
+    counters = simulation.computer().counters();
   }
   platform::Statistics statistics() const {
-    return platform::collect_statistics(board, tables, simulation.computer(), counters, deliveries);
+    return platform::collect_statistics(
+        board, tables, "cycle", simulation.computer().core_frames().frame_cycles(), counters, deliveries);
   }
 
   platform::BoardConfig board = platform::load_board(
@@ -102,8 +103,8 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
     expect_failed(camera + "frames", frames + 1, "captured and dropped", frames,
                   [side](auto& found) { ++found.cameras[side].frames; });
     for (const auto part :
-         {&capture::CaptureBoard::Stats::started_frames, &capture::CaptureBoard::Stats::dropped_not_armed,
-          &capture::CaptureBoard::Stats::dropped_busy, &capture::CaptureBoard::Stats::dropped_by_partner}) {
+         {&capture::CaptureControl::Stats::started_frames, &capture::CaptureControl::Stats::dropped_not_armed,
+          &capture::CaptureControl::Stats::dropped_busy, &capture::CaptureControl::Stats::dropped_by_partner}) {
       expect_failed(camera + "frames", frames, "captured and dropped", frames + 1,
                     [side, part](auto& found) { ++(found.cameras[side].capture.*part); });
     }

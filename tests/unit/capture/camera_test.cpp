@@ -16,14 +16,14 @@ class Receiver : public StreamIf<VideoFrame>, public StreamIf<VideoLine> {
     camera.lines_out.bind(*this);
   }
   void push(const VideoFrame& frame) override {
-    EXPECT_EQ(frame.begin_ps, Clock::now_ps());
+    EXPECT_EQ(frame.begin_ps, kernel_time::now_ps());
     EXPECT_EQ(frame.timing, &camera_.timing());
     frames.push_back(frame);
     if (frame.number == takes) take(frame.number);
   }
   void push(const VideoLine& line) override {
     lines.push_back(line);
-    lines_ps.push_back(Clock::now_ps());
+    lines_ps.push_back(kernel_time::now_ps());
   }
   void take(std::uint64_t number) { camera_.takes_in->push({number}); }
 
@@ -42,7 +42,7 @@ class CameraTest : public testing::Test {
     camera.emplace("camera", CameraConfig{8, height, 29.97, trigger}, source);
     receiver.emplace(*camera);
   }
-  void trigger(std::uint64_t delay_ps = 0) { camera->triggers_in->push({Clock::to_time(delay_ps)}); }
+  void trigger(std::uint64_t delay_ps = 0) { camera->triggers_in->push({kernel_time::to_time(delay_ps)}); }
   std::uint64_t frame_ps(std::uint64_t number) const { return camera->timing().frame_ps(number); }
   std::size_t frames_by(std::uint64_t time_ps) const {
     run_to(time_ps);

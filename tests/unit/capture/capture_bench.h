@@ -11,6 +11,7 @@
 #include "models/capture/camera.h"
 #include "models/capture/capture_board.h"
 #include "models/clock.h"
+#include "models/kernel_time.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/test_host.h"
 #include "tests/unit/capture/test_bus.h"
@@ -91,7 +92,8 @@ struct CaptureSide {
 // Runs up to a time, including everything that happens at that time.
 inline void run_to(std::uint64_t time_ps) {
   if (!sc_core::sc_start_of_simulation_invoked()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
-  if (time_ps > Clock::now_ps()) sc_core::sc_start(Clock::to_time(time_ps - Clock::now_ps()));
+  if (time_ps > kernel_time::now_ps())
+    sc_core::sc_start(kernel_time::to_time(time_ps - kernel_time::now_ps()));
   while (sc_core::sc_pending_activity_at_current_time()) sc_core::sc_start(sc_core::SC_ZERO_TIME);
 }
 
@@ -118,7 +120,8 @@ class CaptureBench : public testing::Test {
   void grant_in(std::size_t request, std::uint64_t clock) {
     side->bus.plan = [=](std::size_t number) {
       test::BusTurn turn;
-      if (number == request) turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(Clock::now_ps());
+      if (number == request)
+        turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(kernel_time::now_ps());
       return turn;
     };
   }

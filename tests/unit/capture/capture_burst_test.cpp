@@ -60,7 +60,7 @@ TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndContinuesTheCapture) {
   build_and_arm();
   plan(1, lost(GetParam()));
   run_to(word_ps(3, 0));
-  run_to(Clock::now_ps() + 60'000);  // in the burst
+  run_to(kernel_time::now_ps() + 60'000);  // in the burst
   ASSERT_EQ(side->bus.bursts.size(), 2U);
   run_to(burst(1).end_ps - 1);
   EXPECT_FALSE(side->board.interrupt->is_asserted());
@@ -68,7 +68,7 @@ TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndContinuesTheCapture) {
   EXPECT_TRUE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->status(), registers::kStatusCapturing | registers::kStatusWordsLost);
   side->write(registers::kStatus, registers::kStatusWordsLost);
-  run_to(Clock::now_ps());
+  run_to(kernel_time::now_ps());
   EXPECT_FALSE(side->board.interrupt->is_asserted());
   run_frame();
   EXPECT_EQ(side->status(), registers::kStatusDone);
@@ -112,7 +112,7 @@ TEST_F(CaptureBurst, ReportsAGrantBeforeItsRequestOrWithoutOne) {
   EXPECT_EQ(expected.text(), "board: bus granted at " + std::to_string(word_ps(1, 0) - 1) +
                                  " ps: must have been requested by then");
   run_to(word_ps(3, 0) + 1'000'000);
-  EXPECT_THROW(side->bus.master().begin_burst(Clock::now_ps()), sc_core::sc_report);
+  EXPECT_THROW(side->bus.master().begin_burst(kernel_time::now_ps()), sc_core::sc_report);
 }
 
 TEST_F(CaptureBurst, ReportsTheEndOfABurstThatDoesNotRunOrCannotEndSo) {

@@ -72,7 +72,7 @@ TEST_F(CaptureRegisters, ShowACaptureFromArmingToItsEnd) {
   EXPECT_EQ(side->status(), kStatusCapturing);
   run_to(frame_ps(1) + word_ps(3, 2) + 100'000);
   const std::uint64_t end_ps = side->bus.bursts.back().end_ps;
-  ASSERT_GT(end_ps, Clock::now_ps());
+  ASSERT_GT(end_ps, kernel_time::now_ps());
   run_to(end_ps - 1);
   EXPECT_FALSE(side->board.interrupt->is_asserted());
   EXPECT_EQ(side->status(), kStatusCapturing);
@@ -133,7 +133,7 @@ class CaptureArming : public CaptureRegisters, public testing::WithParamInterfac
 TEST_P(CaptureArming, TakesTheFirstFrameThatBeginsAtOrAfterTheTimeOfItsAccess) {
   build();
   run_to(frame_ps(1) + static_cast<std::uint64_t>(GetParam().write_ps));
-  side->arm(kAddress, Clock::to_time(GetParam().delay_ps));
+  side->arm(kAddress, kernel_time::to_time(GetParam().delay_ps));
   run_to(frame_ps(3) - 1);
   ASSERT_TRUE(side->board.last_capture());
   EXPECT_EQ(side->board.last_capture()->frame, GetParam().frame);
@@ -175,7 +175,7 @@ TEST_F(CaptureRegisters, TriggerTheCamera) {
   ASSERT_TRUE(side->board.last_capture());
   EXPECT_EQ(side->board.last_capture()->begin_ps, 1'000U);
   EXPECT_EQ(side->buffer(kAddress, 0), side->source.picture(0).pixels);
-  side->write(kControl, kControlTrigger, Clock::to_time(77));
+  side->write(kControl, kControlTrigger, kernel_time::to_time(77));
   run_to(frame_ps(2) + 77);
   EXPECT_EQ(side->camera.stats().frames, 2U);
   run_to(frame_ps(2) + 78);
@@ -217,7 +217,7 @@ TEST_F(CaptureRegisters, StartAFrameThatBeginsWhenTheLastCaptureEndsButNotEarlie
   std::uint64_t end_clock = last_clock;
   side->bus.plan = [&](std::size_t) {
     test::BusTurn turn;  // one word: address clock, data clock
-    turn.busy_clocks = end_clock - 2 - edge_at_or_after(Clock::now_ps());
+    turn.busy_clocks = end_clock - 2 - edge_at_or_after(kernel_time::now_ps());
     return turn;
   };
   run_to(1'000'000);

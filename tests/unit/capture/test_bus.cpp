@@ -22,10 +22,10 @@ TestBus::TestBus(const sc_core::sc_module_name& name, double clock_mhz) : sc_mod
 
 void TestBus::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
   EXPECT_EQ(requests_ps.size(), bursts.size()) << "second request at " << sc_core::sc_time_stamp();
-  EXPECT_GE(from_ps, Clock::now_ps());
+  EXPECT_GE(from_ps, kernel_time::now_ps());
   master_ = &master;
-  if (from_ps > Clock::now_ps()) {
-    ask_.notify(Clock::to_time(from_ps - Clock::now_ps()));
+  if (from_ps > kernel_time::now_ps()) {
+    ask_.notify(kernel_time::to_time(from_ps - kernel_time::now_ps()));
   } else {
     ask();
   }
@@ -34,9 +34,9 @@ void TestBus::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
 // Called at the time of the request.
 void TestBus::ask() {
   turn_ = plan ? plan(requests_ps.size()) : turn;
-  requests_ps.push_back(Clock::now_ps());
-  address_clock_ = std::max(clock_.edge_at_or_after(Clock::now_ps()) + turn_.busy_clocks, free_clock_);
-  begin_.notify(Clock::to_time(clock_.edge_ps(address_clock_) - Clock::now_ps()));
+  requests_ps.push_back(kernel_time::now_ps());
+  address_clock_ = std::max(clock_.edge_at_or_after(kernel_time::now_ps()) + turn_.busy_clocks, free_clock_);
+  begin_.notify(kernel_time::to_time(clock_.edge_ps(address_clock_) - kernel_time::now_ps()));
 }
 
 void TestBus::begin() {
@@ -57,12 +57,12 @@ void TestBus::begin() {
   burst.end_ps = clock_.edge_ps(end_clock);
   free_clock_ = end_clock + 1;
   bursts.push_back(burst);
-  end_.notify(Clock::to_time(burst.end_ps - Clock::now_ps()));
+  end_.notify(kernel_time::to_time(burst.end_ps - kernel_time::now_ps()));
 }
 
-pci::BurstResult TestBus::transferred() const {
+pci::BurstResult TestBus::transferred(std::uint64_t now_ps) const {
   pci::BurstResult so_far = bursts.back().result;
-  const auto has_left = [this](std::size_t word) { return left_ps(bursts.back(), word) <= Clock::now_ps(); };
+  const auto has_left = [this, now_ps](std::size_t word) { return left_ps(bursts.back(), word) <= now_ps; };
   while (so_far.words > 0 && !has_left(so_far.words - 1)) --so_far.words;
   return so_far;
 }
@@ -70,7 +70,8 @@ pci::BurstResult TestBus::transferred() const {
 void TestBus::end() {
   const Burst& burst = bursts.back();
   for (std::size_t i = 0; i < burst.result.words; ++i) memory[burst.address + 4 * i] = burst.words[i];
-  const pci::BurstResult result = burst.result;
+  pci::BurstResult result = burst.result;
+  result.end_ps = burst.end_ps;
   master_->end_burst(result);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/clock.h"
-#include "models/pci/pci_slot.h"
+#include "models/pci/pci_slot_if.h"
 
 namespace stereotlm::test {
 
@@ -42,7 +42,7 @@ class TestBus : public sc_core::sc_module, private pci::PciSlotIf {
   TestBus(const sc_core::sc_module_name& name, double clock_mhz);
 
   const Clock& clock() const override { return clock_; }
-  pci::BurstResult transferred() const override;
+  pci::BurstResult transferred(std::uint64_t now_ps) const override;
   // The time at which a word of a burst has left its master.
   std::uint64_t left_ps(const Burst& burst, std::size_t word) const {
     return clock_.edge_ps(burst.result.first_data_clock + word + 1);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/fpga/register_file.h"
+#include "models/kernel_time.h"
 #include "models/memory/crossbar.h"
 #include "models/memory/ssram_bank.h"
 #include "tests/support/expected_report.h"
@@ -43,12 +44,12 @@ class LocalBusTest : public testing::Test {
     register_file.done(done);
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
-  static sc_time local(std::uint64_t edge) { return Clock::to_time(edge * kLocalPs); }
+  static sc_time local(std::uint64_t edge) { return kernel_time::to_time(edge * kLocalPs); }
   static void run_until(std::uint64_t edge) { sc_core::sc_start(local(edge) - sc_core::sc_time_stamp()); }
   // Grants a word in the cycle of the core that begins at `grant_ps`; usable two cycles later.
   void grant(std::uint64_t grant_ps) {
     ASSERT_TRUE(bus.requests(grant_ps));
-    bus.access(Clock::to_time(grant_ps) - sc_core::sc_time_stamp(), grant_ps, grant_ps + 2 * kCorePs);
+    bus.control().access(grant_ps, grant_ps + 2 * kCorePs);
   }
   // Reports that do not throw: the address sanitizer cannot follow an exception through the processes.
   void expect_out_of_order(const std::function<void()>& action, std::size_t violations) {
@@ -231,12 +232,6 @@ TEST(LocalBus, RefusesAClockOrBanksOutsideTheirRange) {
   EXPECT_THROW(LocalBus("d", {1000.5}, 1), std::invalid_argument);
   EXPECT_THROW(LocalBus("e", {40}, 0), std::invalid_argument);
   EXPECT_THROW(LocalBus("f", {40}, 65), std::invalid_argument);
-}
-
-TEST(LocalBus, IsInStepWithAClockThatHasItsEdges) {
-  const LocalBus bus("bus", {40, {}}, kBanks);
-  EXPECT_TRUE(bus.is_in_step_with(Clock(40)));
-  EXPECT_FALSE(bus.is_in_step_with(Clock(80)));
 }
 
 }  // namespace

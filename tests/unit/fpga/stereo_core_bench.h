@@ -12,6 +12,7 @@
 #include "models/clock.h"
 #include "models/fpga/register_map.h"
 #include "models/fpga/stereo_core.h"
+#include "models/kernel_time.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/ssram_bank.h"
 #include "tests/support/monitoring_binder.h"
@@ -99,7 +100,7 @@ class StereoCoreBench : public testing::Test {
   std::uint32_t status() { return registers.read(registers::kStatus).word; }
 
   // The start of a clock cycle.
-  sc_core::sc_time edge(std::uint64_t cycle) const { return Clock::to_time(clock->edge_ps(cycle)); }
+  sc_core::sc_time edge(std::uint64_t cycle) const { return kernel_time::to_time(clock->edge_ps(cycle)); }
   static void run_until(const sc_core::sc_time& time) { sc_core::sc_start(time - sc_core::sc_time_stamp()); }
   // One frame on this board.
   void run(const StereoCoreConfig& board) {

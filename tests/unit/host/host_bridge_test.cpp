@@ -51,11 +51,11 @@ TEST_F(HostBridgeTest, AccessesAWordInOneBurstAtTheTimeOfTheAccess) {
   build();
   simulate([this] {
     EXPECT_EQ(cpu.write(kBase + 8, 77).status, tlm::TLM_OK_RESPONSE);
-    EXPECT_EQ(Clock::now_ps(), edge(1 + kWait + 1));
-    const auto answer = cpu.read(kBase + 8, Clock::to_time(edge(20) - Clock::now_ps()));
+    EXPECT_EQ(kernel_time::now_ps(), edge(1 + kWait + 1));
+    const auto answer = cpu.read(kBase + 8, kernel_time::to_time(edge(20) - kernel_time::now_ps()));
     EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
     EXPECT_EQ(answer.word, word_at(8));
-    EXPECT_EQ(answer.at, Clock::to_time(edge(20 + 1 + kWait + 1)));
+    EXPECT_EQ(answer.at, kernel_time::to_time(edge(20 + 1 + kWait + 1)));
     EXPECT_EQ(answer.at, sc_core::sc_time_stamp());
   });
   ASSERT_EQ(target().accesses.size(), 2U);
@@ -71,7 +71,8 @@ TEST_F(HostBridgeTest, RepeatsARetriedBurst) {
   target().writable = [&refusals](auto, auto count) { return refusals-- > 0 ? 0U : count; };
   simulate([this] {
     write_words();
-    EXPECT_EQ(Clock::now_ps(), edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
+    EXPECT_EQ(kernel_time::now_ps(),
+              edge(3 * 2 + 1 + kWait + 3));  // each retry: address clock and idle clock
   });
   EXPECT_EQ(stats().retries, 3U);
   ASSERT_EQ(target().accesses.size(), 1U);
@@ -105,7 +106,7 @@ TEST_F(HostBridgeTest, AnswersAMasterAbortAsAnAddressErrorAndATargetErrorAsAGene
   build();
   simulate([this] {
     EXPECT_EQ(cpu.read(kBase + PciBusBench::kBytes).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    EXPECT_EQ(Clock::now_ps(), edge(5));
+    EXPECT_EQ(kernel_time::now_ps(), edge(5));
     EXPECT_EQ(cpu.write(0, 1).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     EXPECT_EQ(cpu.write(kBase, 1).status, tlm::TLM_OK_RESPONSE);
     target().response = tlm::TLM_ADDRESS_ERROR_RESPONSE;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/memory/word_access.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/test_host.h"
@@ -76,7 +77,7 @@ TEST_P(SsramBankTimes, AddsItsReadLatencyToAReadAndNothingToAWrite) {
   build(GetParam());
   const sc_time before(3, sc_core::SC_NS);
   const auto latency = static_cast<std::uint64_t>(read_latency_cycles(GetParam().kind));
-  const sc_time read_time = Clock::to_time(Clock(GetParam().clock_mhz).edge_ps(latency));
+  const sc_time read_time = kernel_time::to_time(Clock(GetParam().clock_mhz).edge_ps(latency));
   EXPECT_EQ(host.write(8, 0xDEAD'BEEF, before).at, before);
   const TestHost::Answer answer = host.read(8, before);
   EXPECT_EQ(answer.at, before + read_time);

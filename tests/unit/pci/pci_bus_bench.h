@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/pci/pci_bus.h"
 #include "tests/support/monitoring_binder.h"
 
@@ -65,7 +66,7 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
     on_begin();
     if (bursts.empty()) return {};
     now_.address_ps = address_clock_ps;
-    now_.granted_ps = Clock::now_ps();
+    now_.granted_ps = kernel_time::now_ps();
     const Script script = bursts.front();
     bursts.pop_front();
     words_ =
@@ -74,7 +75,7 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
   }
   void end_burst(const BurstResult& result) override {
     now_.result = result;
-    now_.end_ps = Clock::now_ps();
+    now_.end_ps = kernel_time::now_ps();
     now_.words = words_;
     ended.push_back(now_);
     on_end();
@@ -114,7 +115,7 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
     Access& access = accesses.emplace_back();
     access.write = payload.is_write();
     access.address = payload.get_address();
-    access.at_ps = Clock::to_ps(sc_core::sc_time_stamp() + delay);
+    access.at_ps = kernel_time::to_ps(sc_core::sc_time_stamp() + delay);
     access.words = words_from(access.address, payload.get_data_length() / 4);
     auto* const data = payload.get_data_ptr();
     if (access.write) {
@@ -183,7 +184,7 @@ class PciBusBench {
   // Runs `body` in simulation at an absolute time, after a number of delta cycles.
   void at(std::uint64_t time_ps, std::function<void()> body, int deltas = 0) {
     sc_core::sc_spawn([time_ps, deltas, body = std::move(body)] {
-      if (time_ps > 0) sc_core::wait(Clock::to_time(time_ps));
+      if (time_ps > 0) sc_core::wait(kernel_time::to_time(time_ps));
       for (int i = 0; i < deltas; ++i) sc_core::wait(sc_core::SC_ZERO_TIME);
       body();
     });
@@ -194,7 +195,7 @@ class PciBusBench {
   }
   std::uint64_t edge(std::uint64_t clock) const { return clock_.edge_ps(clock); }
   void simulate_to_edge(std::uint64_t clock) {
-    sc_core::sc_start(Clock::to_time(edge(clock) - Clock::now_ps()));
+    sc_core::sc_start(kernel_time::to_time(edge(clock) - kernel_time::now_ps()));
   }
 
   static constexpr std::uint32_t kBase = 0x1'0000;

@@ -56,6 +56,38 @@ INSTANTIATE_TEST_SUITE_P(PciBus, PciBusLatencyTimer,
                                          Cut{"asked_a_ps_behind_its_edge", 20, 1, 0, 21}),
                          [](const auto& tested) { return tested.param.name; });
 
+// Data clocks 5..20: 32 words. A burst of 31 or 32 words ends there by itself, and one of 33 is cut.
+TEST(PciBus, CutsWithTheTwoWordsOfAClockOn64Bits) {
+  PciBusConfig config = PciBusBench::with_window(kWait, 20);
+  config.width_bits = 64;
+  PciBusBench bench(config, 2);
+  TestMaster& master = *bench.masters[0];
+  master.at_once = false;
+  for (const std::size_t words : {31, 32, 33, 100}) {
+    master.bursts.push_back({true, PciBusBench::kBase, words});
+    bench.masters[1]->bursts.push_back(write_of(1));
+  }
+  bench.masters[1]->at_once = false;
+  bench.masters[1]->on_end = [&] {
+    if (master.bursts.empty()) return;
+    master.request();
+    bench.masters[1]->request();
+  };
+  bench.request_at(0, 0);
+  bench.request_at(0, 1);
+  sc_core::sc_start();
+  ASSERT_EQ(master.ended.size(), 4U);
+  const std::size_t transferred[] = {31, 32, 32, 32};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& burst = master.ended[i];
+    EXPECT_EQ(burst.result.words, transferred[i]);
+    EXPECT_EQ(burst.result.end, i < 2 ? BurstEnd::kComplete : BurstEnd::kLatencyTimer);
+    EXPECT_EQ(bench.bus->clock().edge_at_or_after(burst.end_ps) -
+                  bench.bus->clock().edge_at_or_after(burst.address_ps),
+              21U);
+  }
+}
+
 TEST(PciBus, DoesNotCutABurstWhoseOwnMasterAloneRequestsAgain) {
   PciBusBench bench(PciBusBench::with_window(3, 20));
   bench.masters[0]->bursts = {write_of(kWords), write_of(1)};

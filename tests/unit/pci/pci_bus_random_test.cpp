@@ -63,6 +63,7 @@ Board random_board(unsigned seed) {
   }
   const std::uint64_t period_ps = Clock(board.config.clock_mhz).edge_ps(1);
   board.masters.resize(1 + below(4));
+  if (seed % 2 == 1) board.config.width_bits = 64;
   for (auto& requests : board.masters) {
     for (unsigned i = 0; i < 40; ++i) {
       const std::uint64_t gap = below(3) == 0   ? 0
@@ -130,7 +131,8 @@ struct Outcome {
 
 Outcome literal(const Board& board) {
   test::PlainEvents events;
-  test::PlainPciBus bus(events, test::plain_number(board.mhz), board.config.latency_timer_clocks);
+  test::PlainPciBus bus(events, test::plain_number(board.mhz), board.config.latency_timer_clocks,
+                        board.config.width_bits);
   Outcome outcome;
   std::deque<PlainScript> masters;
   for (std::size_t i = 0; i < board.masters.size(); ++i)
@@ -149,7 +151,7 @@ std::string modelled(const Board& board, bool announced) {
   for (std::size_t window = 0; window < board.config.windows.size(); ++window) {
     // Less than its clocks by what the rounding of edges can add.
     const auto clocks = static_cast<std::uint64_t>(board.read_clocks[window]);
-    bench.targets[window]->read_delays = Clock::to_time(clocks == 0 ? 0 : bench.edge(clocks) - 1);
+    bench.targets[window]->read_delays = kernel_time::to_time(clocks == 0 ? 0 : bench.edge(clocks) - 1);
   }
   for (std::size_t i = 0; i < board.masters.size(); ++i) {
     TestMaster& master = *bench.masters[i];
@@ -159,7 +161,7 @@ std::string modelled(const Board& board, bool announced) {
       if (master.bursts.empty()) return;
       const std::uint64_t gap_ps = board.masters[i][board.masters[i].size() - master.bursts.size()].gap_ps;
       if (announced || gap_ps == 0) {
-        master.pci->request(master, Clock::now_ps() + gap_ps);
+        master.pci->request(master, kernel_time::now_ps() + gap_ps);
       } else {
         bench.at(gap_ps, [&master] { master.request(); });
       }

@@ -107,8 +107,8 @@ TEST_P(PciBusReadTime, DelaysTheFirstWordOnlyBeyondTheWaitClocks) {
   const std::uint64_t blocked_ps = bench.edge(1 + time.blocked_clocks) - bench.edge(1) + time.blocked_ps;
   const std::uint64_t all_ps = bench.edge(1 + time.blocked_clocks + time.delay_clocks) - bench.edge(1) +
                                time.blocked_ps + time.delay_ps;
-  target.read_waits = Clock::to_time(blocked_ps);
-  target.read_delays = Clock::to_time(all_ps - blocked_ps);
+  target.read_waits = kernel_time::to_time(blocked_ps);
+  target.read_delays = kernel_time::to_time(all_ps - blocked_ps);
   target.writable = [](auto, auto words) {
     EXPECT_EQ(words, 1U) << "only writes ask for room";
     return words;
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(PciBus, PciBusReadTime,
 
 TEST_F(PciBusTarget, OccupiesTheBusForTheTimeThatAWriteTakes) {
   constexpr std::uint64_t kEnd = 1 + kWait + 3;
-  target.write_delays = Clock::to_time(bench.edge(kEnd + 2) - bench.edge(kEnd) + 1);
+  target.write_delays = kernel_time::to_time(bench.edge(kEnd + 2) - bench.edge(kEnd) + 1);
   simulate(write_of(3));
   EXPECT_EQ(burst().result.first_data_clock, 1U + kWait);
   EXPECT_EQ(burst().result.words, 3U);
@@ -187,7 +187,7 @@ TEST(PciBus, RecordsRequestsWhileAReadBlocks) {
   PciBusBench bench(PciBusBench::with_window(0, 8), 2);
   bench.masters[0]->bursts = {read_of(50)};
   bench.masters[1]->bursts = {write_of(1)};
-  bench.targets[0]->read_waits = Clock::to_time(bench.edge(21) - bench.edge(1));
+  bench.targets[0]->read_waits = kernel_time::to_time(bench.edge(21) - bench.edge(1));
   bench.at(bench.edge(30), [&bench] { bench.targets[0]->read_waits = sc_core::SC_ZERO_TIME; });
   bench.request_at(0, 0);
   bench.request_at(bench.edge(3), 1);
@@ -231,9 +231,9 @@ TEST_F(PciBusMemory, IsWrittenWhenTheLastWordIsTransferred) {
   master.bursts = {read_of(1), write_of(4, 0x40)};
   bench.request_at(0);
   const std::uint64_t end_ps = bench.edge(2 * (1 + kWait) + 1 + 1 + 4);
-  sc_core::sc_start(Clock::to_time(end_ps - 1));
+  sc_core::sc_start(kernel_time::to_time(end_ps - 1));
   EXPECT_EQ(target.memory[0x10], word_at(0x40));
-  sc_core::sc_start(Clock::to_time(2));
+  sc_core::sc_start(kernel_time::to_time(2));
   EXPECT_EQ(target.memory[0x10], word_at(PciBusBench::kBase + 0x40));
   EXPECT_EQ(master.ended.at(1).end_ps, end_ps);
 }

@@ -42,6 +42,10 @@ TEST(PciBusConfig, NamesEveryProblem) {
       {{33, 0, {"a", "", "a"}, windows},
        {"masters = \"\": must be names, each once", "masters = \"a\": must be names, each once"}},
       {{33, 0, {}, windows}, {"masters = 0: must be 1..64"}},
+      {{33, 0, two, windows, 64}, {}},
+      {{33, 0, two, windows, 16}, {"width_bits = 16: must be 32..64, a multiple of 32"}},
+      {{33, 0, two, windows, 48}, {"width_bits = 48: must be 32..64, a multiple of 32"}},
+      {{33, 0, two, windows, 96}, {"width_bits = 96: must be 32..64, a multiple of 32"}},
   };
   for (const auto& [config, expected] : cases) {
     EXPECT_EQ(problems(config), expected);

@@ -74,7 +74,7 @@ TEST(TrafficGeneratorDevice, ReadsAsZerosAfterItsAccessTimeAndRefusesOtherAccess
   const auto answer = host.read(0x20);
   EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
   EXPECT_EQ(answer.word, 0U);
-  EXPECT_EQ(answer.at, Clock::to_time(5'000));
+  EXPECT_EQ(answer.at, kernel_time::to_time(5'000));
   const test::RefusedAccess refused[] = {
       {tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_WRITE_COMMAND},
       {tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_IGNORE_COMMAND},

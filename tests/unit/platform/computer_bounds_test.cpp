@@ -47,6 +47,17 @@ TEST_F(ComputerBounds, CountTheBusClocksOfCaptureToHostMemoryAndOfTheCopy) {
   EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + copy + result));
 }
 
+TEST_F(ComputerBounds, CountADataClockOfPciForTwoWordsOn64Bits) {
+  board.pci.width_bits = 64;
+  const double capture = 2 * (kPicture / 2 + 1200 * (1 + 4 + 1));
+  const double result = (2 + 1 + 8 + 1) + kPicture / 2 + 2400 * (1 + 8 + 1);
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + result));
+  board.image = {4, 9};  // 9 words: 5 data clocks
+  board.pci.bridge_wait_clocks = 0;
+  board.pci.memory_wait_clocks = 0;
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (2 * (5 + 2) + (2 + 2) + (5 + 2)));
+}
+
 TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   board.bridge.dma_burst_words = 16;
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture + 4800 * 3)));

@@ -15,7 +15,7 @@ using Names = std::vector<std::string>;
 TEST(BoardPresets, AreTheBoardsOfThisProject) {
   EXPECT_EQ(preset_names(), (Names{"fpl2003", "fpl2003-no-calibration", "fpl2003-line-buffer", "fpl2003-qvga",
                                    "fpl2003-syncburst", "fpl2003-triple", "four-rows", "half-the-modules",
-                                   "two-banks", "two-banks-four-rows"}));
+                                   "two-banks", "two-banks-four-rows", "wvga-60hz", "megapixel-pci64"}));
   for (const std::string& name : preset_names()) {
     EXPECT_EQ(load_board(name).name, name);
     EXPECT_NE(std::string(preset_text(name)).find("name: " + name + '\n'), std::string::npos);
@@ -61,6 +61,19 @@ TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
     use_two_banks(board);
     board.matcher.rows = 4;
   });
+  expect_preset("wvga-60hz", [](BoardConfig& board) {
+    board.image = {752, 480};
+    board.cameras.frame_rate_hz = 60;
+    board.matcher.fetch = fpga::Fetch::kLineBuffer;
+  });
+  expect_preset("megapixel-pci64", [](BoardConfig& board) {
+    board.image = {1280, 960};
+    board.cameras.frame_rate_hz = 30;
+    board.pci.clock_mhz = 66.667;
+    board.pci.width_bits = 64;
+    for (BankConfig& bank : board.banks) bank.words = 2097152;
+    board.matcher.fetch = fpga::Fetch::kLineBuffer;
+  });
 }
 
 TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
@@ -105,7 +118,8 @@ TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
 TEST(BoardExtends, NamesAPreset) {
   const std::string presets =
       "; presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst, "
-      "fpl2003-triple, four-rows, half-the-modules, two-banks or two-banks-four-rows";
+      "fpl2003-triple, four-rows, half-the-modules, two-banks, two-banks-four-rows, wvga-60hz or "
+      "megapixel-pci64";
   // Without its preset nothing is said about keys that it would have supplied.
   EXPECT_EQ(refusal_of("extends: fpl2003-tripel\nimage: {width: 5}\n"),
             "board.yaml:1:10: extends = fpl2003-tripel: not a preset; nearest: fpl2003-triple" + presets +

@@ -91,7 +91,8 @@ BoardConfig any_board() {
   board.capture.host_frames = any_int(1, 64);
   board.capture.fifo_words = any_int(1, 4096);
   board.capture.fifo_trigger_words = any_int(1, board.capture.fifo_words);
-  board.pci = {any_decimal(1, 1000), any_int(0, 255), any_int(0, 255), any_int(0, 255), std::nullopt};
+  board.pci = {any_decimal(1, 1000), any_int(0, 255),    any_int(0, 255),
+               any_int(0, 255),      32 * any_int(1, 2), std::nullopt};
   if (any_int(0, 1) == 1) {
     board.pci.load =
         PciLoadConfig{any_int(1, 1024), any_microseconds(1e9), any_microseconds(1e9), any_microseconds(1e6)};

@@ -75,7 +75,7 @@ TEST(BoardSyntax, ReportsAMissingKeyAtItsParentOrAtTheTop) {
                  "ssram: {default: {}}\n"
                  "allocation: {left_image: b, right_image: b, disparity: b, left_lut: b, right_lut: b}\n"
                  "matcher: {window: 7, disparities: 80, filter: log7, fetch: column, lr_tolerance: 0}\n"),
-      R"(board.yaml:1:1: pci: missing: a map of clock_mhz, latency_timer_clocks, bridge_wait_clocks, memory_wait_clocks, load
+      R"(board.yaml:1:1: pci: missing: a map of clock_mhz, latency_timer_clocks, bridge_wait_clocks, memory_wait_clocks, width_bits, load
 board.yaml:1:1: bridge: missing: a map of local_clock_mhz, dma_burst_words, posted_words
 board.yaml:2:1: image.height: missing: 1..8192
 board.yaml:5:1: fpga.device: missing: xc2v6000
@@ -227,7 +227,8 @@ TEST(BoardSyntax, NamesTheNearestPresetForAnUnknownOne) {
       refusal_of_board("fpl2003-qvg", {}),
       "fpl2003-qvg: not a preset, and not a path, which has a / or ends in .yaml; nearest: fpl2003-qvga; "
       "presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst, "
-      "fpl2003-triple, four-rows, half-the-modules, two-banks or two-banks-four-rows");
+      "fpl2003-triple, four-rows, half-the-modules, two-banks, two-banks-four-rows, wvga-60hz or "
+      "megapixel-pci64");
   EXPECT_NE(refusal_of_board("board.yml", {}).find("not a preset"), std::string::npos);
   EXPECT_NE(refusal_of_board("", {}).find("not a preset"), std::string::npos);
 }

@@ -75,6 +75,13 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
           "latency      capture to host, ms: min 77.500, p50 80.000, p95 90.250, p99 99.000, max 100.000\n");
 }
 
+TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
+  const std::string text = console_table(in_a_computer(), {40, 30, 40, 64}, std::nullopt);
+  EXPECT_THAT(
+      text, HasSubstr("left_capture            100           3000   15.00     36.00    240.00        1.111\n"
+                      "pci bus      busy 25.00 % of its clocks\n"));
+}
+
 TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
   platform::Statistics statistics = in_a_computer();
   statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});

@@ -55,6 +55,8 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {"fpga.clock_mhz", {}, "40 -> 41; 40 -> 39; "},
       {"matcher.window", {}, "7 -> 9; 7 -> 5; "},
       {"capture.fifo_trigger_words", {"capture.fifo_words=32"}, "32 -> 31; "},
+      {"pci.width_bits", {}, "32 -> 64; "},
+      {"pci.width_bits", {"pci.width_bits=64"}, "64 -> 32; "},
       {"pci.load.burst_words", {}, ""},
       {"pci.load.burst_words", {"pci.load={burst_words: 8, interval_us: 10}"}, "8 -> 9; 8 -> 7; "},
       {"fpga.arbitration", {}, "fixed_priority -> round_robin; fixed_priority -> age; "},

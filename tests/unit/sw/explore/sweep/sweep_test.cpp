@@ -165,8 +165,12 @@ TEST_F(SweepTest, GivesEachWorkerItsShareAtOnce) {
 TEST_F(SweepTest, HandsOutNoPointsOnceItIsStopped) {
   write_file(file("plan.yaml"),
              "board: fpl2003\nvary: {fpga.clock_mhz: {from: 1, to: 999.999, step: 0.001}}\n");
+  const auto slow = [](const Point& point) {
+    std::this_thread::sleep_for(5ms);
+    return evaluate(point);
+  };
   const SweepCounts counts =
-      sweep(plan(), evaluate, options("a.db", 2), [](const SweepCounts& now) { return now.done() == 0; });
+      sweep(plan(), slow, options("a.db", 2), [](const SweepCounts& now) { return now.done() == 0; });
   EXPECT_EQ(counts.total, 999'000U);
   EXPECT_GT(counts.done(), 0U);
   EXPECT_LT(counts.done(), 1000U);
@@ -266,10 +270,15 @@ TEST_F(SweepTest, ReportsAStoreThatIsLockedBeforeOrWhileItRuns) {
     if (counts.done() >= 20 && !other) {
       other = std::make_unique<Database>(file("a.db"), Database::Access::kWrite);
       other->execute("BEGIN IMMEDIATE");
+      write_file(file("locked"), "");
     }
     return true;
   };
-  EXPECT_EQ(message_of([&] { sweep(plan(), evaluate, impatient, lock); }), locked);
+  const auto waits_for_lock = [&](const Point& point) {
+    while (point.number >= kPoints / 2 && !fs::exists(file("locked"))) std::this_thread::sleep_for(1ms);
+    return evaluate(point);
+  };
+  EXPECT_EQ(message_of([&] { sweep(plan(), waits_for_lock, impatient, lock); }), locked);
   other.reset();
   const std::uint64_t before = count("a.db");
   EXPECT_GE(before, 5U) << "finished points are kept";
@@ -290,7 +299,12 @@ TEST_F(SweepTest, EndsWhenItsStoreIsGone) {
       if (done >= (is_last ? kPoints : 10U)) fs::remove(file("a.db"));
       return true;
     };
-    EXPECT_THROW(sweep(plan(), evaluate, options("a.db"), remove), StoreGone);
+    const auto waits_for_removal = [&](const Point& point) {
+      while (!is_last && point.number >= kPoints / 2 && fs::exists(file("a.db")))
+        std::this_thread::sleep_for(1ms);
+      return evaluate(point);
+    };
+    EXPECT_THROW(sweep(plan(), waits_for_removal, options("a.db"), remove), StoreGone);
     EXPECT_TRUE(is_last || done < kPoints);
     EXPECT_FALSE(fs::exists(file("a.db")));
   }

@@ -1,7 +1,6 @@
-#include "sw/process/shared_state.h"
+#include "sw/process/shared_memory.h"
 
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 
 #include <csignal>
@@ -13,29 +12,30 @@
 namespace stereotlm::process {
 namespace {
 
-TEST(SharedState, TellsOtherProcessesToStop) {
-  const SharedState state;
-  EXPECT_FALSE(state.stop());
-  EXPECT_EQ(ChildProcess([&state] {
-              state.stop() = true;
-              return 0;
-            }).wait(),
-            0);
-  EXPECT_TRUE(state.stop());
+TEST(SharedMemory, ShowsWhatAnotherProcessHasWritten) {
+  const SharedMemory memory(sizeof(int));
+  const auto* const value = static_cast<const int*>(memory.data());
+  EXPECT_EQ(*value, 0);
+  ChildProcess child([&memory] {
+    *static_cast<int*>(memory.data()) = 7;
+    return 0;
+  });
+  EXPECT_EQ(child.wait(), 0);
+  EXPECT_EQ(*value, 7);
 }
 
 // Each process adds 1 to the sum that it has read before; without turns, additions would be lost.
-TEST(SharedState, LetsOneProcessInAtATime) {
+TEST(SharedLock, LetsOneProcessInAtATime) {
   constexpr int kProcesses = 4;
   constexpr int kTimes = 20000;
-  auto* const sum = static_cast<volatile int*>(
-      mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  const SharedState state;
+  const SharedMemory memory(sizeof(int));
+  auto* const sum = static_cast<volatile int*>(memory.data());
+  const SharedLock lock;
   std::vector<std::unique_ptr<ChildProcess>> children(kProcesses);
   for (auto& child : children) {
     child = std::make_unique<ChildProcess>([&] {
       for (int time = 0; time < kTimes; ++time) {
-        const SharedState::Turn turn(state);
+        const SharedLock::Turn turn(lock);
         *sum = *sum + 1;
       }
       return 0;
@@ -45,10 +45,10 @@ TEST(SharedState, LetsOneProcessInAtATime) {
   EXPECT_EQ(*sum, kProcesses * kTimes);
 }
 
-TEST(SharedState, LetsTheNextProcessInWhenOneDies) {
-  const SharedState state;
-  const auto take_turn = [&state](bool dies) {
-    const SharedState::Turn turn(state);
+TEST(SharedLock, LetsTheNextProcessInWhenOneDies) {
+  const SharedLock lock;
+  const auto take_turn = [&lock](bool dies) {
+    const SharedLock::Turn turn(lock);
     return dies ? raise(SIGKILL) : 0;
   };
   EXPECT_TRUE(WIFSIGNALED(ChildProcess([&] { return take_turn(true); }).wait()));

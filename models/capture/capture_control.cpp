@@ -1,0 +1,174 @@
+#include "models/capture/capture_control.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace stereotlm::capture {
+
+CaptureControl::CaptureControl(const CaptureBoardConfig& config) : fifo_(config) {
+  burst_words_.reserve(static_cast<std::size_t>(config.fifo_words));
+}
+
+void CaptureControl::bind(pci::PciSlot& slot, FrameCamera& camera) {
+  slot_ = &slot;
+  camera_ = &camera;
+}
+
+void CaptureControl::step(std::uint64_t now_ps) {
+  if (finish_ps_ == now_ps) {
+    finish_ps_ = kNever;
+    fifo_.advance(now_ps);
+    finish(now_ps);
+  }
+  if (decision_ps_ == now_ps) {
+    decision_ps_ = kNever;
+    decide(now_ps);
+  }
+  next_ps_ = std::min(decision_ps_, finish_ps_);
+}
+
+void CaptureControl::write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
+  if (!register_file_.write(time_ps, address, value)) return;
+  for (FrameCamera* const camera : triggered_) camera->trigger(time_ps);
+}
+
+void CaptureControl::begin_frame(const VideoFrame& frame) {
+  frame_ = frame;
+  readiness_ = Readiness::kNotEvaluated;
+  decision_ps_ = frame.begin_ps + 1;
+  next_ps_ = std::min(decision_ps_, finish_ps_);
+}
+
+CaptureControl::Readiness CaptureControl::readiness() {
+  if (readiness_ == Readiness::kNotEvaluated) {
+    const std::uint64_t begin_ps = frame_.begin_ps;
+    if (!register_file_.armed_at(begin_ps)) {
+      readiness_ = Readiness::kNotArmed;
+    } else if (capturing() || (last_capture() && last_capture()->end_ps > begin_ps)) {
+      readiness_ = Readiness::kBusy;
+    } else {
+      readiness_ = Readiness::kReady;
+    }
+  }
+  return readiness_;
+}
+
+bool CaptureControl::can_start(std::uint64_t frame, std::uint64_t begin_ps) {
+  if (frame_.timing == nullptr || frame_.number != frame || frame_.begin_ps != begin_ps) return false;
+  return readiness() == Readiness::kReady;
+}
+
+void CaptureControl::decide(std::uint64_t now_ps) {
+  const bool partner_can = partner_ == nullptr || partner_->can_start(frame_.number, frame_.begin_ps);
+  switch (readiness()) {
+    case Readiness::kNotArmed:
+      ++stats_.dropped_not_armed;
+      break;
+    case Readiness::kBusy:
+      ++stats_.dropped_busy;
+      break;
+    default:
+      if (partner_can) {
+        start(now_ps);
+      } else {
+        ++stats_.dropped_by_partner;
+      }
+  }
+}
+
+void CaptureControl::start(std::uint64_t now_ps) {
+  ++stats_.started_frames;
+  address_ = register_file_.start();
+  capture_ = {frame_.number, frame_.begin_ps, 0, fifo_.dropped_pixels(), 0};
+  fifo_.begin_frame(*frame_.timing, frame_.begin_ps);
+  camera_->take(frame_.number);
+  fifo_.advance(now_ps);
+  proceed(now_ps);
+}
+
+// No burst runs: requests the bus for the time at which the FIFO needs it, or finishes the capture when the
+// FIFO has finished.
+void CaptureControl::proceed(std::uint64_t now_ps) {
+  const std::uint64_t next_ps = fifo_.next_ps();
+  if (!fifo_.finishes_next()) {
+    bus_state_ = BusState::kRequested;
+    requested_ps_ = next_ps;
+    slot_->request(*this, next_ps);
+  } else if (next_ps > now_ps) {
+    finish_ps_ = next_ps;
+    next_ps_ = std::min(decision_ps_, finish_ps_);
+  } else {
+    finish(now_ps);
+  }
+}
+
+void CaptureControl::finish(std::uint64_t now_ps) {
+  ++stats_.captured_frames;
+  capture_.end_ps = now_ps;
+  capture_.dropped_pixels = fifo_.dropped_pixels() - capture_.dropped_pixels;
+  register_file_.finish(capture_);
+}
+
+pci::PciBurst CaptureControl::begin_burst(std::uint64_t address_clock_ps) {
+  if (bus_state_ != BusState::kRequested || address_clock_ps < requested_ps_) {
+    throw std::logic_error("bus granted at " + std::to_string(address_clock_ps) +
+                           " ps: must have been requested by then");
+  }
+  bus_state_ = BusState::kBurst;
+  ++stats_.bursts;
+  fifo_.advance(address_clock_ps);
+  const FrameWords words = fifo_.grant();
+  burst_words_.resize(static_cast<std::size_t>(words.count));
+  camera_->copy_words(words.first, words.count, burst_words_.data());
+  return {true, address_ + 4 * static_cast<std::uint64_t>(words.first), &burst_words_};
+}
+
+bool CaptureControl::fits(const pci::BurstResult& result) const {
+  if (bus_state_ != BusState::kBurst) return false;
+  switch (result.end) {
+    case pci::BurstEnd::kComplete:
+      return result.words == burst_words_.size();
+    case pci::BurstEnd::kLatencyTimer:
+      return result.words > 0 && result.words < burst_words_.size();
+    case pci::BurstEnd::kDisconnect:
+      return result.words < burst_words_.size();
+    case pci::BurstEnd::kMasterAbort:
+    case pci::BurstEnd::kTargetError:
+      break;
+  }
+  return result.words == 0;
+}
+
+void CaptureControl::end_burst(const pci::BurstResult& result) {
+  if (!fits(result)) {
+    throw std::logic_error("a burst ended with " + std::to_string(result.words) +
+                           " words: no such burst runs");
+  }
+  bus_state_ = BusState::kIdle;
+  if (is_error(result.end)) {
+    fifo_.lose(result.end_ps, static_cast<int>(burst_words_.size()));
+    ++stats_.bus_errors;
+    stats_.lost_words += burst_words_.size();
+    capture_.lost_words += burst_words_.size();
+    register_file_.lose_words();
+  } else {
+    fifo_.transfer(result.end_ps, result, slot_->clock());
+    stats_.words += result.words;
+  }
+  proceed(result.end_ps);
+}
+
+CaptureControl::Stats CaptureControl::stats(std::uint64_t now_ps) const {
+  Stats stats = stats_;
+  CaptureFifo fifo = fifo_;
+  if (bus_state_ == BusState::kBurst) {
+    fifo.transfer(now_ps, slot_->transferred(now_ps), slot_->clock());
+  } else if (capturing()) {
+    fifo.advance(now_ps);
+  }
+  stats.dropped_pixels = fifo.dropped_pixels();
+  return stats;
+}
+
+}  // namespace stereotlm::capture

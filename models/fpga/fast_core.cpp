@@ -1,0 +1,125 @@
+#include "models/fpga/fast_core.h"
+
+#include <algorithm>
+
+#include "models/memory/crossbar_address.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+// The largest number of cycles that one call of advance() runs without a burst.
+constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
+
+}  // namespace
+
+FastCore::FastCore(const CoreConfig& config, bool has_pixels, FrameRun& frames, HostPort& host_port,
+                   LocalBusControl& local_bus, const Clock& clock, Board& board)
+    : frames_(frames),
+      host_port_(host_port),
+      local_bus_(local_bus),
+      clock_(clock),
+      board_(board),
+      direct_frame_(config, has_pixels) {}
+
+bool FastCore::start_frame(std::uint64_t cycle, const FrameStart& start) {
+  failed_ = false;
+  next_check_ps_ = 0;
+  if (!works_directly(start)) return false;
+  frames_.start_direct(cycle, start.bases, direct_frame_.patterns());
+  return true;
+}
+
+// Reads the data of the frame. Returns false if the frame cannot work directly on memory.
+bool FastCore::works_directly(const FrameStart& start) {
+  direct_frame_.set_buffers(start.bases);
+  const HostRoute& burst = host_port_.burst();
+  if (burst.bank && direct_frame_.hazard_with(host_port_.words_left(), burst.write)) return false;
+  return direct_frame_.disparities_are_apart() &&
+         direct_frame_.read(board_.direct_memory(direct_frame_.buffers(), start.joint_offsets));
+}
+
+void FastCore::route(const HostRoute& route) {
+  host_port_.route(route);
+  if (!route.bank) return;
+  if (frames_.is_running()) {
+    if (const auto port = direct_frame_.hazard_with(host_port_.words_left(), route.write))
+      report_hazard(route, *port);
+  }
+  host_port_.serve_new_burst();
+}
+
+// A burst of the local bus is a hazard: it accesses the buffer of this port.
+void FastCore::report_hazard(const HostRoute& burst, memory::Port port) {
+  const auto word = [](std::uint64_t address) {
+    return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
+  };
+  fail("a burst of the local bus " + std::string(burst.write ? "writes" : "reads") + " words " +
+       word(burst.first) + ".." + word(burst.end - 4) + " of bank number " + std::to_string(*burst.bank) +
+       ", where the running frame has its " + kPorts[port].buffer + ": needs fidelity cycle");
+}
+
+void FastCore::fail(const std::string& why) {
+  failed_ = true;
+  board_.failed(why);
+}
+
+std::uint64_t FastCore::advance(std::uint64_t now_ps) {
+  for (;;) {
+    if (frames_.is_running()) {
+      if (const std::uint64_t cycles = frames_.stalled_cycles(); cycles != 0) board_.stalled(cycles);
+    }
+    if (local_bus_.word_waits() && !host_port_.is_contended()) {
+      const auto next_ps = host_port_.serve_uncontended(board_.horizon_ps());
+      if (next_ps && *next_ps > now_ps) return *next_ps;
+      if (next_ps) end_frame();
+      continue;
+    }
+    if (frames_.is_finishing()) {
+      const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
+      if (end_ps > now_ps) return end_ps;
+      end_frame();
+      continue;
+    }
+    if (!frames_.is_running()) return kNever;
+    if (local_bus_.word_waits()) {
+      host_port_.serve_contended();
+    } else if (now_ps < next_check_ps_) {
+      return next_check_ps_;
+    } else {
+      const std::uint64_t most_ps = clock_.edge_ps(frames_.cycle() + kMostCyclesAhead);
+      frames_.run_ahead(clock_.edge_at_or_after(std::min(board_.horizon_ps(), most_ps)));
+    }
+    if (frames_.control().frame_done()) {
+      finish_frame();
+    } else {
+      next_check_ps_ = clock_.edge_ps(frames_.control().earliest_last_write(frames_.cycle())) + 1;
+    }
+  }
+}
+
+// Called after the cycle in which the last write of the frame was granted.
+void FastCore::finish_frame() {
+  host_port_.count_words_in_frame();
+  frames_.finish();
+  host_port_.count_words_outside();
+  write_disparities();
+  board_.frame_finished(direct_frame_);
+}
+
+// Called with the last write of the frame. The disparities cannot change a table: disparities_are_apart().
+void FastCore::write_disparities() {
+  if (!direct_frame_.has_pixels()) return;
+  std::uint8_t* const disparities = board_.direct_disparities();
+  if (disparities == nullptr) {
+    fail("direct access to the disparities was taken back within a frame");
+  } else {
+    direct_frame_.write(disparities);
+  }
+}
+
+void FastCore::end_frame() {
+  frames_.end();
+  board_.frame_ended(failed_);
+}
+
+}  // namespace stereotlm::fpga

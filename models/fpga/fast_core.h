@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "models/clock.h"
+#include "models/fpga/core_registers.h"
+#include "models/fpga/direct_frame.h"
+#include "models/fpga/frame_run.h"
+#include "models/fpga/host_port.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/time_ps.h"
+
+namespace stereotlm::fpga {
+
+// Fast-forwards the core beside the bursts of the local bus, for Fidelity::kFast and kTiming. It advances a
+// frame only when a word at the local bus contends for a bank of the frame, and when the frame may have
+// ended. The frame works directly on memory:
+// - It reads pictures and tables at the start strobe.
+// - It writes the disparities with the last write, or early, but never before a pending event that could
+//   observe them.
+// - A burst of the local bus that would observe the difference is a hazard: it writes what the frame reads,
+//   or touches the disparities.
+// Plain C++.
+class FastCore {
+ public:
+  // What the core is built into.
+  class Board {
+   public:
+    virtual ~Board() = default;
+    // Nothing else can happen before this time, which is not before the present.
+    virtual std::uint64_t horizon_ps() const = 0;
+    // Direct access to the buffers of a frame.
+    virtual DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
+                                              const kernels::JointOffsets& offsets) = 0;
+    // The disparity buffer of the running frame; null if direct access is not granted any more.
+    virtual std::uint8_t* direct_disparities() = 0;
+    // The last write has been granted. The counts of the frame can be taken from `frame`.
+    virtual void frame_finished(const DirectFrame& frame) = 0;
+    // The frame has ended, now. `failed`: its result may differ from that at Fidelity::kCycle.
+    virtual void frame_ended(bool failed) = 0;
+    // The result of the running frame may differ from that at Fidelity::kCycle.
+    virtual void failed(const std::string& why) = 0;
+    // The frame has made no progress for this number of cycles.
+    virtual void stalled(std::uint64_t cycles) = 0;
+  };
+
+  // `has_pixels`: whether disparities are computed. The other arguments outlive this object.
+  FastCore(const CoreConfig& config, bool has_pixels, FrameRun& frames, HostPort& host_port,
+           LocalBusControl& local_bus, const Clock& clock, Board& board);
+
+  // Starts the frame of a strobe in `cycle`, the first that begins at or after the strobe. Returns false if
+  // the frame must be stepped, and starts none: memory grants no direct access, buffers overlap, tables
+  // point outside the image, or a burst runs that is a hazard.
+  bool start_frame(std::uint64_t cycle, const FrameStart& start);
+  // To be called instead of HostPort::route() unless a stepped frame runs.
+  void route(const HostRoute& route);
+
+  // Does what is due at `now_ps`. Returns the time of the next call; kNever: the next call is due when a frame
+  // starts. When a burst begins to request, a call is due in any case. An event at the time of an edge belongs
+  // to the cycle that begins there.
+  std::uint64_t advance(std::uint64_t now_ps);
+
+ private:
+  bool works_directly(const FrameStart& start);
+  void finish_frame();
+  void write_disparities();
+  void end_frame();
+  void report_hazard(const HostRoute& burst, memory::Port port);
+  void fail(const std::string& why);
+
+  FrameRun& frames_;
+  HostPort& host_port_;
+  LocalBusControl& local_bus_;
+  const Clock& clock_;
+  Board& board_;
+  DirectFrame direct_frame_;
+  bool failed_ = false;              // the result of the frame may differ from that at Fidelity::kCycle
+  std::uint64_t next_check_ps_ = 0;  // the frame cannot have ended before this time
+};
+
+}  // namespace stereotlm::fpga

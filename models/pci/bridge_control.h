@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "models/local_burst.h"
+#include "models/pci/bridge_register_file.h"
+#include "models/pci/dma_channel.h"
+#include "models/pci/local_bus_master.h"
+#include "models/pci/pci_config.h"
+#include "models/pci/pci_slot.h"
+#include "models/words_by_range.h"
+
+namespace stereotlm::pci {
+
+// The timing of PciBridge (contract section 3, "Bridge"), its registers and its counters. Plain C++.
+//
+// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A word
+//   frees its place when its burst on the local bus ends. A read waits until all writes before it have left.
+// - A DMA channel fetches a descriptor, then moves its words in bursts (dma_channel.h). Both channels share
+//   one PCI master, which serves their transfers in the order in which they start.
+// - LocalBusMaster arbitrates the local bus.
+//
+// Errors of posted writes and of DMA set bits of kInterruptStatus.
+class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener {
+ public:
+  struct Stats {
+    std::uint64_t posted_words = 0;       // words of writes that the slave window took
+    std::uint64_t slave_reads = 0;        // words read through the slave window
+    std::uint64_t dma_words = 0;          // words whose write by a DMA channel has begun, both directions
+    std::uint64_t most_posted_words = 0;  // the most posted words that waited at one time
+    std::uint64_t errors = 0;             // refused accesses and raised errors
+  };
+
+  // Receives what the bridge signals to the host.
+  class Host {
+   public:
+    virtual ~Host() = default;
+    // The words of the read are in place. `ok`: the local bus has not refused it.
+    virtual void slave_read_ended(std::uint64_t now_ps, bool ok) = 0;
+    // The level of INTA# has changed.
+    virtual void interrupt_changed(std::uint64_t now_ps) = 0;
+  };
+
+  // `slot` is that of the PCI bus, for the DMA channels. These outlive the control. `config` must have no
+  // problems.
+  BridgeControl(const PciBridgeConfig& config, PciSlot& slot, LocalBusIf& local_bus, Host& host);
+
+  // The receiver of the local bus's answers.
+  LocalBusMaster& local_bus_master() { return local_bus_; }
+
+  // The slave window. `offset`: a multiple of 4; the words are inside the window.
+  //
+  // How many of `words` words a write can have now: STOP#.
+  std::size_t writable_words(std::uint64_t now_ps, std::size_t words) const;
+  // Posts a write. Returns false, without effect, if it has more words than there are free places.
+  bool write(std::uint64_t now_ps, std::uint64_t offset, const unsigned char* data, std::size_t words);
+  // Begins a read, which ends with Host::slave_read_ended(). `data` must stay until then. To be called if no
+  // other read is under way.
+  void read(std::uint64_t now_ps, std::uint64_t offset, unsigned char* data, std::size_t words);
+
+  // The register window. `offset`: a multiple of 4 in the window. These return false, without effect, if the
+  // register does not exist or has the other direction.
+  bool write_register(std::uint64_t now_ps, std::uint64_t offset, std::uint32_t value);
+  bool read_register(std::uint64_t offset, std::uint32_t& value);
+
+  // Counts an access that was refused before it came here.
+  void count_error() { ++stats_.errors; }
+  // The rising edge of the FPGA's doorbell.
+  void ring(std::uint64_t now_ps) { raise(now_ps, bridge::kDoorbell); }
+  // The level of INTA#.
+  bool interrupts() const { return interrupts_; }
+
+  // When step() is to be called: the local bus ends a burst that something waits for, or chooses a burst.
+  std::uint64_t next_ps() const { return local_bus_.next_ps(); }
+  bool ends_next() const { return local_bus_.ends_next(); }
+  void step(std::uint64_t now_ps) { local_bus_.step(now_ps); }
+
+  PciBurst begin_burst(std::uint64_t address_clock_ps) override;
+  void end_burst(const BurstResult& result) override;
+
+  const Stats& stats() const { return stats_; }
+  // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
+  const WordsByRange& words_taken() const { return words_taken_; }
+  // The part of words_taken() that still waits in the bridge for the local bus.
+  WordsByRange words_held() const;
+
+ private:
+  std::uint64_t local_address_of(std::uint64_t offset) const;
+  void count_for_banks(WordsByRange& counts, std::uint64_t address, std::size_t words) const;
+  void raise(std::uint64_t now_ps, std::uint32_t interrupts);
+  void drive_interrupts(std::uint64_t now_ps);
+
+  // These run the DMA channels.
+  void run(std::uint64_t now_ps, const DmaChannel::Step& step);
+  void advance(std::uint64_t now_ps, DmaChannel& channel);
+  void start_on_pci(std::uint64_t now_ps, BridgeTransfer& transfer);
+
+  void posted_write_refused(std::uint64_t now_ps) override { raise(now_ps, bridge::kPostedError); }
+  void slave_read_ended(std::uint64_t now_ps, const BridgeTransfer& read) override;
+  void local_transfer_ended(std::uint64_t now_ps, DmaChannel& channel) override { advance(now_ps, channel); }
+
+  PciBridgeConfig config_;
+  PciSlot& slot_;
+  Host& host_;
+  DmaChannels channels_;
+  BridgeRegisterFile register_file_{channels_};
+  LocalBusMaster local_bus_;
+  bool interrupts_ = false;
+  unsigned char* read_data_ = nullptr;  // of the read of the slave window
+  // The DMA transfers on PCI, null behind the last one; the first one runs. A channel has one at most.
+  std::array<BridgeTransfer*, bridge::kChannels> pci_queue_{};
+  std::size_t pci_done_ = 0;              // words of the running transfer that have been transferred
+  std::vector<std::uint32_t> pci_words_;  // words of its burst
+  WordsByRange words_taken_;
+  Stats stats_;
+};
+
+}  // namespace stereotlm::pci

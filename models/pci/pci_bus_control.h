@@ -1,0 +1,167 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/pci/pci_config.h"
+#include "models/pci/pci_slot.h"
+#include "models/time_ps.h"
+
+namespace stereotlm::pci {
+
+// When a target has responded to an access, and how.
+struct PciAnswer {
+  std::uint64_t time_ps = 0;  // kNever: not yet
+  bool ok = true;
+};
+
+// The access of a burst. Its address is relative to the target's window.
+struct PciAccess {
+  bool write = true;
+  std::uint64_t address = 0;
+  std::uint32_t* words = nullptr;
+  std::size_t count = 0;
+};
+
+// A target of the bus, called by the bus.
+class PciTarget {
+ public:
+  virtual ~PciTarget() = default;
+  // STOP#: called at the address clock of a write. Returns how many of its `words` words the target takes.
+  virtual std::size_t writable_words(std::uint64_t /*now_ps*/, std::uint64_t /*address*/, std::size_t words) {
+    return words;
+  }
+  // A write is called at the end of its last data clock, which is `at_ps`. A read is called in the address
+  // clock, and reads at the end of that clock, `at_ps`. An answer that is not given yet is given by
+  // PciBusControl::answer().
+  virtual PciAnswer access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) = 0;
+};
+
+// The arbitration and the timing of PciBus, which describes them, and its counters. Plain C++.
+class PciBusControl {
+ public:
+  struct MasterStats {
+    std::string name;
+    std::uint64_t transactions = 0;  // bursts, counted at their end
+    std::uint64_t words = 0;         // words transferred
+    std::uint64_t wait_clocks = 0;   // from the first clock at or after a request to its address clock
+    std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
+    std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
+  };
+  struct Stats {
+    std::uint64_t clocks = 0;          // whole clocks since time 0
+    std::uint64_t busy_clocks = 0;     // address, wait and data clocks among them
+    std::vector<MasterStats> masters;  // [slot]
+  };
+
+  // `config` must have no problems.
+  explicit PciBusControl(const PciBusConfig& config);
+  PciBusControl(const PciBusControl&) = delete;
+  PciBusControl& operator=(const PciBusControl&) = delete;
+
+  // The target of each window outlives the bus. To be called before the first burst.
+  void bind(std::size_t window, PciTarget& target) { windows_[window].target = &target; }
+  PciSlot& slot(std::size_t master) { return slots_[master]; }
+  const PciSlot& slot(std::size_t master) const { return slots_[master]; }
+  const Clock& clock() const { return clock_; }
+
+  // The time of the next step() or decide().
+  std::uint64_t next_ps() const { return next_ps_; }
+  // Which of them: decide() grants the bus, from the state after everything else that happens at this time.
+  bool decides_next() const { return state_ == State::kFree; }
+  void step(std::uint64_t now_ps);
+  void decide(std::uint64_t now_ps);
+  // The window whose target the next step() calls with a write; none: it calls no target.
+  std::optional<std::size_t> writes_next() const;
+  // The target answers the access that it has not answered yet.
+  void answer(std::uint64_t now_ps, const PciAnswer& answer);
+
+  // Counts up to `now_ps`.
+  Stats stats(std::uint64_t now_ps) const;
+
+ private:
+  class Slot final : public PciSlot {
+   public:
+    Slot(PciBusControl& bus, std::size_t master) : bus_(bus), master_(master) {}
+    void request(PciMasterIf& master, std::uint64_t from_ps) override {
+      bus_.request(master_, master, from_ps);
+    }
+    BurstResult transferred(std::uint64_t now_ps) const override { return bus_.transferred(master_, now_ps); }
+    const Clock& clock() const override { return bus_.clock_; }
+
+   private:
+    PciBusControl& bus_;
+    std::size_t master_;
+  };
+  struct Window {
+    PciWindow config;
+    PciTarget* target = nullptr;
+  };
+  struct Request {
+    PciMasterIf* from = nullptr;
+    std::uint64_t clock = kNever;  // the first clock that can be granted; kNever: no request
+  };
+  enum class State : std::uint8_t {
+    kFree,      // decide() is due when a request can be granted
+    kOccupied,  // a master or a target is being called; requests are recorded
+    kWords,     // step() is due at the end of the last data clock; a request may cut the words
+    kEnding,    // step() is due at the end of the burst, which no request changes
+  };
+  struct Running {
+    std::size_t master = 0;
+    PciBurst burst;
+    Window* window = nullptr;  // null: none has this address
+    std::size_t accepted = 0;  // words that the target takes of a write; all words of a read
+    std::uint64_t address_clock = 0;
+    std::uint64_t end_clock = 0;  // the idle clock, as planned so far
+    BurstResult result;
+  };
+
+  // These take requests.
+  void request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps);
+  void await_request();
+  std::uint64_t earliest_request(std::size_t except) const;
+
+  // These step through a burst.
+  void begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst, std::uint64_t clock);
+  void begin_words(std::uint64_t first_clock);
+  void cut_words();
+  void end_words_at(std::uint64_t clock);
+  void end_words(std::uint64_t now_ps);
+  void end_at(std::uint64_t clock, const BurstResult& result);
+  void end(std::uint64_t now_ps);
+
+  // These access the target.
+  Window* window_of(const PciBurst& burst);
+  void access(std::uint64_t now_ps, std::vector<std::uint32_t>& words, std::size_t count);
+  std::uint64_t access_clock() const;
+  void end_access(std::uint64_t now_ps, bool ok, std::uint64_t clock);
+
+  void count(std::size_t master, const BurstResult& result);
+  BurstResult transferred(std::size_t master, std::uint64_t now_ps) const;
+  // The number of clocks that have ended by now.
+  std::uint64_t whole_clocks(std::uint64_t now_ps) const { return clock_.edge_at_or_after(now_ps + 1) - 1; }
+
+  Clock clock_;
+  std::uint64_t latency_timer_clocks_;
+  std::size_t words_per_clock_;
+  std::vector<Window> windows_;
+  std::vector<Slot> slots_;        // [master]
+  std::vector<Request> requests_;  // [master]
+  std::size_t last_granted_;       // index of the master that was granted last
+  State state_ = State::kFree;
+  std::uint64_t next_ps_ = kNever;
+  std::uint64_t free_clock_ = 0;           // the first clock that can be an address clock
+  std::uint64_t decision_clock_ = kNever;  // in kFree: the clock that decide() is to grant
+  bool burst_runs_ = false;
+  Running running_;
+  std::vector<std::uint32_t> read_words_;
+  std::uint64_t busy_clocks_ = 0;  // clocks of the bursts that have ended
+  std::vector<MasterStats> master_stats_;
+};
+
+}  // namespace stereotlm::pci

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "models/capture/camera_control.h"
+#include "models/capture/capture_control.h"
+#include "models/fpga/fidelity.h"
+#include "models/pci/bridge_control.h"
+#include "models/pci/pci_bus_control.h"
+#include "models/pci/traffic_control.h"
+#include "models/time_ps.h"
+#include "platform/collect_computer.h"
+#include "platform/config/board_config.h"
+#include "platform/fast_board.h"
+
+namespace stereotlm::platform {
+
+// The computer without its processor at fidelity fast or timing: the controls of all blocks, bound directly
+// and stepped in the order of their events (contract section 3, "To the clock"). No kernel. The master kHost of
+// the PCI bus is free for the processor's bridge.
+class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Host {
+ public:
+  // `host_memory` has `host_memory_bytes` bytes. It, `left` and `right` outlive the loop. Throws
+  // std::invalid_argument if the board has problems.
+  ComputerLoop(const BoardConfig& config, unsigned char* host_memory, std::uint64_t host_memory_bytes,
+               capture::CameraSource& left, capture::CameraSource& right, fpga::Fidelity fidelity);
+  ComputerLoop(const ComputerLoop&) = delete;
+  ComputerLoop& operator=(const ComputerLoop&) = delete;
+
+  // Steps the blocks until an interrupt line rises or notice() is called, and then to the end of that time; at
+  // most to `end_ps`. Whatever the processor does at the time that it sees comes before the decisions of that
+  // time, which are still to be made.
+  void run(std::uint64_t end_ps);
+  // The time up to which the blocks have been stepped.
+  std::uint64_t now_ps() const { return now_ps_; }
+  // To be called in a step that the processor is to see.
+  void notice() { noticed_ = true; }
+  // The shared INTA#.
+  bool interrupt() const {
+    return bridge_.interrupts() || captures_[0].interrupt() || captures_[1].interrupt();
+  }
+
+  pci::PciSlot& host_slot();
+  const pci::PciSlot& host_slot() const;
+  FastBoard& board() { return board_; }
+  const FastBoard& board() const { return board_; }
+  // To be called while the core runs no frame.
+  ComputerCounters counters() const;
+  // See ComputerView.
+  std::uint64_t work_done();
+  const pci::PciBusControl& pci_bus() const { return pci_bus_; }
+
+ private:
+  // The targets of the PCI bus.
+  class HostMemoryTarget : public pci::PciTarget {
+   public:
+    explicit HostMemoryTarget(unsigned char* memory) : memory_(memory) {}
+    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
+
+   private:
+    unsigned char* memory_;
+  };
+  class BridgeSlaveTarget : public pci::PciTarget {
+   public:
+    explicit BridgeSlaveTarget(ComputerLoop& loop) : loop_(loop) {}
+    std::size_t writable_words(std::uint64_t now_ps, std::uint64_t /*address*/, std::size_t words) override {
+      return loop_.bridge_.writable_words(now_ps, words);
+    }
+    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
+    // The end of the address clock of a read: the time at which it reaches the bridge.
+    std::uint64_t next_ps() const { return next_ps_; }
+    void step(std::uint64_t now_ps);
+
+   private:
+    ComputerLoop& loop_;
+    pci::PciAccess read_;
+    std::uint64_t next_ps_ = kNever;
+  };
+  class BridgeRegisterTarget : public pci::PciTarget {
+   public:
+    explicit BridgeRegisterTarget(pci::BridgeControl& bridge) : bridge_(bridge) {}
+    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
+
+   private:
+    pci::BridgeControl& bridge_;
+  };
+  class CaptureRegisterTarget : public pci::PciTarget {
+   public:
+    explicit CaptureRegisterTarget(capture::CaptureControl& board) : board_(board) {}
+    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
+
+   private:
+    capture::CaptureControl& board_;
+  };
+  class TrafficTarget : public pci::PciTarget {
+   public:
+    explicit TrafficTarget(std::uint64_t access_ps) : access_ps_(access_ps) {}
+    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
+
+   private:
+    std::uint64_t access_ps_;
+  };
+
+  void bind();
+  void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
+  void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
+  void interrupt_changed(std::uint64_t /*now_ps*/) override {}
+
+  pci::PciBusControl pci_bus_;
+  FastBoard board_;
+  pci::BridgeControl bridge_;
+  std::array<capture::CaptureControl, 2> captures_;  // left, right
+  std::array<capture::CameraControl, 2> cameras_;
+  std::optional<pci::TrafficControl> traffic_;
+  HostMemoryTarget host_memory_;
+  BridgeSlaveTarget bridge_slave_{*this};
+  BridgeRegisterTarget bridge_registers_{bridge_};
+  std::array<CaptureRegisterTarget, 2> capture_registers_;
+  TrafficTarget traffic_device_;
+  std::uint64_t now_ps_ = 0;
+  bool interrupt_ = false;  // level after the last step
+  bool noticed_ = false;
+};
+
+}  // namespace stereotlm::platform

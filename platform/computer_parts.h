@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "models/capture/capture_config.h"
+#include "models/pci/pci_config.h"
+#include "platform/config/board_config.h"
+
+// The parts of a computer around the board, as Computer and FastComputer build them. Plain data.
+namespace stereotlm::platform {
+
+// Masters of the PCI bus: indices of its slots and of its statistics.
+enum PciMaster : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kTrafficGenerator };
+// Windows of the PCI bus.
+enum PciTargetWindow : std::size_t {
+  kHostMemory,
+  kBridgeSlave,
+  kBridgeRegisters,
+  kLeftRegisters,
+  kRightRegisters,
+  kTrafficDevice
+};
+
+pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes);
+pci::PciBridgeConfig bridge_config(const BoardConfig& board);
+capture::CameraConfig camera_config(const BoardConfig& board);
+capture::CaptureBoardConfig capture_config(const BoardConfig& board);
+// Nothing on a board without `pci.load`. Such a bus has no master kTrafficGenerator.
+std::optional<pci::TrafficGeneratorConfig> traffic_config(const BoardConfig& board);
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,141 @@
+#include "platform/fast_board.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "models/fpga/core_ports.h"
+#include "models/fpga/frame_counts.h"
+#include "models/memory/crossbar_address.h"
+#include "models/time_ps.h"
+#include "platform/config/buffer_layout.h"
+
+namespace stereotlm::platform {
+namespace {
+
+// Cycles without progress after which a frame stalls.
+constexpr std::uint64_t kStallTimeoutCycles = std::uint64_t{1} << 26U;
+
+const BoardConfig& checked(const BoardConfig& config) {
+  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
+  return config;
+}
+
+std::vector<memory::SsramBankConfig> bank_configs(const BoardConfig& board) {
+  std::vector<memory::SsramBankConfig> banks;
+  for (const BankConfig& bank : board.banks) banks.push_back(ssram_config(board, bank));
+  return banks;
+}
+
+}  // namespace
+
+FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell)
+    : config_(core_config(checked(config))),
+      bank_configs_(bank_configs(config)),
+      doorbell_(doorbell),
+      clock_(config_.clock_mhz),
+      arbitration_(config.fpga.arbiter, bank_configs_),
+      frames_(config_, bank_configs_, arbitration_, kStallTimeoutCycles),
+      local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
+      fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, clock_, *this),
+      next_ps_(kNever),
+      sums_(bank_configs_.size()) {
+  host_port_.set_only_master(true);
+  for (const memory::SsramBankConfig& bank : bank_configs_) banks_.emplace_back(4 * bank.words);
+}
+
+void FastBoard::step(std::uint64_t now_ps) {
+  now_ps_ = now_ps;
+  next_ps_ = fast_core_.advance(now_ps);
+}
+
+void FastBoard::catch_up(std::uint64_t now_ps) {
+  if (frames_.is_running()) frames_.run_ahead(clock_.edge_at_or_after(now_ps));
+}
+
+bool FastBoard::access_bank(std::uint64_t /*at_ps*/, bool write, std::uint64_t address, std::uint32_t& word) {
+  const std::size_t bank = memory::bank_of_address(address);
+  sums_.add_accesses(bank, 1);
+  unsigned char* const stored = direct(address, 4);
+  if (stored == nullptr) return false;
+  if (write) changes(address, 4);
+  std::memcpy(write ? static_cast<void*>(stored) : &word, write ? static_cast<void*>(&word) : stored, 4);
+  return true;
+}
+
+bool FastBoard::access_register(std::uint64_t now_ps, bool write, std::uint64_t address,
+                                std::uint32_t& word) {
+  if (address >= fpga::registers::kEnd || !fpga::CoreRegisters::allows(write, address)) return false;
+  if (write) {
+    registers_.write(now_ps, address, word);
+  } else {
+    word = registers_.read(address);
+  }
+  return true;
+}
+
+void FastBoard::start_frame(const fpga::FrameStart& start) {
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+    if (!fpga::has_port(config_, port) || frames_.has_bank(start.bases[port])) continue;
+    registers_.refuse_start();
+    return;
+  }
+  if (!fast_core_.start_frame(clock_.edge_at_or_after(start.time_ps), start))
+    failed("a frame that does not work directly on memory needs fidelity cycle");
+  next_ps_ = start.time_ps;
+}
+
+fpga::DirectFrame::Memory FastBoard::direct_memory(const fpga::DirectFrame::Buffers& buffers,
+                                                   const kernels::JointOffsets& offsets) {
+  fpga::DirectFrame::Memory memory;
+  memory.joint_offsets = offsets;
+  for (const fpga::Side side : fpga::kSides) {
+    const std::size_t index = fpga::index_of(side);
+    memory.images[index] = buffer(buffers[fpga::pixel_port(side)]);
+    const std::size_t port = fpga::lut_port(side);
+    if (!fpga::has_port(config_, port)) continue;
+    const AddressRange& range = buffers[port];
+    fpga::DirectFrame::Table& table = memory.tables[index];
+    table.entries = reinterpret_cast<const std::uint32_t*>(buffer(range));
+    table.may_have_changed =
+        table.entries != nullptr && watch_.may_have_changed(port, range.first, range.end);
+  }
+  disparities_ = buffer(buffers[fpga::kResultPort]);
+  memory.disparities = disparities_;
+  return memory;
+}
+
+unsigned char* FastBoard::buffer(const AddressRange& range) {
+  return direct(range.first, range.end - range.first);
+}
+
+unsigned char* FastBoard::direct(std::uint64_t address, std::uint64_t bytes) {
+  const std::size_t bank = memory::bank_of_address(address);
+  const std::uint64_t first = address - memory::crossbar_address(bank, 0);
+  return banks_[bank].holds(first, bytes) ? banks_[bank].data() + first : nullptr;
+}
+
+void FastBoard::frame_finished(const fpga::DirectFrame& frame) {
+  sums_.add({config_, frame.patterns(), frames_, frame.answered()}, arbitration_);
+}
+
+void FastBoard::frame_ended(bool failed) {
+  const bool was_done = registers_.done();
+  registers_.finish_frame(frames_.frame_cycles().back(), failed);
+  if (!was_done) doorbell_.ring(now_ps_);
+}
+
+void FastBoard::failed(const std::string& why) { throw std::runtime_error("core: " + why); }
+
+void FastBoard::stalled(std::uint64_t cycles) {
+  failed(fmt::format("no slot consumed and no result written for {} cycles; {}", cycles, waits()));
+}
+
+BoardCounters FastBoard::counters() const {
+  BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
+  sums_.put_into(counters);
+  return counters;
+}
+
+}  // namespace stereotlm::platform

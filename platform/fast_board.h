@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/fpga/core_registers.h"
+#include "models/fpga/fast_core.h"
+#include "models/fpga/fidelity.h"
+#include "models/fpga/frame_run.h"
+#include "models/fpga/host_port.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/memory/arbitration.h"
+#include "models/memory/change_watch.h"
+#include "models/memory/direct_banks.h"
+#include "models/memory/ram.h"
+#include "platform/collect.h"
+#include "platform/config/board_config.h"
+#include "platform/frame_sums.h"
+
+namespace stereotlm::platform {
+
+// The board of board.h at fidelity fast or timing, without modules and without the kernel: the same controls,
+// bound directly. Only the local bus reaches it. Its frames always work directly on memory; one that cannot is
+// an error.
+class FastBoard : private fpga::LocalBusControl::Core,
+                  private fpga::CoreRegisters::Starter,
+                  private fpga::FastCore::Board,
+                  private memory::DirectBanks {
+ public:
+  // Receives the core's interrupt.
+  class Doorbell {
+   public:
+    virtual ~Doorbell() = default;
+    // The interrupt rises.
+    virtual void ring(std::uint64_t now_ps) = 0;
+  };
+
+  // `doorbell` outlives the board. Throws std::invalid_argument if the board has problems.
+  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell);
+  FastBoard(const FastBoard&) = delete;
+  FastBoard& operator=(const FastBoard&) = delete;
+
+  fpga::LocalBusControl& local_bus() { return local_bus_; }
+  const fpga::LocalBusControl& local_bus() const { return local_bus_; }
+  const fpga::FrameRun& frames() const { return frames_; }
+
+  // The time of the next step(), which may be the present.
+  std::uint64_t next_ps() const {
+    return local_bus_.word_waits() ? std::min(next_ps_, local_bus_.request_ps()) : next_ps_;
+  }
+  // Whether that step ends a frame. Else it comes after everything else that happens at its time.
+  bool ends_frame_next() const { return frames_.is_finishing(); }
+  // Advances the core. Throws std::runtime_error if a frame stalls or needs Fidelity::kCycle.
+  void step(std::uint64_t now_ps);
+
+  // See FrameRun.
+  void record_rows() { frames_.record_rows(); }
+  std::vector<fpga::RowProfile> take_rows() { return frames_.take_rows(); }
+  std::string waits() const { return frames_.waits(local_bus_.word_waits()); }
+  // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
+  void catch_up(std::uint64_t now_ps);
+
+  // To be called between two frames.
+  BoardCounters counters() const;
+
+ private:
+  void route(const fpga::HostRoute& route) override { fast_core_.route(route); }
+  bool access_bank(std::uint64_t at_ps, bool write, std::uint64_t address, std::uint32_t& word) override;
+  bool access_register(std::uint64_t now_ps, bool write, std::uint64_t address, std::uint32_t& word) override;
+
+  void start_frame(const fpga::FrameStart& start) override;
+
+  std::uint64_t horizon_ps() const override { return now_ps_; }
+  fpga::DirectFrame::Memory direct_memory(const fpga::DirectFrame::Buffers& buffers,
+                                          const kernels::JointOffsets& offsets) override;
+  std::uint8_t* direct_disparities() override { return disparities_; }
+  void frame_finished(const fpga::DirectFrame& frame) override;
+  void frame_ended(bool failed) override;
+  [[noreturn]] void failed(const std::string& why) override;
+  void stalled(std::uint64_t cycles) override;
+
+  unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
+  void changes(std::uint64_t first, std::uint64_t bytes) override { watch_.changes(first, bytes); }
+  void count_direct(std::size_t bank, std::uint64_t accesses) override { sums_.add_accesses(bank, accesses); }
+  void allow_access(memory::Port /*port*/) override {}
+
+  unsigned char* buffer(const AddressRange& range);
+
+  fpga::CoreConfig config_;
+  std::vector<memory::SsramBankConfig> bank_configs_;
+  Doorbell& doorbell_;
+  Clock clock_;
+  std::deque<memory::Ram> banks_;
+  memory::Arbitration arbitration_;
+  memory::ChangeWatch watch_;
+  fpga::FrameRun frames_;
+  fpga::CoreRegisters registers_{*this};
+  fpga::LocalBusControl local_bus_;
+  fpga::HostPort host_port_{local_bus_, *this, arbitration_, frames_, clock_};
+  fpga::FastCore fast_core_;
+  std::uint8_t* disparities_ = nullptr;  // of the running frame
+  std::uint64_t now_ps_ = 0;             // time of the last step
+  std::uint64_t next_ps_;
+  FrameSums sums_;
+};
+
+}  // namespace stereotlm::platform
