@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,9 @@ namespace stereotlm::fpga {
 // Runs many cycles of a frame in one step, without data; used by FrameRun. A transition of the core that is
 // in the TransitionCache is skipped; others are stepped and recorded. While rows are recorded, the cycles
 // around the end of each row are stepped.
+//
+// Groups are skipped in the memo alone: the core and the arbiters are taken to their new state only when
+// somebody needs it (catch_up()).
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
@@ -35,8 +39,26 @@ class FastForward {
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
+  // Runs the cycles from `cycle` on until the host is granted `words` words. The first requests from cycle
+  // `first` on, each other in the cycle after a grant; all words granted before are granted before `first`.
+  // Ends earlier if the frame is done, or after 8192 cycles. Changes `cycle` to the next cycle, or to the
+  // beginning of the group in which the last word is granted.
+  struct HostRoute {
+    std::size_t bank = 0;
+    bool write = false;
+  };
+  struct Served {
+    std::size_t words = 0;
+    std::uint64_t last_cycle = 0;  // in which the last of them was granted
+  };
+  Served serve_host(std::uint64_t& cycle, const HostRoute& route, std::uint64_t first, std::size_t words);
+  // Whether a burst in this direction is probably known, because others were lately. If not, step() is
+  // faster. To be called once for each burst.
+  bool expects_known_burst(bool write) { return trust_[write ? 1 : 0].is_there(); }
   // The number of cycles that were skipped and not stepped, over all frames.
   std::uint64_t skipped_cycles() const { return skipped_cycles_; }
+  // What the core has not been taken through yet, of the cycles that were skipped.
+  const Progress& ahead() const { return ahead_; }
 
  private:
   using StateNumber = TransitionCache::StateNumber;
@@ -49,6 +71,8 @@ class FastForward {
   struct Stepped {
     StateNumber state;
     TransitionCache::Accesses accesses;
+    HostRequests host;
+    std::size_t host_words;
     Progress begin;
     CoreControl::Counts counts;
     std::uint64_t match;  // MatchControl::state()
@@ -61,16 +85,50 @@ class FastForward {
     TransitionCache::Transition transition;
   };
 
-  std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
-  StateNumber walk(StateNumber state, Progress& room);
+  // Trust in the memo's knowledge of bursts. A known burst saves more time than is lost by looking for one
+  // that is not known, and by recording it.
+  class Trust {
+   public:
+    bool is_there();
+    void note(bool is_known) {
+      trust_ = is_known ? std::min(trust_ + 2, kMost) : trust_ - std::min(trust_, 1U);
+    }
+
+   private:
+    static constexpr unsigned kMost = 256;
+    static constexpr unsigned kNew = 8;  // after kBurstsWithout bursts without trust
+    static constexpr unsigned kBurstsWithout = 2048;
+
+    unsigned trust_ = kMost;
+    unsigned bursts_ = 0;  // without trust
+  };
+  // Words that the host requests one after the other.
+  struct HostWords {
+    std::uint64_t first = 0;  // first cycle in which the next word requests
+    std::size_t words = 0;
+  };
+
+  template <bool kMayRequest>
+  memory::PortMask step_core(std::uint64_t cycle, bool host_requests);
+  std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
+  void begin_walk(std::uint64_t cycle);
+  void end_walk(std::uint64_t cycle);
+  std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
+  void route_host(std::uint64_t cycle, const HostRoute& route);
+  std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
+  void follow(const TransitionCache::Transition& transition);
+  void skip(const Progress& progress);
+  void catch_up(std::uint64_t cycle);
+  StateNumber walk_known(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
   bool find_strips();
-  Progress room(std::uint64_t cycle, std::uint64_t end) const;
+  Progress room() const;
   bool holds_group(const Progress& room) const;
   TransitionCache::Accesses accesses_from(std::uint64_t consumed) const;
   std::uint64_t uniform_columns(std::uint64_t consumed) const;
-  void begin_group(StateNumber state, const TransitionCache::Accesses& accesses, std::uint64_t cycle);
+  TransitionCache::Accesses accesses() const;
+  HostRequests host_requests(std::uint64_t cycle) const;
   void end_group(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
@@ -78,8 +136,6 @@ class FastForward {
   std::uint64_t slots_of_group() const {
     return 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
   }
-  // The number of slots of the frame that the matcher has consumed, after a group.
-  std::uint64_t consumed() const { return control().match().columns() * slots_of_group() / 4; }
   const CoreControl& control() const { return stepper_.control(); }
 
   CoreStepper& stepper_;
@@ -89,6 +145,20 @@ class FastForward {
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   std::uint64_t skipped_cycles_ = 0;
+  // After a group, from which transitions can be followed.
+  bool is_walking_ = false;
+  StateNumber state_ = 0;
+  Progress room_;               // how far they can be followed
+  std::uint64_t consumed_ = 0;  // slots of the frame that the matcher has consumed
+  Progress ahead_;              // of the state before that of the core
+  HostGrants host_ahead_;       // and of the counts of the host; without `cycles`
+  // Words of the host that are to be granted from the next cycle on.
+  HostWords host_;
+  std::array<Trust, 2> trust_;   // in bursts that [0] read, [1] write
+  bool is_host_routed_ = false;  // by serve_host()
+  bool keeps_route_ = false;     // after the burst
+  // The transition of the group that comes next, in which these words are granted, if it is known.
+  std::optional<TransitionCache::Transition> granting_;
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index of the strips in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.
