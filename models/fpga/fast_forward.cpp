@@ -94,64 +94,69 @@ std::uint64_t FastForward::run_ahead(std::uint64_t cycle, std::uint64_t end) {
   return cycle;
 }
 
-FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const HostRoute& route, std::uint64_t first,
+FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first,
                                             std::size_t words) {
-  while (cycle < first && !control().frame_done()) {
-    if (is_walking_) cycle = walk(cycle, first);
-    if (is_walking_ && !granting_ &&
-        (is_host_routed_ || first - cycle < slots_of_group() || known_.find(state_, accesses())))
-      break;
-    if (cycle < first) cycle = step_group(cycle, first);
-  }
-  if (!is_walking_) stepped_.reset();  // a group with words of two bursts is not recorded
-  Served served;
+  cycle = walk_to_burst(cycle, first);
+  if (!is_walking_) stepped_.reset();  // a group that is begun before the burst is not recorded
   keeps_route_ = true;
   route_host(cycle, route);
   host_ = {first, words};
-  const std::uint64_t end = std::max(cycle, first) + kMostHostCycles;
-  while (host_.words != 0 && cycle < end && !control().frame_done()) {
-    if (is_walking_) {
-      if (cycle < host_.first) cycle = walk(cycle, host_.first);
-      if (const auto found = find_host(cycle)) {
-        const HostGrants& grants = known_.host(*found);
-        if (grants.words != 0) served.last_cycle = cycle + grants.cycles - 1;
-        if (grants.words == host_.words) {
-          granting_ = found;
-          break;
-        }
-        cycle += known_.progress(*found).cycles;
-        follow(*found);
-        host_ = {cycle, host_.words - grants.words};
-        continue;
-      }
-    }
-    keeps_route_ = false;
-    const std::size_t words_before = host_.words;
-    cycle = step_group(cycle, end);
-    if (host_.words != words_before) served.last_cycle = host_.first - 1;
-  }
-  trust_[route.write ? 1 : 0].note(keeps_route_);
-  if (granting_) {
-    served.words = words;
-    return served;
-  }
-  served.words = words - host_.words;
-  if (host_.words != 0) {
+  const Served served = grant_words(cycle);
+  trust(route.write).note(keeps_route_);
+  if (!granting_ && host_.words != 0) {
     host_ = {};
     stepped_.reset();
   }
   return served;
 }
 
-bool FastForward::Trust::is_there() {
-  if (trust_ == 0 && ++bursts_ == kBurstsWithout) {
-    trust_ = kNew;
-    bursts_ = 0;
+// Runs to the beginning of the group in which the burst begins; to `first` if it is not certain which group
+// that is, unless the host is routed already.
+std::uint64_t FastForward::walk_to_burst(std::uint64_t cycle, std::uint64_t first) {
+  while (cycle < first && !control().frame_done()) {
+    if (is_walking_) cycle = walk(cycle, first);
+    if (is_walking_ && !granting_) {
+      // A group has at least as many cycles as slots.
+      const bool is_last = first - cycle < slots_of_group() || known_.find(state_, accesses());
+      if (is_host_routed_ || is_last) return cycle;
+    }
+    if (cycle < first) cycle = step_group(cycle, first);
   }
-  return trust_ != 0;
+  return cycle;
 }
 
-void FastForward::route_host(std::uint64_t cycle, const HostRoute& route) {
+// Runs until the words of host_ are granted, or as far as serve_host() does.
+FastForward::Served FastForward::grant_words(std::uint64_t& cycle) {
+  Served served;
+  const std::size_t words = host_.words;
+  const std::uint64_t end = std::max(cycle, host_.first) + kMostHostCycles;
+  while (host_.words != 0 && cycle < end && !control().frame_done()) {
+    if (is_walking_ && cycle < host_.first) cycle = walk(cycle, host_.first);
+    const auto found = is_walking_ ? find_host(cycle) : std::nullopt;
+    if (!found) {
+      keeps_route_ = false;
+      const std::size_t words_before = host_.words;
+      cycle = step_group(cycle, end);
+      if (host_.words != words_before) served.last_cycle = host_.first - 1;
+      continue;
+    }
+    const HostGrants& grants = known_.host(*found);
+    if (grants.words != 0) served.last_cycle = cycle + grants.cycles - 1;
+    if (grants.words == host_.words) {
+      granting_ = found;
+      served.words = words;
+      return served;
+    }
+    cycle += known_.progress(*found).cycles;
+    follow(*found);
+    host_ = {cycle, host_.words - grants.words};
+  }
+  served.words = words - host_.words;
+  return served;
+}
+
+// Routes the host to the bank, and keeps walking if a walk has begun.
+void FastForward::route_host(std::uint64_t cycle, const Route& route) {
   memory::Arbitration& arbitration = stepper_.arbitration();
   if (is_host_routed_ && arbitration.bank_of(kHostPort) == route.bank &&
       arbitration.writes(kHostPort) == route.write)
@@ -186,6 +191,7 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
 // Begins to follow transitions, if possible. Called after a group of four columns has been stepped.
 void FastForward::begin_walk(std::uint64_t cycle) {
   if (stepped_) end_group(cycle);
+  // Without the route of the host more ports are uncontended.
   if (is_host_routed_ && !keeps_route_ && host_.words == 0) settle();
   if (!find_strips()) return;
   room_ = room();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "models/fpga/assumed_accesses.h"
+#include "models/fpga/burst_trust.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/transition_cache.h"
 
@@ -17,8 +17,8 @@ namespace stereotlm::fpga {
 // in the TransitionCache is skipped; others are stepped and recorded. While rows are recorded, the cycles
 // around the end of each row are stepped.
 //
-// Groups are skipped in the memo alone: the core and the arbiters are taken to their new state only when
-// somebody needs it (catch_up()).
+// A walk follows transitions in the memo alone. The core and the arbiters are taken to its end only when a
+// cycle must be stepped, and by run_ahead().
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
@@ -39,25 +39,26 @@ class FastForward {
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
-  // Runs the cycles from `cycle` on until the host is granted `words` words. The first requests from cycle
-  // `first` on, each other in the cycle after a grant; all words granted before are granted before `first`.
-  // Ends earlier if the frame is done, or after 8192 cycles. Changes `cycle` to the next cycle, or to the
-  // beginning of the group in which the last word is granted.
-  struct HostRoute {
+  // The bank of a burst of the host, and its direction.
+  struct Route {
     std::size_t bank = 0;
     bool write = false;
   };
   struct Served {
-    std::size_t words = 0;
+    std::size_t words = 0;         // of the burst
     std::uint64_t last_cycle = 0;  // in which the last of them was granted
   };
-  Served serve_host(std::uint64_t& cycle, const HostRoute& route, std::uint64_t first, std::size_t words);
-  // Whether a burst in this direction is probably known, because others were lately. If not, step() is
-  // faster. To be called once for each burst.
-  bool expects_known_burst(bool write) { return trust_[write ? 1 : 0].is_there(); }
+  // Runs the cycles from `cycle` on until the host is granted `words` words of its bank. The first requests
+  // from cycle `first` on, each other in the cycle after a grant. Every earlier burst has ended before `first`.
+  // Ends early if the frame is done, or after 8192 cycles. Sets `cycle` to the next cycle, or to the beginning
+  // of the group in which the last word is granted.
+  Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
+  // Whether a burst in this direction is probably known. If not, step() is faster. To be called once for each
+  // burst.
+  bool expects_known_burst(bool write) { return trust(write).expects_known(); }
   // The number of cycles that were skipped and not stepped, over all frames.
   std::uint64_t skipped_cycles() const { return skipped_cycles_; }
-  // What the core has not been taken through yet, of the cycles that were skipped.
+  // The cycles that were skipped, but not by the core: its control is still in the state before them.
   const Progress& ahead() const { return ahead_; }
 
  private:
@@ -72,7 +73,7 @@ class FastForward {
     StateNumber state;
     TransitionCache::Accesses accesses;
     HostRequests host;
-    std::size_t host_words;
+    std::size_t host_words;  // of its burst that are not granted before
     Progress begin;
     CoreControl::Counts counts;
     std::uint64_t match;  // MatchControl::state()
@@ -85,23 +86,6 @@ class FastForward {
     TransitionCache::Transition transition;
   };
 
-  // Trust in the memo's knowledge of bursts. A known burst saves more time than is lost by looking for one
-  // that is not known, and by recording it.
-  class Trust {
-   public:
-    bool is_there();
-    void note(bool is_known) {
-      trust_ = is_known ? std::min(trust_ + 2, kMost) : trust_ - std::min(trust_, 1U);
-    }
-
-   private:
-    static constexpr unsigned kMost = 256;
-    static constexpr unsigned kNew = 8;  // after kBurstsWithout bursts without trust
-    static constexpr unsigned kBurstsWithout = 2048;
-
-    unsigned trust_ = kMost;
-    unsigned bursts_ = 0;  // without trust
-  };
   // Words that the host requests one after the other.
   struct HostWords {
     std::uint64_t first = 0;  // first cycle in which the next word requests
@@ -114,7 +98,9 @@ class FastForward {
   void begin_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
-  void route_host(std::uint64_t cycle, const HostRoute& route);
+  std::uint64_t walk_to_burst(std::uint64_t cycle, std::uint64_t first);
+  Served grant_words(std::uint64_t& cycle);
+  void route_host(std::uint64_t cycle, const Route& route);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   void follow(const TransitionCache::Transition& transition);
   void skip(const Progress& progress);
@@ -137,6 +123,7 @@ class FastForward {
     return 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
   }
   const CoreControl& control() const { return stepper_.control(); }
+  BurstTrust& trust(bool write) { return trusts_[write ? 1 : 0]; }
 
   CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
@@ -145,20 +132,20 @@ class FastForward {
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   std::uint64_t skipped_cycles_ = 0;
-  // After a group, from which transitions can be followed.
+  // Whether transitions are being followed, from the group before cycle() on. The next three are valid then.
   bool is_walking_ = false;
   StateNumber state_ = 0;
-  Progress room_;               // how far they can be followed
+  Progress room_;               // how far transitions can be followed
   std::uint64_t consumed_ = 0;  // slots of the frame that the matcher has consumed
-  Progress ahead_;              // of the state before that of the core
-  HostGrants host_ahead_;       // and of the counts of the host; without `cycles`
-  // Words of the host that are to be granted from the next cycle on.
-  HostWords host_;
-  std::array<Trust, 2> trust_;   // in bursts that [0] read, [1] write
-  bool is_host_routed_ = false;  // by serve_host()
-  bool keeps_route_ = false;     // after the burst
-  // The transition of the group that comes next, in which these words are granted, if it is known.
+  Progress ahead_;              // see ahead()
+  HostGrants host_ahead_;       // words of the host in these cycles, without HostGrants::cycles
+  HostWords host_;              // words that are granted from the next cycle on
+  // If the host is granted these words in the next group, and the group is known: its transition. It can be
+  // followed unless another burst begins in the group.
   std::optional<TransitionCache::Transition> granting_;
+  bool is_host_routed_ = false;       // by serve_host()
+  bool keeps_route_ = false;          // after the burst: all its groups were known
+  std::array<BurstTrust, 2> trusts_;  // in bursts that [0] read, [1] write
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index of the strips in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.

@@ -50,8 +50,7 @@ class FrameRun {
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
   // Serves words of the host in a direct frame, see FastForward. cycle() is then at most the one after the
   // last grant.
-  FastForward::Served serve_host(const FastForward::HostRoute& route, std::uint64_t first,
-                                 std::size_t words) {
+  FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
     return fast_forward_.serve_host(cycle_, route, first, words);
   }
   bool expects_known_burst(bool write) { return fast_forward_.expects_known_burst(write); }

@@ -42,7 +42,7 @@ bool HostPort::is_contended() const {
 void HostPort::serve_contended() {
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
-  if (!is_moved_ || !is_in_step_ || !frames_.expects_known_burst(burst_.write)) {
+  if (is_joined_ || !is_moved_ || !is_in_step_ || !frames_.expects_known_burst(burst_.write)) {
     step_contended(first);
     return;
   }
