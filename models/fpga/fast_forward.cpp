@@ -115,11 +115,10 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
 std::uint64_t FastForward::walk_to_burst(std::uint64_t cycle, std::uint64_t first) {
   while (cycle < first && !control().frame_done()) {
     if (is_walking_) cycle = walk(cycle, first);
-    if (is_walking_ && !granting_) {
-      // A group has at least as many cycles as slots.
-      const bool is_last = first - cycle < slots_of_group() || known_.find(state_, accesses());
-      if (is_host_routed_ || is_last) return cycle;
-    }
+    // A group has at least as many cycles as slots.
+    if (is_walking_ && !granting_ &&
+        (is_host_routed_ || first - cycle < slots_of_group() || known_.find(state_, accesses())))
+      return cycle;
     if (cycle < first) cycle = step_group(cycle, first);
   }
   return cycle;
