@@ -92,7 +92,7 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps) {
     if (frames_.control().frame_done()) {
       finish_frame();
     } else {
-      next_check_ps_ = clock_.edge_ps(frames_.control().earliest_last_write(frames_.cycle())) + 1;
+      next_check_ps_ = clock_.edge_ps(frames_.earliest_last_write()) + 1;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/fpga/assumed_accesses.h"
+#include "models/fpga/burst_trust.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/transition_cache.h"
 
@@ -15,6 +16,9 @@ namespace stereotlm::fpga {
 // Runs many cycles of a frame in one step, without data; used by FrameRun. A transition of the core that is
 // in the TransitionCache is skipped; others are stepped and recorded. While rows are recorded, the cycles
 // around the end of each row are stepped.
+//
+// A walk follows transitions in the memo alone. The core and the arbiters are taken to its end only when a
+// cycle must be stepped, and by run_ahead().
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
@@ -35,8 +39,27 @@ class FastForward {
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
+  // The bank of a burst of the host, and its direction.
+  struct Route {
+    std::size_t bank = 0;
+    bool write = false;
+  };
+  struct Served {
+    std::size_t words = 0;         // of the burst
+    std::uint64_t last_cycle = 0;  // in which the last of them was granted
+  };
+  // Runs the cycles from `cycle` on until the host is granted `words` words of its bank. The first requests
+  // from cycle `first` on, each other in the cycle after a grant. Every earlier burst has ended before `first`.
+  // Ends early if the frame is done, or after 8192 cycles. Sets `cycle` to the next cycle, or to the beginning
+  // of the group in which the last word is granted.
+  Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
+  // Whether a burst in this direction is probably known. If not, step() is faster. To be called once for each
+  // burst.
+  bool expects_known_burst(bool write) { return trust(write).expects_known(); }
   // The number of cycles that were skipped and not stepped, over all frames.
   std::uint64_t skipped_cycles() const { return skipped_cycles_; }
+  // The cycles that were skipped, but not by the core: its control is still in the state before them.
+  const Progress& ahead() const { return ahead_; }
 
  private:
   using StateNumber = TransitionCache::StateNumber;
@@ -49,6 +72,8 @@ class FastForward {
   struct Stepped {
     StateNumber state;
     TransitionCache::Accesses accesses;
+    HostRequests host;
+    std::size_t host_words;  // of its burst that are not granted before
     Progress begin;
     CoreControl::Counts counts;
     std::uint64_t match;  // MatchControl::state()
@@ -61,16 +86,35 @@ class FastForward {
     TransitionCache::Transition transition;
   };
 
-  std::uint64_t skip_known(std::uint64_t cycle, std::uint64_t end);
-  StateNumber walk(StateNumber state, Progress& room);
+  // Words that the host requests one after the other.
+  struct HostWords {
+    std::uint64_t first = 0;  // first cycle in which the next word requests
+    std::size_t words = 0;
+  };
+
+  template <bool kMayRequest>
+  memory::PortMask step_core(std::uint64_t cycle, bool host_requests);
+  std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
+  void begin_walk(std::uint64_t cycle);
+  void end_walk(std::uint64_t cycle);
+  std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
+  std::uint64_t walk_to_burst(std::uint64_t cycle, std::uint64_t first);
+  Served grant_words(std::uint64_t& cycle);
+  void route_host(std::uint64_t cycle, const Route& route);
+  std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
+  void follow(const TransitionCache::Transition& transition);
+  void skip(const Progress& progress);
+  void catch_up(std::uint64_t cycle);
+  StateNumber walk_known(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
   bool find_strips();
-  Progress room(std::uint64_t cycle, std::uint64_t end) const;
+  Progress room() const;
   bool holds_group(const Progress& room) const;
   TransitionCache::Accesses accesses_from(std::uint64_t consumed) const;
   std::uint64_t uniform_columns(std::uint64_t consumed) const;
-  void begin_group(StateNumber state, const TransitionCache::Accesses& accesses, std::uint64_t cycle);
+  TransitionCache::Accesses accesses() const;
+  HostRequests host_requests(std::uint64_t cycle) const;
   void end_group(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
@@ -78,9 +122,8 @@ class FastForward {
   std::uint64_t slots_of_group() const {
     return 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
   }
-  // The number of slots of the frame that the matcher has consumed, after a group.
-  std::uint64_t consumed() const { return control().match().columns() * slots_of_group() / 4; }
   const CoreControl& control() const { return stepper_.control(); }
+  BurstTrust& trust(bool write) { return trusts_[write ? 1 : 0]; }
 
   CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
@@ -89,6 +132,20 @@ class FastForward {
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   std::uint64_t skipped_cycles_ = 0;
+  // Whether transitions are being followed, from the group before cycle() on. The next three are valid then.
+  bool is_walking_ = false;
+  StateNumber state_ = 0;
+  Progress room_;               // how far transitions can be followed
+  std::uint64_t consumed_ = 0;  // slots of the frame that the matcher has consumed
+  Progress ahead_;              // see ahead()
+  HostGrants host_ahead_;       // words of the host in these cycles, without HostGrants::cycles
+  HostWords host_;              // words that are granted from the next cycle on
+  // If the host is granted these words in the next group, and the group is known: its transition. It can be
+  // followed unless another burst begins in the group.
+  std::optional<TransitionCache::Transition> granting_;
+  bool is_host_routed_ = false;       // by serve_host()
+  bool keeps_route_ = false;          // after the burst: all its groups were known
+  std::array<BurstTrust, 2> trusts_;  // in bursts that [0] read, [1] write
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.

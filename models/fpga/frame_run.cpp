@@ -56,6 +56,14 @@ std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
   return index;
 }
 
+std::uint64_t FrameRun::stalled_cycles() {
+  const Progress& ahead = fast_forward_.ahead();
+  const std::uint64_t cycles =
+      watchdog_.stalled_cycles(cycle_, control().work() + ahead.columns + ahead.words);
+  if (cycles != 0) run_ahead(cycle_);  // for waits()
+  return cycles;
+}
+
 void FrameRun::finish() {
   state_ = State::kFinishing;
   done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);

@@ -48,6 +48,12 @@ class FrameRun {
   void run_ahead(std::uint64_t end) { cycle_ = fast_forward_.run_ahead(cycle_, end); }
   // Makes `cycle` the next cycle to run. To be called only while no frame runs.
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
+  // Serves words of the host in a direct frame, see FastForward. cycle() is then at most the one after the
+  // last grant.
+  FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
+    return fast_forward_.serve_host(cycle_, route, first, words);
+  }
+  bool expects_known_burst(bool write) { return fast_forward_.expects_known_burst(write); }
   // To be called before the route of the host changes.
   void host_route_changes() { fast_forward_.settle(); }
   // To be called when control().frame_done() becomes true.
@@ -63,14 +69,19 @@ class FrameRun {
   std::uint64_t first_cycle() const { return first_cycle_; }
   // The first cycle after the frame that was finished last.
   std::uint64_t done_cycle() const { return done_cycle_; }
+  // After serve_host() its state and counts may be of an earlier cycle, up to the next run_ahead().
   CoreControl& control() { return stepper_.control(); }
   const CoreControl& control() const { return stepper_.control(); }
+  // A lower bound of the cycle in which the last write of the frame is granted.
+  std::uint64_t earliest_last_write() const {
+    return control().earliest_last_write(cycle_ - fast_forward_.ahead().cycles);
+  }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }
   // See FastForward.
   std::uint64_t skipped_cycles() const { return fast_forward_.skipped_cycles(); }
   // See StallWatchdog.
-  std::uint64_t stalled_cycles() { return watchdog_.stalled_cycles(cycle_, control().work()); }
+  std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
   std::string waits(bool host_requests) const;
 

@@ -6,7 +6,7 @@ namespace stereotlm::fpga {
 namespace {
 
 constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
-// The largest number of cycles that one call of serve_contended() runs, after running ahead.
+// The largest number of cycles that one call of step_contended() steps.
 constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
 }  // namespace
@@ -42,7 +42,19 @@ bool HostPort::is_contended() const {
 void HostPort::serve_contended() {
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
-  frames_.run_ahead(first);  // before join(): the route of the host prevents skipping
+  if (is_joined_ || !is_moved_ || !is_in_step_ || !frames_.expects_known_burst(burst_.write)) {
+    step_contended(first);
+    return;
+  }
+  const FastForward::Served served =
+      frames_.serve_host({*burst_.bank, burst_.write}, first, bus_.words_left());
+  if (served.words != 0)
+    bus_.count_granted(served.words, clock_.edge_ps(served.last_cycle), usable_ps(served.last_cycle));
+}
+
+// Runs the frame to `first_cycle`, and then steps it.
+void HostPort::step_contended(std::uint64_t first_cycle) {
+  frames_.run_ahead(first_cycle);  // before join(): the route of the host prevents skipping
   join();
   const std::uint64_t end = frames_.cycle() + kMostCycles;
   while (frames_.cycle() < end && !frames_.control().frame_done() && bus_.word_waits()) {

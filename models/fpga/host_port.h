@@ -48,8 +48,8 @@ class HostPort {
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
   bool is_contended() const;
-  // Runs the frame ahead to the waiting word. Then steps the frame and serves the words of the burst, to the
-  // end of the burst or of the frame, but not more than 8192 cycles.
+  // Runs the frame and serves the words of the burst, to the end of the burst or of the frame, but not more
+  // than 8192 cycles after the waiting word requests.
   void serve_contended();
   // Serves the words of an uncontended burst. A word may be served early, but another master of the registers
   // could start a frame on its bank from `horizon_ps` on. Returns the time to call again, in ps: either a
@@ -73,6 +73,7 @@ class HostPort {
   };
 
   void move_burst();
+  void step_contended(std::uint64_t first_cycle);
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
   void serve_in_step(std::uint64_t first_cycle);
   memory::BankArbiter::Outcome decide(std::uint64_t cycle);

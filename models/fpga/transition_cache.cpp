@@ -53,6 +53,7 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
     hash.mix(port.granted() << 32U | port.stalled());
     hash.mix(port.passed() << 32U | port.starved());
   }
+  hash.mix(effect.host.words << 48U | effect.host.cycles << 24U | effect.host.requests);
   for (const auto& shared : effect.decided.shared) hash.mix(shared.outcome * shared.cycles);
   for (const auto& alone : effect.decided.alone) hash.mix(alone.ports * alone.cycles);
   return hash.value();
@@ -73,6 +74,7 @@ void TransitionCache::clear() {
   effects_.clear();
   effect_numbers_.clear();
   progress_.clear();
+  host_.clear();
   followed_.clear();
   transitions_ = 0;
   mask_ = kFirstBuckets - 1;
@@ -101,6 +103,7 @@ std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
   if (is_new) {
     effects_.push_back(&entry->first);
     progress_.push_back(effect.progress);
+    host_.push_back(effect.host);
     followed_.push_back(0);
   }
   return entry->second;
@@ -114,34 +117,37 @@ TransitionCache::Accesses TransitionCache::key_of(StateNumber from, const Access
 }
 
 // Returns the first word of the bucket of this key, or of the free bucket where it belongs.
-std::size_t TransitionCache::bucket_of(StateNumber from, const Accesses& key) const {
-  const std::uint64_t first = std::uint64_t{from} + 1;
+std::size_t TransitionCache::bucket_of(std::uint64_t first_word, const Accesses& key) const {
   Hash hash;
-  hash.mix(first);
+  hash.mix(first_word);
   for (std::size_t word = 0; word < words_; ++word) hash.mix(key[word]);
   for (std::size_t number = hash.value();; ++number) {
     const std::size_t bucket = (number & mask_) * words_of_bucket();
     const std::uint64_t* const words = buckets_.data() + bucket;
     if (words[0] == 0) return bucket;
-    if (words[0] == first && std::equal(words + 1, words + 1 + words_, key.begin())) return bucket;
+    if (words[0] != first_word) continue;
+    std::uint64_t difference = 0;
+    for (std::size_t word = 0; word < words_; ++word) difference |= words[1 + word] ^ key[word];
+    if (difference == 0) return bucket;
   }
 }
 
-std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from,
-                                                                 const Accesses& accesses) const {
-  const std::size_t bucket = bucket_of(from, key_of(from, accesses));
+std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from, const Accesses& accesses,
+                                                                 HostRequests host) const {
+  const std::size_t bucket = bucket_of(first_word_of(from, host), key_of(from, accesses));
   if (buckets_[bucket] == 0) return std::nullopt;
   const std::uint64_t transition = buckets_[bucket + 1 + words_];
   return Transition{static_cast<StateNumber>(transition), static_cast<std::uint32_t>(transition >> 32U)};
 }
 
-void TransitionCache::record(StateNumber from, const Accesses& accesses, StateNumber next,
+void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
                              const Effect& effect) {
   if (2 * (transitions_ + 1) > mask_) double_buckets();
   const Accesses key = key_of(from, accesses);
-  std::uint64_t* const words = buckets_.data() + bucket_of(from, key);
+  const std::uint64_t first_word = first_word_of(from, host);
+  std::uint64_t* const words = buckets_.data() + bucket_of(first_word, key);
   if (words[0] == 0) ++transitions_;
-  words[0] = std::uint64_t{from} + 1;
+  words[0] = first_word;
   std::copy_n(key.begin(), words_, words + 1);
   words[1 + words_] = std::uint64_t{number_of_effect(effect)} << 32U | next;
 }
@@ -155,7 +161,7 @@ void TransitionCache::double_buckets() {
     if (old[bucket] == 0) continue;
     const auto first = old.begin() + static_cast<std::ptrdiff_t>(bucket);
     std::copy_n(first + 1, words_, key.begin());
-    const std::size_t to = bucket_of(static_cast<StateNumber>(old[bucket] - 1), key);
+    const std::size_t to = bucket_of(old[bucket], key);
     std::copy_n(first, words_of_bucket(), buckets_.begin() + static_cast<std::ptrdiff_t>(to));
   }
 }
@@ -172,6 +178,12 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
   std::uint64_t mark_after = 1;
   for (auto transition = find(state, accesses); transition && progress(*transition).fits(room);
        transition = find(state, accesses)) {
+    if (transition->next == state) {
+      const std::uint64_t times = progress(*transition).times_in(room);
+      follow(*transition, times);
+      room.subtract(progress(*transition), times);
+      return state;
+    }
     follow(*transition);
     room.subtract(progress(*transition));
     since_mark.add(progress(*transition));

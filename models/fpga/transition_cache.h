@@ -47,6 +47,26 @@ struct Progress {
   }
 };
 
+// The requests of the host in a group: `words` words one after the other, the first from cycle `first` of
+// the group on, each other in the cycle after a grant.
+struct HostRequests {
+  static constexpr std::uint16_t kEndless = UINT16_MAX;         // more words than the group grants
+  static constexpr std::uint64_t kMostCycles = UINT16_MAX - 1;  // `first` is at most this
+
+  std::uint16_t first = 0;
+  std::uint16_t words = 0;  // 0: no request
+};
+// The words that the host was granted in a group.
+struct HostGrants {
+  std::uint64_t words = 0;
+  std::uint64_t cycles = 0;    // of the group up to the last grant, its cycle included
+  std::uint64_t requests = 0;  // cycles in which the host requested
+
+  friend bool operator==(const HostGrants& a, const HostGrants& b) {
+    return a.words == b.words && a.cycles == b.cycles && a.requests == b.requests;
+  }
+};
+
 // Memo of state transitions for FastForward, one per group of four columns of the matcher. The state before a
 // group, and the accesses of the slots that the group can handle, determine the group's cycles, counts and
 // next state. A transition is recorded when its group is stepped; after that it is skipped.
@@ -82,9 +102,10 @@ class TransitionCache {
     Progress progress;
     CoreControl::Counts counts{};
     memory::Arbitration::Decided decided;
+    HostGrants host;
 
     friend bool operator==(const Effect& a, const Effect& b) {
-      return a.progress == b.progress && a.counts == b.counts && a.decided == b.decided;
+      return a.progress == b.progress && a.counts == b.counts && a.decided == b.decided && a.host == b.host;
     }
   };
   struct Transition {
@@ -99,13 +120,15 @@ class TransitionCache {
 
   StateNumber number_of(const State& state);
   const State& state(StateNumber number) const { return *states_[number]; }
-  // The transition from this state with these accesses, if it is recorded.
-  std::optional<Transition> find(StateNumber from, const Accesses& accesses) const;
-  void record(StateNumber from, const Accesses& accesses, StateNumber next, const Effect& effect);
+  // The transition from this state with these accesses and requests of the host, if it is recorded.
+  std::optional<Transition> find(StateNumber from, const Accesses& accesses, HostRequests host = {}) const;
+  void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
+              const Effect& effect);
   void clear();
   bool is_full() const { return transitions_ >= most_; }
 
   const Progress& progress(const Transition& transition) const { return progress_[transition.effect]; }
+  const HostGrants& host(const Transition& transition) const { return host_[transition.effect]; }
   // Notes that a transition has been followed.
   void follow(const Transition& transition, std::uint64_t times = 1) {
     std::uint64_t& followed = followed_[transition.effect];
@@ -126,11 +149,14 @@ class TransitionCache {
     std::size_t operator()(const Effect& effect) const;
   };
 
-  // A bucket of the table of transitions: the number of the state plus one (0: the bucket is free), the
-  // accesses of key_of(), the transition.
+  // A bucket of the table of transitions: the number of the state plus one (0: the bucket is free) and, above
+  // it, the requests of the host; the accesses of key_of(); the transition.
   std::size_t words_of_bucket() const { return words_ + 2; }
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
-  std::size_t bucket_of(StateNumber from, const Accesses& key) const;
+  static std::uint64_t first_word_of(StateNumber from, HostRequests host) {
+    return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U | (from + 1);
+  }
+  std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
   void double_buckets();
 
@@ -142,6 +168,7 @@ class TransitionCache {
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
   std::vector<const Effect*> effects_;   // [number]
   std::vector<Progress> progress_;       // [number of the effect]
+  std::vector<HostGrants> host_;         // [number of the effect]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
   std::vector<std::uint64_t> buckets_;

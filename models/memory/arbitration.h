@@ -22,6 +22,7 @@ class Arbitration {
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
   std::size_t bank_of(Port port) const { return routes_[port].bank; }  // bank of its last route
+  bool writes(Port port) const { return routes_[port].write; }         // direction of its last route
   bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const;

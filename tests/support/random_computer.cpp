@@ -1,6 +1,7 @@
 #include "tests/support/random_computer.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,11 +23,43 @@ PlainNumber usual_or_odd(SplitMix64& random, const std::vector<std::string>& usu
   return plain_number(random.chance(70) ? one_of(random, usual) : odd_number(random, low, high));
 }
 
+std::vector<std::uint32_t> identity_table(const RandomBoard& board) {
+  std::vector<std::uint32_t> entries;
+  for (int row = 0; row < board.height; ++row) {
+    for (int column = 0; column < board.width; ++column)
+      entries.push_back(0x8000'0000U | static_cast<std::uint32_t>(row) << 16U |
+                        static_cast<std::uint32_t>(column));
+  }
+  return entries;
+}
+
+// Pictures are captured into banks that the frame of the pictures before them uses.
+void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
+  board.width = 4 * random.between(6, 16);
+  board.height = random.between(12, 40);
+  board.window = std::min(board.window, 9);
+  for (auto* table : {&board.left_table, &board.right_table}) {
+    if (*table) *table = identity_table(board);
+  }
+  std::vector<int> used = board.disparity;
+  for (const std::optional<int>& bank : {board.left_lut, board.right_lut}) {
+    if (bank) used.push_back(*bank);
+  }
+  used.push_back(board.left_image.front());
+  for (auto* image : {&board.left_image, &board.right_image}) {
+    image->resize(2);
+    for (int& bank : *image) bank = one_of(random, used);
+  }
+}
+
 }  // namespace
 
 RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs) {
   constexpr PlainTime kPsOfUs = 1'000'000;
-  const RandomBoard board = make_random_board(seed, knobs);
+  RandomBoard board = make_random_board(seed, knobs);
+  SplitMix64 random_captures(seed + 3'000'000);
+  const bool has_contended_captures = knobs.contended_captures && random_captures.chance(40);
+  if (has_contended_captures) draw_contended_captures(board, random_captures);
   SplitMix64 random(seed + 1'000'000);
   PlainComputerInput input;
   input.frame_rate_hz = usual_or_odd(random, {"1000", "500", "299.7", "99.9"}, 100, 1000);
@@ -56,6 +89,11 @@ RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs
   if (knobs.wide_pci) {
     SplitMix64 random_width(seed + 2'000'000);
     input.pci_width_bits = random_width.chance(50) ? 64 : 32;
+  }
+  if (has_contended_captures) {
+    input.capture_to_host = false;
+    input.local_clock_mhz = fpga_clock_mhz;
+    input.frames = std::max(input.frames, 4);
   }
   input.pictures = [board](std::uint64_t frame) { return camera_pictures(board, frame); };
   return {board, input};

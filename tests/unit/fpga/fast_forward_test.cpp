@@ -105,7 +105,7 @@ class Core {
   }
   bool done() const { return frames_.control().frame_done(); }
   std::uint64_t cycle() const { return frames_.cycle(); }
-  std::uint64_t earliest_last_write() const { return frames_.control().earliest_last_write(cycle()); }
+  std::uint64_t earliest_last_write() const { return frames_.earliest_last_write(); }
   // One cycle. True if the host is granted.
   bool step(bool host_requests = false) {
     const memory::PortMask granted =
@@ -127,10 +127,33 @@ class Core {
     frames_.host_route_changes();
     arbitration_.route(kHostPort, burst.bank, burst.write);
     advance(cycle() + burst.waits);
-    for (int words = 0; words < burst.words && !done();) words += int{step(true)};
+    for (int words = 0; words < burst.words && !done();) {
+      if (!step(true)) continue;
+      ++words;
+      last_grant_ = cycle() - 1;
+    }
     frames_.host_route_changes();
     arbitration_.unroute(kHostPort);
   }
+  // The words of a burst of a bus in step with the core, up to the end of the burst or the frame: each
+  // requests in the cycle after a grant. Returns the cycle of the last grant.
+  std::uint64_t serve_in_step(const Burst& burst) {
+    if (way_ == Way::kStepped) {
+      advance(burst.cycle);
+      serve({burst.cycle, burst.bank, burst.write, burst.words});
+      return last_grant_;
+    }
+    auto left = static_cast<std::size_t>(burst.words);
+    for (std::uint64_t first = burst.cycle; left > 0 && !done();) {
+      const FastForward::Served served = frames_.serve_host({burst.bank, burst.write}, first, left);
+      left -= served.words;
+      if (served.words == 0) continue;
+      last_grant_ = served.last_cycle;
+      first = last_grant_ + 1;
+    }
+    return last_grant_;
+  }
+  bool expects_known_burst(bool write) { return frames_.expects_known_burst(write); }
   void finish() {
     frames_.finish();
     frames_.end();
@@ -160,6 +183,7 @@ class Core {
   AccessPatterns patterns_{AccessPattern(FrameGeometry(setting_.core), setting_.core.pixel_cache),
                            AccessPattern(FrameGeometry(setting_.core), setting_.core.pixel_cache)};
   RowProfile rows_;
+  std::uint64_t last_grant_ = 0;  // of the host
 };
 
 // Two cores of the same random setting, one stepped and one run ahead, frame after frame.
@@ -230,6 +254,49 @@ void run_beside_host(test::SplitMix64& random, const Setting& setting, Core& ste
   run_to_the_end(stepped, ahead);
 }
 
+// As before, with many bursts like each other: soon most of them are known. A few come word by word.
+void run_beside_bursts_in_step(test::SplitMix64& random, const Setting& setting, Core& stepped, Core& ahead) {
+  const auto draw_bank = [&] { return random.between(0, static_cast<int>(setting.banks.size()) - 1); };
+  const int bank = draw_bank();
+  const bool write = random.chance(50);
+  const int words = random.mostly_small(1, 40, 300);
+  const int pause = random.mostly_small(1, 200, 1000);
+  const int others = random.chance(50) ? 0 : random.between(1, 30);  // percent
+  Burst burst;
+  burst.cycle = ahead.cycle() + static_cast<std::uint64_t>(random.mostly_small(0, 200, 1000));
+  while (!stepped.done()) {
+    burst.bank = static_cast<std::size_t>(random.chance(others) ? draw_bank() : bank);
+    burst.write = random.chance(others) ? random.chance(50) : write;
+    burst.words = random.chance(others) ? random.between(1, 40) : words;
+    std::uint64_t last_grant = 0;
+    if (random.chance(others / 4)) {
+      for (Core* core : {&stepped, &ahead}) {
+        core->advance(burst.cycle);
+        core->serve(burst);
+      }
+      last_grant = stepped.cycle();
+    } else {
+      last_grant = stepped.serve_in_step(burst);
+      ASSERT_EQ(ahead.serve_in_step(burst), last_grant);
+    }
+    burst.cycle = std::max(last_grant, burst.cycle) + 1;
+    if (random.chance(others)) {  // somebody looks
+      burst.cycle += static_cast<std::uint64_t>(random.between(0, 100));
+      stepped.advance(burst.cycle);
+      ahead.advance(burst.cycle);
+      ASSERT_EQ(ahead.cycle(), stepped.cycle());
+    }
+    burst.cycle += static_cast<std::uint64_t>(random.chance(others) ? random.between(0, 300) : pause);
+  }
+  run_to_the_end(stepped, ahead);
+}
+
+TEST(FastForward, GrantsABurstInTheCyclesOfItsSteps) { expect_equal_figures(400, run_beside_bursts_in_step); }
+
+TEST(FastForward, RecordsTheRowsOfItsStepsBesideBursts) {
+  expect_equal_figures(400, run_beside_bursts_in_step, true);
+}
+
 TEST(FastForward, CountsWhatItsStepsCountBesideTheHost) { expect_equal_figures(300, run_beside_host); }
 
 TEST(FastForward, RecordsTheRowsOfItsSteps) { expect_equal_figures(400, run_beside_host, true); }
@@ -286,6 +353,101 @@ TEST(FastForward, StepsFewCyclesOfAFrameOnceItsTransitionsAreRecorded) {
     EXPECT_LT(stepped[1], 1000U);
     EXPECT_EQ(stepped[2], stepped[1]);
   }
+}
+
+// The number of cycles that are stepped in each of two frames beside bursts of as many words to a bank. They
+// begin in many phases of a group.
+std::vector<std::uint64_t> stepped_beside_bursts(std::size_t bank, int words) {
+  Setting setting = bank_for_each_port(640, 480);
+  setting.arbiter.policy = "round_robin";
+  Core core(setting, Core::Way::kAhead);
+  std::vector<std::uint64_t> stepped;
+  for (int frame = 0; frame < 2; ++frame) {
+    const std::uint64_t begin = core.cycle() - core.skipped_cycles();
+    core.start(core.cycle());
+    for (std::uint64_t first = core.cycle() + 10'000; !core.done();)
+      first = core.serve_in_step({first, bank, true, words}) + 901;
+    core.advance(kNever);
+    stepped.push_back(core.cycle() - core.skipped_cycles() - begin);
+    core.finish();
+  }
+  return stepped;
+}
+
+TEST(FastForward, StepsFewCyclesBesideBurstsOnceTheirGroupsAreRecorded) {
+  const std::vector<std::uint64_t> with_table = stepped_beside_bursts(0, 32);
+  EXPECT_LT(with_table[0], 20'000U);
+  EXPECT_LT(with_table[1], 2000U);
+  // But for the last ones, the groups of a long burst are alike.
+  const std::vector<std::uint64_t> with_results = stepped_beside_bursts(4, 1000);
+  EXPECT_LT(with_results[0], 10'000U);
+  EXPECT_LT(with_results[1], 2000U);
+}
+
+// The pixel port has a bank of its own, so that its accesses need not be known; until a burst goes there.
+TEST(FastForward, ForgetsABurstWithTheEndOfItsFrame) {
+  Setting setting = bank_for_each_port(640, 480);
+  test::SplitMix64 random(1);
+  for (std::uint32_t& entry : setting.left_entries) {
+    if (random.chance(50)) entry = 0;
+  }
+  Core core(setting, Core::Way::kAhead);
+  std::vector<std::uint64_t> stepped;
+  for (const bool has_burst : {false, true, false}) {
+    const std::uint64_t begin = core.cycle() - core.skipped_cycles();
+    core.start(core.cycle());
+    if (has_burst) {
+      core.serve_in_step({core.cycle() + 10'000, 2, true, 32});
+      core.serve_in_step({core.cycle() + 10'000, 2, true, 32});
+    }
+    core.advance(kNever);
+    stepped.push_back(core.cycle() - core.skipped_cycles() - begin);
+    core.finish();
+  }
+  EXPECT_LT(stepped[0], 2000U);
+  EXPECT_GT(stepped[1], 20'000U);
+  EXPECT_LE(stepped[2], stepped[0]);
+}
+
+// A burst ends in the group in which the next one begins.
+TEST(FastForward, GrantsTwoBurstsOfAGroup) {
+  const Setting setting = bank_for_each_port(64, 24);
+  for (std::uint64_t pause = 1; pause < 30; ++pause) {
+    Core stepped(setting, Core::Way::kStepped);
+    Core ahead(setting, Core::Way::kAhead);
+    for (int frame = 0; frame < 3; ++frame) {
+      stepped.start(stepped.cycle());
+      ahead.start(ahead.cycle());
+      for (Burst burst{stepped.cycle() + 500, 0, true, 3}; !stepped.done(); burst.cycle += 900) {
+        for (int number = 0; number < 2; ++number) {
+          const std::uint64_t last_grant = stepped.serve_in_step(burst);
+          ASSERT_EQ(ahead.serve_in_step(burst), last_grant);
+          burst.cycle = last_grant + pause;
+        }
+      }
+      stepped.finish();
+      ahead.finish();
+      ASSERT_EQ(ahead.figures(), stepped.figures()) << pause;
+    }
+  }
+}
+
+// The entries have no order, and so the accesses of no two groups are alike. Until a burst has been found
+// unknown often enough, it is looked for.
+TEST(FastForward, DoesNotExpectToKnowBurstsThatNeverComeAgain) {
+  Setting setting = two_banks();
+  test::SplitMix64 random(1);
+  for (std::uint32_t& entry : setting.left_entries) {
+    if (random.chance(50)) entry = 0;
+  }
+  Core core(setting, Core::Way::kAhead);
+  core.start(0);
+  std::uint64_t cycle = 10'000;
+  for (int burst = 0; burst < 300; ++burst) cycle = core.serve_in_step({cycle, 0, true, 32}) + 901;
+  EXPECT_FALSE(core.expects_known_burst(true));
+  EXPECT_TRUE(core.expects_known_burst(false));
+  for (int burst = 2; burst < 2048; ++burst) EXPECT_FALSE(core.expects_known_burst(true)) << burst;
+  EXPECT_TRUE(core.expects_known_burst(true));  // perhaps the accesses are more regular now
 }
 
 TEST(EarliestLastWrite, IsNeverLaterThanTheLastWrite) {

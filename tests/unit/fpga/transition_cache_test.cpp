@@ -27,7 +27,8 @@ class TransitionCacheTest : public testing::Test {
     return effect;
   }
   void record(std::size_t from, std::size_t next, const TransitionCache::Accesses& accesses = {}) {
-    groups_.record(groups_.number_of(state(from)), accesses, groups_.number_of(state(next)), effect(from));
+    groups_.record(groups_.number_of(state(from)), accesses, {}, groups_.number_of(state(next)),
+                   effect(from));
   }
   // Of so many groups, the last of which continues with group number `back_to`.
   void make_ring(std::size_t groups, std::size_t back_to) {
@@ -76,7 +77,7 @@ TEST_F(TransitionCacheTest, DistinguishesTheSlotsThatAreNotHandled) {
   TransitionCache::State from = state(0);
   from.control.lanes = {3U << 8U, 64U << 8U};  // slots handled
   const auto number = groups_.number_of(from);
-  groups_.record(number, {}, number, effect(0));
+  groups_.record(number, {}, {}, number, effect(0));
   const auto finds = [&](std::size_t word, unsigned bit) {
     TransitionCache::Accesses accesses{};
     accesses[word] = std::uint64_t{1} << bit;
@@ -90,6 +91,22 @@ TEST_F(TransitionCacheTest, DistinguishesTheSlotsThatAreNotHandled) {
   EXPECT_TRUE(finds(2, 63));
   EXPECT_FALSE(finds(3, 0));
   EXPECT_FALSE(finds(3, 63));
+}
+
+TEST_F(TransitionCacheTest, DistinguishesTheRequestsOfTheHost) {
+  const auto number = groups_.number_of(state(0));
+  TransitionCache::Effect granting = effect(0);
+  granting.host = {5, 9, 7};
+  groups_.record(number, {}, {3, 5}, number, granting);
+  const auto finds = [&](const HostRequests& host) { return groups_.find(number, {}, host).has_value(); };
+  EXPECT_TRUE(finds({3, 5}));
+  EXPECT_FALSE(finds({4, 5}));
+  EXPECT_FALSE(finds({3, 6}));
+  EXPECT_FALSE(finds({3, HostRequests::kEndless}));
+  EXPECT_FALSE(finds({}));
+  groups_.record(number, {}, {}, number, effect(0));
+  EXPECT_EQ(groups_.host(*groups_.find(number, {}, {3, 5})), granting.host);
+  EXPECT_EQ(groups_.host(*groups_.find(number, {})), HostGrants{});
 }
 
 TEST_F(TransitionCacheTest, FindsEachTransitionAndIsFullAtItsCap) {
