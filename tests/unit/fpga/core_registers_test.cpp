@@ -50,7 +50,8 @@ TEST_F(CoreRegistersTest, HandTheirValuesToTheCoreWithTheStrobe) {
                                    map::kLeftLutBase, map::kRightLutBase})
     file.write(0, base, bank++);
   std::uint32_t offset = 5;
-  for (const std::uint64_t address : {map::kLeftColumns, map::kLeftRows, map::kRightColumns, map::kRightRows}) {
+  for (const std::uint64_t address :
+       {map::kLeftColumns, map::kLeftRows, map::kRightColumns, map::kRightRows}) {
     file.write(0, address, offset);
     offset -= 4;  // two's complement
   }
