@@ -197,6 +197,16 @@ INSTANTIATE_TEST_SUITE_P(PciBusControl, PciBusControlCuts,
                                          LaterRequests{"its_own", {{0, 10}}, 44}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+TEST_F(PciBusControlTest, DoesNotCutABurstForARequestThatItsMasterMakesAsItBegins) {
+  masters[0].add(true, 40);
+  masters[0].on_begin = [this] { request(0, masters[0].granted_ps.back()); };
+  request(0, 0);
+  bus.decide(0);
+  bus.step(bus.next_ps());
+  EXPECT_EQ(masters[0].results.at(0).words, 40U);
+  EXPECT_EQ(bus.next_ps(), 46 * kClockPs);
+}
+
 // A burst of 3 words whose target answers at a time of its own.
 struct LaterAnswer {
   const char* name;
