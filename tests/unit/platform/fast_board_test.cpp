@@ -35,7 +35,9 @@ class FastBoardTest : public ::testing::Test, public FastBoard::Doorbell, public
   static constexpr std::uint32_t kSpareWord = 500;           // of any other bank: no frame uses it
   static constexpr std::uint32_t kLeftTableBankWords = 100;  // of them 96 of the table
 
-  explicit FastBoardTest(fpga::Fidelity fidelity = fpga::Fidelity::kFast) : board(config, fidelity, *this) {
+  explicit FastBoardTest(fpga::Fidelity fidelity = fpga::Fidelity::kFast,
+                         std::uint64_t stall_timeout_cycles = 1'000'000)
+      : board(config, fidelity, *this, stall_timeout_cycles) {
     board.local_bus().bind(*this);
   }
   void ring(std::uint64_t time_ps) override { rings_ps.push_back(time_ps); }
@@ -116,6 +118,7 @@ class FastBoardTest : public ::testing::Test, public FastBoard::Doorbell, public
 
   static BoardConfig board_config() {
     BoardConfig config = testing::small_board();
+    config.banks[0].words = 32'768;
     config.banks[6].words = kLeftTableBankWords;
     return config;
   }
@@ -273,6 +276,24 @@ TEST_F(FastBoardTiming, ComputesNoDisparitiesAndTakesAsLong) {
   write(crossbar_address(4, 0), Words(kImageWords, 77));
   EXPECT_EQ(run_frame(0), Words(kImageWords, 77));
   EXPECT_EQ(board.frames().frame_cycles(), run_core(config, tables, 1).frame_cycles);
+}
+
+class FastBoardStall : public FastBoardTest {
+ protected:
+  FastBoardStall() : FastBoardTest(fpga::Fidelity::kTiming, 8'000) {}
+};
+
+// A burst keeps the left picture's bank from the frame, because the host comes first. The frame is checked every
+// 8192 cycles.
+TEST_F(FastBoardStall, IsReportedWithItsWaits) {
+  load_tables();
+  set_bases(0);
+  start();
+  const std::string text =
+      test::message_of([this] { write(crossbar_address(0, kImageWords), Words(20'000)); });
+  EXPECT_EQ(text.substr(0, text.find(';')), "core: no slot consumed and no result written for 8192 cycles");
+  EXPECT_NE(text.find("; frame 0 of the core, cycle "), std::string::npos);
+  EXPECT_NE(text.find("left_pixel asks for bank number 0"), std::string::npos);
 }
 
 TEST(FastBoardConfig, MustHaveNoProblems) {
