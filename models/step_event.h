@@ -13,8 +13,8 @@ class StepEvent : public sc_core::sc_event {
  public:
   explicit StepEvent(const char* name) : sc_event(name) {}
 
-  // Notifies the event at `next_ps`, and at no other time; kNever: not at all. To be called after each call of
-  // the control. The time is not in the past.
+  // Notifies the event at `next_ps`, which must not be in the past, and at no other time; kNever: not at all.
+  // To be called after each call of the control.
   void set(std::uint64_t next_ps) {
     if (next_ps == next_ps_) return;
     next_ps_ = next_ps;

@@ -19,8 +19,8 @@ struct AddressRange {
 };
 
 // Counts 32-bit words, separately for each of several address ranges that do not overlap. A word belongs to
-// the range in which its first byte lies. LocalBus and PciBridge count the words written to each buffer with
-// it. Plain C++.
+// the range in which its first byte lies. LocalBusControl and BridgeControl count the words written to each
+// buffer with it. Plain C++.
 class WordsByRange {
  public:
   explicit WordsByRange(std::vector<AddressRange> ranges)

@@ -30,9 +30,9 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   ComputerLoop(const ComputerLoop&) = delete;
   ComputerLoop& operator=(const ComputerLoop&) = delete;
 
-  // Steps the blocks until an interrupt line rises or notice() is called, and then to the end of that time; at
-  // most to `end_ps`. Whatever the processor does at the time that it sees comes before the decisions of that
-  // time, which are still to be made.
+  // Steps the blocks to the time at which the interrupt rises or notice() is called, at most to `end_ps`. The
+  // decisions of that time are still to be made, because whatever the processor does then comes before them.
+  // Those of `end_ps` have been made.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }

@@ -14,9 +14,6 @@
 namespace stereotlm::platform {
 namespace {
 
-// Cycles without progress after which a frame stalls.
-constexpr std::uint64_t kStallTimeoutCycles = std::uint64_t{1} << 26U;
-
 const BoardConfig& checked(const BoardConfig& config) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
   return config;
@@ -30,13 +27,14 @@ std::vector<memory::SsramBankConfig> bank_configs(const BoardConfig& board) {
 
 }  // namespace
 
-FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell)
+FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,
+                     std::uint64_t stall_timeout_cycles)
     : config_(core_config(checked(config))),
       bank_configs_(bank_configs(config)),
       doorbell_(doorbell),
       clock_(config_.clock_mhz),
       arbitration_(config.fpga.arbiter, bank_configs_),
-      frames_(config_, bank_configs_, arbitration_, kStallTimeoutCycles),
+      frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
       local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
       fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, clock_, *this),
       next_ps_(kNever),

@@ -39,8 +39,10 @@ class FastBoard : private fpga::LocalBusControl::Core,
     virtual void ring(std::uint64_t now_ps) = 0;
   };
 
-  // `doorbell` outlives the board. Throws std::invalid_argument if the board has problems.
-  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell);
+  // `doorbell` outlives the board. A frame without progress for `stall_timeout_cycles` stalls. Throws
+  // std::invalid_argument if the board has problems.
+  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,
+            std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
   FastBoard(const FastBoard&) = delete;
   FastBoard& operator=(const FastBoard&) = delete;
 
@@ -74,6 +76,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
 
   void start_frame(const fpga::FrameStart& start) override;
 
+  // Other events may follow at any time.
   std::uint64_t horizon_ps() const override { return now_ps_; }
   fpga::DirectFrame::Memory direct_memory(const fpga::DirectFrame::Buffers& buffers,
                                           const kernels::JointOffsets& offsets) override;

@@ -22,8 +22,8 @@ using FrameLatencies = std::array<int, kCorePortCount>;
 using PixelNeeds = std::array<bool, 2>;
 
 // Decides the timing of the whole core (contract section 2): what every port requests in a cycle, and what
-// follows from the grants. Plain C++ without data and without SystemC, used by StereoCore and by
-// platform::run_core().
+// follows from the grants. Plain C++ without data and without SystemC, used at every fidelity, with and
+// without modules.
 //
 // A cycle is decide(), then the arbitration of the ports that request, then commit().
 class CoreControl {

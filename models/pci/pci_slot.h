@@ -7,8 +7,9 @@
 
 #include "models/clock.h"
 
-// The protocol between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Targets
-// use the base protocol. Plain C++; pci_slot_if.h has the sockets.
+// The protocol between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Plain C++;
+// pci_slot_if.h has the sockets. The targets of PciBus use the base protocol, those of PciBusControl are a
+// PciTarget.
 namespace stereotlm::pci {
 
 // The burst for which a master uses its grant.

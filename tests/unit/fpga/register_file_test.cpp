@@ -15,21 +15,14 @@ using registers::kControl;
 using registers::kControlAcknowledge;
 using registers::kControlStart;
 using registers::kStatus;
-using registers::kStatusBusy;
-using registers::kStatusDone;
-using registers::kStatusError;
 using test::TestHost;
 
-const std::vector<std::uint64_t> kBases = {registers::kLeftImageBase, registers::kRightImageBase,
-                                           registers::kDisparityBase, registers::kLeftLutBase,
-                                           registers::kRightLutBase};
-const std::vector<std::uint64_t> kOffsets = {registers::kLeftColumns, registers::kLeftRows,
-                                             registers::kRightColumns, registers::kRightRows};
-
+// The rules of the registers are tested in core_registers_test.cpp, without the module.
 class RegisterFileTest : public testing::Test {
  protected:
   RegisterFileTest() {
     binder.bind(host.socket, file.registers, "host_to_registers");
+    binder.bind(bus.socket, file.local_bus, "bus_to_registers");
     file.done(done);
     file.start_out.bind(starts);
     settle();
@@ -40,97 +33,50 @@ class RegisterFileTest : public testing::Test {
     ASSERT_EQ(host.write(kControl, value).status, tlm::TLM_OK_RESPONSE);
     settle();
   }
-  void finish_frame(std::uint64_t frame_cycles, bool access_error = false) {
-    file.finish_frame(frame_cycles, access_error);
-    settle();
-  }
-  std::uint32_t status() { return host.read(kStatus).word; }
 
   test::MonitoringBinder binder;
   TestHost host{"test_host"};
+  TestHost bus{"test_bus"};
   RegisterFile file{"file"};
   sc_core::sc_signal<bool> done{"done"};
   Collected<FrameStart> starts;
 };
 
-TEST_F(RegisterFileTest, KeepsTheBaseRegisters) {
-  for (std::uint32_t i = 0; i < kBases.size(); ++i) {
-    EXPECT_EQ(host.read(kBases[i]).word, 0U);
-    EXPECT_EQ(host.write(kBases[i], registers::base(i, 100 + i)).status, tlm::TLM_OK_RESPONSE);
-  }
-  for (std::uint32_t i = 0; i < kBases.size(); ++i)
-    EXPECT_EQ(host.read(kBases[i]).word, registers::base(i, 100 + i));
-  EXPECT_EQ(file.stats().reads, 10U);
-  EXPECT_EQ(file.stats().writes, 5U);
+TEST_F(RegisterFileTest, ReadsAndWritesTheRegistersOnBothSockets) {
+  EXPECT_EQ(host.write(registers::kLeftLutBase, 7).status, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(bus.read(registers::kLeftLutBase).word, 7U);
+  EXPECT_EQ(file.stats().reads, 1U);
+  EXPECT_EQ(file.stats().writes, 1U);
 }
 
-TEST_F(RegisterFileTest, HandsTheBasesToTheCoreWithTheStrobe) {
-  for (std::uint32_t i = 0; i < kBases.size(); ++i) host.write(kBases[i], 10 + i);
-  EXPECT_TRUE(starts.beats.empty());
-  control(kControlStart);
+TEST_F(RegisterFileTest, HandsAStrobeToTheCoreWithTheAnnotatedTimeOfItsAccess) {
+  std::uint32_t word = kControlStart;
+  tlm::tlm_generic_payload payload;
+  payload.set_command(tlm::TLM_WRITE_COMMAND);
+  payload.set_address(kControl);
+  payload.set_data_ptr(reinterpret_cast<unsigned char*>(&word));
+  payload.set_data_length(4);
+  payload.set_streaming_width(4);
+  sc_core::sc_time delay(300, sc_core::SC_PS);
+  host.socket->b_transport(payload, delay);
   ASSERT_EQ(starts.beats.size(), 1U);
-  EXPECT_EQ(starts.beats[0].bases, (FrameBases{13, 14, 10, 11, 12}));  // by ports
-  EXPECT_EQ(status(), kStatusBusy);
+  EXPECT_EQ(starts.beats[0].time_ps, 1300U);  // the test has begun at 1 ns
 }
 
-TEST_F(RegisterFileTest, HandsTheOffsetsOfJointTablesToTheCoreWithTheStrobe) {
-  EXPECT_EQ(kOffsets, (std::vector<std::uint64_t>{0x24, 0x28, 0x2c, 0x30}));
-  for (std::uint32_t i = 0; i < kOffsets.size(); ++i) {
-    host.write(kOffsets[i], 5 - 4 * i);  // two's complement
-    EXPECT_EQ(host.read(kOffsets[i]).word, 5 - 4 * i);
-  }
-  control(kControlStart);
-  EXPECT_EQ(starts.beats[0].joint_offsets, (kernels::JointOffsets{{{5, 1}, {-3, -7}}}));
-  EXPECT_EQ(starts.beats[0].bases, FrameBases{});
-}
-
-TEST_F(RegisterFileTest, RaisesTheInterruptWithTheEndOfAFrameUntilItIsAcknowledged) {
+TEST_F(RegisterFileTest, DrivesTheInterruptAtTheEndOfAFrameAndAtItsAcknowledgement) {
   control(kControlStart);
   EXPECT_FALSE(done.read());
-  finish_frame(0x1'2345'6789);
-  EXPECT_TRUE(done.read());
-  EXPECT_EQ(status(), kStatusDone);
-  EXPECT_EQ(host.read(registers::kFrameCyclesLow).word, 0x2345'6789U);
-  EXPECT_EQ(host.read(registers::kFrameCyclesHigh).word, 1U);
-  control(0);
+  file.finish_frame(5, false);
+  settle();
   EXPECT_TRUE(done.read());
   control(kControlAcknowledge);
   EXPECT_FALSE(done.read());
-  EXPECT_EQ(status(), 0U);
-  EXPECT_EQ(host.read(registers::kFrameCyclesLow).word, 0x2345'6789U);
 }
 
-TEST_F(RegisterFileTest, IgnoresAStrobeWhileBusyAndRaisesError) {
-  control(kControlStart);
-  control(kControlStart);
-  EXPECT_EQ(starts.beats.size(), 1U);
-  EXPECT_EQ(status(), kStatusBusy | kStatusError);
-  finish_frame(5);
-  EXPECT_EQ(status(), kStatusDone | kStatusError);  // stays
-  control(kControlAcknowledge);
-  EXPECT_EQ(status(), 0U);
-  control(kControlStart);
-  EXPECT_EQ(starts.beats.size(), 2U);
-}
-
-TEST_F(RegisterFileTest, RaisesErrorWithARefusedStrobeAndIsNotBusy) {
+TEST_F(RegisterFileTest, PassesOnARefusalOfTheCore) {
   control(kControlStart);
   file.refuse_start();
-  settle();
-  EXPECT_EQ(status(), kStatusError);
-  EXPECT_FALSE(done.read());
-}
-
-TEST_F(RegisterFileTest, RaisesErrorWithTheEndOfAFrameThatMemoryRefused) {
-  control(kControlStart);
-  finish_frame(5, true);
-  EXPECT_EQ(status(), kStatusDone | kStatusError);
-  control(kControlAcknowledge | kControlStart);  // both in one write
-  EXPECT_EQ(status(), kStatusBusy);
-  EXPECT_FALSE(done.read());
-  EXPECT_EQ(starts.beats.size(), 2U);
-  finish_frame(5);
-  EXPECT_EQ(status(), kStatusDone);
+  EXPECT_EQ(host.read(kStatus).word, registers::kStatusError);
 }
 
 TEST_F(RegisterFileTest, RefusesTheDirectionThatARegisterDoesNotHave) {
@@ -180,7 +126,7 @@ TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWordOfARegister) {
   }
   EXPECT_EQ(file.stats().errors, accesses.size());
   EXPECT_TRUE(starts.beats.empty());
-  for (const std::uint64_t base : kBases) EXPECT_EQ(host.read(base).word, 0U);
+  EXPECT_EQ(host.read(registers::kLeftImageBase).word, 0U);
   binder.take_violations();
   EXPECT_EQ(host.write(registers::kEnd - 4, 0).status, tlm::TLM_OK_RESPONSE);
   EXPECT_EQ(host.write(registers::kEnd, 0).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);

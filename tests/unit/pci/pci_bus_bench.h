@@ -54,16 +54,12 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
   std::deque<Script> bursts;
   bool at_once = true;
   std::vector<Ended> ended;
-  int grants = 0;
-  std::function<void()> on_begin = [] {};
   std::function<void()> on_end = [] {};
 
   explicit TestMaster(const sc_core::sc_module_name& name) : sc_module(name) {}
   void request() { pci->request(*this); }
 
   PciBurst begin_burst(std::uint64_t address_clock_ps) override {
-    ++grants;
-    on_begin();
     if (bursts.empty()) return {};
     now_.address_ps = address_clock_ps;
     now_.granted_ps = kernel_time::now_ps();

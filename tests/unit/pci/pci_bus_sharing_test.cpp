@@ -47,64 +47,6 @@ INSTANTIATE_TEST_SUITE_P(PciBus, PciBusOrder,
                                          Order{"without_a_request_a_ps_behind_the_edge", 1, 0, {1, 0}}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(PciBus, CountsTheClocksFromTheFirstRequestToItsAddressClock) {
-  PciBusBench bench(PciBusBench::with_window(0), 3);
-  for (auto& master : bench.masters) master->bursts = {write_of(10)};
-  bench.request_at(0, 0);                   // clocks 0..10, idle clock 11
-  bench.request_at(bench.edge(2), 1);       // address clock 12
-  bench.request_at(bench.edge(5), 1);       // repeated
-  bench.request_at(bench.edge(3) + 1, 2);   // counts from clock 4; address clock 24
-  bench.request_at(bench.edge(12) + 1, 1);  // while its burst runs, and unused
-  sc_core::sc_start();
-  const auto stats = bench.bus->stats();
-  EXPECT_EQ(stats.masters[0].wait_clocks, 0U);
-  EXPECT_EQ(stats.masters[1].wait_clocks, 10U);
-  EXPECT_EQ(stats.masters[2].wait_clocks, 20U);
-  EXPECT_EQ(stats.masters[1].transactions, 1U);
-  EXPECT_EQ(stats.busy_clocks, 33U);
-}
-
-TEST(PciBus, PassesAnUnusedGrantToTheNextMasterInTheSameClock) {
-  PciBusBench bench(PciBusBench::with_window(0), 3);
-  bench.masters[2]->bursts = {write_of(1)};
-  for (const std::size_t master : {0U, 1U, 2U}) bench.request_at(bench.edge(5), master);
-  sc_core::sc_start();
-  EXPECT_EQ(bench.masters[0]->grants, 1);
-  EXPECT_EQ(bench.masters[1]->grants, 1);
-  EXPECT_EQ(bench.masters[2]->ended.at(0).address_ps, bench.edge(5));
-  EXPECT_EQ(bench.bus->stats().masters[0].transactions, 0U);
-}
-
-TEST(PciBus, CountsAnUnusedGrantAsTheTurnOfItsMaster) {
-  PciBusBench bench(PciBusBench::with_window(0), 2);
-  bench.request_at(0, 0);  // without a burst
-  bench.at(bench.edge(5), [&bench] {
-    for (auto& master : bench.masters) {
-      master->bursts = {write_of(1)};
-      master->request();
-    }
-  });
-  sc_core::sc_start();
-  EXPECT_EQ(bench.masters[0]->grants, 2);
-  EXPECT_EQ(order_of(bench), (Slots{1, 0}));
-}
-
-TEST(PciBus, GrantsTheNextClockToAMasterThatRequestsAgainAsItReturnsItsGrant) {
-  PciBusBench bench(PciBusBench::with_window(0));
-  TestMaster& master = *bench.masters[0];
-  master.on_begin = [&] {
-    if (master.grants < 4) {
-      master.request();
-    } else {
-      master.bursts = {write_of(1)};
-    }
-  };
-  bench.request_at(bench.edge(5));
-  sc_core::sc_start();
-  EXPECT_EQ(master.ended.at(0).address_ps, bench.edge(8));
-  EXPECT_EQ(bench.bus->stats().busy_clocks, 2U);
-}
-
 // A change at the time of the edge counts, in whatever delta cycle; a change 1 ps later does not.
 TEST(PciBus, DecidesFromTheStateAtTheEdgeOfTheClock) {
   PciBusBench bench(PciBusBench::with_window(0));

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint64_t kUs = 1'000'000;  // ps
 
-// The load on a bus with a target and another master. Its times and its words are compared with those of the
-// literal load in tests/integration/runs/random_computers_test.cpp.
+// The load on a bus with a target. Its times and its words are compared with those of the literal load in
+// tests/integration/runs/random_computers_test.cpp.
 class TrafficGeneratorTest : public testing::Test {
  protected:
   void build(std::uint32_t address) {
@@ -33,19 +33,6 @@ class TrafficGeneratorTest : public testing::Test {
   std::unique_ptr<PciBusBench> bench;
   std::unique_ptr<TrafficGenerator> load;
 };
-
-TEST_F(TrafficGeneratorTest, ReadsAnotherTargetAndContinuesWhereItWasCut) {
-  build(PciBusBench::kBase + 0x40);
-  bench->masters[0]->bursts = {write_of(1)};
-  bench->request_at(0);  // it cuts the load after its first word
-  sc_core::sc_start(1, sc_core::SC_US);
-  ASSERT_EQ(target().accesses.size(), 3U);
-  for (const std::size_t access : {0U, 2U}) {
-    EXPECT_FALSE(target().accesses[access].write);
-    EXPECT_EQ(target().accesses[access].address, access == 0 ? 0x40U : 0x44U);
-    EXPECT_EQ(target().accesses[access].words.size(), access == 0 ? 4U : 3U);
-  }
-}
 
 TEST_F(TrafficGeneratorTest, ReportsAnAddressWithoutTarget) {
   build(0x10);

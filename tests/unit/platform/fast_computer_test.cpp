@@ -1,0 +1,415 @@
+// FastComputer beside Computer, with the same program: every access and every interrupt at the same time. One
+// computer in a process.
+#include "platform/fast_computer.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/kernel_time.h"
+#include "platform/computer.h"
+#include "platform/device_map.h"
+#include "tests/support/expected_report.h"
+#include "tests/support/fork.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/random_board.h"
+#include "tests/unit/platform/preloaded_run.h"
+
+namespace stereotlm::platform {
+namespace {
+
+namespace bridge = pci::bridge;
+namespace core = fpga::registers;
+namespace capture_map = capture::registers;
+using fpga::Fidelity;
+
+constexpr DeviceMap kDevices;
+constexpr std::uint64_t kMemoryBytes = 65'536;
+constexpr std::array<std::uint64_t, 2> kCaptures = {kDevices.left_capture, kDevices.right_capture};
+
+// Each frame is a picture of its own.
+class CountedPictures : public capture::CameraSource {
+ public:
+  explicit CountedPictures(int height = 6) : picture_(16, height) {}
+  const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t /*begin_ps*/) override {
+    if (fails) throw std::runtime_error("the disk is gone");
+    for (std::size_t pixel = 0; pixel < picture_.pixels.size(); ++pixel)
+      picture_.pixels[pixel] = static_cast<std::uint8_t>(7 * pixel + number);
+    return picture_;
+  }
+  bool fails = false;
+
+ private:
+  kernels::GrayImage picture_;
+};
+
+// What the program did, one line for each access: its time and its result.
+class LoggedBus {
+ public:
+  explicit LoggedBus(host::HostBus& bus) : bus_(bus) {}
+  // `is_known`: not a word of a bank, which may differ at Fidelity::kTiming.
+  std::uint32_t read(std::uint64_t address, bool is_known = true) {
+    std::uint32_t value = 0;
+    guarded("read", address, [&] { value = bus_.read(address); });
+    if (is_known) text_ += " " + std::to_string(value);
+    return value;
+  }
+  void write(std::uint64_t address, std::uint32_t value) {
+    guarded("write", address, [&] { bus_.write(address, value); });
+  }
+  void wait_for_interrupt() {
+    bus_.wait_for_interrupt();
+    line("interrupt");
+  }
+  std::uint8_t* memory(std::uint64_t bytes) { return bus_.memory(kDevices.host_memory, bytes); }
+  void line(const std::string& what) { text_ += '\n' + std::to_string(kernel_time::now_ps()) + " " + what; }
+  const std::string& text() const { return text_; }
+
+ private:
+  void guarded(const char* what, std::uint64_t address, const std::function<void()>& access) {
+    std::string error;
+    try {
+      access();
+    } catch (const host::BusError& refused) {
+      error = std::string(" refused: ") + refused.what();
+    }
+    line(what + (" " + std::to_string(address)) + error);
+  }
+
+  host::HostBus& bus_;
+  std::string text_;
+};
+
+class ScriptedProgram : public host::Program {
+ public:
+  explicit ScriptedProgram(std::function<void(LoggedBus&)> script) : script_(std::move(script)) {}
+  void run(host::HostBus& bus) override {
+    LoggedBus logged(bus);
+    script_(logged);
+    text = logged.text();
+  }
+  std::string text;
+
+ private:
+  std::function<void(LoggedBus&)> script_;
+};
+
+BoardConfig fast_cameras() {
+  BoardConfig board = testing::small_board();
+  board.cameras.frame_rate_hz = 1000;
+  return board;
+}
+
+// A computer with its program.
+struct RunningComputer {
+  RunningComputer(Fidelity fidelity, std::function<void(LoggedBus&)> script,
+                  const BoardConfig& board = fast_cameras())
+      : program(std::move(script)),
+        computer(make_computer("computer", board, kMemoryBytes, program, left, right, binder, fidelity)) {}
+  bool finished() const {
+    if (const auto* fast = dynamic_cast<const FastComputer*>(computer.get())) return fast->cpu.finished();
+    return dynamic_cast<const Computer&>(*computer).cpu.finished();
+  }
+  void finish() {
+    for (int ms = 0; ms < 1000 && !finished(); ++ms) sc_core::sc_start(1, sc_core::SC_MS);
+    EXPECT_TRUE(finished());
+  }
+
+  ScriptedProgram program;
+  CountedPictures left;
+  CountedPictures right;
+  test::MonitoringBinder binder;
+  std::unique_ptr<ComputerView> computer;
+};
+
+std::string log_of(Fidelity fidelity, const std::function<void(LoggedBus&)>& script,
+                   const BoardConfig& board = fast_cameras()) {
+  return test::run_for_text([&] {
+    RunningComputer running(fidelity, script, board);
+    running.finish();
+    const ComputerCounters counters = running.computer->counters();
+    std::string text = running.program.text + "\nerrors: " + std::to_string(counters.bridge.errors) + " " +
+                       std::to_string(counters.local_bus.errors);
+    for (const ComputerCounters::Camera& camera : counters.cameras)
+      text += " " + std::to_string(camera.capture.refused_accesses);
+    return text;
+  });
+}
+
+constexpr std::uint64_t core_register(std::uint64_t address) {
+  return kDevices.bridge_slave + bridge::kCoreRegisters + address;
+}
+// A word of a bank, through aperture 3.
+constexpr std::uint64_t kWindow = kDevices.bridge_slave + 3 * bridge::kApertureBytes;
+
+// Does what software can do with the devices in an order drawn from a seed. Frames work in banks 0, 2, 4, 6
+// and 7, with tables without valid entries; captures fill banks 1 and 3; everything else goes to words that
+// no frame uses.
+class RandomProgram {
+ public:
+  explicit RandomProgram(std::uint64_t seed) : random_(seed) {}
+
+  void operator()(LoggedBus& bus) {
+    begin(bus);
+    for (int action = 0; action < 60; ++action) act(bus, random_.between(0, 8));
+    while (expected_ != 0) handle_interrupt(bus);
+    const std::uint8_t* const memory = bus.memory(kMemoryBytes);
+    if (!only_times) bus.line("memory " + ::testing::PrintToString(std::vector<int>(memory, memory + 4096)));
+  }
+  bool only_times = false;  // the words of the banks are not logged
+
+ private:
+  static constexpr std::uint32_t kSpareWord = 500;
+
+  void begin(LoggedBus& bus) {
+    bus.write(kDevices.bridge_registers + bridge::kInterruptEnable, bridge::kAllInterrupts);
+    bus.write(kDevices.bridge_registers + bridge::kPage + 12, kSpareWord);
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      bus.write(kDevices.bridge_registers + bridge::kPage + 4 * (1 + side), (1 + 2 * side) << 26U);
+      bus.write(kCaptures[side] + capture_map::kBufferAddress,
+                static_cast<std::uint32_t>(kDevices.bridge_slave + (1 + side) * bridge::kApertureBytes));
+    }
+    const std::uint64_t bases[] = {core::kLeftImageBase, core::kRightImageBase, core::kDisparityBase,
+                                   core::kLeftLutBase, core::kRightLutBase};
+    const std::uint32_t banks[] = {0, 2, 4, 6, 7};
+    for (int i = 0; i < 5; ++i) bus.write(core_register(bases[i]), core::base(banks[i], 0));
+  }
+
+  void act(LoggedBus& bus, int action) {
+    switch (action) {
+      case 0:  // a pause
+        for (int i = random_.between(1, 40); i > 0; --i) bus.read(kDevices.bridge_registers + bridge::kPage);
+        break;
+      case 1:
+        read_any_register(bus);
+        break;
+      case 2:
+        bus.write(kDevices.bridge_registers + bridge::kPage + 12,
+                  static_cast<std::uint32_t>(random_.between(0, 7)) << 26U | kSpareWord);
+        break;
+      case 3:
+        for (int i = random_.between(1, 20); i > 0; --i)
+          bus.write(kWindow + 4 * static_cast<std::uint64_t>(random_.between(0, 15)),
+                    static_cast<std::uint32_t>(i));
+        break;
+      case 4:
+        bus.read(kWindow + 4 * static_cast<std::uint64_t>(random_.between(0, 15)), !only_times);
+        break;
+      case 5:
+        start_core(bus);
+        break;
+      case 6:
+        arm(bus);
+        break;
+      case 7:
+        start_dma(bus);
+        break;
+      default:
+        if (expected_ != 0) handle_interrupt(bus);
+    }
+  }
+
+  // Some do not exist, some cannot be read.
+  void read_any_register(LoggedBus& bus) {
+    const std::uint64_t word = 4 * static_cast<std::uint64_t>(random_.between(0, 16));
+    const std::uint64_t devices[] = {kDevices.bridge_registers, kDevices.left_capture, kDevices.right_capture,
+                                     core_register(0), kDevices.traffic_generator};
+    bus.read(devices[random_.between(0, 4)] + word);
+  }
+  void start_core(LoggedBus& bus) {
+    if ((expected_ & kFrame) != 0) return;
+    expected_ |= kFrame;
+    bus.write(core_register(core::kControl), core::kControlStart);
+  }
+  void arm(LoggedBus& bus) {
+    if ((expected_ & (kCapture | kCapture << 1U)) != 0) return;
+    for (const unsigned side : {0U, 1U}) {
+      expected_ |= kCapture << side;
+      bus.write(kCaptures[side] + capture_map::kControl, capture_map::kControlArm);
+    }
+  }
+  void start_dma(LoggedBus& bus) {
+    const auto channel = static_cast<unsigned>(random_.between(0, 1));
+    if ((expected_ & kDma << channel) != 0) return;
+    expected_ |= kDma << channel;
+    const auto bank = static_cast<std::uint32_t>(random_.between(0, 7));
+    const auto words = static_cast<std::uint32_t>(random_.between(1, 100));
+    const std::uint32_t descriptor[] = {1024U * (1 + channel), bank << 26U | kSpareWord,
+                                        words | (random_.chance(50) ? bridge::kToPci : 0U), 0};
+    std::memcpy(bus.memory(kMemoryBytes) + 4096 + 16 * channel, descriptor, sizeof descriptor);
+    const std::uint64_t registers = kDevices.bridge_registers + bridge::kChannelStride * channel;
+    bus.write(registers + bridge::kDmaDescriptor, 4096 + 16 * channel);
+    bus.write(registers + bridge::kDmaControl, 1);
+  }
+  void handle_interrupt(LoggedBus& bus) {
+    bus.wait_for_interrupt();
+    const std::uint32_t status = bus.read(kDevices.bridge_registers + bridge::kInterruptStatus);
+    bus.write(kDevices.bridge_registers + bridge::kInterruptStatus, status);
+    for (const unsigned channel : {0U, 1U}) {
+      if ((status & bridge::kDmaDone << channel) != 0) expected_ &= ~(kDma << channel);
+      if ((bus.read(kCaptures[channel] + capture_map::kStatus) & capture_map::kStatusDone) == 0) continue;
+      bus.read(kCaptures[channel] + capture_map::kFrameNumberLow);
+      bus.write(kCaptures[channel] + capture_map::kStatus, capture_map::kStatusDone);
+      expected_ &= ~(kCapture << channel);
+    }
+    if ((status & bridge::kDoorbell) == 0) return;
+    bus.read(core_register(core::kFrameCyclesLow));
+    bus.write(core_register(core::kControl), core::kControlAcknowledge);
+    expected_ &= ~kFrame;
+  }
+
+  static constexpr unsigned kFrame = 1U;
+  static constexpr unsigned kCapture = 2U;  // left; right is the next bit
+  static constexpr unsigned kDma = 8U;      // channel 0; channel 1 is the next bit
+  test::SplitMix64 random_;
+  unsigned expected_ = 0;  // interrupts that are to come
+};
+
+TEST(FastComputer, EndsEachAccessAndRaisesEachInterruptAtTheTimesOfComputer) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    BoardConfig board = fast_cameras();
+    if (seed % 2 == 1) board.pci.load = PciLoadConfig{8, 3, 1, 0.5};
+    if (seed % 3 == 1) board.bridge.local_clock_mhz = 50;
+    if (seed % 3 == 2) board.cameras.frame_rate_hz = 997.3;
+    RandomProgram program(seed);
+    const std::string expected = log_of(Fidelity::kCycle, program, board);
+    EXPECT_GT(expected.size(), 5000U);
+    EXPECT_EQ(log_of(Fidelity::kFast, program, board), expected) << seed;
+    program.only_times = true;
+    EXPECT_EQ(log_of(Fidelity::kTiming, program, board), log_of(Fidelity::kCycle, program, board)) << seed;
+  }
+}
+
+// Each access that a target refuses, in both directions.
+TEST(FastComputer, RefusesTheAccessesThatComputerRefuses) {
+  BoardConfig board = fast_cameras();
+  board.pci.load = PciLoadConfig{2, 1e9, 1e9, 0.1};
+  const auto script = [](LoggedBus& bus) {
+    for (const std::uint64_t address :
+         {kDevices.bridge_registers + bridge::kDmaControl, kDevices.bridge_registers + bridge::kDmaStatus,
+          kDevices.left_capture + capture_map::kControl,
+          kDevices.right_capture + capture_map::kFrameNumberLow, kDevices.right_capture + capture_map::kEnd,
+          core_register(core::kControl), core_register(core::kStatus), core_register(core::kEnd),
+          kWindow + 4 * 2000, kDevices.traffic_generator, kDevices.traffic_generator + 8,
+          std::uint64_t{0xF000'0000}}) {
+      bus.read(address);
+      bus.write(address, 0);
+      bus.read(kDevices.bridge_registers + bridge::kInterruptStatus);
+      bus.write(kDevices.bridge_registers + bridge::kInterruptStatus, bridge::kAllInterrupts);
+    }
+  };
+  const std::string expected = log_of(Fidelity::kCycle, script, board);
+  int refused = 0;
+  for (std::size_t at = 0; (at = expected.find("refused", at)) != std::string::npos; ++at) ++refused;
+  EXPECT_EQ(refused, 14);
+  EXPECT_EQ(log_of(Fidelity::kFast, script, board), expected);
+}
+
+// A program that polls, while another process of the simulation has events of its own between those of the
+// computer.
+TEST(FastComputer, RunsBesideOtherProcesses) {
+  const auto log = [](Fidelity fidelity) {
+    return test::run_for_text([fidelity] {
+      RunningComputer running(fidelity, RandomProgram(100));
+      sc_core::sc_spawn([] {
+        for (;;) sc_core::wait(777, sc_core::SC_PS);
+      });
+      running.finish();
+      return running.program.text;
+    });
+  };
+  EXPECT_EQ(log(Fidelity::kFast), log(Fidelity::kCycle));
+}
+
+TEST(FastComputer, IsMadeAtAllFidelitiesButCycle) {
+  for (const Fidelity fidelity : {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming}) {
+    EXPECT_EQ(test::run_for_text([fidelity] {
+                RunningComputer running(fidelity, [](LoggedBus&) {});
+                const bool is_fast = dynamic_cast<FastComputer*>(running.computer.get()) != nullptr;
+                return std::string(is_fast ? "fast" : "cycle");
+              }),
+              fidelity == Fidelity::kCycle ? "cycle" : "fast");
+  }
+}
+
+// Errors end the simulation with a report of the kernel.
+class FastComputerErrors : public ::testing::Test {
+ protected:
+  // The report of a computer whose program is `script`.
+  static std::string report(RunningComputer& running) {
+    const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
+    EXPECT_THROW(sc_core::sc_start(20, sc_core::SC_MS), sc_core::sc_report);
+    EXPECT_FALSE(running.finished());
+    return expected.text();
+  }
+  static void start_core(LoggedBus& bus, std::uint32_t disparity_bank) {
+    const std::uint64_t bases[] = {core::kLeftImageBase, core::kRightImageBase, core::kLeftLutBase,
+                                   core::kRightLutBase};
+    for (std::uint32_t bank = 0; bank < 4; ++bank) bus.write(core_register(bases[bank]), core::base(bank, 0));
+    bus.write(core_register(core::kDisparityBase), core::base(disparity_bank, 0));
+    bus.write(core_register(core::kControl), core::kControlStart);
+  }
+  static void wait_forever(LoggedBus& bus) {
+    for (;;) bus.wait_for_interrupt();
+  }
+};
+
+TEST_F(FastComputerErrors, OfTheLoopReachTheReport) {
+  RunningComputer running(Fidelity::kFast, [](LoggedBus& bus) {
+    start_core(bus, 0);  // over the left image
+    wait_forever(bus);
+  });
+  EXPECT_NE(report(running).find("core: a frame that does not work directly on memory needs fidelity cycle"),
+            std::string::npos);
+}
+
+TEST_F(FastComputerErrors, OfABurstBesideAFrameReachTheReport) {
+  RunningComputer running(Fidelity::kTiming, [](LoggedBus& bus) {
+    bus.write(kDevices.bridge_registers + bridge::kPage + 12, core::base(4, 5));
+    start_core(bus, 4);
+    bus.write(kWindow, 0);
+    wait_forever(bus);
+  });
+  EXPECT_NE(report(running).find("writes words 5..5 of bank number 4, where the running frame has its "
+                                 "disparity: needs fidelity cycle"),
+            std::string::npos);
+}
+
+TEST_F(FastComputerErrors, OfACameraSourceReachTheReport) {
+  RunningComputer running(Fidelity::kFast, [](LoggedBus& bus) {
+    for (const std::uint64_t board : kCaptures)
+      bus.write(board + capture_map::kControl, capture_map::kControlArm);
+    wait_forever(bus);
+  });
+  running.right.fails = true;
+  EXPECT_NE(report(running).find("the disk is gone"), std::string::npos);
+}
+
+TEST_F(FastComputerErrors, OfAPictureOfAnotherSizeReachTheReport) {
+  RunningComputer running(Fidelity::kFast, [](LoggedBus& bus) {
+    for (const std::uint64_t board : kCaptures)
+      bus.write(board + capture_map::kControl, capture_map::kControlArm);
+    wait_forever(bus);
+  });
+  running.left = CountedPictures(5);
+  EXPECT_NE(report(running).find("picture of frame 1 = 16 x 5: must be 16 x 6"), std::string::npos);
+}
+
+TEST(FastComputerConfig, MustHaveNoProblems) {
+  BoardConfig wrong = fast_cameras();
+  wrong.matcher.window = 4;
+  EXPECT_THROW(RunningComputer(
+                   Fidelity::kFast, [](LoggedBus&) {}, wrong),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::platform
