@@ -104,7 +104,33 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
     std::uint64_t access_ps_;
   };
 
+  // The events of one time, in their order (contract section 3, "To the clock").
+  enum Kind : std::uint64_t {
+    kLocalBusEnds,
+    kPciSteps,
+    kFrameEnds,
+    kRegister,
+    kLeftCamera,
+    kRightCamera,
+    kSlaveRead,
+    kLeftPixels,
+    kRightPixels,
+    kLocalBusChooses,
+    kPciDecides,  // the first decision
+    kCoreDecides,
+    kLeftDecides,
+    kRightDecides,
+  };
+
   void bind();
+  // A number that orders events by time, then by kind. Times are below 2^60 ps, which are 13 days; kNever is
+  // behind all of them.
+  static constexpr unsigned kKindBits = 4;
+  static constexpr std::uint64_t event(std::uint64_t time_ps, Kind kind) {
+    return time_ps << kKindBits | kind;
+  }
+  std::uint64_t next_event() const;
+  void step(Kind kind);
   void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}

@@ -90,6 +90,8 @@ class LocalBusControl final : public LocalBusIf {
   // Whether a word waits for a bank, and the time from which it requests.
   bool word_waits() const { return words_left_ != 0; }
   std::uint64_t request_ps() const { return request_ps_; }
+  // The number of the clock that begins at request_ps().
+  std::uint64_t request_clock() const { return request_clock_; }
   // Whether a word requests in the cycle that begins at `edge_ps`.
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
   // Transfers the waiting word, which is granted in the cycle that begins at `grant_ps`. If it is read, it is
