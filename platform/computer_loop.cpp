@@ -29,7 +29,8 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
       capture_registers_{CaptureRegisterTarget(captures_[0]), CaptureRegisterTarget(captures_[1])},
-      traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0) {
+      traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0),
+      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
   bind();
   if (const auto traffic = traffic_config(config)) {
     pci_bus_.bind(kTrafficDevice, traffic_device_);
@@ -74,6 +75,7 @@ std::uint64_t ComputerLoop::next_event() const {
 
 void ComputerLoop::run(std::uint64_t end_ps) {
   noticed_ = false;
+  lines_.drop();
   for (;;) {
     const std::uint64_t next = next_event();
     if (noticed_ && next >= event(now_ps_, kPciDecides)) return;
@@ -82,10 +84,31 @@ void ComputerLoop::run(std::uint64_t end_ps) {
       return;
     }
     now_ps_ = next >> kKindBits;
-    step(static_cast<Kind>(next & ((1U << kKindBits) - 1)));
+    const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
+    if (kind == kPciDecides && lines_.begins() &&
+        lines_.skip(now_ps_, std::min(end_ps + 1, next_ps_beside_buses())))
+      continue;
+    step(kind);
+    if (lines_.is_recording()) record(kind);
     const bool level = interrupt();
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
+  }
+}
+
+// The next time at which something but the PCI bus and the bridge has an event.
+std::uint64_t ComputerLoop::next_ps_beside_buses() const {
+  return std::min({board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
+                   captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(),
+                   bridge_slave_.next_ps()});
+}
+
+void ComputerLoop::record(Kind kind) {
+  const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
+  if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
+    lines_.stepped(now_ps_, is_of_pci_bus);
+  } else {
+    lines_.drop();
   }
 }
 

@@ -12,6 +12,7 @@
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/traffic_control.h"
 #include "models/time_ps.h"
+#include "platform/camera_lines.h"
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
 #include "platform/fast_board.h"
@@ -52,6 +53,8 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   // See ComputerView.
   std::uint64_t work_done();
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
+  // Lines of the cameras that were skipped.
+  std::uint64_t skipped_lines() const { return lines_.skipped(); }
 
  private:
   // The targets of the PCI bus.
@@ -131,6 +134,8 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   }
   std::uint64_t next_event() const;
   void step(Kind kind);
+  std::uint64_t next_ps_beside_buses() const;
+  void record(Kind kind);
   void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}
@@ -146,6 +151,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   BridgeRegisterTarget bridge_registers_{bridge_};
   std::array<CaptureRegisterTarget, 2> capture_registers_;
   TrafficTarget traffic_device_;
+  CameraLines lines_;
   std::uint64_t now_ps_ = 0;
   bool interrupt_ = false;  // level after the last step
   bool noticed_ = false;
