@@ -11,17 +11,6 @@
 namespace stereotlm::platform {
 namespace {
 
-// The order of the events of one time (contract section 3, "To the clock").
-enum Rank : std::uint64_t { kLocalBusEnds, kEffects, kPixels, kLocalBusChooses, kDecisions };
-constexpr unsigned kRankBits = 3;
-
-// A number that orders events by time, then by rank. Times are below 2^61 ps, which are 26 days.
-constexpr std::uint64_t event(std::uint64_t time_ps, Rank rank) { return time_ps << kRankBits | rank; }
-constexpr std::uint64_t kNoEvent = UINT64_MAX;
-constexpr std::uint64_t event_or_none(std::uint64_t time_ps, Rank rank) {
-  return time_ps == kNever ? kNoEvent : event(time_ps, rank);
-}
-
 bool is_one_word(const pci::PciAccess& access, std::uint64_t end) {
   return access.count == 1 && access.address < end;
 }
@@ -40,7 +29,8 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
       capture_registers_{CaptureRegisterTarget(captures_[0]), CaptureRegisterTarget(captures_[1])},
-      traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0) {
+      traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0),
+      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
   bind();
   if (const auto traffic = traffic_config(config)) {
     pci_bus_.bind(kTrafficDevice, traffic_device_);
@@ -66,53 +56,87 @@ void ComputerLoop::bind() {
 pci::PciSlot& ComputerLoop::host_slot() { return pci_bus_.slot(kHost); }
 const pci::PciSlot& ComputerLoop::host_slot() const { return pci_bus_.slot(kHost); }
 
+std::uint64_t ComputerLoop::next_event() const {
+  const auto camera = [this](std::size_t side) { return cameras_[side].next_ps(); };
+  const auto capture = [this](std::size_t side, Kind decides, Kind pixels) {
+    return event(captures_[side].next_ps(), captures_[side].decides_next() ? decides : pixels);
+  };
+  const std::uint64_t buses =
+      std::min(event(bridge_.next_ps(), bridge_.ends_next() ? kLocalBusEnds : kLocalBusChooses),
+               event(pci_bus_.next_ps(), pci_bus_.decides_next() ? kPciDecides : kPciSteps));
+  const std::uint64_t core =
+      std::min(event(board_.next_ps(), board_.ends_frame_next() ? kFrameEnds : kCoreDecides),
+               event(board_.local_bus().next_ps(), kRegister));
+  const std::uint64_t cameras =
+      std::min({event(camera(0), kLeftCamera), event(camera(1), kRightCamera),
+                capture(0, kLeftDecides, kLeftPixels), capture(1, kRightDecides, kRightPixels)});
+  return std::min({buses, core, cameras, event(bridge_slave_.next_ps(), kSlaveRead)});
+}
+
 void ComputerLoop::run(std::uint64_t end_ps) {
   noticed_ = false;
+  lines_.drop();
   for (;;) {
-    const std::array<std::uint64_t, 9> events = {
-        event_or_none(bridge_.next_ps(), bridge_.ends_next() ? kLocalBusEnds : kLocalBusChooses),
-        event_or_none(pci_bus_.next_ps(), pci_bus_.decides_next() ? kDecisions : kEffects),
-        event_or_none(board_.next_ps(), board_.ends_frame_next() ? kEffects : kDecisions),
-        event_or_none(board_.local_bus().next_ps(), kEffects),
-        event_or_none(captures_[0].next_ps(), captures_[0].decides_next() ? kDecisions : kPixels),
-        event_or_none(captures_[1].next_ps(), captures_[1].decides_next() ? kDecisions : kPixels),
-        event_or_none(cameras_[0].next_ps(), kEffects),
-        event_or_none(cameras_[1].next_ps(), kEffects),
-        event_or_none(bridge_slave_.next_ps(), kEffects)};
-    const auto next = std::min_element(events.begin(), events.end());
-    if (noticed_ && *next >= event(now_ps_, kDecisions)) return;
-    if (*next > event(end_ps, kDecisions)) {
+    const std::uint64_t next = next_event();
+    if (noticed_ && next >= event(now_ps_, kPciDecides)) return;
+    if (next >= event(end_ps + 1, Kind{})) {
       now_ps_ = end_ps;
       return;
     }
-    now_ps_ = *next >> kRankBits;
-    switch (next - events.begin()) {
-      case 0:
-        bridge_.step(now_ps_);
-        break;
-      case 1:
-        pci_bus_.decides_next() ? pci_bus_.decide(now_ps_) : pci_bus_.step(now_ps_);
-        break;
-      case 2:
-        board_.step(now_ps_);
-        break;
-      case 3:
-        board_.local_bus().step(now_ps_);
-        break;
-      case 4:
-      case 5:
-        captures_[static_cast<std::size_t>(next - events.begin() - 4)].step(now_ps_);
-        break;
-      case 6:
-      case 7:
-        cameras_[static_cast<std::size_t>(next - events.begin() - 6)].step(now_ps_);
-        break;
-      default:
-        bridge_slave_.step(now_ps_);
-    }
+    now_ps_ = next >> kKindBits;
+    const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
+    if (kind == kPciDecides && lines_.begins() &&
+        lines_.skip(now_ps_, std::min(end_ps + 1, next_ps_beside_buses())))
+      continue;
+    step(kind);
+    if (lines_.is_recording()) record(kind);
     const bool level = interrupt();
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
+  }
+}
+
+// The next time at which something but the PCI bus and the bridge has an event.
+std::uint64_t ComputerLoop::next_ps_beside_buses() const {
+  return std::min({board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
+                   captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(),
+                   bridge_slave_.next_ps()});
+}
+
+void ComputerLoop::record(Kind kind) {
+  const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
+  if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
+    lines_.stepped(now_ps_, is_of_pci_bus);
+  } else {
+    lines_.drop();
+  }
+}
+
+void ComputerLoop::step(Kind kind) {
+  switch (kind) {
+    case kLocalBusEnds:
+    case kLocalBusChooses:
+      return bridge_.step(now_ps_);
+    case kPciSteps:
+      return pci_bus_.step(now_ps_);
+    case kPciDecides:
+      return pci_bus_.decide(now_ps_);
+    case kFrameEnds:
+    case kCoreDecides:
+      return board_.step(now_ps_);
+    case kRegister:
+      return board_.local_bus().step(now_ps_);
+    case kLeftCamera:
+    case kRightCamera:
+      return cameras_[kind - kLeftCamera].step(now_ps_);
+    case kSlaveRead:
+      return bridge_slave_.step(now_ps_);
+    case kLeftPixels:
+    case kRightPixels:
+      return captures_[kind - kLeftPixels].step(now_ps_);
+    case kLeftDecides:
+    case kRightDecides:
+      return captures_[kind - kLeftDecides].step(now_ps_);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/traffic_control.h"
 #include "models/time_ps.h"
+#include "platform/camera_lines.h"
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
 #include "platform/fast_board.h"
@@ -52,6 +53,8 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   // See ComputerView.
   std::uint64_t work_done();
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
+  // Lines of the cameras that were skipped.
+  std::uint64_t skipped_lines() const { return lines_.skipped(); }
 
  private:
   // The targets of the PCI bus.
@@ -104,7 +107,35 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
     std::uint64_t access_ps_;
   };
 
+  // The events of one time, in their order (contract section 3, "To the clock").
+  enum Kind : std::uint64_t {
+    kLocalBusEnds,
+    kPciSteps,
+    kFrameEnds,
+    kRegister,
+    kLeftCamera,
+    kRightCamera,
+    kSlaveRead,
+    kLeftPixels,
+    kRightPixels,
+    kLocalBusChooses,
+    kPciDecides,  // the first decision
+    kCoreDecides,
+    kLeftDecides,
+    kRightDecides,
+  };
+
   void bind();
+  // A number that orders events by time, then by kind. Times are below 2^60 ps, which are 13 days; kNever is
+  // behind all of them.
+  static constexpr unsigned kKindBits = 4;
+  static constexpr std::uint64_t event(std::uint64_t time_ps, Kind kind) {
+    return time_ps << kKindBits | kind;
+  }
+  std::uint64_t next_event() const;
+  void step(Kind kind);
+  std::uint64_t next_ps_beside_buses() const;
+  void record(Kind kind);
   void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}
@@ -120,6 +151,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   BridgeRegisterTarget bridge_registers_{bridge_};
   std::array<CaptureRegisterTarget, 2> capture_registers_;
   TrafficTarget traffic_device_;
+  CameraLines lines_;
   std::uint64_t now_ps_ = 0;
   bool interrupt_ = false;  // level after the last step
   bool noticed_ = false;

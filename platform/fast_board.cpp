@@ -19,7 +19,7 @@ const BoardConfig& checked(const BoardConfig& config) {
   return config;
 }
 
-std::vector<memory::SsramBankConfig> bank_configs(const BoardConfig& board) {
+std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board) {
   std::vector<memory::SsramBankConfig> banks;
   for (const BankConfig& bank : board.banks) banks.push_back(ssram_config(board, bank));
   return banks;
@@ -30,7 +30,7 @@ std::vector<memory::SsramBankConfig> bank_configs(const BoardConfig& board) {
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,
                      std::uint64_t stall_timeout_cycles)
     : config_(core_config(checked(config))),
-      bank_configs_(bank_configs(config)),
+      bank_configs_(ssram_configs(config)),
       doorbell_(doorbell),
       clock_(config_.clock_mhz),
       arbitration_(config.fpga.arbiter, bank_configs_),
@@ -50,6 +50,21 @@ void FastBoard::step(std::uint64_t now_ps) {
 
 void FastBoard::catch_up(std::uint64_t now_ps) {
   if (frames_.is_running()) frames_.run_ahead(clock_.edge_at_or_after(now_ps));
+}
+
+bool FastBoard::takes_in_step(std::uint64_t address, std::uint64_t bytes) {
+  return direct(address, bytes) != nullptr &&
+         fast_core_.is_apart(memory::bank_of_address(address), {address, address + bytes}, true);
+}
+
+std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,
+                                      std::uint64_t end_cycle) {
+  const std::size_t bank = memory::bank_of_address(address);
+  local_bus_.count_skipped(address, words);
+  host_port_.count_skipped(bank, first_cycle, end_cycle, words);
+  sums_.add_accesses(bank, words);
+  changes(address, 4 * words);
+  return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }
 
 bool FastBoard::access_bank(std::uint64_t /*at_ps*/, bool write, std::uint64_t address, std::uint32_t& word) {

@@ -76,6 +76,20 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
+  // For platform::CameraLines, which skips lines that it has seen before.
+  //
+  // Whether the board waits for the next line of its picture; and for the time from which it requests the bus.
+  bool is_between_lines() const { return bus_state_ == BusState::kRequested && fifo_.is_between_lines(); }
+  std::uint64_t requested_ps() const { return requested_ps_; }
+  const CaptureFifo& fifo() const { return fifo_; }
+  // The bus address of the next line.
+  std::uint64_t line_address() const { return address_ + 4 * static_cast<std::uint64_t>(next_line_word()); }
+  void copy_line(std::uint32_t* to) const {
+    camera_->copy_words(next_line_word(), fifo_.words_per_line(), to);
+  }
+  // The next line has been captured, in this number of bursts, of which the last one ended at `now_ps`.
+  void skip_line(std::uint64_t now_ps, std::uint64_t bursts);
+
   bool capturing() const { return register_file_.capturing(); }
   // Whether a frame has begun in this very ps, and is neither started nor dropped yet.
   bool undecided() const { return decision_ps_ != kNever; }
@@ -97,6 +111,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   void proceed(std::uint64_t now_ps);
   void finish(std::uint64_t now_ps);
   bool fits(const pci::BurstResult& result) const;
+  int next_line_word() const { return fifo_.next_row() * fifo_.words_per_line(); }
 
   CaptureRegisterFile register_file_;
   CaptureFifo fifo_;

@@ -55,11 +55,41 @@ void CaptureFifo::take_words(int end, const LeftBy& left_by) {
   const auto finds_it_full = [&] {
     return occupancy_ + (word - taken_) - left_by(arrival_ps(word * kPixelsPerWord, row_)) >= fifo_words_;
   };
+  if (word < end) ++looks_;
   while (word < end && !finds_it_full()) ++word;
   append(word - taken_);
   if (word == end) return;
   drops_line_ = true;
   dropped_pixels_ += static_cast<std::uint64_t>(timing_->width() - word * kPixelsPerWord);
+}
+
+void CaptureFifo::skip_line(std::uint64_t now_ps) {
+  begin_line(row_ + 1);
+  pixels_ = timing_->width();
+  taken_ = words_per_line_;
+  now_ps_ = now_ps;
+}
+
+// A word begins with its first pixel, and is complete with its last one.
+CaptureFifo::Span CaptureFifo::same_words(int row, std::uint64_t time_ps) const {
+  const int pixels = time_ps < begin_ps_ ? 0 : timing_->pixels_by(row, time_ps - begin_ps_);
+  const int first_of_word = pixels / kPixelsPerWord * kPixelsPerWord;
+  Span span;
+  if (pixels != first_of_word) {
+    span = {arrival_ps(first_of_word, row), arrival_ps(first_of_word + kPixelsPerWord - 1, row)};
+  } else {
+    if (pixels != 0) {
+      span.first_ps = arrival_ps(pixels - 1, row);
+    } else if (row != 0) {
+      span.first_ps = arrival_ps(timing_->width() - 1, row - 1);
+    }
+    if (pixels != timing_->width()) {
+      span.end_ps = arrival_ps(pixels, row);
+    } else {
+      span.end_ps = row + 1 < timing_->height() ? arrival_ps(0, row + 1) : kNever;
+    }
+  }
+  return span;
 }
 
 // The next words of the arriving line enter.
@@ -123,7 +153,7 @@ std::uint64_t CaptureFifo::next_ps() const {
   } else if (line_has_ended || drops_line_) {
     // Nothing happens before the next line, which finds the FIFO empty.
     if (next_line_ps_ == kNever) return std::max(now_ps_, line_end_ps_);
-    return arrival_ps(std::min(trigger_words_, words_per_line_) * kPixelsPerWord - 1, row_ + 1);
+    return first_request_ps(row_ + 1);
   }
   // Below the trigger, all words are of the arriving line, and none of its next words finds the FIFO full.
   const int triggering = taken_ + trigger_words_ - occupancy_;

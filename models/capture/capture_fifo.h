@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "models/capture/camera_timing.h"
 #include "models/capture/capture_config.h"
 #include "models/clock.h"
+#include "models/kernels/words.h"
 #include "models/pci/pci_slot.h"
 #include "models/time_ps.h"
 
@@ -55,6 +57,30 @@ class CaptureFifo {
   std::uint64_t next_ps() const;
   // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
+  // For platform::CameraLines, which skips lines that it has seen before. A line is skipped between two lines:
+  // all words of the lines up to now have entered and left, and a line comes, which is next_row().
+  bool is_between_lines() const {
+    return occupancy_ == 0 && line_end_ps_ <= now_ps_ && taken_ == words_per_line_ && next_line_ps_ != kNever;
+  }
+  int next_row() const { return row_ + 1; }
+  bool has_row(int row) const { return row < timing_->height(); }
+  int words_per_line() const { return words_per_line_; }
+  // The time of the first request in a line, if the line finds the FIFO empty.
+  std::uint64_t first_request_ps(int row) const {
+    return arrival_ps(std::min(trigger_words_, words_per_line_) * kernels::kPixelsPerWord - 1, row);
+  }
+  // From `first_ps` on, and before `end_ps`, as many words have begun, and are complete, as at `time_ps` in
+  // this line or between it and its neighbours.
+  struct Span {
+    std::uint64_t first_ps = 0;
+    std::uint64_t end_ps = 0;
+  };
+  Span same_words(int row, std::uint64_t time_ps) const;
+  // How often it has looked whether a word found it full.
+  std::uint64_t looks() const { return looks_; }
+  // The next line has come, and all its words have entered and left, the last of them at `now_ps`.
+  void skip_line(std::uint64_t now_ps);
+
   // The number of pixels dropped in all frames. A pixel is counted when it arrives.
   std::uint64_t dropped_pixels() const;
 
@@ -94,7 +120,8 @@ class CaptureFifo {
   std::size_t oldest_ = 0;
   std::size_t newest_ = 0;
   int occupancy_ = 0;  // number of words in the FIFO, complete or being filled
-  int owed_ = 0;       // number of the oldest words that were complete at the last grant and have not left
+  std::uint64_t looks_ = 0;
+  int owed_ = 0;  // number of the oldest words that were complete at the last grant and have not left
 };
 
 }  // namespace stereotlm::capture

@@ -35,8 +35,10 @@ bool HostPort::access(std::uint64_t cycle) {
   return !bus_.word_waits();
 }
 
-bool HostPort::is_contended() const {
-  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(kHostPort, *burst_.bank));
+bool HostPort::is_contended() const { return is_contended(*burst_.bank); }
+
+bool HostPort::is_contended(std::size_t bank) const {
+  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(kHostPort, bank));
 }
 
 void HostPort::serve_contended() {
@@ -127,15 +129,31 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
   }
 }
 
-// Serves one word a cycle from `first_cycle` on, to the end of the burst.
+// Serves one word a cycle from `first_cycle` on, to the end of the burst. After its first grant the port is
+// alone with requests that all win: each further one changes the state of the bank's policy as a cycle without
+// request does (memory::ArbitrationPolicy), and has the same outcome.
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
-  const std::uint64_t first = std::max(first_cycle, clock_.edge_at_or_after(bus_.request_ps()));
+  const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
-  served_.push_back({first, 1, decide(first)});
-  // After the first grant each further request has the same outcome.
-  if (words > 1) served_.push_back({first + 1, words - 1, decide(first + 1)});
+  served_.push_back({first, words, decide(first)});
   const std::uint64_t last = first + words - 1;
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
+}
+
+bool HostPort::serves_in_step(std::size_t bank) const {
+  return is_in_step_ && is_only_master_ && !is_contended(bank) && !arbitration_.needs_turnaround(bank);
+}
+
+// As in serve_in_step(), the words behind the first one change the state of the policy as cycles without
+// request do, which is what lies between two bursts.
+void HostPort::count_skipped(std::size_t bank, std::uint64_t first_cycle, std::uint64_t end_cycle,
+                             std::uint64_t words) {
+  const bool in_frame = frames_.is_running();
+  count_served(UINT64_MAX, in_frame);
+  served_bank_ = bank;
+  served_.push_back(
+      {end_cycle - words, words, arbitration_.decide_unrouted(bank, first_cycle, kHostPort, true)});
+  count_served(UINT64_MAX, in_frame);
 }
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
@@ -148,7 +166,11 @@ void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
     next->cycles -= cycles;
     if (next->cycles != 0) break;
   }
-  served_.erase(served_.begin(), next);
+  if (next == served_.end()) {
+    served_.clear();
+  } else {
+    served_.erase(served_.begin(), next);
+  }
 }
 
 }  // namespace stereotlm::fpga

@@ -59,6 +59,15 @@ class HostPort {
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
+  // For platform::CameraLines, which skips bursts that it has seen before.
+  //
+  // Whether bursts to this bank are served one word a cycle, and independently of the frame.
+  bool serves_in_step(std::size_t bank) const;
+  // Counts `words` words of skipped bursts that write to such a bank. The first is served in `first_cycle`,
+  // the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
+  void count_skipped(std::size_t bank, std::uint64_t first_cycle, std::uint64_t end_cycle,
+                     std::uint64_t words);
+
   // Counts the words that were served before the frame's cycle(), as words in the frame.
   void count_words_in_frame() { count_served(frames_.cycle(), true); }
   // Counts all words that were served and are not counted yet, as words outside a frame.
@@ -72,6 +81,7 @@ class HostPort {
     memory::BankArbiter::Outcome outcome;
   };
 
+  bool is_contended(std::size_t bank) const;
   void move_burst();
   void step_contended(std::uint64_t first_cycle);
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);

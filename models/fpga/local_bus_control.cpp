@@ -138,6 +138,20 @@ void LocalBusControl::end(std::uint64_t idle_clock) {
   master_->end_burst_at(free_ps_, ok_);
 }
 
+void LocalBusControl::skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t address_clock,
+                              std::uint64_t idle_clock) {
+  stats_.bursts = bursts;
+  stats_.busy_clocks = busy_clocks - (idle_clock - address_clock);
+  address_clock_ = address_clock;
+  idle_clock_ = idle_clock;
+  free_ps_ = clock_.edge_ps(idle_clock_ + 1);
+}
+
+void LocalBusControl::count_skipped(std::uint64_t address, std::uint64_t words) {
+  stats_.words_written += words;
+  words_granted_.add(address, words);
+}
+
 LocalBusControl::Stats LocalBusControl::stats(std::uint64_t now_ps) const {
   Stats stats = stats_;
   stats.clocks = clock_.edge_at_or_after(now_ps + 1) - 1;

@@ -90,6 +90,8 @@ class LocalBusControl final : public LocalBusIf {
   // Whether a word waits for a bank, and the time from which it requests.
   bool word_waits() const { return words_left_ != 0; }
   std::uint64_t request_ps() const { return request_ps_; }
+  // The number of the clock that begins at request_ps().
+  std::uint64_t request_clock() const { return request_clock_; }
   // Whether a word requests in the cycle that begins at `edge_ps`.
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
   // Transfers the waiting word, which is granted in the cycle that begins at `grant_ps`. If it is read, it is
@@ -104,6 +106,25 @@ class LocalBusControl final : public LocalBusIf {
   void count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
+
+  // For platform::CameraLines, which skips bursts to the banks that it has seen before.
+  const Clock& clock() const { return clock_; }
+  bool is_idle(std::uint64_t now_ps) const {
+    return words_left_ == 0 && next_ps_ == kNever && idle_clock_ != kUnknown &&
+           clock_.edge_ps(idle_clock_ + 1) <= now_ps;
+  }
+  // The last burst, and the numbers of its address clock and of its idle clock.
+  const LocalBurst& burst() const { return burst_; }
+  std::uint64_t address_clock() const { return address_clock_; }
+  std::uint64_t idle_clock() const { return idle_clock_; }
+  // The clocks of all bursts, while the bus is idle.
+  std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
+  std::uint64_t bursts() const { return stats_.bursts; }
+  // Bursts have written words: all clocks, and the last burst's, are those after them. For each range of
+  // addresses count_skipped() adds their words.
+  void skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t address_clock,
+               std::uint64_t idle_clock);
+  void count_skipped(std::uint64_t address, std::uint64_t words);
 
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;

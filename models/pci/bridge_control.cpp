@@ -81,6 +81,34 @@ WordsByRange BridgeControl::words_held() const {
   return held;
 }
 
+bool BridgeControl::is_idle(std::uint64_t now_ps) {
+  if (pci_queue_.front() != nullptr) return false;
+  for (const DmaChannel& channel : channels_) {
+    if (channel.busy()) return false;
+  }
+  local_bus_.settle(now_ps);
+  return local_bus_.is_idle();
+}
+
+std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, std::uint64_t bytes) const {
+  const std::uint64_t last = offset + bytes - 4;
+  if (last >= bridge::kCoreRegisters || offset / bridge::kApertureBytes != last / bridge::kApertureBytes)
+    return std::nullopt;
+  const std::uint64_t address = local_address_of(offset);
+  if (address / bridge::kBankBytes != (address + bytes - 4) / bridge::kBankBytes) return std::nullopt;
+  return address;
+}
+
+void BridgeControl::skip_to(std::size_t turn, std::uint64_t most_posted) {
+  local_bus_.set_turn(turn);
+  stats_.most_posted_words = std::max(stats_.most_posted_words, most_posted);
+}
+
+void BridgeControl::count_skipped(std::uint64_t address, std::uint64_t words) {
+  stats_.posted_words += words;
+  count_for_banks(words_taken_, address, words);
+}
+
 bool BridgeControl::write_register(std::uint64_t now_ps, std::uint64_t offset, std::uint32_t value) {
   if (!BridgeRegisterFile::allows(true, offset)) {
     count_error();

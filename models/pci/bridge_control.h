@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "models/local_burst.h"
@@ -80,6 +81,21 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
 
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
+
+  // For platform::CameraLines, which skips writes that it has seen before.
+  //
+  // Whether nothing is under way in the bridge, or waits there.
+  bool is_idle(std::uint64_t now_ps);
+  // The byte address on the local bus to which `bytes` bytes of the slave window lead, if they lead to one
+  // bank at contiguous addresses.
+  std::optional<std::uint64_t> bank_address(std::uint64_t offset, std::uint64_t bytes) const;
+  // The state while it is idle: the channel that has the next turn on the local bus.
+  std::size_t turn() const { return local_bus_.turn(); }
+  std::size_t posted_words() const { return local_bus_.posted().words(); }
+  // Writes have been posted and sent, at most `most_posted` words at one time: the turn after them, and for
+  // each range of addresses on the local bus their words.
+  void skip_to(std::size_t turn, std::uint64_t most_posted);
+  void count_skipped(std::uint64_t address, std::uint64_t words);
 
   const Stats& stats() const { return stats_; }
   // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.

@@ -53,6 +53,12 @@ class LocalBusMaster final : public LocalBusMasterIf {
     if (busy_) plan();
   }
 
+  // Whether no burst runs and none waits. To be called after settle(), while no DMA channel is busy.
+  bool is_idle() const { return !busy_ && !posted_.waits() && !read_.under_way; }
+  // The channel whose turn is next, while it is idle.
+  std::size_t turn() const { return turn_; }
+  void set_turn(std::size_t turn) { turn_ = turn; }
+
   // If the end of the running burst has come, ends the burst and begins the next one.
   void settle(std::uint64_t now_ps) {
     if (has_ended(now_ps)) end(now_ps);

@@ -56,6 +56,34 @@ std::uint64_t PciBusControl::earliest_request(std::size_t except) const {
   return earliest;
 }
 
+std::uint64_t PciBusControl::earliest_request_beside(std::size_t first, std::size_t second) const {
+  std::uint64_t earliest = kNever;
+  for (std::size_t master = 0; master < requests_.size(); ++master) {
+    if (master != first && master != second) earliest = std::min(earliest, requests_[master].clock);
+  }
+  return earliest;
+}
+
+std::uint64_t PciBusControl::transactions() const {
+  std::uint64_t transactions = 0;
+  for (const MasterStats& stats : master_stats_) transactions += stats.transactions;
+  return transactions;
+}
+
+void PciBusControl::skip_to(const Position& position, const std::array<std::size_t, 2>& masters,
+                            const std::array<MasterCounts, 2>& counts) {
+  last_granted_ = position.last_granted;
+  free_clock_ = position.free_clock;
+  busy_clocks_ = position.busy_clocks;
+  for (std::size_t i = 0; i < masters.size(); ++i) {
+    requests_[masters[i]].clock = kNever;
+    static_cast<MasterCounts&>(master_stats_[masters[i]]) = counts[i];
+  }
+  decision_clock_ = kNever;
+  next_ps_ = kNever;
+  await_request();
+}
+
 void PciBusControl::step(std::uint64_t now_ps) {
   next_ps_ = kNever;
   if (state_ == State::kWords) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -44,13 +45,15 @@ class PciTarget {
 // The arbitration and the timing of PciBus, which describes them, and its counters. Plain C++.
 class PciBusControl {
  public:
-  struct MasterStats {
-    std::string name;
+  struct MasterCounts {
     std::uint64_t transactions = 0;  // bursts, counted at their end
     std::uint64_t words = 0;         // words transferred
     std::uint64_t wait_clocks = 0;   // from the first clock at or after a request to its address clock
     std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
     std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
+  };
+  struct MasterStats : MasterCounts {
+    std::string name;
   };
   struct Stats {
     std::uint64_t clocks = 0;          // whole clocks since time 0
@@ -82,6 +85,27 @@ class PciBusControl {
 
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
+
+  // For platform::CameraLines, which skips bursts that it has seen before.
+  //
+  // The clock that the next decide() grants, the first clock of a master's request (kNever: there is none),
+  // and the earliest one of all masters but two.
+  std::uint64_t decision_clock() const { return decision_clock_; }
+  std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
+  std::uint64_t earliest_request_beside(std::size_t first, std::size_t second) const;
+  // The state between two bursts, and what a master has done.
+  struct Position {
+    std::size_t last_granted = 0;
+    std::uint64_t free_clock = 0;
+    std::uint64_t busy_clocks = 0;
+  };
+  Position position() const { return {last_granted_, free_clock_, busy_clocks_}; }
+  const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
+  std::uint64_t transactions() const;  // of all masters
+  // Instead of decide(): the requests of these masters have been granted, and their bursts have ended. The
+  // position and the counts are those after them. The masters may then request again.
+  void skip_to(const Position& position, const std::array<std::size_t, 2>& masters,
+               const std::array<MasterCounts, 2>& counts);
 
  private:
   class Slot final : public PciSlot {
