@@ -116,6 +116,13 @@ void ComputerLoop::run(std::uint64_t end_ps) {
   }
 }
 
+void ComputerLoop::record(Timeline& timeline) {
+  for (std::size_t side = 0; side < captures_.size(); ++side)
+    captures_[side].observe(timeline.capture_board(side));
+  bridge_.observe(timeline.bridge());
+  board_.observe(timeline.core());
+}
+
 std::uint64_t ComputerLoop::work_done() {
   board_.catch_up(now_ps_);
   return board_.frames().control().work() + words_for_results(pci_bus_.stats(now_ps_));

@@ -15,6 +15,7 @@
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
 #include "platform/fast_board.h"
+#include "platform/timeline.h"
 
 namespace stereotlm::platform {
 
@@ -51,6 +52,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   ComputerCounters counters() const;
   // See ComputerView.
   std::uint64_t work_done();
+  void record(Timeline& timeline);
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
 
  private:
