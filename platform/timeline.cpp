@@ -309,11 +309,22 @@ void Timeline::mark_end(const ComputerCounters& counters) {
   }
 }
 
-// What is recorded later ends later, but for the parts of a running frame. A dropped frame is recorded 1 ps
-// after its time.
-TimelineRecords Timeline::take() {
+// Everything that is recorded later ends at this time or later. A wait, and a frame of the core, is recorded
+// in parts at its end. A dropped frame is recorded 1 ps after its time.
+std::uint64_t Timeline::complete_until_ps() const {
   std::uint64_t until_ps = std::max<std::uint64_t>(delivered_ps_, 1) - 1;
-  if (frames_begun_ != frames_ended_) until_ps = std::min(until_ps, pair(frames_ended_).strobe_ps);
+  const auto hold_back = [&until_ps](std::uint64_t begin_ps) { until_ps = std::min(until_ps, begin_ps); };
+  const bool runs = frames_begun_ != frames_ended_;
+  hold_back(runs ? pair(frames_ended_).strobe_ps : earlier(frames_ended_, 1, &Pair::done_ps));
+  const bool is_captured =
+      frames_begun_ < first_pair_ + pairs_.size() && pair(frames_begun_).captured_ps != 0;
+  if (is_captured) hold_back(pair(frames_begun_).captured_ps);
+  if (read_backs_begun_ != frames_ended_) hold_back(pair(read_backs_begun_).done_ps);
+  return until_ps;
+}
+
+TimelineRecords Timeline::take() {
+  const std::uint64_t until_ps = complete_until_ps();
   const auto later = std::partition(ended_.begin(), ended_.end(), [until_ps](const TimelineEvent& event) {
     return event.end_ps < until_ps;
   });

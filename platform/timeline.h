@@ -29,7 +29,8 @@ namespace stereotlm::platform {
 // waits and the parts of each latency follow from that and from the driver's rules (sw/driver/README.md).
 // Plain C++.
 //
-// Events are handed out in the order of their ends. Memory holds those since the last delivery only.
+// Events are handed out in the order of their ends. Memory holds only those since the last delivery, or since
+// the first wait began that has not ended.
 class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
  public:
   // Throws std::invalid_argument if the board has problems.
@@ -48,7 +49,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   // under way end now.
   void mark_end(const ComputerCounters& counters);
 
-  // The records of events that ended before the last delivery, each once. To be called regularly.
+  // The records that are complete, each once. To be called regularly.
   TimelineRecords take();
   // All other records, up to the last mark_end(). To be called once.
   TimelineRecords finish();
@@ -132,6 +133,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   }
   // The time at which the pictures of a pair are in their input buffers.
   std::uint64_t ready_ps(const Pair& pair) const { return copies_ ? pair.copy_end_ps : pair.captured_ps; }
+  std::uint64_t complete_until_ps() const;
   const char* buffer_at(std::uint64_t local_address) const;
   static std::size_t resource_of(const TimelineEvent& event);
   TimelineRecords hand_out(std::vector<TimelineEvent> events);
