@@ -51,6 +51,13 @@ ComputerCounters Computer::counters() const {
           {camera_counters(left_camera, left_capture), camera_counters(right_camera, right_capture)}};
 }
 
+void Computer::record(Timeline& timeline) {
+  left_capture.observe(timeline.capture_board(0));
+  right_capture.observe(timeline.capture_board(1));
+  bridge.observe(timeline.bridge());
+  board.core.observe(timeline.core());
+}
+
 std::uint64_t Computer::work_done() {
   board.core.catch_up();
   return board.core.control().work() + words_for_results(pci_bus.stats());

@@ -89,7 +89,7 @@ void ComputerLoop::run(std::uint64_t end_ps) {
         lines_.skip(now_ps_, std::min(end_ps + 1, next_ps_beside_buses())))
       continue;
     step(kind);
-    if (lines_.is_recording()) record(kind);
+    if (lines_.is_recording()) note_step(kind);
     const bool level = interrupt();
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
@@ -103,7 +103,7 @@ std::uint64_t ComputerLoop::next_ps_beside_buses() const {
                    bridge_slave_.next_ps()});
 }
 
-void ComputerLoop::record(Kind kind) {
+void ComputerLoop::note_step(Kind kind) {
   const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
   if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
     lines_.stepped(now_ps_, is_of_pci_bus);
@@ -138,6 +138,13 @@ void ComputerLoop::step(Kind kind) {
     case kRightDecides:
       return captures_[kind - kLeftDecides].step(now_ps_);
   }
+}
+
+void ComputerLoop::record(Timeline& timeline) {
+  for (std::size_t side = 0; side < captures_.size(); ++side)
+    captures_[side].observe(timeline.capture_board(side));
+  bridge_.observe(timeline.bridge());
+  board_.observe(timeline.core());
 }
 
 std::uint64_t ComputerLoop::work_done() {

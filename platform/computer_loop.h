@@ -16,6 +16,7 @@
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
 #include "platform/fast_board.h"
+#include "platform/timeline.h"
 
 namespace stereotlm::platform {
 
@@ -52,6 +53,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   ComputerCounters counters() const;
   // See ComputerView.
   std::uint64_t work_done();
+  void record(Timeline& timeline);
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
   // Lines of the cameras that were skipped.
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
@@ -135,7 +137,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::uint64_t next_event() const;
   void step(Kind kind);
   std::uint64_t next_ps_beside_buses() const;
-  void record(Kind kind);
+  void note_step(Kind kind);
   void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}

@@ -7,6 +7,7 @@
 #include "models/fpga/frame_run.h"
 #include "models/fpga/row_profile.h"
 #include "platform/collect_computer.h"
+#include "platform/timeline.h"
 
 namespace stereotlm::platform {
 
@@ -21,6 +22,8 @@ class ComputerView {
   virtual std::uint64_t work_done() = 0;
   // Text for messages: what the ports of the core wait for.
   virtual std::string waits() const = 0;
+  // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
+  virtual void record(Timeline& timeline) = 0;
   // See FrameRun.
   virtual void record_rows() = 0;
   virtual std::vector<fpga::RowProfile> take_rows() = 0;

@@ -96,6 +96,7 @@ void FastBoard::start_frame(const fpga::FrameStart& start) {
   }
   if (!fast_core_.start_frame(clock_.edge_at_or_after(start.time_ps), start))
     failed("a frame that does not work directly on memory needs fidelity cycle");
+  frames_.strobe(start.time_ps);
   next_ps_ = start.time_ps;
 }
 

@@ -69,6 +69,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
                              std::uint64_t end_cycle);
 
   // See FrameRun.
+  void observe(fpga::FrameObserver& observer) { frames_.observe(observer); }
   void record_rows() { frames_.record_rows(); }
   std::vector<fpga::RowProfile> take_rows() { return frames_.take_rows(); }
   std::string waits() const { return frames_.waits(local_bus_.word_waits()); }

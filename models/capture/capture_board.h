@@ -64,6 +64,9 @@ class CaptureBoard : public sc_core::sc_module,
   // Throws std::invalid_argument if the configuration has problems.
   CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config);
 
+  // See CaptureControl.
+  void observe(CaptureObserver& observer) { control_.observe(observer); }
+
   // Counts up to the current time.
   Stats stats() const;
   // Whether a frame has begun in this very ps, and is neither started nor dropped yet.

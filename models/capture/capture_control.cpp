@@ -29,12 +29,16 @@ void CaptureControl::step(std::uint64_t now_ps) {
 }
 
 void CaptureControl::write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
-  if (!register_file_.write(time_ps, address, value)) return;
+  const bool interrupted = interrupt();
+  const bool triggers = register_file_.write(time_ps, address, value);
+  if (observer_ != nullptr && interrupted && !interrupt()) observer_->interrupt_cleared(time_ps);
+  if (!triggers) return;
   for (FrameCamera* const camera : triggered_) camera->trigger(time_ps);
 }
 
 void CaptureControl::begin_frame(const VideoFrame& frame) {
   frame_ = frame;
+  if (observer_ != nullptr) observer_->frame_begun(frame.number, frame.begin_ps);
   readiness_ = Readiness::kNotEvaluated;
   decision_ps_ = frame.begin_ps + 1;
   next_ps_ = std::min(decision_ps_, finish_ps_);
@@ -64,23 +68,31 @@ void CaptureControl::decide(std::uint64_t now_ps) {
   switch (readiness()) {
     case Readiness::kNotArmed:
       ++stats_.dropped_not_armed;
+      drop(DropReason::kNotArmed);
       break;
     case Readiness::kBusy:
       ++stats_.dropped_busy;
+      drop(DropReason::kBusy);
       break;
     default:
       if (partner_can) {
         start(now_ps);
       } else {
         ++stats_.dropped_by_partner;
+        drop(DropReason::kPartner);
       }
   }
+}
+
+void CaptureControl::drop(DropReason reason) {
+  if (observer_ != nullptr) observer_->frame_dropped(frame_.number, frame_.begin_ps, reason);
 }
 
 void CaptureControl::start(std::uint64_t now_ps) {
   ++stats_.started_frames;
   address_ = register_file_.start();
-  capture_ = {frame_.number, frame_.begin_ps, 0, fifo_.dropped_pixels(), 0};
+  capture_ = {frame_.number, frame_.begin_ps, 0, fifo_.dropped_pixels(), 0, stats_.words};
+  if (observer_ != nullptr) observer_->capture_begun(frame_.number, frame_.begin_ps);
   fifo_.begin_frame(*frame_.timing, frame_.begin_ps);
   camera_->take(frame_.number);
   fifo_.advance(now_ps);
@@ -107,7 +119,9 @@ void CaptureControl::finish(std::uint64_t now_ps) {
   ++stats_.captured_frames;
   capture_.end_ps = now_ps;
   capture_.dropped_pixels = fifo_.dropped_pixels() - capture_.dropped_pixels;
+  capture_.words = stats_.words - capture_.words;
   register_file_.finish(capture_);
+  if (observer_ != nullptr) observer_->capture_ended(capture_);
 }
 
 pci::PciBurst CaptureControl::begin_burst(std::uint64_t address_clock_ps) {

@@ -7,6 +7,7 @@
 #include "models/capture/camera_link.h"
 #include "models/capture/capture_config.h"
 #include "models/capture/capture_fifo.h"
+#include "models/capture/capture_observer.h"
 #include "models/capture/capture_register_file.h"
 #include "models/pci/pci_slot.h"
 #include "models/time_ps.h"
@@ -54,6 +55,9 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   void bind(pci::PciSlot& slot, FrameCamera& camera);
   void bind_partner(CapturePartner& partner) { partner_ = &partner; }
   void bind_triggered(FrameCamera& camera) { triggered_.push_back(&camera); }
+
+  // `observer` outlives the board.
+  void observe(CaptureObserver& observer) { observer_ = &observer; }
 
   // The time at which step() is to be called next; kNever: a call may change it.
   std::uint64_t next_ps() const { return next_ps_; }
@@ -106,6 +110,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   Readiness readiness();
   void decide(std::uint64_t now_ps);
   void start(std::uint64_t now_ps);
+  void drop(DropReason reason);
 
   // These run the capture of a frame that was taken.
   void proceed(std::uint64_t now_ps);
@@ -119,6 +124,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   FrameCamera* camera_ = nullptr;
   CapturePartner* partner_ = nullptr;
   std::vector<FrameCamera*> triggered_;
+  CaptureObserver* observer_ = nullptr;
 
   VideoFrame frame_;                                // the last frame that has begun; without timing: none
   Readiness readiness_ = Readiness::kNotEvaluated;  // for that frame
@@ -126,7 +132,8 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   std::uint64_t finish_ps_ = kNever;
   std::uint64_t next_ps_ = kNever;  // the earlier of the two
 
-  Capture capture_;  // the running one; until it ends, dropped_pixels is the sum over all earlier captures
+  // The running capture. Until it ends, dropped_pixels and words are the sums over all earlier captures.
+  Capture capture_;
   std::uint64_t address_ = 0;  // bus address of its buffer
 
   BusState bus_state_ = BusState::kIdle;

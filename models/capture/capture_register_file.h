@@ -12,6 +12,7 @@ struct Capture {
   std::uint64_t end_ps = 0;
   std::uint64_t dropped_pixels = 0;
   std::uint64_t lost_words = 0;
+  std::uint64_t words = 0;  // words written
 };
 
 // The registers of a capture board (capture_registers.h): the armed capture, the status and the level of the

@@ -9,6 +9,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/fast_forward.h"
+#include "models/fpga/frame_observer.h"
 #include "models/fpga/row_profile.h"
 #include "models/fpga/stall_watchdog.h"
 
@@ -25,6 +26,14 @@ class FrameRun {
   FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
            memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
            std::size_t most_groups = TransitionCache::kMost);
+
+  // `observer` outlives this object. Whoever observes frames names the strobe of each, by strobe().
+  void observe(FrameObserver& observer) { observer_ = &observer; }
+  // To be called after a frame is started.
+  void strobe(std::uint64_t time_ps) {
+    strobe_ps_ = time_ps;
+    if (observer_ != nullptr) observer_->frame_begun(time_ps);
+  }
 
   // Whether the bank in the value of a base register exists.
   bool has_bank(std::uint32_t base) const { return registers::bank_of(base) < latencies_.size(); }
@@ -112,6 +121,8 @@ class FrameRun {
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;
   std::uint64_t done_cycle_ = 0;
+  std::uint64_t strobe_ps_ = 0;
+  FrameObserver* observer_ = nullptr;
   std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
   std::vector<std::uint64_t> frame_cycles_;
   std::vector<RowProfile> row_profiles_;  // not yet taken

@@ -68,6 +68,7 @@ void StereoCore::start_frame(const FrameStart& start) {
     frames_.start_stepped(cycle, start.bases);
     host_port_.join();
   }
+  frames_.strobe(start.time_ps);
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 

@@ -78,6 +78,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   std::uint64_t stepped_frames() const { return stepped_frames_; }
 
   // See FrameRun.
+  void observe(FrameObserver& observer) { frames_.observe(observer); }
   void record_rows() { frames_.record_rows(); }
   std::vector<RowProfile> take_rows() { return frames_.take_rows(); }
   // Text for messages: what the ports wait for.

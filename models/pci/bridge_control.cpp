@@ -14,6 +14,11 @@ BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, Local
       local_bus_(config_, channels_, local_bus, *this),
       words_taken_(config.buffers) {}
 
+void BridgeControl::observe(BridgeObserver& observer) {
+  observer_ = &observer;
+  for (DmaChannel& channel : channels_) channel.observe(observer);
+}
+
 std::size_t BridgeControl::writable_words(std::uint64_t now_ps, std::size_t words) const {
   return std::min(words, local_bus_.free_places(now_ps));
 }
@@ -116,7 +121,9 @@ bool BridgeControl::write_register(std::uint64_t now_ps, std::uint64_t offset, s
   }
   DmaChannel* const started = register_file_.write(offset, value);
   drive_interrupts(now_ps);
-  if (started != nullptr) run(now_ps, started->start());
+  if (observer_ != nullptr && offset == bridge::kInterruptStatus)
+    observer_->interrupts_cleared(now_ps, value);
+  if (started != nullptr) run(now_ps, started->start(now_ps));
   return true;
 }
 
@@ -133,6 +140,7 @@ void BridgeControl::raise(std::uint64_t now_ps, std::uint32_t interrupts) {
   constexpr std::uint32_t kNoErrors = bridge::kDoorbell | bridge::kDmaDone | bridge::kDmaDone << 1U;
   if ((interrupts & ~kNoErrors) != 0) count_error();
   register_file_.raise(interrupts);
+  if (observer_ != nullptr) observer_->interrupts_raised(now_ps, interrupts);
   drive_interrupts(now_ps);
 }
 
@@ -158,7 +166,7 @@ void BridgeControl::run(std::uint64_t now_ps, const DmaChannel::Step& step) {
 void BridgeControl::advance(std::uint64_t now_ps, DmaChannel& channel) {
   local_bus_.settle(now_ps);
   if (channel.waits_for_local_bus()) local_bus_.await_end();
-  run(now_ps, channel.next_step());
+  run(now_ps, channel.next_step(now_ps));
 }
 
 void BridgeControl::start_on_pci(std::uint64_t now_ps, BridgeTransfer& transfer) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/local_burst.h"
+#include "models/pci/bridge_observer.h"
 #include "models/pci/bridge_register_file.h"
 #include "models/pci/dma_channel.h"
 #include "models/pci/local_bus_master.h"
@@ -48,6 +49,9 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   // `slot` is that of the PCI bus, for the DMA channels. These outlive the control. `config` must have no
   // problems.
   BridgeControl(const PciBridgeConfig& config, PciSlot& slot, LocalBusIf& local_bus, Host& host);
+
+  // `observer` outlives the bridge.
+  void observe(BridgeObserver& observer);
 
   // The receiver of the local bus's answers.
   LocalBusMaster& local_bus_master() { return local_bus_; }
@@ -131,6 +135,7 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   std::size_t pci_done_ = 0;              // words of the running transfer that have been transferred
   std::vector<std::uint32_t> pci_words_;  // words of its burst
   WordsByRange words_taken_;
+  BridgeObserver* observer_ = nullptr;
   Stats stats_;
 };
 

@@ -7,20 +7,24 @@ namespace stereotlm::pci {
 DmaChannel::DmaChannel(unsigned number, std::size_t burst_words)
     : number_(number), burst_words_(burst_words) {}
 
-DmaChannel::Step DmaChannel::start() {
+DmaChannel::Step DmaChannel::start(std::uint64_t now_ps) {
   if (busy_) return {{}, bridge::kDmaError << number_};
   busy_ = true;
   pci_.failed = false;
   local_.failed = false;
-  return fetch(descriptor_);
+  if (observer_ != nullptr) observer_->dma_started(number_, now_ps);
+  return fetch(now_ps, descriptor_);
 }
 
-DmaChannel::Step DmaChannel::next_step() {
+DmaChannel::Step DmaChannel::next_step(std::uint64_t now_ps) {
   if (!busy_ || pci_.under_way || local_.under_way) return {};
   if (pci_.failed || local_.failed) return finish(bridge::kDmaError);
   if (fetching_) {
     fetching_ = false;
     if (!decode_descriptor()) return finish(bridge::kDmaError);
+    if (observer_ != nullptr) {
+      observer_->transfer_begun({number_, fetch_ps_, moving_.to_pci, moving_.local_address, moving_.words});
+    }
     return {{&read_burst()}, 0};
   }
   if (written_ < moving_.words) {
@@ -28,7 +32,12 @@ DmaChannel::Step DmaChannel::next_step() {
     if (written_ < moving_.words) step.starts[1] = &read_burst();
     return step;
   }
-  return moving_.next != 0 ? fetch(moving_.next) : finish(bridge::kDmaDone);
+  return end_descriptor(now_ps);
+}
+
+DmaChannel::Step DmaChannel::end_descriptor(std::uint64_t now_ps) {
+  if (observer_ != nullptr) observer_->transfer_ended(number_, now_ps);
+  return moving_.next != 0 ? fetch(now_ps, moving_.next) : finish(bridge::kDmaDone);
 }
 
 DmaChannel::Step DmaChannel::finish(std::uint32_t interrupt) {
@@ -36,8 +45,9 @@ DmaChannel::Step DmaChannel::finish(std::uint32_t interrupt) {
   return {{}, interrupt << number_};
 }
 
-DmaChannel::Step DmaChannel::fetch(std::uint32_t address) {
+DmaChannel::Step DmaChannel::fetch(std::uint64_t now_ps, std::uint32_t address) {
   if (address % 16 != 0) return finish(bridge::kDmaError);
+  fetch_ps_ = now_ps;
   fetching_ = true;
   pci_.write = false;
   pci_.address = address;

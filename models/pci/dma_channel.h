@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "models/pci/bridge_observer.h"
 #include "models/pci/bridge_registers.h"
 
 namespace stereotlm::pci {
@@ -26,7 +27,7 @@ struct BridgeTransfer {
 // bus; both must end before its next step.
 //
 // The channel decides, and the bridge acts: each step names the transfers that the bridge is to start, and
-// the bridge calls next_step() when one of them has ended. Plain C++ without time.
+// the bridge calls next_step() when one of them has ended. Plain C++. Times only pass through, to an observer.
 class DmaChannel {
  public:
   struct Step {
@@ -39,6 +40,9 @@ class DmaChannel {
   DmaChannel(const DmaChannel&) = delete;
   DmaChannel& operator=(const DmaChannel&) = delete;
 
+  // `observer` outlives the channel.
+  void observe(BridgeObserver& observer) { observer_ = &observer; }
+
   // The register kDmaDescriptor. It names the chain that the next start() follows.
   std::uint32_t descriptor() const { return descriptor_; }
   void set_descriptor(std::uint32_t address) { descriptor_ = address; }
@@ -46,10 +50,10 @@ class DmaChannel {
 
   // To be called when the start bit of kDmaControl is written. A busy channel raises kDmaError and continues
   // its chain.
-  Step start();
+  Step start(std::uint64_t now_ps);
   // To be called when a transfer of this channel has ended. The step is empty while the other transfer is
   // under way.
-  Step next_step();
+  Step next_step(std::uint64_t now_ps);
 
   BridgeTransfer& on_pci() { return pci_; }
   BridgeTransfer& on_local_bus() { return local_; }
@@ -67,8 +71,9 @@ class DmaChannel {
   };
 
   Step finish(std::uint32_t interrupt);
-  Step fetch(std::uint32_t address);
+  Step fetch(std::uint64_t now_ps, std::uint32_t address);
   bool decode_descriptor();
+  Step end_descriptor(std::uint64_t now_ps);
   BridgeTransfer& source() { return moving_.to_pci ? local_ : pci_; }
   BridgeTransfer& read_burst();
   BridgeTransfer& write_burst();
@@ -78,9 +83,11 @@ class DmaChannel {
   std::size_t burst_words_;
   std::uint32_t descriptor_ = 0;
   bool busy_ = false;
-  bool fetching_ = false;    // pci_ reads a descriptor
-  Descriptor moving_;        // the descriptor whose words are moved
-  std::size_t written_ = 0;  // words of moving_ whose write has begun
+  bool fetching_ = false;       // pci_ reads a descriptor
+  Descriptor moving_;           // the descriptor whose words are moved
+  std::size_t written_ = 0;     // words of moving_ whose write has begun
+  std::uint64_t fetch_ps_ = 0;  // the fetch of moving_ began
+  BridgeObserver* observer_ = nullptr;
   BridgeTransfer pci_{this};
   BridgeTransfer local_{this};
 };

@@ -47,8 +47,9 @@ class PciBridge : public sc_core::sc_module,
   // Throws std::invalid_argument if the configuration has problems.
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
-  const Stats& stats() const { return control_.stats(); }
   // See BridgeControl.
+  void observe(BridgeObserver& observer) { control_.observe(observer); }
+  const Stats& stats() const { return control_.stats(); }
   const WordsByRange& words_taken() const { return control_.words_taken(); }
   WordsByRange words_held() const { return control_.words_held(); }
 

@@ -161,6 +161,7 @@ class InputLoader {
     input_.camera = options_.camera;
     input_.fast = options_.fast;
     input_.timing_only = options_.timing_only;
+    input_.record = options_.record;
     input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
     runs::RecordedOptions& run = input_.described;
     run.program_version = process::kVersion;
@@ -171,6 +172,7 @@ class InputLoader {
     run.frames = input_.frames;
     run.truth_scale = options_.truth.scale;
     run.save_frames = options_.save_frames;
+    run.record = options_.record;
     run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
   }
 

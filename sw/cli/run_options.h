@@ -35,6 +35,7 @@ class RunOptions {
   bool verify = false;
   std::optional<std::uint64_t> frames;
   bool save_frames = false;
+  bool record = false;
   std::optional<std::string> out;
 
  private:

@@ -111,15 +111,34 @@ void OutputFolder::add(const std::string& name, std::string_view bytes) {
     fs::create_directory(path.parent_path());
     write_whole_file(path, bytes);
   } catch (const std::system_error& error) {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-    refuse(fmt::format("'{}' cannot be written: {}", name, error.code().message()));
+    refuse_file(name, error.code());
   }
+}
+
+void OutputFolder::append(const std::string& name, std::string_view bytes) {
+  try {
+    growing_.try_emplace(name, made() / name).first->second.write(bytes);
+  } catch (const std::system_error& error) {
+    refuse_file(name, error.code());
+  }
+}
+
+void OutputFolder::refuse_file(const std::string& name, const std::error_code& cause) const {
+  std::error_code ignored;
+  fs::remove(made() / name, ignored);
+  refuse(fmt::format("'{}' cannot be written: {}", name, cause.message()));
 }
 
 void OutputFolder::commit() {
   if (committed_ || !is_file(made() / content_.mark))
     throw std::logic_error(fmt::format("commit() may be called once, after {} is added", content_.mark));
+  for (auto& [name, file] : growing_) {
+    try {
+      file.close();
+    } catch (const std::system_error& error) {
+      refuse_file(name, error.code());
+    }
+  }
   try {
     move_into_place();
   } catch (const std::system_error& error) {

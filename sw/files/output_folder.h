@@ -2,12 +2,15 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "sw/files/created_folders.h"
+#include "sw/files/new_file.h"
 
 namespace stereotlm::files {
 
@@ -54,6 +57,8 @@ class OutputFolder {
   // Adds a file. `name`: "stats.json", "frames/000000.png"; each name once. Throws std::runtime_error if it
   // cannot be stored (disk full). The object can then only be destroyed.
   void add(const std::string& name, std::string_view bytes);
+  // Adds bytes to the end of a file that is written piece by piece. Throws as add() does.
+  void append(const std::string& name, std::string_view bytes);
   // Moves all files into place. Throws std::logic_error if the mark was not added or commit() was called
   // before. If it fails, restores all files and throws std::runtime_error.
   void commit();
@@ -76,13 +81,15 @@ class OutputFolder {
   std::vector<std::filesystem::path> moved_names() const;
   void put_back() const;
   void discard() noexcept;
+  [[noreturn]] void refuse_file(const std::string& name, const std::error_code& cause) const;
 
   std::filesystem::path dir_;
   OutputContent content_;
-  CreatedFolders created_;   // DIR and parents that were missing
-  int lock_ = -1;            // descriptor of DIR/.partial
-  bool was_left_ = false;    // a killed run has left files in DIR/.partial
-  bool owns_aside_ = false;  // this object removes DIR/.partial
+  std::map<std::string, NewFile> growing_;  // files of append()
+  CreatedFolders created_;                  // DIR and parents that were missing
+  int lock_ = -1;                           // descriptor of DIR/.partial
+  bool was_left_ = false;                   // a killed run has left files in DIR/.partial
+  bool owns_aside_ = false;                 // this object removes DIR/.partial
   bool committed_ = false;
 };
 

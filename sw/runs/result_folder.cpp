@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 constexpr const char* kFrames = "frames";
 constexpr const char* kRunJson = "run.json";
 
-constexpr std::array kFileNames = {"config.yaml",   "depth.ply", "depth.png",           "disparity.pfm",
-                                   "disparity.png", "run.json",  "disparity_color.png", "stats.json"};
+constexpr std::array kFileNames = {"config.yaml",   "depth.ply",           "depth.png",   "disparity.pfm",
+                                   "disparity.png", "disparity_color.png", "latency.csv", "run.json",
+                                   "stats.json",    "timeline.csv"};
 
 bool is_file_name(const std::string& name) {
   return std::find(kFileNames.begin(), kFileNames.end(), name) != kFileNames.end();
@@ -64,12 +65,21 @@ std::string frame_file_name(std::uint64_t frame) { return fmt::format("{}/{:06}.
 ResultFolder::ResultFolder(const fs::path& dir)
     : folder_(dir, files::OutputContent{"result folder", kRunJson, foreign_part, problem_of}) {}
 
-void ResultFolder::add(const std::string& name, std::string_view bytes) {
+void ResultFolder::check_new(const std::string& name) {
   if (!is_result_name(name))
     throw std::invalid_argument(fmt::format("result file = '{}': not one of run's", name));
   if (!added_.insert(name).second)
     throw std::invalid_argument(fmt::format("result file = '{}': added twice", name));
+}
+
+void ResultFolder::add(const std::string& name, std::string_view bytes) {
+  check_new(name);
   folder_.add(name, bytes);
+}
+
+void ResultFolder::append(const std::string& name, std::string_view bytes) {
+  if (appended_.insert(name).second) check_new(name);
+  folder_.append(name, bytes);
 }
 
 void ResultFolder::add(const std::string& name, const std::vector<std::uint8_t>& bytes) {

@@ -28,12 +28,18 @@ class ResultFolder {
   void add(const std::string& name, std::string_view bytes);
   void add(const std::string& name, const std::vector<std::uint8_t>& bytes);
 
+  // Adds bytes to the end of a file that only append() writes. Throws as add() does.
+  void append(const std::string& name, std::string_view bytes);
+
   // Replaces the earlier result by the added files. Throws std::logic_error if run.json is not among them. If
   // the replacement fails, restores the earlier result and throws std::runtime_error.
   void commit();
 
  private:
+  void check_new(const std::string& name);
+
   std::set<std::string> added_;
+  std::set<std::string> appended_;  // those of added_ that append() writes
   files::OutputFolder folder_;
 };
 

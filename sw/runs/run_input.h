@@ -27,6 +27,7 @@ struct RunInput {
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
+  bool record = false;                   // --record
   std::uint64_t frames = 1;              // frames to deliver
   std::optional<media::Truth> truth;     // ground truth of the pair that the last frame shows
   std::string config_yaml;               // text of the result file config.yaml

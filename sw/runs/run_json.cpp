@@ -81,6 +81,7 @@ std::string run_json(const RecordedOptions& options) {
     document["truth_scale"] = options.truth_scale;
   }
   if (options.save_frames) document["save_frames"] = true;
+  if (options.record) document["record"] = true;
   return files::json_text(document);
 }
 

@@ -44,6 +44,7 @@ struct RecordedOptions {
   std::optional<InputFile> truth;
   double truth_scale = 1;  // only with a truth
   bool save_frames = false;
+  bool record = false;
 };
 
 // The text of run.json. Keys are the names of the options; an option that was not given is absent. Throws

@@ -53,6 +53,7 @@ RecordedOptions read_options(const Json& document) {
   read(document, "truth", options.truth);
   options.truth_scale = document.value("truth_scale", options.truth_scale);
   read(document, "save_frames", options.save_frames);
+  read(document, "record", options.record);
   return options;
 }
 

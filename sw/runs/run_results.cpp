@@ -8,6 +8,7 @@
 #include "sw/report/accuracy.h"
 #include "sw/report/console_table.h"
 #include "sw/report/stats_json.h"
+#include "sw/report/timeline_csv.h"
 #include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::runs {
@@ -67,6 +68,18 @@ void say_if_doubtful(const RunInput& input, const report::Accuracy& accuracy) {
 void save_frame(const RunInput& input, const Result& result) {
   if (!input.described.save_frames) return;
   input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
+}
+
+void begin_timeline(const RunInput& input) {
+  if (!input.record) return;
+  input.folder->append("timeline.csv", report::timeline_csv_head());
+  input.folder->append("latency.csv", report::latency_csv_head());
+}
+
+void save_timeline(const RunInput& input, const platform::TimelineRecords& records) {
+  if (!input.record) return;
+  input.folder->append("timeline.csv", report::timeline_csv(records.events));
+  input.folder->append("latency.csv", report::latency_csv(records.latencies));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {

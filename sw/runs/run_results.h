@@ -14,6 +14,11 @@ namespace stereotlm::runs {
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
+// With --record: these begin timeline.csv and latency.csv in the result folder, and add records to them. They
+// throw as save_frame() does.
+void begin_timeline(const RunInput& input);
+void save_timeline(const RunInput& input, const platform::TimelineRecords& records);
+
 // For a run that ended after `frames_done` frames: drops --truth, and prints a note, if the last frame does
 // not show the pair that the truth belongs to.
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done);

@@ -57,6 +57,7 @@ void run_other(const RunInput& input, const PictureSource& pictures, const proce
   host::FrameSource& source = pairs ? static_cast<host::FrameSource&>(*pairs) : blank;
   Binder binder;
   RunMode mode = run_mode(input);
+  mode.record = false;
   mode.fidelity = input.fast ? fpga::Fidelity::kCycle : fpga::Fidelity::kFast;
   const auto simulation = make_simulation(input.board, input.tables, source, mode, binder);
   while (!simulation->finished()) {

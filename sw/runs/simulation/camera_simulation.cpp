@@ -52,6 +52,13 @@ const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, st
   return *pair_;
 }
 
+void CameraSimulation::record_timeline() { computer_->record(timeline_.emplace(board_)); }
+
+platform::TimelineRecords CameraSimulation::take_timeline() {
+  if (!timeline_) return {};
+  return finished() ? timeline_->finish() : timeline_->take();
+}
+
 void CameraSimulation::end_early() {
   driver_.start_no_more();
   set_frames(driver_.frames_started());
@@ -62,15 +69,24 @@ platform::Statistics CameraSimulation::statistics() const {
     throw std::logic_error(
         fmt::format("statistics of {} frames requested while the core is busy", deliveries_.size()));
   }
-  return platform::collect_statistics(board_, tables_, fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
-                                      computer_->core_frames().frame_cycles(), counters_, deliveries_);
+  platform::Statistics statistics =
+      platform::collect_statistics(board_, tables_, fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
+                                   computer_->core_frames().frame_cycles(), counters_, deliveries_);
+  if (timeline_) {
+    for (std::string& failed : timeline_->failed(statistics)) statistics.failed.push_back(std::move(failed));
+  }
+  return statistics;
 }
 
 void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   const auto begin = begins_ps_.find(frame.camera_frame);
   deliveries_.push_back({begin->second, kernel_time::to_ps(sc_core::sc_time_stamp())});
   begins_ps_.erase(begins_ps_.begin(), std::next(begin));
-  if (driver_.frames_started() == frame.frame + 1) counters_ = computer_->counters();
+  if (timeline_) timeline_->deliver(deliveries_.back());
+  if (driver_.frames_started() == frame.frame + 1) {
+    counters_ = computer_->counters();
+    if (timeline_) timeline_->mark_end(counters_);
+  }
   kernels::GrayImage disparity;
   if (fidelity_ != fpga::Fidelity::kTiming) {
     disparity.width = board_.image.width;

@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "models/binder.h"
 #include "models/capture/camera.h"
 #include "platform/collect_computer.h"
 #include "platform/computer_view.h"
+#include "platform/timeline.h"
 #include "sw/driver/stereo_driver.h"
 #include "sw/runs/simulation/simulation.h"
 
@@ -24,9 +26,14 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                    fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
+  // Records the run from its beginning, for take_timeline(). To be called before advance(). statistics() then
+  // also checks the identities of the records.
+  void record_timeline();
+
   void end_early() override;
   void record_rows() override { computer_->record_rows(); }
   std::vector<fpga::RowProfile> take_rows() override { return computer_->take_rows(); }
+  platform::TimelineRecords take_timeline() override;
   platform::Statistics statistics() const override;
   const platform::ComputerView& computer() const { return *computer_; }
   // The number of frames that the core has started.
@@ -59,6 +66,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   // Start time of each captured camera frame that is not delivered yet, by its number.
   std::map<std::uint64_t, std::uint64_t> begins_ps_;
   std::vector<platform::Delivery> deliveries_;
+  std::optional<platform::Timeline> timeline_;
   platform::ComputerCounters counters_;  // counters at the last delivery at which the core was idle
   double stall_timeout_seconds_;
   std::uint64_t last_work_ = 0;

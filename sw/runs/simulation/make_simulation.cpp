@@ -9,7 +9,10 @@ std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
                                             const platform::Tables& tables, host::FrameSource& pairs,
                                             const RunMode& mode, Binder& binder) {
   if (mode.camera) {
-    return std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+    auto simulation =
+        std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+    if (mode.record) simulation->record_timeline();
+    return simulation;
   }
   return std::make_unique<PreloadedSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
 }

@@ -10,6 +10,7 @@
 #include "models/kernels/gray_image.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
+#include "platform/timeline_records.h"
 
 namespace stereotlm::runs {
 
@@ -50,6 +51,11 @@ class Simulation {
   // The row profiles of the frames that the core has finished since the last call, in the order of the
   // results. A whole computer delivers these results later.
   virtual std::vector<fpga::RowProfile> take_rows() = 0;
+
+  // The records of a run that is recorded, since the last call; those up to the end of the run once it has
+  // finished. It must be called regularly, because they fill memory, and before statistics(). A board alone
+  // has none.
+  virtual platform::TimelineRecords take_timeline() { return {}; }
 
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.

@@ -1,6 +1,8 @@
 """run --source camera: the whole computer around a small board."""
 
+import csv
 import os
+import resource
 import signal
 
 import program
@@ -42,7 +44,7 @@ class Results(CameraTest):
         self.assertEqual(read_png(self.out / "disparity.png"), frames[numbers[-1]])
 
     def test_an_interrupted_run_equals_a_whole_one_of_the_frames_delivered(self):
-        options = ["--sequence", self.sequence(7), "--save-frames"]
+        options = ["--sequence", self.sequence(7), "--save-frames", "--record"]
         terminal = Terminal(self.arguments(*options, "--frames", "1000000", "--out", self.out))
         status, _ = terminal.interrupt(PROGRESS, signal.SIGINT)
         self.assertEqual(status, 130)
@@ -51,6 +53,66 @@ class Results(CameraTest):
         whole = self.folder / "whole"
         self.camera(*options, "--frames", frames, out=whole)
         self.assertEqual(self.result(), self.result(whole))
+
+
+class Recording(CameraTest):
+    """timeline.csv and latency.csv of a run with --record."""
+
+    def table(self, name, folder=None):
+        with open((folder or self.out) / name, encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_its_sums_are_the_figures_of_the_run_at_both_fidelities(self):
+        for destination in ("board", "host_memory"):
+            options = ["--frames", "12", "--record", *sets(f"capture.destination={destination}")]
+            cycle = self.folder / f"cycle {destination}"
+            self.camera(*options, "--fidelity", "cycle", out=cycle)
+            self.camera(*options)
+            for name in ("timeline.csv", "latency.csv"):
+                self.assertEqual((self.out / name).read_bytes(), (cycle / name).read_bytes())
+            self.check_sums()
+
+    def check_sums(self):
+        stats, events = self.stats(), self.table("timeline.csv")
+        self.assertNotIn("failed", stats)
+        self.assertTrue(self.run_json()["record"])
+        self.assertEqual(events, sorted(events, key=lambda event: int(event["end_ps"])))
+        of = lambda kind, *what: [event for event in events if event["kind"] == kind and
+                                  (not what or event["class"] in what)]
+        for camera in stats["cameras"]:
+            captures, drops = of("capture", camera["name"]), of("drop", camera["name"])
+            self.assertEqual(len(captures), camera["captured_frames"])
+            self.assertEqual(sum(int(event["dropped_pixels"]) for event in captures), camera["dropped_pixels"])
+            for why in ("not_armed", "busy", "partner"):
+                dropped = camera["dropped_by_partner" if why == "partner" else f"dropped_{why}"]
+                self.assertEqual(sum(event["why"] == why for event in drops), dropped)
+        self.assertEqual(sum(int(event["words"]) for event in of("upload") + of("read_back")),
+                         stats["bridge"]["dma_words"])
+        self.assertEqual([event["frame"] for event in of("frame", "cycles")], [str(f) for f in range(12)])
+        latencies = self.table("latency.csv")
+        parts = [name for name in latencies[0] if name.endswith("_ps") and name not in
+                 ("captured_ps", "latency_ps")]
+        for frame in latencies:
+            self.assertEqual(sum(int(frame[part]) for part in parts), int(frame["latency_ps"]))
+        sums = [int(frame["latency_ps"]) / 1e9 for frame in latencies]
+        expected = stats["latency_ms"]["capture_to_host"]
+        self.assertEqual([min(sums), max(sums)], [expected["min"], expected["max"]])
+
+    def test_it_changes_no_other_figure(self):
+        self.camera("--frames", "5")
+        stats = self.stats()
+        self.camera("--frames", "5", "--record", "--verify")
+        self.assertEqual(self.stats(), stats)
+
+    def test_a_full_disk_leaves_the_folder_as_it_was(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        command = self.arguments("--timing-only", "--record", "--frames", "20", "--out", self.out)
+        self.fails(run(*command, preexec_fn=limit), "'timeline.csv' cannot be written: File too large")
+        self.assertFalse(self.out.exists())
+
+    def test_a_recorded_run_is_repeated_by_diff(self):
+        self.camera("--frames", "3", "--record")
+        self.succeeds(run("diff", self.out, self.out))
 
 
 class Figures(CameraTest):

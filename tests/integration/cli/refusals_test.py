@@ -16,7 +16,7 @@ UNBUILT_COMMANDS = ["report"]
 UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
-    "--truth-scale,--set,--out,--save-frames,--fidelity fast|cycle,--timing-only,--verify,--trace,default 1"
+    "--truth-scale,--set,--out,--save-frames,--record,--fidelity fast|cycle,--timing-only,--verify,--trace,default 1"
 )
 NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
 
@@ -123,7 +123,9 @@ class CommandLine(ProgramTest):
             ([*timing, "--truth", self.left], f"--truth: {no_disparities}"),
             ([*timing, *saved], f"--save-frames: {no_disparities}"),
             ([*pair, "--save-frames"], "--save-frames: goes with --out DIR"),
+            ([*pair, "--record", "--out", self.out], "--record: goes with --source camera, which has a time"),
         ], self.run_with)
+        self.refused_in_one_line(run("run", "fpl2003", *pair, "--record"), "--record: goes with --out DIR")
         self.refused(self.run_with("--video", "a", "b", "c", "--video-layout", "two"))
         self.assertFalse(self.out.exists())
 

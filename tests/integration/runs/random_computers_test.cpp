@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "sw/report/timeline_csv.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
@@ -43,6 +45,8 @@ class Pictures : public host::FrameSource {
 struct Outcome {
   std::vector<runs::Result> results;
   std::vector<fpga::RowProfile> rows;
+  std::string timeline;  // CSV
+  std::string latencies;
   platform::Statistics statistics;
 };
 
@@ -51,9 +55,13 @@ Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tab
   test::MonitoringBinder binder;
   runs::CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
   simulation.record_rows();
+  simulation.record_timeline();
   Outcome outcome;
   while (!simulation.finished()) {
     for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
+    const platform::TimelineRecords records = simulation.take_timeline();
+    outcome.timeline += report::timeline_csv(records.events);
+    outcome.latencies += report::latency_csv(records.latencies);
   }
   outcome.rows = simulation.take_rows();
   outcome.statistics = simulation.statistics();
@@ -267,6 +275,38 @@ INSTANTIATE_TEST_SUITE_P(
     Fidelities, RandomComputers,
     testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming), testing::Bool()),
     suite_name);
+
+class RandomTimelines : public testing::TestWithParam<bool> {};
+
+TEST_P(RandomTimelines, AreTheSameAtEachFidelity) {
+  test::RandomKnobs knobs = GetParam() ? test::RandomKnobs::all() : test::RandomKnobs{};
+  knobs.large_images = false;
+  constexpr std::array kFidelities = {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming};
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < computers(); ++seed) {
+    for (const Fidelity fidelity : kFidelities) {
+      jobs.push_back([seed, knobs, fidelity] {
+        const test::RandomComputer computer = test::make_random_computer(seed, knobs);
+        Pictures pictures(computer.board);
+        const auto frames = static_cast<std::uint64_t>(computer.input.frames);
+        const Outcome outcome = simulate(test::board_config(computer), test::board_tables(computer.board),
+                                         pictures, frames, fidelity);
+        return outcome.timeline + outcome.latencies;
+      });
+    }
+  }
+  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
+  for (std::size_t job = 0; job < results.size(); ++job) {
+    const std::string seed = fmt::format("seed {}: ", job / kFidelities.size());
+    const std::string& cycle = results[job - job % kFidelities.size()].text;
+    ASSERT_EQ(results[job].exit_status, 1) << seed << results[job].text;  // its text is the result
+    EXPECT_NE(cycle.find("\nwait,core,0,"), std::string::npos) << seed;
+    EXPECT_EQ(differences(cycle, results[job].text), "") << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Knobs, RandomTimelines, testing::Bool(),
+                         [](const auto& suite) { return suite.param ? "With" : "Without"; });
 
 // Four local clocks per cycle of the FPGA and one word per burst: the clocks between two words cost no cycle.
 TEST(SaturatedLocalBus, StaysBelowItsBound) {

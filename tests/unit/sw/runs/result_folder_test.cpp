@@ -66,9 +66,9 @@ TEST_F(ResultFolderTest, AcceptsATrailingSlashAndALinkToAnEmptyFolder) {
 }
 
 TEST_F(ResultFolderTest, ReplacesEveryFileThatARunWritesAtTheCommit) {
-  for (const char* name :
-       {"disparity.png", "disparity.pfm", "disparity_color.png", "depth.ply", "depth.png", "stats.json",
-        "config.yaml", "run.json", "frames/000000.png", "frames/1234567.png"}) {
+  for (const char* name : {"disparity.png", "disparity.pfm", "disparity_color.png", "depth.ply", "depth.png",
+                           "stats.json", "config.yaml", "run.json", "timeline.csv", "latency.csv",
+                           "frames/000000.png", "frames/1234567.png"}) {
     test::write_file(out_ / name, "old");
   }
   ResultFolder folder(out_);
@@ -200,6 +200,34 @@ TEST_F(ResultFolderTest, AcceptsOnlyFilesThatARunWritesAndEachOnce) {
                            "frames/../000000.png", "frames", ".partial/run.json", "000000.png"}) {
     EXPECT_THROW(folder.add(name, "x"), std::invalid_argument) << name;
   }
+}
+
+TEST_F(ResultFolderTest, AppendsToAFileUntilTheCommit) {
+  ResultFolder folder(out_);
+  folder.append("timeline.csv", "a\n");
+  folder.append("latency.csv", "");
+  folder.append("timeline.csv", "b\n");
+  EXPECT_THROW(folder.add("timeline.csv", "x"), std::invalid_argument);
+  folder.add("run.json", "x");
+  EXPECT_THROW(folder.append("run.json", "x"), std::invalid_argument);
+  EXPECT_THROW(folder.append("notes.txt", "x"), std::invalid_argument);
+  folder.commit();
+  EXPECT_THAT(names_in(out_), ElementsAre("latency.csv", "run.json", "timeline.csv"));
+  EXPECT_EQ(test::read_file(out_ / "timeline.csv"), "a\nb\n");
+  EXPECT_EQ(test::read_file(out_ / "latency.csv"), "");
+}
+
+TEST_F(ResultFolderTest, AFileThatDoesNotFitWhileItGrowsLeavesTheEarlierResultIntact) {
+  test::write_file(out_ / "run.json", "old");
+  {
+    const test::FileSizeLimit limit(1000);
+    ResultFolder folder(out_);
+    folder.append("timeline.csv", std::string(1000, 'x'));
+    EXPECT_EQ(test::message_of([&] { folder.append("timeline.csv", "x"); }),
+              "result folder '" + out_.string() + "': 'timeline.csv' cannot be written: File too large");
+  }
+  EXPECT_THAT(names_in(out_), ElementsAre("run.json"));
+  EXPECT_EQ(test::read_file(out_ / "run.json"), "old");
 }
 
 TEST_F(ResultFolderTest, NumbersFramesWithSixDigitsOrMore) {

@@ -1,0 +1,437 @@
+#include "platform/timeline.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "models/fpga/core_ports.h"
+#include "models/pci/bridge_registers.h"
+#include "platform/audit.h"
+#include "platform/computer_parts.h"
+
+namespace stereotlm::platform {
+namespace {
+
+namespace bridge_map = pci::bridge;
+
+constexpr std::array<const char*, 2> kSides = {"left", "right"};
+constexpr std::array<const char*, 5> kInterruptNames = {"left", "right", "core", "upload", "read_back"};
+constexpr std::size_t kCoreInterrupt = 2;
+constexpr std::size_t kDmaInterrupt = 3;  // of channel 0
+constexpr unsigned kToBoard = 0;          // DMA channels of the driver
+
+// Everything that can differ between two events, ends first.
+auto order_of(const TimelineEvent& event) {
+  return std::tuple(event.end_ps, event.begin_ps, event.kind, std::string_view(event.what), event.frame,
+                    event.camera_frame, std::string_view(event.why));
+}
+
+const char* name_of(capture::DropReason reason) {
+  switch (reason) {
+    case capture::DropReason::kNotArmed:
+      return "not_armed";
+    case capture::DropReason::kBusy:
+      return "busy";
+    case capture::DropReason::kPartner:
+      break;
+  }
+  return "partner";
+}
+
+}  // namespace
+
+Timeline::Timeline(const BoardConfig& board)
+    : clock_(board.fpga.clock_mhz),
+      copies_(board.capture.destination == CaptureDestination::kHostMemory),
+      uploading_(board.allocation.left_lut || board.allocation.right_lut),
+      inputs_(board.allocation.left_image.size()),
+      outputs_(board.allocation.disparity.size()),
+      buffers_(buffers(board)),
+      ranges_(buffer_ranges(board)) {}
+
+const char* Timeline::buffer_at(std::uint64_t local_address) const {
+  const auto range = std::find_if(ranges_.begin(), ranges_.end(), [local_address](const AddressRange& found) {
+    return found.contains(local_address);
+  });
+  return range == ranges_.end()
+             ? ""
+             : platform::name_of(buffers_[static_cast<std::size_t>(range - ranges_.begin())].buffer);
+}
+
+// The two captures of a pair have the same number. The earlier call makes the pair.
+void Timeline::CaptureSide::capture_begun(std::uint64_t frame, std::uint64_t begin_ps) {
+  undecided_.reset();
+  const std::uint64_t number = begun_++;
+  if (number == timeline_.first_pair_ + timeline_.pairs_.size()) {
+    Pair pair;
+    pair.camera_frame = frame;
+    pair.begin_ps = begin_ps;
+    timeline_.pairs_.push_back(pair);
+  }
+}
+
+TimelineEvent Timeline::CaptureSide::capture_of(std::uint64_t number) const {
+  const Pair& pair = timeline_.pair(number);
+  TimelineEvent event;
+  event.kind = EventKind::kCapture;
+  event.what = kSides[side_];
+  event.frame = number;
+  event.camera_frame = pair.camera_frame;
+  event.begin_ps = pair.begin_ps;
+  return event;
+}
+
+void Timeline::CaptureSide::capture_ended(const capture::Capture& capture) {
+  const std::uint64_t number = ended_++;
+  TimelineEvent event = capture_of(number);
+  event.end_ps = capture.end_ps;
+  event.words = capture.words;
+  event.dropped_pixels = capture.dropped_pixels;
+  timeline_.ended_.push_back(event);
+  words_ += capture.words;
+  dropped_pixels_ += capture.dropped_pixels;
+  std::uint64_t& captured_ps = timeline_.pair(number).captured_ps;
+  captured_ps = std::max(captured_ps, capture.end_ps);
+  timeline_.begin_interrupt(side_, number, capture.end_ps);
+}
+
+TimelineEvent Timeline::CaptureSide::drop(std::uint64_t frame, std::uint64_t begin_ps,
+                                          const char* why) const {
+  TimelineEvent event;
+  event.kind = EventKind::kDrop;
+  event.what = kSides[side_];
+  event.camera_frame = frame;
+  event.begin_ps = event.end_ps = begin_ps;
+  event.why = why;
+  return event;
+}
+
+void Timeline::CaptureSide::frame_begun(std::uint64_t frame, std::uint64_t begin_ps) {
+  undecided_ = {frame, begin_ps};
+}
+
+void Timeline::CaptureSide::frame_dropped(std::uint64_t frame, std::uint64_t begin_ps,
+                                          capture::DropReason reason) {
+  undecided_.reset();
+  timeline_.ended_.push_back(drop(frame, begin_ps, name_of(reason)));
+}
+
+void Timeline::CaptureSide::end_now(const capture::CaptureControl::Stats& stats, std::uint64_t now_ps,
+                                    std::vector<TimelineEvent>& events) const {
+  if (undecided_) events.push_back(drop(undecided_->first, undecided_->second, "not_armed"));
+  if (begun_ == ended_) return;
+  TimelineEvent event = capture_of(ended_);
+  event.end_ps = now_ps;
+  event.words = stats.words - words_;
+  event.dropped_pixels = stats.dropped_pixels - dropped_pixels_;
+  events.push_back(event);
+}
+
+void Timeline::begin_interrupt(std::size_t interrupt, std::optional<std::uint64_t> frame,
+                               std::uint64_t now_ps) {
+  if (interrupts_[interrupt]) return;
+  TimelineEvent event;
+  event.kind = EventKind::kInterrupt;
+  event.what = kInterruptNames[interrupt];
+  event.frame = frame;
+  if (frame) event.camera_frame = pair(*frame).camera_frame;
+  event.begin_ps = now_ps;
+  interrupts_[interrupt] = event;
+}
+
+void Timeline::end_interrupt(std::size_t interrupt, std::uint64_t now_ps) {
+  if (!interrupts_[interrupt]) return;
+  interrupts_[interrupt]->end_ps = now_ps;
+  ended_.push_back(*interrupts_[interrupt]);
+  interrupts_[interrupt].reset();
+}
+
+void Timeline::interrupts_raised(std::uint64_t now_ps, std::uint32_t interrupts) {
+  if ((interrupts & bridge_map::kDoorbell) != 0) begin_interrupt(kCoreInterrupt, frames_ended_ - 1, now_ps);
+  for (unsigned channel = 0; channel < transfers_.size(); ++channel) {
+    if ((interrupts & bridge_map::kDmaDone << channel) != 0) dma_done(channel, now_ps);
+  }
+}
+
+void Timeline::interrupts_cleared(std::uint64_t now_ps, std::uint32_t interrupts) {
+  if ((interrupts & bridge_map::kDoorbell) != 0) end_interrupt(kCoreInterrupt, now_ps);
+  for (unsigned channel = 0; channel < transfers_.size(); ++channel) {
+    if ((interrupts & bridge_map::kDmaDone << channel) != 0) end_interrupt(kDmaInterrupt + channel, now_ps);
+  }
+}
+
+void Timeline::dma_started(unsigned channel, std::uint64_t now_ps) {
+  if (channel != kToBoard) {
+    const std::uint64_t number = read_backs_begun_++;
+    pair(number).read_back_begin_ps = now_ps;
+    wait("result", number, pair(number).done_ps, now_ps,
+         {{"read_back", earlier(number, 1, &Pair::read_back_end_ps)}});
+  } else if (!uploading_) {
+    const std::uint64_t number = copies_begun_++;
+    pair(number).copy_begin_ps = now_ps;
+    wait("ring", number, pair(number).captured_ps, now_ps,
+         {{"copy", earlier(number, 1, &Pair::copy_end_ps)},
+          {"input_buffer", earlier(number, inputs_, &Pair::done_ps)}});
+  }
+}
+
+void Timeline::dma_done(unsigned channel, std::uint64_t now_ps) {
+  std::optional<std::uint64_t> number;
+  if (channel != kToBoard) {
+    number = read_backs_begun_ - 1;
+    pair(*number).read_back_end_ps = now_ps;
+  } else if (uploading_) {
+    uploading_ = false;
+    upload_end_ps_ = now_ps;
+  } else {
+    number = copies_begun_ - 1;
+    pair(*number).copy_end_ps = now_ps;
+  }
+  begin_interrupt(kDmaInterrupt + channel, number, now_ps);
+}
+
+void Timeline::transfer_begun(const pci::DmaTransfer& transfer) {
+  TimelineEvent event;
+  event.kind = transfer.to_pci ? EventKind::kReadBack : EventKind::kUpload;
+  event.what = buffer_at(transfer.local_address);
+  if (transfer.to_pci) {
+    event.frame = read_backs_begun_ - 1;
+  } else if (!uploading_) {
+    event.frame = copies_begun_ - 1;
+  }
+  if (event.frame) event.camera_frame = pair(*event.frame).camera_frame;
+  event.begin_ps = transfer.begin_ps;
+  event.words = transfer.words;
+  transfers_[transfer.channel] = event;
+}
+
+void Timeline::transfer_ended(unsigned channel, std::uint64_t now_ps) {
+  TimelineEvent& event = *transfers_[channel];
+  event.end_ps = now_ps;
+  dma_words_ += event.words;
+  ended_.push_back(event);
+  transfers_[channel].reset();
+}
+
+void Timeline::frame_begun(std::uint64_t strobe_ps) {
+  const std::uint64_t number = frames_begun_++;
+  Pair& times = pair(number);
+  times.strobe_ps = strobe_ps;
+  const std::uint64_t core_free_ps = earlier(number, 1, &Pair::done_ps);
+  const Reason output = {"output_buffer", earlier(number, outputs_, &Pair::read_back_end_ps)};
+  wait("pair", number, ready_ps(times), strobe_ps, {{"core", core_free_ps}, output});
+  wait("core", number, core_free_ps, strobe_ps,
+       {{"upload", number == 0 ? upload_end_ps_ : 0},
+        {"camera", times.begin_ps},
+        {"capture", times.captured_ps},
+        {"copy", ready_ps(times)},
+        output});
+}
+
+void Timeline::frame_ended(const fpga::FrameTimes& times) {
+  const std::uint64_t number = frames_ended_++;
+  TimelineEvent event;
+  event.kind = EventKind::kFrame;
+  event.frame = number;
+  event.camera_frame = pair(number).camera_frame;
+  event.begin_ps = times.strobe_ps;
+  const auto add = [this, &event](const char* what, std::uint64_t end_cycle, std::uint64_t words) {
+    event.what = what;
+    event.end_ps = clock_.edge_ps(end_cycle);
+    event.words = words;
+    ended_.push_back(event);
+    event.begin_ps = event.end_ps;
+  };
+  add("strobe", times.first_cycle, 0);
+  add("cycles", times.end_cycle, times.words);
+  add("pipeline", times.done_cycle, 0);
+  pair(number).done_ps = event.end_ps;
+  cycles_ += times.done_cycle - times.first_cycle;
+}
+
+// Adds a wait as one event for each reason, which holds until its time or the time of one before. For the
+// rest nothing is busy: the driver's accesses take the time.
+void Timeline::wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
+                    std::initializer_list<Reason> reasons) {
+  TimelineEvent event;
+  event.kind = EventKind::kWait;
+  event.what = who;
+  event.frame = frame;
+  event.camera_frame = pair(frame).camera_frame;
+  event.begin_ps = from_ps;
+  const auto add = [this, &event, to_ps](const Reason& reason) {
+    event.end_ps = std::min(reason.until_ps, to_ps);
+    event.why = reason.why;
+    if (event.end_ps <= event.begin_ps) return;
+    ended_.push_back(event);
+    event.begin_ps = event.end_ps;
+  };
+  for (const Reason& reason : reasons) add(reason);
+  add({"host", to_ps});
+}
+
+void Timeline::deliver(const Delivery& delivery) {
+  const std::uint64_t number = delivered_++;
+  const Pair& times = pair(number);
+  const std::uint64_t copy_begin_ps = copies_ ? times.copy_begin_ps : times.captured_ps;
+  const std::array<std::uint64_t, kLatencyParts.size() + 1> moments = {
+      times.begin_ps, times.captured_ps,        copy_begin_ps,          ready_ps(times), times.strobe_ps,
+      times.done_ps,  times.read_back_begin_ps, times.read_back_end_ps, delivery.host_ps};
+  FrameLatency latency = {number, times.camera_frame, times.begin_ps, {}};
+  for (std::size_t part = 0; part < kLatencyParts.size(); ++part)
+    latency.parts_ps[part] = moments[part + 1] - moments[part];
+  latencies_.push_back(latency);
+  if (!std::is_sorted(moments.begin(), moments.end())) ++disordered_;
+  latencies_ps_ += delivery.host_ps - delivery.capture_ps;
+  delivered_ps_ = delivery.host_ps;
+  const std::uint64_t needed = std::max(inputs_, outputs_);
+  for (; first_pair_ + needed < delivered_; ++first_pair_) pairs_.pop_front();
+}
+
+// What begins at this very time is left out: it takes no time, and may come before or after the delivery.
+void Timeline::mark_end(const ComputerCounters& counters) {
+  last_ = ended_;
+  for (std::size_t side = 0; side < boards_.size(); ++side)
+    boards_[side].end_now(counters.cameras[side].capture, delivered_ps_, last_);
+  std::uint64_t dma_words = counters.bridge.dma_words - dma_words_;
+  const auto end_now = [this](TimelineEvent event) {
+    event.end_ps = delivered_ps_;
+    if (event.begin_ps < event.end_ps) last_.push_back(event);
+  };
+  for (const std::optional<TimelineEvent>& transfer : transfers_) {
+    if (!transfer) continue;
+    TimelineEvent event = *transfer;
+    event.words = std::exchange(dma_words, 0);
+    end_now(event);
+  }
+  for (const std::optional<TimelineEvent>& interrupt : interrupts_) {
+    if (interrupt) end_now(*interrupt);
+  }
+}
+
+// Everything that is recorded later ends at this time or later. A wait, and a frame of the core, is recorded
+// in parts at its end. A dropped frame is recorded 1 ps after its time.
+std::uint64_t Timeline::complete_until_ps() const {
+  std::uint64_t until_ps = std::max<std::uint64_t>(delivered_ps_, 1) - 1;
+  const auto hold_back = [&until_ps](std::uint64_t begin_ps) { until_ps = std::min(until_ps, begin_ps); };
+  const bool runs = frames_begun_ != frames_ended_;
+  hold_back(runs ? pair(frames_ended_).strobe_ps : earlier(frames_ended_, 1, &Pair::done_ps));
+  const bool is_captured =
+      frames_begun_ < first_pair_ + pairs_.size() && pair(frames_begun_).captured_ps != 0;
+  if (is_captured) hold_back(pair(frames_begun_).captured_ps);
+  if (read_backs_begun_ != frames_ended_) hold_back(pair(read_backs_begun_).done_ps);
+  return until_ps;
+}
+
+TimelineRecords Timeline::take() {
+  const std::uint64_t until_ps = complete_until_ps();
+  const auto later = std::partition(ended_.begin(), ended_.end(), [until_ps](const TimelineEvent& event) {
+    return event.end_ps < until_ps;
+  });
+  handed_out_until_ps_ = until_ps;
+  std::vector<TimelineEvent> events(ended_.begin(), later);
+  ended_.erase(ended_.begin(), later);
+  return hand_out(std::move(events));
+}
+
+TimelineRecords Timeline::finish() {
+  const auto is_handed_out = [this](const TimelineEvent& event) {
+    return event.end_ps < handed_out_until_ps_;
+  };
+  last_.erase(std::remove_if(last_.begin(), last_.end(), is_handed_out), last_.end());
+  return hand_out(std::exchange(last_, {}));
+}
+
+std::size_t Timeline::resource_of(const TimelineEvent& event) {
+  const std::string_view what = event.what;
+  switch (event.kind) {
+    case EventKind::kCapture:
+      return what == kSides[0] ? kLeft : kRight;
+    case EventKind::kUpload:
+      return kUploads;
+    case EventKind::kReadBack:
+      return kReadBacks;
+    case EventKind::kFrame:
+      return kCore;
+    case EventKind::kInterrupt: {
+      const auto name = std::find(kInterruptNames.begin(), kInterruptNames.end(), what);
+      return kFirstInterrupt + static_cast<std::size_t>(name - kInterruptNames.begin());
+    }
+    case EventKind::kWait:
+      if (what == "core") return kCore;
+      break;
+    case EventKind::kDrop:
+      break;
+  }
+  return kFirstInterrupt + kInterrupts;  // may overlap
+}
+
+TimelineRecords Timeline::hand_out(std::vector<TimelineEvent> events) {
+  std::sort(events.begin(), events.end(),
+            [](const TimelineEvent& a, const TimelineEvent& b) { return order_of(a) < order_of(b); });
+  for (const TimelineEvent& event : events) {
+    Sums& sums = sums_[{event.kind, event.what, event.why}];
+    ++sums.events;
+    sums.words += event.words;
+    sums.dropped_pixels += event.dropped_pixels;
+    const std::size_t resource = resource_of(event);
+    if (resource == kCore) core_ps_ += event.end_ps - event.begin_ps;
+    if (event.begin_ps < busy_until_ps_[resource]) ++overlaps_[resource];
+    busy_until_ps_[resource] = event.end_ps;
+  }
+  for (const FrameLatency& latency : latencies_) {
+    ++latency_count_;
+    parts_ps_ += latency.sum_ps();
+  }
+  return {std::move(events), std::exchange(latencies_, {})};
+}
+
+Timeline::Sums Timeline::sums_of(EventKind kind, std::string_view what, std::string_view why) const {
+  const auto found = sums_.find({kind, what, why});
+  return found == sums_.end() ? Sums{} : found->second;
+}
+
+std::vector<std::string> Timeline::failed(const Statistics& statistics) const {
+  const ComputerStatistics& computer = *statistics.computer;
+  Audit audit;
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    const CameraStatistics& camera = computer.cameras[side];
+    const std::string name = "recorded: camera " + camera.name + ": ";
+    const Sums captures = sums_of(EventKind::kCapture, kSides[side]);
+    audit.equal(name + "captures", captures.events, "captured_frames", camera.captured_frames);
+    audit.equal(name + "dropped pixels", captures.dropped_pixels, "dropped_pixels", camera.dropped_pixels);
+    audit.equal(name + "words", captures.words, "words of its PCI master",
+                computer.pci_masters[side == 0 ? kLeftCapture : kRightCapture].words);
+    for (const auto& [why, frames] :
+         {std::pair("not_armed", camera.dropped_not_armed), std::pair("busy", camera.dropped_busy),
+          std::pair("partner", camera.dropped_by_partner)}) {
+      audit.equal(name + "dropped: " + why, sums_of(EventKind::kDrop, kSides[side], why).events,
+                  std::string("dropped_") + why, frames);
+    }
+  }
+  std::uint64_t dma_words = 0;
+  for (const auto& [key, sums] : sums_) {
+    const EventKind kind = std::get<EventKind>(key);
+    if (kind == EventKind::kUpload || kind == EventKind::kReadBack) dma_words += sums.words;
+  }
+  audit.equal("recorded: words of transfers", dma_words, "dma_words", computer.dma_words);
+  const Sums frames = sums_of(EventKind::kFrame, "cycles");
+  audit.equal("recorded: frames of the core", frames.events, "frames", statistics.frames);
+  audit.equal("recorded: words of results", frames.words, "grants of port result",
+              statistics.ports[fpga::kResultPort].grants);
+  audit.equal(
+      "recorded: cycles of frames", cycles_, "sum of frame_cycles",
+      std::accumulate(statistics.frame_cycles.begin(), statistics.frame_cycles.end(), std::uint64_t{0}));
+  audit.equal("recorded: interrupts of the core", sums_of(EventKind::kInterrupt, "core").events, "frames",
+              statistics.frames);
+  audit.equal("recorded: frames and waits of the core, ps", core_ps_, "end of its last frame",
+              busy_until_ps_[kCore]);
+  audit.equal("recorded: latencies", latency_count_, "frames", statistics.frames);
+  audit.equal("recorded: parts of the latencies, ps", parts_ps_, "time from capture to host", latencies_ps_);
+  audit.equal("recorded: frames with times out of order", disordered_, "allowed", 0);
+  audit.equal("recorded: events of one resource that overlap",
+              std::accumulate(overlaps_.begin(), overlaps_.end() - 1, std::uint64_t{0}), "allowed", 0);
+  return std::move(audit).failed();
+}
+
+}  // namespace stereotlm::platform

@@ -1,0 +1,183 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "models/capture/capture_observer.h"
+#include "models/clock.h"
+#include "models/fpga/frame_observer.h"
+#include "models/pci/bridge_observer.h"
+#include "platform/collect_computer.h"
+#include "platform/config/board_config.h"
+#include "platform/config/buffer_layout.h"
+#include "platform/timeline_records.h"
+
+namespace stereotlm::platform {
+
+// Records what happens in a computer: captures and dropped frames, DMA transfers, frames of the core,
+// interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The
+// waits and the parts of each latency follow from that and from the driver's rules (sw/driver/README.md), so
+// that no other program can be recorded. Plain C++.
+//
+// Events are handed out in the order of their ends. Memory holds only those since the last delivery, or since
+// the first wait began that has not ended.
+class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
+ public:
+  // Throws std::invalid_argument if the board has problems.
+  explicit Timeline(const BoardConfig& board);
+  Timeline(const Timeline&) = delete;
+  Timeline& operator=(const Timeline&) = delete;
+
+  // The observers of the blocks. `side`: 0 left, 1 right.
+  capture::CaptureObserver& capture_board(std::size_t side) { return boards_[side]; }
+  pci::BridgeObserver& bridge() { return *this; }
+  fpga::FrameObserver& core() { return *this; }
+
+  // The next frame is delivered, now.
+  void deliver(const Delivery& delivery);
+  // The run may have ended with the last delivery, which is now. `counters` are of this time. Events that are
+  // under way end now.
+  void mark_end(const ComputerCounters& counters);
+
+  // The records that are complete, each once. To be called regularly.
+  TimelineRecords take();
+  // All other records, up to the last mark_end(). To be called once.
+  TimelineRecords finish();
+
+  // Identities between all that was handed out and the figures of the run; those that do not hold. To be
+  // called after finish().
+  std::vector<std::string> failed(const Statistics& statistics) const;
+
+ private:
+  static constexpr std::size_t kInterrupts = 5;  // left, right, core, upload, read_back
+  enum Resource : std::size_t { kLeft, kRight, kUploads, kReadBacks, kCore, kFirstInterrupt };
+
+  // The times of a pair and of its frame, as far as they are known.
+  struct Pair {
+    std::uint64_t camera_frame = 0;
+    std::uint64_t begin_ps = 0;
+    std::uint64_t captured_ps = 0;  // end of the later of its captures
+    std::uint64_t copy_begin_ps = 0;
+    std::uint64_t copy_end_ps = 0;
+    std::uint64_t strobe_ps = 0;
+    std::uint64_t done_ps = 0;
+    std::uint64_t read_back_begin_ps = 0;
+    std::uint64_t read_back_end_ps = 0;
+  };
+  struct Reason {
+    const char* why;
+    std::uint64_t until_ps;
+  };
+  struct Sums {
+    std::uint64_t events = 0;
+    std::uint64_t words = 0;
+    std::uint64_t dropped_pixels = 0;
+  };
+
+  class CaptureSide : public capture::CaptureObserver {
+   public:
+    CaptureSide(Timeline& timeline, std::size_t side) : timeline_(timeline), side_(side) {}
+    void frame_begun(std::uint64_t frame, std::uint64_t begin_ps) override;
+    void frame_dropped(std::uint64_t frame, std::uint64_t begin_ps, capture::DropReason reason) override;
+    void capture_begun(std::uint64_t frame, std::uint64_t begin_ps) override;
+    void capture_ended(const capture::Capture& capture) override;
+    void interrupt_cleared(std::uint64_t now_ps) override { timeline_.end_interrupt(side_, now_ps); }
+    // Adds what is under way.
+    void end_now(const capture::CaptureControl::Stats& stats, std::uint64_t now_ps,
+                 std::vector<TimelineEvent>& events) const;
+
+   private:
+    TimelineEvent drop(std::uint64_t frame, std::uint64_t begin_ps, const char* why) const;
+    TimelineEvent capture_of(std::uint64_t number) const;
+
+    Timeline& timeline_;
+    std::size_t side_;
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> undecided_;  // camera frame, its beginning
+    std::uint64_t begun_ = 0;
+    std::uint64_t ended_ = 0;
+    std::uint64_t words_ = 0;  // of the captures that have ended
+    std::uint64_t dropped_pixels_ = 0;
+  };
+
+  void dma_started(unsigned channel, std::uint64_t now_ps) override;
+  void transfer_begun(const pci::DmaTransfer& transfer) override;
+  void transfer_ended(unsigned channel, std::uint64_t now_ps) override;
+  void interrupts_raised(std::uint64_t now_ps, std::uint32_t interrupts) override;
+  void interrupts_cleared(std::uint64_t now_ps, std::uint32_t interrupts) override;
+  void frame_begun(std::uint64_t strobe_ps) override;
+  void frame_ended(const fpga::FrameTimes& times) override;
+
+  void begin_interrupt(std::size_t interrupt, std::optional<std::uint64_t> frame, std::uint64_t now_ps);
+  void end_interrupt(std::size_t interrupt, std::uint64_t now_ps);
+  void dma_done(unsigned channel, std::uint64_t now_ps);
+  void wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
+            std::initializer_list<Reason> reasons);
+
+  Pair& pair(std::uint64_t number) { return pairs_[static_cast<std::size_t>(number - first_pair_)]; }
+  const Pair& pair(std::uint64_t number) const {
+    return pairs_[static_cast<std::size_t>(number - first_pair_)];
+  }
+  // A time of the pair `back` places before a pair; 0 if there is none.
+  std::uint64_t earlier(std::uint64_t number, std::uint64_t back, std::uint64_t Pair::*time) const {
+    return number < back ? 0 : pair(number - back).*time;
+  }
+  // The time at which the pictures of a pair are in their input buffers.
+  std::uint64_t ready_ps(const Pair& pair) const { return copies_ ? pair.copy_end_ps : pair.captured_ps; }
+  std::uint64_t complete_until_ps() const;
+  const char* buffer_at(std::uint64_t local_address) const;
+  static std::size_t resource_of(const TimelineEvent& event);
+  TimelineRecords hand_out(std::vector<TimelineEvent> events);
+  Sums sums_of(EventKind kind, std::string_view what, std::string_view why = "") const;
+
+  Clock clock_;
+  bool copies_;            // captures go to host memory
+  bool uploading_;         // tables are still to be uploaded
+  std::uint64_t inputs_;   // buffers for pairs
+  std::uint64_t outputs_;  // buffers for results
+  std::vector<PlacedBuffer> buffers_;
+  std::vector<AddressRange> ranges_;
+  std::array<CaptureSide, 2> boards_{CaptureSide(*this, 0), CaptureSide(*this, 1)};
+
+  // Pairs that are under way, and those before whose times are still needed.
+  std::deque<Pair> pairs_;
+  std::uint64_t first_pair_ = 0;
+  std::uint64_t copies_begun_ = 0;
+  std::uint64_t frames_begun_ = 0;
+  std::uint64_t frames_ended_ = 0;
+  std::uint64_t read_backs_begun_ = 0;
+  std::uint64_t delivered_ = 0;
+  std::uint64_t upload_end_ps_ = 0;
+  std::uint64_t cycles_ = 0;  // of the frames that have ended
+  std::uint64_t delivered_ps_ = 0;
+  std::uint64_t latencies_ps_ = 0;  // those of the deliveries, summed
+  std::uint64_t disordered_ = 0;    // frames whose times are not in order
+
+  std::array<std::optional<TimelineEvent>, 2> transfers_;             // [channel]: under way
+  std::uint64_t dma_words_ = 0;                                       // of the transfers that have ended
+  std::array<std::optional<TimelineEvent>, kInterrupts> interrupts_;  // asserted
+
+  std::vector<TimelineEvent> ended_;  // not handed out yet
+  std::vector<TimelineEvent> last_;   // the events up to the last mark_end(), some of which are handed out
+  std::uint64_t handed_out_until_ps_ = 0;  // all events that ended before are handed out
+  std::vector<FrameLatency> latencies_;
+
+  // Of what has been handed out.
+  std::map<std::tuple<EventKind, std::string_view, std::string_view>, Sums> sums_;
+  std::array<std::uint64_t, kFirstInterrupt + kInterrupts + 1> busy_until_ps_{};  // [resource]
+  std::array<std::uint64_t, kFirstInterrupt + kInterrupts + 1> overlaps_{};
+  std::uint64_t core_ps_ = 0;  // the core's frames and waits
+  std::uint64_t parts_ps_ = 0;
+  std::uint64_t latency_count_ = 0;
+};
+
+}  // namespace stereotlm::platform
