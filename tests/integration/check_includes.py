@@ -53,7 +53,7 @@ FREE_OF = [
     (re.compile(r"models/.*_control\.(h|cpp)$"), SYSTEMC, "SystemC"),
     (re.compile(r"models/(clock|local_burst|period|time_ps|words_by_range)\.(h|cpp)$"), SYSTEMC, "SystemC"),
     (re.compile(r"models/capture/(camera_(link|timing)|capture_(fifo|register_file))\."), SYSTEMC, "SystemC"),
-    (re.compile(r"models/fpga/(core_(registers|stepper)|direct_frame|fast_\w+)\."), SYSTEMC, "SystemC"),
+    (re.compile(r"models/fpga/(core_registers\.cpp|(core_stepper|direct_frame|fast_\w+)\.)"), SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/(frame_run|host_port|stall_watchdog|transition_cache)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/memory/(arbitration|bank_arbiter|change_watch|direct_banks)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/pci/(bridge_register_file|dma_channel|local_bus_master)\."), SYSTEMC, "SystemC"),
