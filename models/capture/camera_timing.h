@@ -34,6 +34,12 @@ class CameraTiming {
   // the frame. A pixel that arrives at that very time counts.
   int pixels_by(int row, std::uint64_t since_begin_ps) const;
 
+  // Pixels per second within a line.
+  static double peak_pixels_per_second(const CameraConfig& config) {
+    const double lines_per_second = config.frame_rate_hz * config.height * 35 / 32;
+    return lines_per_second * config.width * kLineSteps / kPixelSteps;
+  }
+
  private:
   CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz);
 

@@ -29,6 +29,9 @@ class BoardOptions {
   // BOARD as typed.
   const std::string& name() const { return board_.text; }
 
+  // Whether an option changes the board or its tables.
+  bool is_changed() const { return sets_.is_given() || calibration_option_.is_given(); }
+
   // Loads the board. Reports all problems and returns nullopt if there are any.
   std::optional<platform::BoardConfig> load(process::Problems& problems) const;
 

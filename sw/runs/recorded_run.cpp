@@ -107,8 +107,8 @@ media::Truth truth_of(const RecordedOptions& options, const platform::BoardConfi
 
 std::string name_of(const RecordedRun& run) { return fmt::format("{} '{}'", run.argument, run.folder); }
 
-std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
-                                             process::Problems& problems) {
+std::optional<RecordedRun> read_recorded_run(const std::string& argument, const std::string& folder,
+                                             const std::string& rule, process::Problems& problems) {
   RecordedRun run;
   run.argument = argument;
   run.folder = folder;
@@ -124,7 +124,6 @@ std::optional<RecordedRun> load_recorded_run(const std::string& argument, const 
       is_right = false;
     }
   };
-  const std::string rule = "A and B must be folders that run --out has written: ";
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::is_directory(status)) {
@@ -149,10 +148,24 @@ std::optional<RecordedRun> load_recorded_run(const std::string& argument, const 
        [&] { run.board = platform::load_board((fs::path(folder) / "config.yaml").string()); });
   read("stats.json", run.stats_json, [&] { check_figures(run.stats_json); });
   if (!is_right) return std::nullopt;
-  for (const RecordedFile& input : inputs_of(run.options))
-    attempt(fmt::format("{}: {} ", name_of(run), input.option), [&] { check_input(input); });
-  if (!is_right) return std::nullopt;
   return run;
+}
+
+std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
+                                             process::Problems& problems) {
+  auto run =
+      read_recorded_run(argument, folder, "A and B must be folders that run --out has written: ", problems);
+  if (!run) return std::nullopt;
+  bool is_right = true;
+  for (const RecordedFile& input : inputs_of(run->options)) {
+    try {
+      check_input(input);
+    } catch (const std::exception& error) {
+      problems.add(fmt::format("{}: {} {}", name_of(*run), input.option, error.what()));
+      is_right = false;
+    }
+  }
+  return is_right ? run : std::nullopt;
 }
 
 RunInput open_again(const RecordedRun& run, process::Problems& problems) {

@@ -20,8 +20,14 @@ struct RecordedRun {
   std::string stats_json;
 };
 
-// Reads config.yaml, run.json and stats.json of the folder and checks that every input file still exists with
-// the recorded SHA-256. Reports all problems and returns nullopt if there are any.
+// Reads config.yaml, run.json and stats.json of the folder. Reports all problems and returns nullopt if there
+// are any. `rule`: the beginning of the message for what is no result folder: "A must be a folder that run
+// --out has written: ".
+std::optional<RecordedRun> read_recorded_run(const std::string& argument, const std::string& folder,
+                                             const std::string& rule, process::Problems& problems);
+
+// The same for A or B of two runs; checks as well that every input file still exists with the recorded
+// SHA-256.
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems);
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sw/report/chart/chart_traffic.h"
+
+namespace stereotlm::report {
+
+// The lines of text in a block; the first one is its name.
+using ChartLines = std::vector<std::string>;
+
+struct BankLines {
+  std::string bandwidth;  // beside the name: "160 MB/s"; of a run "158.96 of 160 MB/s"
+  std::string size;       // "76800 of 512K words"
+  std::string kind;       // "zbt_pipelined", "sync_burst, 2 lost"
+  struct Held {
+    std::string label;  // "left_image[0]"
+    std::uint64_t words = 0;
+  };
+  std::vector<Held> buffers;
+  std::uint64_t words = 0;  // of the bank
+};
+BankLines bank_lines(const platform::BoardConfig& board, const platform::BankConfig& bank,
+                     const ChartTraffic* traffic);
+
+// The ports of the core that exist, and the host's unless the board is alone, from top to bottom: the tables
+// beside the pixel ports that they serve.
+std::vector<std::string> ports_from_top(const platform::BoardConfig& board, ChartExtent extent);
+ChartLines port_lines(const platform::BoardConfig& board, const std::string& port,
+                      const ChartTraffic* traffic);
+
+ChartLines lane_lines(const platform::BoardConfig& board, const std::string& side);
+ChartLines matcher_lines(const platform::BoardConfig& board);
+ChartLines lr_check_lines(const platform::BoardConfig& board);
+ChartLines result_queue_lines(const platform::BoardConfig& board);
+std::string fpga_line(const platform::BoardConfig& board);
+ChartLines arbitration_lines(const platform::BoardConfig& board);
+
+ChartLines camera_lines(const platform::BoardConfig& board, const std::string& side);
+ChartLines capture_lines(const platform::BoardConfig& board, const std::string& side);
+ChartLines cpu_lines();
+ChartLines host_memory_lines(const platform::BoardConfig& board);
+ChartLines load_lines(const platform::BoardConfig& board);  // with `pci.load`
+ChartLines bridge_lines(const platform::BoardConfig& board);
+std::string pci_line(const platform::BoardConfig& board, const ChartTraffic* traffic);
+ChartLines local_bus_lines(const platform::BoardConfig& board, const ChartTraffic* traffic);
+
+// Below the name of the board.
+ChartLines subtitle_lines(const platform::BoardConfig& board, ChartExtent extent,
+                          const ChartTraffic* traffic);
+// What the numbers mean.
+ChartLines legend_lines(ChartExtent extent, const ChartTraffic* traffic);
+
+}  // namespace stereotlm::report

@@ -1,0 +1,536 @@
+#include "sw/report/chart/chart_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "sw/report/chart/chart_channel.h"
+#include "sw/report/chart/chart_contents.h"
+#include "sw/report/chart/chart_text.h"
+
+namespace stereotlm::report {
+namespace {
+
+constexpr double kMargin = 16;
+constexpr double kNameSize = 13;
+constexpr double kNoteSize = 11;
+constexpr double kNameStep = 16;  // from a name to the line below it
+constexpr double kNoteStep = 14;
+constexpr double kPadding = 7;  // in a block, above and below its text
+constexpr double kLabelHeight = kNoteSize * kLetterHeight;
+constexpr double kThinEdge = 1.5;
+constexpr double kWidestEdge = 12;
+constexpr double kShortEdge = 36;  // length of an edge between blocks that stand one above the other
+
+constexpr double kBankWidth = 256;
+constexpr double kBetweenBanks = 10;
+constexpr double kWordsBar = 6;
+constexpr double kLabelFromBank = 18;
+constexpr double kTracksFromBank = 70;
+
+constexpr double kPortWidth = 128;
+constexpr double kBetweenPorts = 22;
+constexpr double kLeastPlay = 9;
+constexpr double kFpgaPadding = 14;
+constexpr double kFpgaTitle = 26;
+constexpr double kLaneWidth = 112;
+constexpr double kMatcherWidth = 120;
+constexpr double kCheckWidth = 112;
+constexpr double kBetweenStages = 28;
+constexpr double kFpgaWidth =
+    2 * kFpgaPadding + kPortWidth + kLaneWidth + kMatcherWidth + kCheckWidth + 3 * kBetweenStages;
+
+constexpr double kBetweenParts = 14;
+constexpr double kBusHeight = 26;
+constexpr double kBridgeWidth = 232;
+
+double block_height(const ChartLines& lines) {
+  return 2 * kPadding + kNameStep + kNoteStep * static_cast<double>(lines.size() - 1);
+}
+
+double tallest(const std::vector<ChartLines>& blocks) {
+  double height = 0;
+  for (const ChartLines& lines : blocks) height = std::max(height, block_height(lines));
+  return height;
+}
+
+ChartText text_at(const std::string& text, double x, double y, ChartAnchor anchor, double width,
+                  double size = kNoteSize, bool bold = false) {
+  ChartText line;
+  line.text = fitted(text, size, bold, width);
+  line.size = size;
+  line.bold = bold;
+  line.anchor = anchor;
+  line.faint = !bold;
+  const double taken = text_width(line.text, size, bold);
+  const double before = anchor == ChartAnchor::kStart    ? 0
+                        : anchor == ChartAnchor::kMiddle ? taken / 2
+                                                         : taken;
+  line.box = {x - before, y, taken, size * kLetterHeight};
+  return line;
+}
+
+// A block with its lines in its middle.
+ChartBlock block_of(const std::string& id, BlockKind kind, const ChartBox& box, const ChartLines& lines) {
+  ChartBlock block;
+  block.id = id;
+  block.kind = kind;
+  block.box = box;
+  block.title = fmt::format("{}", fmt::join(lines, "\n"));
+  double y = box.middle_y() - (kNameStep + kNoteStep * static_cast<double>(lines.size() - 1)) / 2;
+  for (const std::string& line : lines) {
+    const bool is_name = block.texts.empty();
+    block.texts.push_back(text_at(line, box.middle_x(), y, ChartAnchor::kMiddle, box.width - 8,
+                                  is_name ? kNameSize : kNoteSize, is_name));
+    y += is_name ? kNameStep : kNoteStep;
+  }
+  return block;
+}
+
+class Layout {
+ public:
+  Layout(const platform::BoardConfig& board, ChartExtent extent, const ChartTraffic* traffic)
+      : board_(board), extent_(extent), traffic_(traffic), ports_(ports_from_top(board, extent)) {}
+
+  MemoryChart make() {
+    chart_.title = "Memory chart of " + board_.name;
+    make_edges();
+    measure_banks();
+    measure_ports();
+    const double below_heading = heading_bottom();
+    place_down(below_heading);
+    route();
+    add_banks();
+    add_core();
+    if (is_computer()) add_computer(below_heading);
+    add_labels();
+    add_heading();
+    add_legend();
+    for (ChartBlock& block : chart_.blocks)
+      block.limits = traffic_ != nullptr && traffic_->limiting.count(block.id) > 0;
+    chart_.width = chart_.fpga.right() + kMargin;
+    return std::move(chart_);
+  }
+
+ private:
+  struct Bank {
+    BankLines lines;
+    std::vector<std::size_t> edges;  // from top to bottom
+    ChartBox box;                    // x is kMargin
+  };
+  struct Port {
+    std::vector<std::size_t> edges;  // in the order of the banks
+    double bundle = 0;               // width of its edges side by side
+    double height = 0;
+    double y = 0;
+  };
+
+  bool is_computer() const { return extent_ == ChartExtent::kComputer; }
+
+  ChartEdge& edge(const std::string& id) {
+    return *std::find_if(chart_.edges.begin(), chart_.edges.end(),
+                         [&id](const ChartEdge& each) { return each.link.id() == id; });
+  }
+
+  void make_edges() {
+    double most = 0;
+    const std::vector<ChartLink> links = chart_links(board_, extent_);
+    for (const ChartLink& link : links) most = std::max(most, link.peak);
+    for (const ChartLink& link : links) {
+      ChartEdge edge;
+      edge.link = link;
+      edge.width = kThinEdge;
+      const std::string ends = fmt::format("{} - {}", name_of_block(link.from), name_of_block(link.to));
+      std::string number = short_number(link.peak);
+      edge.title = fmt::format("{}: peak {} MB/s", ends, number);
+      if (traffic_ != nullptr) {
+        const double value = traffic_->megabytes_per_second.at(link.id());
+        edge.megabytes_per_second = value;
+        edge.width = std::max(1.0, kWidestEdge * value / most);
+        edge.title = fmt::format("{}: {} of {} MB/s ({} %)", ends, short_number(value), number,
+                                 short_number(100 * value / link.peak));
+        number = short_number(value);
+      }
+      edge.label = text_at(number, 0, 0, ChartAnchor::kStart, 100);
+      edge.label.faint = false;
+      chart_.edges.push_back(std::move(edge));
+    }
+  }
+
+  // The height that an edge takes at a bank: its label stands on it.
+  static double slot_of(const ChartEdge& edge) { return edge.width + kLabelHeight + 4; }
+
+  void measure_banks() {
+    for (const platform::BankConfig& config : board_.banks) {
+      Bank bank;
+      bank.lines = bank_lines(board_, config, traffic_);
+      double slots = 0;
+      for (const std::string& port : ports_) {
+        for (std::size_t i = 0; i < chart_.edges.size(); ++i) {
+          const ChartLink& link = chart_.edges[i].link;
+          if (link.from != "port-" + port || link.to != "bank-" + config.name) continue;
+          bank.edges.push_back(i);
+          slots += slot_of(chart_.edges[i]);
+        }
+      }
+      const double rows = static_cast<double>(std::max<std::size_t>(bank.lines.buffers.size(), 1));
+      const double text = 2 * kPadding + kNameStep + kNoteStep + kWordsBar + 4 + kNoteStep * rows;
+      bank.box = {kMargin, 0, kBankWidth, std::max(text, slots + 4)};
+      banks_.push_back(std::move(bank));
+    }
+  }
+
+  void measure_ports() {
+    for (const std::string& name : ports_) {
+      Port port;
+      for (const Bank& bank : banks_) {
+        for (const std::size_t i : bank.edges) {
+          if (chart_.edges[i].link.from != "port-" + name) continue;
+          port.edges.push_back(i);
+          port.bundle = traffic_ == nullptr ? kThinEdge : port.bundle + chart_.edges[i].width + 1;
+        }
+      }
+      port.height = std::max(block_height(port_lines(board_, name, traffic_)), port.bundle + 2 * kLeastPlay);
+      port_by_name_[name] = std::move(port);
+    }
+  }
+
+  // The bottom of the heading.
+  double heading_bottom() const {
+    return kMargin + 24 + kNoteStep * static_cast<double>(subtitle_lines(board_, extent_, traffic_).size()) +
+           12;
+  }
+
+  double above_fpga() const {
+    if (!is_computer()) return 0;
+    return tallest({camera_lines(board_, "left")}) + kShortEdge + parts_height() + kShortEdge + kBusHeight +
+           kShortEdge + block_height(bridge_lines(board_)) + kShortEdge +
+           block_height(local_bus_lines(board_, traffic_)) + kShortEdge;
+  }
+
+  double parts_height() const {
+    std::vector<ChartLines> parts = {capture_lines(board_, "left"), cpu_lines(), host_memory_lines(board_)};
+    if (board_.pci.load) parts.push_back(load_lines(board_));
+    return tallest(parts);
+  }
+
+  // Chooses all y of banks, ports and the FPGA.
+  void place_down(double top) {
+    const double lane = block_height(lane_lines(board_, "left"));
+    chart_.fpga.y = top + above_fpga();
+    double y = chart_.fpga.y + kFpgaTitle + 6;
+    for (const std::string& name : ports_) {
+      Port& port = port_by_name_.at(name);
+      // The lane is as high as its pixel port, or higher.
+      const bool has_lane = name == "left_pixel" || name == "right_pixel";
+      const double extra = has_lane ? std::max(0.0, (lane - port.height) / 2 - 4) : 0;
+      port.y = y + extra;
+      y = port.y + port.height + extra + kBetweenPorts;
+    }
+    const double core_bottom = y - kBetweenPorts;
+    chart_.fpga.height = core_bottom + 10 + 2 * kNoteStep + 10 - chart_.fpga.y;
+    chart_.fpga.width = kFpgaWidth;
+
+    double height = -kBetweenBanks;
+    for (const Bank& bank : banks_) height += bank.box.height + kBetweenBanks;
+    const double first = port_by_name_.at(ports_.front()).y;
+    const double centred = (first + core_bottom - height) / 2;
+    double bank_y = std::max(top + kNameStep + 4, std::min(centred, chart_.fpga.bottom() - height));
+    banks_top_ = bank_y;
+    for (Bank& bank : banks_) {
+      bank.box.y = bank_y;
+      bank_y = bank.box.bottom() + kBetweenBanks;
+    }
+    chart_.height = std::max(chart_.fpga.bottom(), bank_y - kBetweenBanks) + kMargin;
+  }
+
+  // Chooses the way of each edge between ports and banks, and x of the FPGA.
+  void route() {
+    std::map<std::size_t, double> bank_y;  // by edge
+    for (const Bank& bank : banks_) {
+      double slots = 0;
+      for (const std::size_t i : bank.edges) slots += slot_of(chart_.edges[i]);
+      double y = bank.box.middle_y() - slots / 2;
+      for (const std::size_t i : bank.edges) {
+        y += slot_of(chart_.edges[i]);
+        bank_y[i] = y - chart_.edges[i].width / 2;
+      }
+    }
+    std::vector<ChannelNet> nets;
+    for (const std::string& name : ports_) {
+      const Port& port = port_by_name_.at(name);
+      ChannelNet net;
+      net.spread = traffic_ != nullptr;
+      net.play = (port.height - port.bundle) / 2 - 3;
+      double y = port.y + (port.height - port.bundle) / 2;
+      for (const std::size_t i : port.edges) {
+        const double width = chart_.edges[i].width;
+        net.edges.push_back({bank_y.at(i), y + width / 2, width});
+        if (net.spread) y += width + 1;
+      }
+      nets.push_back(std::move(net));
+    }
+    const double bank_right = kMargin + kBankWidth;
+    const double tracks_end = route_channel(nets, bank_right + kTracksFromBank);
+    chart_.fpga.x = std::max(tracks_end + 4, bank_right + kTracksFromBank + 24);
+    for (std::size_t n = 0; n < ports_.size(); ++n) {
+      const Port& port = port_by_name_.at(ports_[n]);
+      for (std::size_t e = 0; e < port.edges.size(); ++e) {
+        const ChannelEdge& routed = nets[n].edges[e];
+        ChartEdge& edge = chart_.edges[port.edges[e]];
+        edge.way = {{port_x(), routed.port_y}};
+        if (routed.port_y != routed.bank_y) {
+          edge.way.push_back({routed.track_x, routed.port_y});
+          edge.way.push_back({routed.track_x, routed.bank_y});
+        }
+        edge.way.push_back({bank_right, routed.bank_y});
+      }
+    }
+  }
+
+  double port_x() const { return chart_.fpga.x + kFpgaPadding; }
+  ChartBox port_box(const std::string& name) const {
+    const Port& port = port_by_name_.at(name);
+    return {port_x(), port.y, kPortWidth, port.height};
+  }
+
+  void add_banks() {
+    chart_.texts.push_back(text_at(fmt::format("SSRAM: {} MHz, one access a cycle", board_.fpga.clock_mhz),
+                                   kMargin, banks_top_ - kNameStep - 4, ChartAnchor::kStart, kBankWidth,
+                                   kNoteSize));
+    for (std::size_t i = 0; i < banks_.size(); ++i)
+      chart_.blocks.push_back(bank_block(board_.banks[i].name, banks_[i]));
+  }
+
+  ChartBlock bank_block(const std::string& name, const Bank& bank) const {
+    ChartBlock block;
+    block.id = "bank-" + name;
+    block.kind = BlockKind::kMemory;
+    block.box = bank.box;
+    block.title = fmt::format("{}: {}\n{}, {}", name, bank.lines.bandwidth, bank.lines.size, bank.lines.kind);
+    const double left = bank.box.x + 9;
+    const double right = bank.box.right() - 9;
+    double y = bank.box.y + kPadding;
+    const ChartText rate = text_at(bank.lines.bandwidth, right, y + 1.5, ChartAnchor::kEnd, right - left);
+    block.texts.push_back(
+        text_at(name, left, y, ChartAnchor::kStart, right - left - rate.box.width - 8, kNameSize, true));
+    block.texts.push_back(rate);
+    y += kNameStep;
+    const ChartText size = text_at(bank.lines.size, left, y, ChartAnchor::kStart, right - left);
+    block.texts.push_back(size);
+    block.texts.push_back(
+        text_at(bank.lines.kind, right, y, ChartAnchor::kEnd, right - size.box.right() - 8));
+    y += kNoteStep + 2;
+    WordsBar bar;
+    bar.all = {left, y, right - left, kWordsBar};
+    double x = left;
+    y += kWordsBar + 2;
+    for (const BankLines::Held& held : bank.lines.buffers) {
+      const double width =
+          bar.all.width * static_cast<double>(held.words) / static_cast<double>(bank.lines.words);
+      bar.buffers.push_back({x, bar.all.y, width, kWordsBar});
+      x += width;
+      const std::string words = std::to_string(held.words);
+      block.title += fmt::format("\n{}: {} words", held.label, words);
+      ChartText label = text_at(held.label, left, y, ChartAnchor::kStart, right - left - 70);
+      label.faint = false;
+      block.texts.push_back(label);
+      block.texts.push_back(text_at(words, right, y, ChartAnchor::kEnd, 66));
+      y += kNoteStep;
+    }
+    if (bank.lines.buffers.empty())
+      block.texts.push_back(text_at("no buffer", left, y, ChartAnchor::kStart, 100));
+    block.words = bar;
+    return block;
+  }
+
+  void add_flow(const std::string& name, std::vector<ChartPoint> way) {
+    chart_.flows.push_back({"flow-" + name, std::move(way)});
+  }
+
+  void add_block(const std::string& id, BlockKind kind, const ChartBox& box, const ChartLines& lines) {
+    chart_.blocks.push_back(block_of(id, kind, box, lines));
+  }
+
+  void add_core() {
+    for (const std::string& name : ports_)
+      add_block("port-" + name, BlockKind::kLogic, port_box(name), port_lines(board_, name, traffic_));
+    const double lane_x = port_x() + kPortWidth + kBetweenStages;
+    const double matcher_x = lane_x + kLaneWidth + kBetweenStages;
+    const double check_x = matcher_x + kMatcherWidth + kBetweenStages;
+    ChartBox matcher{matcher_x, 0, kMatcherWidth, 0};
+    for (const std::string side : {"left", "right"}) {
+      const ChartBox pixels = port_box(side + "_pixel");
+      const ChartLines lines = lane_lines(board_, side);
+      const double height = block_height(lines);
+      const ChartBox lane{lane_x, pixels.middle_y() - height / 2, kLaneWidth, height};
+      add_block("stage-" + side + "_lane", BlockKind::kLogic, lane, lines);
+      add_flow(side + "_pixel-" + side + "_lane",
+               {{pixels.right(), lane.middle_y()}, {lane.x, lane.middle_y()}});
+      add_flow(side + "_lane-matcher", {{lane.right(), lane.middle_y()}, {matcher_x, lane.middle_y()}});
+      if (side == "left") matcher.y = lane.y;
+      matcher.height = lane.bottom() - matcher.y;
+      add_table_flow(side, pixels);
+    }
+    const ChartLines lines = matcher_lines(board_);
+    const double missing = std::max(0.0, block_height(lines) - matcher.height);
+    matcher.y -= missing / 2;
+    matcher.height += missing;
+    add_block("stage-matcher", BlockKind::kLogic, matcher, lines);
+    const ChartLines check_lines = lr_check_lines(board_);
+    const ChartBox check{check_x, matcher.middle_y() - block_height(check_lines) / 2, kCheckWidth,
+                         block_height(check_lines)};
+    add_block("stage-lr_check", BlockKind::kLogic, check, check_lines);
+    add_flow("matcher-lr_check", {{matcher.right(), check.middle_y()}, {check.x, check.middle_y()}});
+    const ChartBox result = port_box("result");
+    const ChartLines queue_lines = result_queue_lines(board_);
+    const ChartBox queue{check_x, result.middle_y() - block_height(queue_lines) / 2, kCheckWidth,
+                         block_height(queue_lines)};
+    add_block("stage-result_queue", BlockKind::kLogic, queue, queue_lines);
+    add_flow("lr_check-result_queue", {{check.middle_x(), check.bottom()}, {check.middle_x(), queue.y}});
+    add_flow("result_queue-result", {{queue.x, queue.middle_y()}, {result.right(), queue.middle_y()}});
+
+    const double right = chart_.fpga.right() - kFpgaPadding;
+    chart_.texts.push_back(text_at(fpga_line(board_), right, chart_.fpga.y + 7, ChartAnchor::kEnd,
+                                   kFpgaWidth / 2, kNameSize, true));
+    double y = chart_.fpga.bottom() - 2 * kNoteStep - 6;
+    for (const std::string& line : arbitration_lines(board_)) {
+      chart_.texts.push_back(text_at(line, port_x(), y, ChartAnchor::kStart, right - port_x()));
+      y += kNoteStep;
+    }
+  }
+
+  // From the port of the side's table to its pixel port, which is the next one above or below.
+  void add_table_flow(const std::string& side, const ChartBox& pixels) {
+    const std::string port = board_.fpga.joint_tables ? "left_lut" : side + "_lut";
+    if (port_by_name_.count(port) == 0) return;
+    const ChartBox table = port_box(port);
+    const double x = table.middle_x();
+    const bool is_above = table.y < pixels.y;
+    add_flow(port + "-" + side + "_pixel",
+             {{x, is_above ? table.bottom() : table.y}, {x, is_above ? pixels.y : pixels.bottom()}});
+  }
+
+  // An edge straight down, or up, between two blocks.
+  void connect(const std::string& id, double x, double from_y, double to_y) {
+    ChartEdge& drawn = edge(id);
+    drawn.way = {{x, from_y}, {x, to_y}};
+  }
+
+  void add_computer(double top) {
+    struct Part {
+      std::string name;
+      ChartLines lines;
+      std::string edge;
+    };
+    std::vector<Part> parts = {{"left_capture", capture_lines(board_, "left"), "edge-left_capture-pci"},
+                               {"right_capture", capture_lines(board_, "right"), "edge-right_capture-pci"},
+                               {"cpu", cpu_lines(), "edge-cpu-pci"},
+                               {"host_memory", host_memory_lines(board_), "edge-pci-host_memory"}};
+    if (board_.pci.load) parts.push_back({"load", load_lines(board_), "edge-load-pci"});
+    const double left = chart_.fpga.x;
+    const auto count = static_cast<double>(parts.size());
+    const double width = (kFpgaWidth - (count - 1) * kBetweenParts) / count;
+    const double camera_height = block_height(camera_lines(board_, "left"));
+    const double parts_y = top + camera_height + kShortEdge;
+    const ChartBox pci{left, parts_y + parts_height() + kShortEdge, kFpgaWidth, kBusHeight};
+    double x = left;
+    for (const Part& part : parts) {
+      const ChartBox box{x, parts_y, width, parts_height()};
+      add_block("part-" + part.name, part.name == "host_memory" ? BlockKind::kMemory : BlockKind::kComputer,
+                box, part.lines);
+      const bool from_bus = part.name == "host_memory";
+      connect(part.edge, box.middle_x(), from_bus ? pci.y : box.bottom(), from_bus ? box.bottom() : pci.y);
+      x = box.right() + kBetweenParts;
+    }
+    x = left;
+    for (const std::string side : {"left", "right"}) {
+      const ChartBox box{x, top, width, camera_height};
+      add_block("part-" + side + "_camera", BlockKind::kComputer, box, camera_lines(board_, side));
+      connect("edge-" + side + "_camera-" + side + "_capture", box.middle_x(), box.bottom(), parts_y);
+      x = box.right() + kBetweenParts;
+    }
+    add_block("part-pci", BlockKind::kBus, pci, {pci_line(board_, traffic_)});
+    const ChartBox bridge{left, pci.bottom() + kShortEdge, kBridgeWidth, block_height(bridge_lines(board_))};
+    add_block("part-bridge", BlockKind::kComputer, bridge, bridge_lines(board_));
+    connect("edge-pci-bridge", left + 56, pci.bottom(), bridge.y);
+    connect("edge-bridge-pci", left + 150, bridge.y, pci.bottom());
+    const ChartBox local{left, bridge.bottom() + kShortEdge, kBridgeWidth,
+                         block_height(local_bus_lines(board_, traffic_))};
+    add_block("part-local_bus", BlockKind::kBus, local, local_bus_lines(board_, traffic_));
+    const ChartBox host = port_box("host");
+    connect("edge-bridge-local_bus", host.middle_x(), bridge.bottom(), local.y);
+    connect("edge-local_bus-host", host.middle_x(), local.bottom(), host.y);
+    legend_ = {left + kBridgeWidth + 24, pci.bottom() + 14, kFpgaWidth - kBridgeWidth - 24, 0};
+  }
+
+  void add_labels() {
+    for (ChartEdge& edge : chart_.edges) {
+      const ChartPoint& end = edge.way.back();
+      const ChartPoint& begin = edge.way.front();
+      ChartText& label = edge.label;
+      if (begin.x == end.x) {
+        label.box.x = end.x + std::max(edge.width / 2, 4.5) + 4;
+        label.box.y = (std::max(begin.y, end.y) + std::min(begin.y, end.y)) / 2 - kLabelHeight / 2;
+        if (edge.link.to == "port-host") label.box.y = begin.y + (kShortEdge - kLabelHeight) / 2;
+      } else {
+        label.box.x = end.x + kLabelFromBank;
+        label.box.y = end.y - edge.width / 2 - 1 - kLabelHeight;
+      }
+    }
+  }
+
+  void add_heading() {
+    const double width = chart_.fpga.right() - kMargin;
+    chart_.texts.push_back(text_at(board_.name, kMargin, kMargin, ChartAnchor::kStart, width, 18, true));
+    double y = kMargin + 24;
+    for (const std::string& line : subtitle_lines(board_, extent_, traffic_)) {
+      chart_.texts.push_back(text_at(line, kMargin, y, ChartAnchor::kStart, width, kNoteSize));
+      y += kNoteStep;
+    }
+  }
+
+  // Beside the bridge, or below the FPGA.
+  void add_legend() {
+    if (!is_computer()) legend_ = {chart_.fpga.x, chart_.fpga.bottom() + 12, kFpgaWidth, 0};
+    double y = legend_.y;
+    for (const std::string& line : legend_lines(extent_, traffic_)) {
+      chart_.texts.push_back(text_at(line, legend_.x, y, ChartAnchor::kStart, legend_.width));
+      y += kNoteStep;
+      if (line.find("colour") == std::string::npos) continue;
+      y += 2;
+      constexpr double kSwatch = 56;
+      for (int step = 0; step < kLoadSteps; ++step) {
+        const double x = legend_.x + kSwatch * step;
+        chart_.swatches.push_back({{x, y, kSwatch - 4, 8}, step});
+        chart_.texts.push_back(text_at(load_text(step), x, y + 10, ChartAnchor::kStart, kSwatch - 4));
+      }
+      y += 10 + kNoteStep + 3;
+    }
+    chart_.height = std::max(chart_.height, y + kMargin);
+  }
+
+  const platform::BoardConfig& board_;
+  ChartExtent extent_;
+  const ChartTraffic* traffic_;
+  std::vector<std::string> ports_;  // from top to bottom
+  std::map<std::string, Port> port_by_name_;
+  std::vector<Bank> banks_;  // in the order of the board
+  double banks_top_ = 0;
+  ChartBox legend_;  // its height does not count
+  MemoryChart chart_;
+};
+
+}  // namespace
+
+MemoryChart layout_memory_chart(const platform::BoardConfig& board, ChartExtent extent,
+                                const ChartTraffic* traffic) {
+  if (traffic != nullptr && traffic->extent != extent)
+    throw std::invalid_argument("the traffic is that of a run of another extent");
+  return Layout(board, extent, traffic).make();
+}
+
+}  // namespace stereotlm::report

@@ -1,0 +1,135 @@
+#include "sw/report/chart/chart_text.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace stereotlm::report {
+namespace {
+
+constexpr char32_t kReplacement = 0xFFFD;
+constexpr std::string_view kEllipsis = "\u2026";
+
+// Advance widths of the characters from space to '~', in thousandths of the font size.
+using Widths = std::array<std::uint16_t, 95>;
+constexpr Widths kRegular = {318,  401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337,
+                             636,  636, 636, 636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531,
+                             1000, 684, 686, 698, 770, 632, 575, 775, 752, 295, 295, 656, 557, 863, 748, 787,
+                             603,  787, 695, 635, 611, 732, 684, 989, 685, 611, 685, 390, 337, 390, 838, 500,
+                             500,  613, 635, 550, 635, 615, 352, 635, 634, 278, 278, 579, 278, 974, 634, 612,
+                             635,  635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838};
+constexpr Widths kBold = {348,  456, 521, 838, 696, 1002, 872, 306,  457, 457, 523, 838, 380, 415,  380, 365,
+                          696,  696, 696, 696, 696, 696,  696, 696,  696, 696, 400, 400, 838, 838,  838, 580,
+                          1000, 774, 762, 734, 830, 683,  683, 821,  837, 372, 372, 775, 637, 995,  837, 850,
+                          733,  850, 770, 720, 682, 812,  774, 1103, 771, 724, 725, 457, 365, 457,  838, 500,
+                          500,  675, 716, 593, 716, 678,  435, 716,  712, 343, 343, 665, 343, 1042, 712, 687,
+                          716,  716, 493, 595, 478, 712,  652, 924,  645, 652, 582, 712, 365, 712,  838};
+constexpr double kOtherWidth = 1.25;  // of all other characters, in font sizes: that of an emoji
+
+struct Character {
+  char32_t code;
+  std::string_view bytes;
+};
+
+// The character at the beginning of the text, which is not empty. A byte that begins none is kReplacement.
+Character first_character(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::size_t length = byte(0) < 0x80    ? 1
+                             : byte(0) >= 0xF0 ? 4
+                             : byte(0) >= 0xE0 ? 3
+                             : byte(0) >= 0xC2 ? 2
+                                               : 0;
+  if (length == 0 || length > text.size() || byte(0) > 0xF4) return {kReplacement, text.substr(0, 1)};
+  constexpr std::array<unsigned char, 5> kFirstBits = {0, 0x7F, 0x1F, 0x0F, 0x07};
+  char32_t code = byte(0) & kFirstBits[length];
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80) return {kReplacement, text.substr(0, 1)};
+    code = code << 6U | (byte(i) & 0x3FU);
+  }
+  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+  if (code < kLeast[length] || code > 0x10FFFF || is_surrogate) return {kReplacement, text.substr(0, 1)};
+  return {code, text.substr(0, length)};
+}
+
+std::vector<Character> characters(std::string_view text) {
+  std::vector<Character> all;
+  for (; !text.empty(); text.remove_prefix(all.back().bytes.size())) all.push_back(first_character(text));
+  return all;
+}
+
+double width_of(const Character& character, bool bold) {
+  if (character.code < ' ' || character.code > '~') return kOtherWidth;
+  return (bold ? kBold : kRegular)[character.code - ' '] / 1000.0;
+}
+
+bool is_xml(char32_t code) {
+  return code == '\t' || code == '\n' || (code >= ' ' && code != 0xFFFE && code != 0xFFFF);
+}
+
+}  // namespace
+
+double text_width(std::string_view text, double size, bool bold) {
+  double width = 0;
+  for (const Character& character : characters(text)) width += width_of(character, bold);
+  return width * size;
+}
+
+std::string fitted(const std::string& text, double size, bool bold, double width) {
+  if (text_width(text, size, bold) <= width) return text;
+  const std::vector<Character> all = characters(text);
+  std::string begin;
+  std::string end;
+  double free = width - kOtherWidth * size;
+  for (std::size_t taken = 0; taken < all.size(); ++taken) {
+    const bool at_begin = taken % 2 == 0;
+    const Character& next = at_begin ? all[taken / 2] : all[all.size() - 1 - taken / 2];
+    free -= width_of(next, bold) * size;
+    if (free < 0) break;
+    if (at_begin) {
+      begin += next.bytes;
+    } else {
+      end = std::string(next.bytes) + end;
+    }
+  }
+  return begin + std::string(kEllipsis) + end;
+}
+
+std::string xml_text(std::string_view text) {
+  std::string result;
+  for (const Character& character : characters(text)) {
+    switch (character.code) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\'':
+        result += "&#39;";
+        break;
+      default:
+        result += character.code != kReplacement && is_xml(character.code) ? character.bytes : "\uFFFD";
+    }
+  }
+  return result;
+}
+
+std::string short_number(double value) {
+  if (value > 0 && value < 0.005) return "<0.01";
+  std::string text = fmt::format("{:.2f}", value);
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace stereotlm::report

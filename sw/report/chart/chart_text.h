@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace stereotlm::report {
+
+inline constexpr double kLetterHeight = 1.18;  // of a line of text, in font sizes
+
+// The width of a UTF-8 text of this size. It is that of DejaVu Sans, which is wider than the other fonts of
+// the chart, so that no viewer needs more.
+double text_width(std::string_view text, double size, bool bold);
+
+// The text if it fits, else its beginning and its end around an ellipsis. Names often differ in their ends.
+std::string fitted(const std::string& text, double size, bool bold, double width);
+
+// The text for XML, in an element or an attribute. Characters that XML cannot have, and bytes that are not
+// UTF-8, become U+FFFD.
+std::string xml_text(std::string_view text);
+
+// At most two decimals, without trailing zeros: "160", "133.33", "5.7"; "<0.01" for less.
+std::string short_number(double value);
+
+}  // namespace stereotlm::report

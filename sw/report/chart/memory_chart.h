@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "sw/report/chart/chart_drawing.h"
+#include "sw/report/chart/chart_traffic.h"
+
+namespace stereotlm::report {
+
+// The memory chart as an SVG document: the board as it is configured, each link with its peak MB/s. `extent`:
+// the board alone, or in its computer. Names are shown as text, whatever characters they have. The chart can
+// be a file, or part of an HTML page. sw/report/README.md lists its ids, classes and colours.
+std::string memory_chart_svg(const platform::BoardConfig& board, ChartExtent extent);
+
+// The memory chart of a run: each link with its MB/s.
+std::string memory_chart_svg(const platform::BoardConfig& board, const ChartTraffic& traffic);
+
+// The SVG document of a chart that has its places.
+std::string svg_of(const MemoryChart& chart);
+
+}  // namespace stereotlm::report

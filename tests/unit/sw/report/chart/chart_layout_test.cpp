@@ -1,0 +1,205 @@
+#include "sw/report/chart/chart_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "platform/config/buffer_layout.h"
+#include "tests/unit/sw/report/chart/random_chart.h"
+
+namespace stereotlm::report {
+namespace {
+
+constexpr double kEpsilon = 1e-6;
+
+bool overlap(const ChartBox& a, const ChartBox& b) {
+  return a.x < b.right() - kEpsilon && b.x < a.right() - kEpsilon && a.y < b.bottom() - kEpsilon &&
+         b.y < a.bottom() - kEpsilon;
+}
+
+bool is_within(const ChartBox& inner, const ChartBox& outer) {
+  return inner.x >= outer.x - kEpsilon && inner.y >= outer.y - kEpsilon &&
+         inner.right() <= outer.right() + kEpsilon && inner.bottom() <= outer.bottom() + kEpsilon;
+}
+
+struct Piece {
+  bool is_horizontal;
+  ChartBox box;
+};
+
+std::vector<Piece> pieces(const ChartEdge& edge) {
+  std::vector<Piece> all;
+  for (std::size_t i = 0; i + 1 < edge.way.size(); ++i) {
+    const ChartPoint& a = edge.way[i];
+    const ChartPoint& b = edge.way[i + 1];
+    const bool is_horizontal = a.y == b.y;
+    const double x = std::min(a.x, b.x) - (is_horizontal ? 0 : edge.width / 2);
+    const double y = std::min(a.y, b.y) - (is_horizontal ? edge.width / 2 : 0);
+    all.push_back({is_horizontal,
+                   {x, y, is_horizontal ? std::abs(a.x - b.x) : edge.width,
+                    is_horizontal ? edge.width : std::abs(a.y - b.y)}});
+  }
+  return all;
+}
+
+std::vector<ChartText> all_texts(const MemoryChart& chart) {
+  std::vector<ChartText> texts = chart.texts;
+  for (const ChartBlock& block : chart.blocks)
+    texts.insert(texts.end(), block.texts.begin(), block.texts.end());
+  for (const ChartEdge& edge : chart.edges) texts.push_back(edge.label);
+  return texts;
+}
+
+const ChartBlock& block_named(const MemoryChart& chart, const std::string& id) {
+  for (const ChartBlock& block : chart.blocks) {
+    if (block.id == id) return block;
+  }
+  throw std::out_of_range("no block " + id);
+}
+
+bool is_on_border(const ChartPoint& point, const ChartBox& box) {
+  const bool on_side = point.x == box.x || point.x == box.right();
+  const bool on_end = std::abs(point.y - box.y) < kEpsilon || std::abs(point.y - box.bottom()) < kEpsilon;
+  const bool in_height = point.y >= box.y - kEpsilon && point.y <= box.bottom() + kEpsilon;
+  const bool in_width = point.x >= box.x && point.x <= box.right();
+  return (on_side && in_height) || (on_end && in_width);
+}
+
+void expect_texts_apart(const MemoryChart& chart) {
+  const std::vector<ChartText> texts = all_texts(chart);
+  for (std::size_t a = 0; a < texts.size(); ++a) {
+    EXPECT_TRUE(is_within(texts[a].box, {0, 0, chart.width, chart.height})) << texts[a].text;
+    for (std::size_t b = a + 1; b < texts.size(); ++b)
+      EXPECT_FALSE(overlap(texts[a].box, texts[b].box)) << texts[a].text << " and " << texts[b].text;
+    for (const LoadSwatch& swatch : chart.swatches)
+      EXPECT_FALSE(overlap(texts[a].box, swatch.box)) << texts[a].text;
+  }
+}
+
+void expect_blocks_apart(const MemoryChart& chart) {
+  std::set<std::string> ids;
+  for (const ChartBlock& block : chart.blocks) {
+    EXPECT_TRUE(ids.insert(block.id).second) << block.id;
+    EXPECT_TRUE(is_within(block.box, {0, 0, chart.width, chart.height})) << block.id;
+    const bool in_fpga = block.id.compare(0, 5, "port-") == 0 || block.id.compare(0, 6, "stage-") == 0;
+    EXPECT_TRUE(in_fpga ? is_within(block.box, chart.fpga) : !overlap(block.box, chart.fpga)) << block.id;
+    for (const ChartText& text : block.texts)
+      EXPECT_TRUE(is_within(text.box, block.box)) << block.id << ": " << text.text;
+    for (const ChartBlock& other : chart.blocks)
+      EXPECT_FALSE(&other != &block && overlap(block.box, other.box)) << block.id << " and " << other.id;
+    if (!block.words) continue;
+    EXPECT_TRUE(is_within(block.words->all, block.box)) << block.id;
+    for (const ChartBox& buffer : block.words->buffers)
+      EXPECT_TRUE(is_within(buffer, block.words->all)) << block.id;
+  }
+}
+
+void expect_edges_clear(const MemoryChart& chart) {
+  for (const ChartEdge& edge : chart.edges) {
+    const std::string id = edge.link.id();
+    ASSERT_GE(edge.way.size(), 2U) << id;
+    for (std::size_t i = 0; i + 1 < edge.way.size(); ++i) {
+      EXPECT_TRUE((edge.way[i].x == edge.way[i + 1].x) != (edge.way[i].y == edge.way[i + 1].y))
+          << id << ": horizontal or vertical, and of some length";
+    }
+    EXPECT_TRUE(is_on_border(edge.way.front(), block_named(chart, edge.link.from).box)) << id;
+    EXPECT_TRUE(is_on_border(edge.way.back(), block_named(chart, edge.link.to).box)) << id;
+    for (const auto& [is_horizontal, piece] : pieces(edge)) {
+      EXPECT_TRUE(is_within(piece, {0, 0, chart.width, chart.height})) << id;
+      for (const ChartText& text : all_texts(chart))
+        EXPECT_FALSE(overlap(piece, text.box)) << id << " through " << text.text;
+      for (const ChartBlock& block : chart.blocks)
+        EXPECT_FALSE(overlap(piece, block.box)) << id << " through " << block.id;
+    }
+  }
+}
+
+// Edges of different ports cross at right angles only.
+void expect_edges_apart(const MemoryChart& chart) {
+  for (const ChartEdge& a : chart.edges) {
+    for (const ChartEdge& b : chart.edges) {
+      if (a.link.from == b.link.from) continue;
+      for (const Piece& piece : pieces(a)) {
+        for (const Piece& other : pieces(b)) {
+          if (piece.is_horizontal != other.is_horizontal || !overlap(piece.box, other.box)) continue;
+          ADD_FAILURE() << a.link.id() << " on " << b.link.id();
+        }
+      }
+    }
+  }
+}
+
+void expect_all_named(const MemoryChart& chart, const platform::BoardConfig& board, ChartExtent extent) {
+  for (const platform::BankConfig& bank : board.banks) {
+    const ChartBlock& block = block_named(chart, "bank-" + bank.name);
+    EXPECT_EQ(block.title.compare(0, bank.name.size() + 1, bank.name + ":"), 0) << block.title;
+    std::string shown;
+    for (const ChartText& text : block.texts) shown += text.text + "\n";
+    for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+      const bool is_here = shown.find(buffer.label()) != std::string::npos;
+      EXPECT_EQ(is_here, buffer.bank == bank.name) << buffer.label() << " in " << bank.name;
+    }
+  }
+  std::vector<std::string> drawn;
+  for (const ChartEdge& edge : chart.edges) drawn.push_back(edge.link.id());
+  std::vector<std::string> links;
+  for (const ChartLink& link : chart_links(board, extent)) links.push_back(link.id());
+  EXPECT_EQ(drawn, links);
+}
+
+TEST(ChartLayout, OfRandomBoardsHasRoomForEverything) {
+  for (std::uint64_t seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    test::SplitMix64 random(seed);
+    const platform::BoardConfig board = random_chart_board(random);
+    const ChartExtent extent = random.chance(60) ? ChartExtent::kComputer : ChartExtent::kBoard;
+    const ChartTraffic traffic = random_chart_traffic(board, extent, random);
+    const MemoryChart chart = layout_memory_chart(board, extent, random.chance(60) ? &traffic : nullptr);
+    expect_texts_apart(chart);
+    expect_blocks_apart(chart);
+    expect_edges_clear(chart);
+    expect_edges_apart(chart);
+    expect_all_named(chart, board, extent);
+  }
+}
+
+TEST(ChartLayout, DrawsLinksAsWideAsTheirTraffic) {
+  const platform::BoardConfig board;
+  test::SplitMix64 random(1);
+  ChartTraffic traffic = random_chart_traffic(board, ChartExtent::kBoard, random);
+  for (auto& [id, value] : traffic.megabytes_per_second) value = 0;
+  traffic.megabytes_per_second["edge-left_lut-bank6"] = 160;
+  traffic.megabytes_per_second["edge-right_lut-bank7"] = 40;
+  for (const ChartEdge& edge : layout_memory_chart(board, ChartExtent::kBoard, &traffic).edges) {
+    const std::string id = edge.link.id();
+    EXPECT_EQ(edge.width, id == "edge-left_lut-bank6" ? 12 : id == "edge-right_lut-bank7" ? 3 : 1) << id;
+    EXPECT_EQ(edge.label.text, id == "edge-left_lut-bank6"    ? "160"
+                               : id == "edge-right_lut-bank7" ? "40"
+                                                              : "0")
+        << id;
+  }
+}
+
+TEST(ChartLayout, ColoursByTheShareOfThePeak) {
+  EXPECT_EQ(load_step(0, 160), 0);
+  EXPECT_EQ(load_step(1.59, 160), 0);
+  EXPECT_EQ(load_step(1.6, 160), 1);
+  EXPECT_EQ(load_step(40, 160), 2);
+  EXPECT_EQ(load_step(79.99, 160), 2);
+  EXPECT_EQ(load_step(80, 160), 3);
+  EXPECT_EQ(load_step(144, 160), 4);
+  EXPECT_EQ(load_text(0), "below 1");
+  EXPECT_EQ(load_text(4), "from 90");
+}
+
+TEST(ChartLayout, RefusesTheTrafficOfAnotherExtent) {
+  ChartTraffic traffic;
+  traffic.extent = ChartExtent::kComputer;
+  EXPECT_THROW(layout_memory_chart({}, ChartExtent::kBoard, &traffic), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stereotlm::report

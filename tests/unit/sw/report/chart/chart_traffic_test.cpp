@@ -1,0 +1,189 @@
+#include "sw/report/chart/chart_traffic.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "platform/config/board_yaml.h"
+#include "platform/core_run.h"
+#include "sw/report/stats_json.h"
+#include "sw/runs/simulation/camera_simulation.h"
+#include "tests/support/board_of_random.h"
+#include "tests/support/fork.h"
+#include "tests/support/noise_pairs.h"
+
+namespace stereotlm::report {
+namespace {
+
+using platform::BoardConfig;
+using platform::Statistics;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+// The sum over the links with this end.
+double sum_of(const ChartTraffic& traffic, const BoardConfig& board, const std::string& block) {
+  double sum = 0;
+  for (const ChartLink& link : chart_links(board, traffic.extent)) {
+    if (link.from == block || link.to == block) sum += traffic.megabytes_per_second.at(link.id());
+  }
+  return sum;
+}
+
+void expect_close(double found, double expected, const std::string& what) {
+  EXPECT_NEAR(found, expected, 1e-9 * (1 + expected)) << what;
+}
+
+// Every link has its MB/s, and those of each bank, port and PCI master have the sums of the statistics.
+void expect_sums_of(const Statistics& statistics, const BoardConfig& board) {
+  const ChartTraffic traffic = chart_traffic(board, stats_json(statistics, {}));
+  EXPECT_EQ(traffic.megabytes_per_second.size(), chart_links(board, traffic.extent).size());
+  for (const platform::BankStatistics& bank : statistics.banks) {
+    expect_close(sum_of(traffic, board, "bank-" + bank.name), bank.megabytes_per_second, bank.name);
+    EXPECT_EQ(traffic.busy_percent.at("bank-" + bank.name), 100 * bank.utilization);
+  }
+  const double cycles = static_cast<double>(statistics.cycles);
+  for (const platform::PortStatistics& port : statistics.ports) {
+    double sum = sum_of(traffic, board, "port-" + port.name);
+    if (statistics.computer && port.name == "host")
+      sum -= traffic.megabytes_per_second.at("edge-local_bus-host");
+    expect_close(sum, 4 * static_cast<double>(port.grants) * board.fpga.clock_mhz / cycles, port.name);
+    expect_close(traffic.stalled_percent.at("port-" + port.name),
+                 100 * static_cast<double>(port.stall_cycles) / cycles, port.name);
+  }
+  if (!statistics.computer) return;
+  const platform::ComputerStatistics& around = *statistics.computer;
+  const double us = static_cast<double>(around.pci_clocks) / board.pci.clock_mhz;
+  const std::map<std::string, std::string> links = {{"host", "edge-cpu-pci"},
+                                                    {"left_capture", "edge-left_capture-pci"},
+                                                    {"right_capture", "edge-right_capture-pci"},
+                                                    {"bridge", "edge-bridge-pci"},
+                                                    {"load", "edge-load-pci"}};
+  for (const platform::PciMasterStatistics& master : around.pci_masters)
+    expect_close(traffic.megabytes_per_second.at(links.at(master.name)),
+                 4 * static_cast<double>(master.words) / us, master.name);
+  expect_close(traffic.megabytes_per_second.at("edge-pci-bridge"),
+               4 * static_cast<double>(around.posted_words) / us, "posted");
+}
+
+TEST(ChartTraffic, OfRandomBoardsHasTheSumsOfTheirStatistics) {
+  test::RandomKnobs knobs = test::RandomKnobs::all();
+  knobs.large_images = false;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const test::RandomBoard random = test::make_random_board(seed, knobs);
+    SCOPED_TRACE(test::describe(random));
+    const BoardConfig board = test::board_config(random);
+    const auto frames = static_cast<std::uint64_t>(random.frames);
+    expect_sums_of(platform::run_core(board, test::board_tables(random), frames), board);
+  }
+}
+
+TEST(ChartTraffic, OfRandomComputersHasTheSumsOfTheirStatistics) {
+  test::RandomKnobs knobs = test::RandomKnobs::all();
+  knobs.large_images = false;
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    jobs.emplace_back([seed, knobs] {
+      const test::RandomComputer random = test::make_random_computer(seed, knobs);
+      SCOPED_TRACE(test::describe(random.board));
+      const BoardConfig board = test::board_config(random);
+      const platform::Tables tables = test::board_tables(random.board);
+      test::NoisePairs pairs(board.image.width, board.image.height);
+      Binder binder;
+      runs::CameraSimulation simulation(board, tables, pairs, static_cast<std::uint64_t>(random.input.frames),
+                                        binder, fpga::Fidelity::kTiming);
+      while (!simulation.finished()) simulation.advance();
+      expect_sums_of(simulation.statistics(), board);
+      return std::string();
+    });
+  }
+  for (const test::ChildResult& result : test::run_in_children(jobs, 2))
+    EXPECT_TRUE(result.ok()) << result.text;
+}
+
+// A core that runs three frames of 100 cycles at 100 MHz. Each list of two buffers has its first bank twice.
+BoardConfig small_board() {
+  BoardConfig board;
+  board.fpga.clock_mhz = 100;
+  board.allocation.left_lut = "bank0";
+  board.allocation.right_lut = std::nullopt;
+  return board;
+}
+
+Statistics small_run() {
+  Statistics run;
+  run.frames = 3;
+  run.cycles = 400;
+  run.bound.core_limited_by = "bank bank0";
+  run.ports = {{"left_lut", 90, 40}, {"right_lut"},  {"left_pixel", 60},
+               {"right_pixel", 30},  {"result", 12}, {"host"}};
+  for (int i = 0; i < 8; ++i) run.banks.push_back({"bank" + std::to_string(i)});
+  const auto reads = [&run](std::size_t bank, std::uint64_t count) { run.banks[bank].reads = count; };
+  reads(0, 90 + 40);
+  reads(1, 20);
+  reads(2, 20);
+  reads(3, 10);
+  run.banks[4].writes = 8;
+  run.banks[5].writes = 4;
+  return run;
+}
+
+TEST(ChartTraffic, DividesTheGrantsOfAPortByTheFramesThatUseEachBuffer) {
+  const ChartTraffic traffic = chart_traffic(small_board(), stats_json(small_run(), {}));
+  EXPECT_THAT(
+      traffic.megabytes_per_second,
+      UnorderedElementsAre(std::pair("edge-left_lut-bank0", 90), std::pair("edge-left_pixel-bank0", 40),
+                           std::pair("edge-left_pixel-bank1", 20), std::pair("edge-right_pixel-bank2", 20),
+                           std::pair("edge-right_pixel-bank3", 10), std::pair("edge-result-bank4", 8),
+                           std::pair("edge-result-bank5", 4)));
+  EXPECT_EQ(traffic.stalled_percent.at("port-left_lut"), 10);
+  EXPECT_THAT(traffic.limiting, UnorderedElementsAre("bank-bank0"));
+  EXPECT_EQ(traffic.extent, ChartExtent::kBoard);
+}
+
+TEST(ChartTraffic, MarksWhatLimitsTheRate) {
+  const auto limiting = [](const std::string& resource) {
+    Statistics run = small_run();
+    run.bound.core_limited_by = resource;
+    return chart_traffic(small_board(), stats_json(run, {})).limiting;
+  };
+  EXPECT_THAT(limiting("matcher"), UnorderedElementsAre("stage-matcher"));
+  EXPECT_THAT(limiting("port left_lut"), UnorderedElementsAre("port-left_lut"));
+  EXPECT_THAT(limiting("camera"), UnorderedElementsAre("part-left_camera", "part-right_camera"));
+  EXPECT_THAT(limiting("pci"), UnorderedElementsAre("part-pci"));
+  EXPECT_THAT(limiting("bridge"), UnorderedElementsAre("part-bridge"));
+}
+
+TEST(ChartTraffic, IsRefusedWhereItIsNotThatOfTheBoard) {
+  const auto message = [](const std::function<void(Statistics&)>& change) -> std::string {
+    Statistics run = small_run();
+    change(run);
+    try {
+      chart_traffic(small_board(), stats_json(run, {}));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "not refused";
+  };
+  EXPECT_EQ(message([](Statistics& run) { run.banks.pop_back(); }), "has 7 banks, the board 8");
+  EXPECT_EQ(message([](Statistics& run) { run.banks[3].name = "other"; }), "has no entry of 'bank3'");
+  EXPECT_EQ(message([](Statistics& run) { run.ports[0].grants = 91; }),
+            "91 grants of port left_lut in 3 frames: not equally many in each");
+  EXPECT_EQ(message([](Statistics& run) { run.banks[1].reads = 19; }),
+            "19 accesses of bank bank1: its ports made 20");
+  EXPECT_EQ(message([](Statistics& run) { run.banks[1].reads = 21; }),
+            "0 grants of port host: the banks have 1");
+  for (const char* text : {"", "{", "[]", "{\"frames\": \"x\"}"}) {
+    try {
+      chart_traffic(small_board(), text);
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("must be as run writes it")) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::report

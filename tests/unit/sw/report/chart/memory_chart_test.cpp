@@ -1,0 +1,64 @@
+#include "sw/report/chart/memory_chart.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/sw/report/chart/random_chart.h"
+
+namespace stereotlm::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(MemoryChart, HasAnIdForEachElement) {
+  const std::string svg = memory_chart_svg({}, ChartExtent::kComputer);
+  for (const char* id :
+       {"bank-bank0", "port-left_lut", "stage-matcher", "stage-lr_check", "part-pci", "part-host_memory",
+        "edge-left_lut-bank6", "edge-local_bus-host", "flow-left_pixel-left_lane"})
+    EXPECT_THAT(svg, HasSubstr(std::string("id=\"") + id + '"'));
+  EXPECT_THAT(svg, HasSubstr("data-from=\"port-left_lut\" data-to=\"bank-bank6\" data-peak=\"160\">"));
+}
+
+TEST(MemoryChart, HasTheWholeNumberOfEachLinkOfARun) {
+  test::SplitMix64 random(7);
+  ChartTraffic traffic = random_chart_traffic({}, ChartExtent::kBoard, random);
+  traffic.megabytes_per_second["edge-left_lut-bank6"] = 158.9636822785;
+  const std::string svg = memory_chart_svg({}, traffic);
+  EXPECT_THAT(svg, HasSubstr("data-peak=\"160\" data-mbps=\"158.9636822785\">"));
+  EXPECT_THAT(svg, HasSubstr(">158.96</text>"));
+  EXPECT_THAT(svg, HasSubstr("left_lut - bank6: 158.96 of 160 MB/s (99.35 %)"));
+  EXPECT_THAT(svg, Not(HasSubstr("part-pci")));
+}
+
+TEST(MemoryChart, ShowsNamesAsText) {
+  platform::BoardConfig board;
+  board.name = "<script>alert(\"1\")</script>";
+  const std::string bank = "\"><script>'&";
+  board.banks[6].name = bank;
+  board.allocation.left_lut = bank;
+  const std::string svg = memory_chart_svg(board, ChartExtent::kBoard);
+  EXPECT_THAT(svg, Not(HasSubstr("<script")));
+  EXPECT_THAT(svg, HasSubstr(">&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt;</text>"));
+  EXPECT_THAT(svg, HasSubstr("id=\"edge-left_lut-&quot;&gt;&lt;script&gt;&#39;&amp;\""));
+}
+
+// A viewer without CSS variables takes the attributes, and one that has them either theme.
+TEST(MemoryChart, HasEachColourAsAttributeAndAsVariableOfBothThemes) {
+  const std::string svg = memory_chart_svg({}, ChartExtent::kComputer);
+  EXPECT_THAT(svg, HasSubstr("class=\"fill-memory stroke-line\" fill=\"#fff1d6\" stroke=\"#59636e\""));
+  const std::string rules = svg.substr(0, svg.find("</style>"));
+  const auto count = [&rules](const std::string& text) {
+    int found = 0;
+    for (std::size_t at = rules.find(text); at != std::string::npos; at = rules.find(text, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("--mc-memory: #fff1d6;"), 2) << "light, and print";
+  EXPECT_EQ(count("--mc-memory: #3a2d18;"), 2) << "dark, and forced dark";
+  EXPECT_EQ(count("fill: var(--mc-memory)"), 1);
+  EXPECT_EQ(rules.find("var("), rules.find("@supports (color: var(") + 18)
+      << "only where variables are known";
+}
+
+}  // namespace
+}  // namespace stereotlm::report
