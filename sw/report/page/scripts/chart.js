@@ -6,12 +6,12 @@ import {linkMarks} from './tooltip.js';
 
 const kMostRows = 400;
 
-const isNumber = any => typeof any === 'number';
+const isNumber = any => typeof any === 'number' || (typeof any === 'string' && /^[+−]?[\d,]*\.?\d+( %)?$/.test(any));
 
 // A table of HTML. Numbers are on the right.
 export function htmlTable(names, rows, most = kMostRows) {
   const cells = row => row.map(cell => h('td', {class: isNumber(cell) && 'number'},
-      cell instanceof Node ? cell : isNumber(cell) && Number.isInteger(cell) ? whole(cell) : value(cell)));
+      cell instanceof Node ? cell : Number.isInteger(cell) ? whole(cell) : value(cell)));
   const head = names.map((name, i) => h('th', {scope: 'col', class: isNumber(rows[0]?.[i]) && 'number'}, name));
   return h('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Table'},
       h('table', null, h('thead', null, h('tr', null, head)),
@@ -75,6 +75,10 @@ export function canvasOf(width, height) {
   context.scale(density, density);
   return {canvas, context};
 }
+
+// A share of 0 to 1 as a little bar.
+export const shareBar = (share, label) => h('span', {class: 'bar', role: 'img', 'aria-label': label},
+    h('i', {style: `width:${Math.max(0, Math.min(100, 100 * share))}%`}));
 
 // The names of colours, in a line: [[name, css colour], ..].
 export const legend = entries => h('ul', {class: 'legend'}, entries.map(([name, colour]) =>

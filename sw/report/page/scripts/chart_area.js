@@ -1,7 +1,7 @@
 // What the core takes of its FPGA, part by part.
 import {h, s} from './dom.js';
 import {fixed, percent, whole} from './format.js';
-import {addChart, cut, drawing} from './chart.js';
+import {addChart, cut, drawing, shareBar} from './chart.js';
 import {mark} from './tooltip.js';
 
 export function addArea(page, run) {
@@ -22,10 +22,10 @@ export function addArea(page, run) {
           part.block_rams > 0 && s('text', {x: inner + 116, y: y + 14, 'text-anchor': 'end', class: 'value'}, `${part.block_rams} RAM`) || '');
     });
   };
-  const use = (name, number, of) => h('label', {class: 'use'}, `${name} ${whole(number)} of ${whole(of)} `,
-      h('meter', {min: 0, max: 1, value: number / of, high: 0.9}), ` ${fixed(100 * number / of, 1)} %`);
+  const use = (name, number, of) => h('span', null, `${name} ${whole(number)} of ${whole(of)} `,
+      shareBar(number / of, name), ` ${fixed(100 * number / of, 1)} %`);
   addChart(page, {
-    id: 'area', draw, title: `${fixed(total.slices_percent, 1)} % of the ${device.name}: ${whole(total.slices)} slices${total.fits ? '' : ', which does not fit'}`,
+    id: 'area', wide: true, draw, title: `${fixed(total.slices_percent, 1)} % of the ${device.name}: ${whole(total.slices)} slices${total.fits ? '' : ', which does not fit'}`,
     note: 'An estimate: nothing is placed or routed. Bars: share of LUTs and flip-flops, as places that they take.',
     body: h('div', {class: 'uses'}, use('slices', total.slices, device.slices), use('block RAMs', total.block_rams, device.block_rams),
         use('multipliers', total.multipliers, device.multipliers)),

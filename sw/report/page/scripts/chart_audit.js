@@ -36,7 +36,7 @@ export function addAudit(page, run) {
   const identities = identitiesOf(run);
   const broken = identities.filter(([, left, right]) => left !== right).length + (run.stats.failed?.length ?? 0);
   addChart(page, {
-    id: 'audit', title: broken === 0 ? `All ${identities.length} identities hold` : `${broken} of ${identities.length} identities do not hold`,
+    id: 'audit', wide: true, title: broken === 0 ? `All ${identities.length} identities hold` : `${broken} of ${identities.length} identities do not hold`,
     note: `Computed again by this page from the figures that it shows${run.rows ? '; the run was repeated for this report, and gave its stats.json byte for byte' : ''}.`,
     body: [run.stats.failed && h('ul', {class: 'bad'}, run.stats.failed.map(text => h('li', null, text))),
       h('details', {open: broken > 0}, h('summary', null, 'Both sides of each'),

@@ -57,7 +57,7 @@ export function addBlame(page, run) {
       const x = cell * (column + 0.5);
       plot.append(s('text', {x, y: end + 22, 'text-anchor': 'middle'}, fixed(100 * total / cycles, 1)),
           s('text', {x, y: end + 44, 'text-anchor': 'middle', class: total === port.stall_cycles ? 'good' : 'bad'},
-              `${fixed(100 * port.stall_cycles / cycles, 1)} ${total === port.stall_cycles ? '=' : '≠'}`));
+              fixed(100 * port.stall_cycles / cycles, 1) + (total !== port.stall_cycles ? ' ≠' : cell > 52 ? ' =' : '')));
     });
   };
   addChart(page, {

@@ -19,9 +19,9 @@ function resourcesOf(run) {
 }
 
 export function addBounds(page, run) {
-  const resources = resourcesOf(run);
-  const {now} = rateOf(run);
-  const {limit, by} = rateOf(run);
+  const {now, limit, by} = rateOf(run);
+  const together = {resource: 'all together', fps: limit};
+  const resources = [...resourcesOf(run), together].sort((a, b) => a.fps - b.fps);
   const turn = run.bounds.core.length;
   const draw = (host, width) => {
     const left = Math.min(width * 0.34, 130);
@@ -32,7 +32,7 @@ export function addBounds(page, run) {
     plot.append(axisBelow(x, inner, height, 'frames/s (logarithmic)'));
     resources.forEach((each, line) => {
       const y = line * 21 + 12;
-      const tight = each.resource === by;
+      const tight = each.resource === by || each === together;
       plot.append(s('text', {x: -8, y: y + 4, 'text-anchor': 'end', class: tight ? 'strong' : null}, cut(each.resource, left - 8)),
           s('line', {x1: 0, x2: x(each.fps), y1: y, y2: y, class: 'stem'}),
           mark(s('circle', {cx: x(each.fps), cy: y, r: 5, style: `fill:var(${tight ? '--vermilion' : '--blue'})`}),
@@ -44,9 +44,9 @@ export function addBounds(page, run) {
     plot.append(s('line', {x1: x(now), x2: x(now), y1: -4, y2: height, class: 'now'}),
         s('text', {x: x(now), y: -8, 'text-anchor': x(now) > inner / 2 ? 'end' : 'start', class: 'now-label'}, `the run: ${rate(now)}`));
   };
-  addChart(page, {id: 'bounds', title: `${by} sets the bound of ${rate(limit)} frames/s`, draw,
-    note: 'The frames a second that each resource alone would allow, in the frame in which it allows least. The ' +
-        'frames of a turn of the buffers differ, so the mean over them may be above the lowest rung.',
+  addChart(page, {id: 'bounds', title: `${by.replace(/^(bank|port) /, '')} sets the bound of ${rate(limit)} frames/s`, draw,
+    note: 'The frames a second that each resource alone would allow, in the frame in which it allows least; all ' +
+        'together: the mean of the slowest resource of each frame.',
     numbers: () => [['resource', 'frames_per_second', 'cycles', 'frame'],
       resources.map(each => [each.resource, each.fps, each.cycles ?? null, each.frame ?? null])]});
 }

@@ -21,14 +21,17 @@ export function addKnobs(page, run) {
   const draw = (host, width) => {
     const rows = shown();
     const columns = width > 560 ? prices : [];
-    const right = 64 + columns.length * 62;
+    const right = 64 + columns.length * 78;
     const {plot, width: inner, height} = drawing(host, width, rows.length * 34 + 62, {left: 6, right, top: 22, bottom: 40},
         'Frames a second after a step');
     const all = [now, ...rows.map(step => step.frames_per_second)].filter(each => each > 0);
     const x = logarithmic([Math.min(...all) * 0.95, Math.max(...all) * 1.05], [0, inner]);
     plot.append(axisBelow(x, inner, height, 'frames/s (logarithmic)'));
+    plot.append(s('line', {x1: x(now), x2: x(now), y1: -4, y2: height, class: 'now'}),
+        s('text', {x: x(now) + (x(now) > inner / 2 ? -4 : 4), y: -8, 'text-anchor': x(now) > inner / 2 ? 'end' : 'start', class: 'now-label'},
+            cut(`now: ${rate(now)}`, inner)));
     columns.forEach(([, name], i) => plot.append(
-        s('text', {x: inner + 64 + 62 * (i + 1) - 4, y: -8, 'text-anchor': 'end', class: 'label'}, name)));
+        s('text', {x: inner + 64 + 78 * (i + 1) - 4, y: -8, 'text-anchor': 'end', class: 'label'}, name)));
     rows.forEach((step, line) => {
       const y = line * 34;
       const gain = step.frames_per_second / now - 1;
@@ -37,19 +40,16 @@ export function addKnobs(page, run) {
       const label = stepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : '');
       const price = priceOf(step, board);
       plot.append(
-          s('text', {x: 0, y: y + 12, class: step === advice.first ? 'strong' : null}, cut(label, inner - 4)),
-          s('text', {x: inner + 60, y: y + 22, 'text-anchor': 'end', class: 'value'}, signed(gain, percent)),
+          s('text', {x: 0, y: y + 12, class: step === advice.first ? 'halo strong' : 'halo'}, cut(label, inner - 4)),
+          s('text', {x: inner + 60, y: y + 22, 'text-anchor': 'end', class: 'value'}, signed(gain, each => percent(each, each < 0.0095 ? 2 : 1))),
           mark(s('rect', {x: Math.min(at, x(now)), y: y + 17, width: Math.max(1, Math.abs(at - x(now))), height: 9,
             style: `fill:var(${colour})`}),
           [stepText(step), `${rate(step.frames_per_second)} frames/s, ${signed(gain, each => percent(each, 2))}`,
             `takes ${priceText(step, board)}`, step.changes_disparities && 'changes the disparities',
             step.loses_pixels && 'captures lose pixels'].filter(Boolean)));
-      columns.forEach(([key], i) => plot.append(s('text', {x: inner + 64 + 62 * (i + 1) - 4, y: y + 22, 'text-anchor': 'end',
+      columns.forEach(([key], i) => plot.append(s('text', {x: inner + 64 + 78 * (i + 1) - 4, y: y + 22, 'text-anchor': 'end',
         class: 'value'}, price[key] ? signed(price[key], brief) : '·')));
     });
-    plot.append(s('line', {x1: x(now), x2: x(now), y1: -4, y2: height, class: 'now'}),
-        s('text', {x: x(now) + (x(now) > inner / 2 ? -4 : 4), y: -8, 'text-anchor': x(now) > inner / 2 ? 'end' : 'start', class: 'now-label'},
-            cut(`now: ${rate(now)}`, inner)));
   };
   const keep = h('label', {class: 'check'}, h('input', {type: 'checkbox', id: 'keep-disparities', change: event => {
     state.keep = event.target.checked;
@@ -93,9 +93,9 @@ export function addRoofline(page, run) {
     const y = logarithmic([Math.min(...ys) * 0.8, Math.max(...ys, roofAt) * 1.3], [height, 0]);
     plot.append(axisBelow(x, inner, height, 'accesses of the busiest bank for a pixel'), axisLeft(y, inner, height));
     plot.append(s('text', {x: -6, y: -10, class: 'label', 'text-anchor': 'start'}, 'Mpixels/s'));
-    const roof = from => Math.max(0, Math.min(height, y(here.clock / from)));
-    const path = Array.from({length: 60}, (_, i) => x.domain[0] * (x.domain[1] / x.domain[0]) ** (i / 59))
-      .map(each => `${x(each)},${roof(each)}`);
+    const path = Array.from({length: 200}, (_, i) => x.domain[0] * (x.domain[1] / x.domain[0]) ** (i / 199))
+      .filter(each => y(here.clock / each) >= 0 && y(here.clock / each) <= height)
+      .map(each => `${x(each)},${y(here.clock / each)}`);
     plot.append(s('polyline', {points: path.join(' '), class: 'roof'}));
     for (const each of all) {
       plot.append(mark(s('circle', {cx: x(each.accesses), cy: y(each.speed), r: 4, class: 'neighbour'}),

@@ -24,7 +24,7 @@ function addPercentiles(page, latency, absent) {
       end = x(ms);
     }
   };
-  addChart(page, {id: 'latency', draw, title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${fixed(latency.max, 1)} ms`,
+  addChart(page, {id: 'latency', wide: true, draw, title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${fixed(latency.max, 1)} ms`,
     note: `From the first pixel of a capture to the results on the host. ${absent}`,
     numbers: () => [['percentile', 'ms'], points.map(({name, ms}) => [name, ms])]});
 }
@@ -59,7 +59,7 @@ export function addLatency(page, run, absentText) {
     plot.append(s('line', {x1: 0, x2: inner, y1: height, y2: height, class: 'base'}),
         s('text', {x: inner, y: height + 20, 'text-anchor': 'end', class: 'label'}, `${count(order.length, 'frame')}, the quickest first`));
   };
-  addChart(page, {id: 'latency', draw, title: `${percent(waiting, 0)} of the ${fixed(mean(total), 1)} ms from capture to host are waiting`,
+  addChart(page, {id: 'latency', wide: true, draw, title: `${percent(waiting, 0)} of the ${fixed(mean(total), 1)} ms from capture to host are waiting`,
     note: 'One bar for each delivered frame, from the first pixel of the capture to the results on the host.',
     body: legend(kParts.map(([, name, colour]) => [name, `var(${colour})`])),
     numbers: () => [['frame', ...kParts.map(([name]) => name)], frame.map((number, i) => [number, ...parts.map(part => part[i])])]});

@@ -1,7 +1,7 @@
 // The memory chart: blocks, banks and links of the board with their traffic. Until the data has a drawing, a list.
 import {h} from './dom.js';
 import {fixed, percent} from './format.js';
-import {addChart, htmlTable} from './chart.js';
+import {addChart, htmlTable, shareBar} from './chart.js';
 import {settingOf} from './findings.js';
 import {mark} from './tooltip.js';
 
@@ -54,7 +54,7 @@ export function addMemory(page, run) {
   const links = linksOf(run);
   const banks = links.filter(link => link.what === 'bank');
   const fullest = [...banks].sort((a, b) => b.rate / b.peak - a.rate / a.peak)[0];
-  const bar = link => h('meter', {min: 0, max: 1, value: link.rate / link.peak, 'aria-label': `${link.name}: ${percent(link.rate / link.peak)} of its peak`});
+  const bar = link => shareBar(link.rate / link.peak, `${link.name}: ${percent(link.rate / link.peak)} of its peak`);
   const title = `${fullest.id.slice(5)} carries ${fixed(fullest.rate, 1)} MB/s, ${percent(fullest.rate / fullest.peak)} of its peak`;
   const numbers = () => [['link', 'kind', 'megabytes_per_second', 'peak', 'percent'],
     links.map(link => [link.name, link.what, link.rate, link.peak, 100 * link.rate / link.peak])];

@@ -3,11 +3,12 @@ import {h} from './dom.js';
 import {whole} from './format.js';
 import {addChart, canvasOf} from './chart.js';
 import {unpack} from './table.js';
-import {css, heat, viridis} from './theme.js';
+import {viridis} from './theme.js';
 import {hideTooltip, showTooltip} from './tooltip.js';
 
 const kInvalid = 255;
 const kMostHeight = 900;
+const kPaint = [255, 60, 0];
 
 async function pixelsOf(url) {
   const image = new Image();
@@ -40,8 +41,8 @@ function paintOf({values, columns, rows}) {
   for (const value of values) most = Math.max(most, value);
   values.forEach((value, i) => {
     if (value <= 0) return;
-    data.data.set(heat(0.25 + 0.75 * value / most), 4 * i);
-    data.data[4 * i + 3] = 80 + 175 * value / most;
+    data.data.set(kPaint, 4 * i);
+    data.data[4 * i + 3] = 40 + 215 * value / most;
   });
   context.putImageData(data, 0, 0);
   return canvas;
@@ -67,7 +68,7 @@ export function layersOf(run) {
 
 // pictures: {disparity, disparities, left or other}, layers as above; names: of the two pictures.
 export function addPicture(page, {id = 'picture', title, note, pictures, layers, names}) {
-  const state = {split: 0.5, paint: 0.6, layer: 0};
+  const state = {split: 0.5, paint: 0.35, layer: 0};
   let loaded = null;
   let drawn = null;
   const slider = (name, label, key) => h('label', null, `${label} `, h('input', {type: 'range', min: 0, max: 100,
@@ -144,7 +145,6 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
     numbers: () => layers.length === 0 ? [['cycles'], []] : [['row', 'column', 'cycles'],
       [...layers[state.layer].values].map((value, i) => [Math.floor(i / layers[state.layer].columns), i % layers[state.layer].columns, value])
         .filter(row => row[2] !== 0)]});
-  chart.element.style.setProperty('--swatch', css(heat(1)));
   (async () => {
     const first = await pixelsOf(pictures[0].url);
     const second = pictures[1] ? await pixelsOf(pictures[1].url) : null;

@@ -104,7 +104,7 @@ export function addRows(page, run) {
   const columns = columnsOf(run);
   const {cycles, frames} = run.rows;
   addRowMap(page, {
-    id: 'rows', columns, title: run.recording?.rows ? `Banks and rows: ${whereText(run)[0]}` : `Rows that wait: ${whereText(run)[0]}`,
+    id: 'rows', columns, title: whereText(run)[0],
     note: `Share of the cycles of each row of results, over ${count(frames, 'frame')}: darker (in the dark: lighter) is more. ` +
         'Drag over rows to zoom in.',
     shareOf: (value, row) => cycles[row] > 0 ? value / cycles[row] : 0,

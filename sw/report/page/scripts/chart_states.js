@@ -47,10 +47,11 @@ export function addPortStates(page, {stats}, suffix = '') {
 export function addBankUse(page, run) {
   const {stats, banks} = run;
   const busiest = [...stats.banks].sort((a, b) => b.utilization - a.utilization)[0];
-  const unused = stats.banks.filter(bank => bank.busy_cycles === 0).length;
+  const unused = stats.banks.filter(bank => bank.busy_cycles === 0);
   addStates(page, {id: 'banks', items: stats.banks, states: kBankStates, cycles: stats.cycles,
     title: `${busiest.name} is busy in ${percent(busiest.utilization)} of the cycles` +
-        (unused ? `; ${unused} of ${stats.banks.length} banks are never used` : ''),
+        (unused.length === 0 ? '' : unused.length === 1 ? `; ${unused[0].name} is never used` :
+        `; ${unused.length} of ${stats.banks.length} banks are never used`),
     note: 'How busy each bank is in all cycles of the frames.',
     more: bank => [`${whole(bank.reads)} reads, ${whole(bank.writes)} writes, ` +
         `${whole(bank.contended_cycles)} cycles contended`,

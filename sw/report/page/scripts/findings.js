@@ -175,7 +175,7 @@ function whatItCosts(run) {
 export function headlineOf(run) {
   const {now, limit, by, share, kind} = rateOf(run);
   return `${rate(now)} frames/s${kind === 'steady' ? ', steady' : ''}: ${percent(share)} of the bound ` +
-      `${rate(limit)}, which ${by.replace(/^bank /, '')} sets`;
+      `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets`;
 }
 
 // [question, [answer, ..]] in the order in which they are asked.

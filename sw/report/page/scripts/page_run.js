@@ -13,7 +13,7 @@ import {addPicture, layersOf} from './chart_picture.js';
 import {addRows} from './chart_rows.js';
 import {addBankUse, addPortStates} from './chart_states.js';
 import {addTimeLine} from './chart_time.js';
-import {answersOf, headlineOf, settingOf, whereText} from './findings.js';
+import {answersOf, headlineOf, settingOf} from './findings.js';
 import {addAbsent, addAnswers, addGroup, addHead} from './page_parts.js';
 
 export function showRun(page, {run}) {
@@ -38,8 +38,8 @@ export function showRun(page, {run}) {
   if (run.pictures) {
     const {left, disparity, disparities} = run.pictures;
     addPicture(waits, {
-      title: `In the picture: ${whereText(run)[0]}`, layers: layersOf(run),
-      note: `The last frame${run.recording?.tiles ? '' : `. Stalls by row${run.rows ? `; by column: ${absent}` : ': left out by --quick'}`}. ` +
+      title: layersOf(run).length ? 'Stalls, painted over the picture' : 'The picture and its disparities: no stalls to paint', layers: layersOf(run),
+      note: `The last frame${run.recording?.tiles ? ' of the run.' : ` of the run. ${run.rows ? `Stalls by row; by column: ${absent}` : 'Stalls are left out by --quick.'}`} ` +
           'Disparities from dark (far) to bright (near); black: no answer.',
       pictures: left ? [{url: left}, {url: disparity, disparities}] : [{url: disparity, disparities}],
       names: left ? ['picture', 'disparities'] : ['disparities']});

@@ -40,7 +40,7 @@ function addRowDifference(page, {rows, no_rows: reason}) {
     for (const rowsOf of bands) {
       const value = over(cycles, rowsOf);
       plot.append(mark(s('rect', {x: Math.min(x(0), x(value)), y: y(rowsOf[0]), width: Math.max(0.5, Math.abs(x(value) - x(0))),
-        height: Math.max(0.5, y(rowsOf[1]) - y(rowsOf[0])), class: 'row-bar'}),
+        height: y(rowsOf[1]) - y(rowsOf[0]) + 0.4, class: 'row-bar'}),
       [rowsOf[1] - rowsOf[0] > 1 ? `rows ${rowsOf[0]} to ${rowsOf[1] - 1}` : `row ${rowsOf[0]}`, `${signed(value, whole)} cycles a frame`,
         ...ports.map(([port, values]) => `${port}: ${signed(over(values, rowsOf), whole)} stalls`)]));
     }

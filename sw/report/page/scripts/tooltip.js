@@ -52,12 +52,14 @@ export function startTooltips() {
     if (lines) showTooltip(lines, event.clientX, event.clientY);
     else if (!event.target.closest?.('.hovers')) hideTooltip();
   });
-  document.addEventListener('focusin', event => {
-    const lines = linesOf(event);
+  const showFocused = element => {
+    const lines = tooltipTexts.get(element);
     if (!lines) return hideTooltip();
-    const box = event.target.getBoundingClientRect();
+    const box = element.getBoundingClientRect();
     showTooltip(lines, box.left + box.width / 2, box.top + box.height / 2);
-  });
+  };
+  document.addEventListener('focusin', event => showFocused(event.target));
   document.addEventListener('keydown', event => { if (event.key === 'Escape') hideTooltip(); });
-  addEventListener('scroll', hideTooltip, {passive: true});
+  // The page also scrolls to show a mark that gets the focus.
+  addEventListener('scroll', () => { if (!tooltip.hidden) showFocused(document.activeElement); }, {passive: true});
 }
