@@ -1,31 +1,14 @@
 """A page of `report` in a browser without a window: Debian's chromium, driven by selenium."""
 
 import contextlib
-import json
 import os
 import pathlib
-import re
 import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
-
-DATA = re.compile(r'(<script type="application/json" id="data">)(.*?)(</script>)', re.DOTALL)
-
-
-def data_of(path):
-    """The data of a page."""
-    return json.loads(DATA.search(path.read_text()).group(2))
-
-
-def with_data(path, data, out):
-    """Writes the page `out`: the page at `path` with other data."""
-    text = json.dumps(data).replace("<", "\\u003c")
-    out.write_text(DATA.sub(lambda match: match[1] + text + match[3], path.read_text()))
-    return out
-
 
 def number(text):
     return float(text.replace(",", "").replace("−", "-").replace(" %", "").replace("+", ""))

@@ -10,8 +10,9 @@ import tempfile
 import unittest
 
 import program
-from browser import Browser, data_of, number, with_data
+from browser import Browser, number
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets, shared_folder
+from report_data import data_of, with_data
 from selenium.webdriver.common.keys import Keys
 
 SCENE = [*SMALL, "--synthetic", "1"]
@@ -110,6 +111,8 @@ def recording(data):
         "tiles": {
             "columns": 8,
             "rows": height,
+            "width": 4,
+            "height": 1,
             "stalls": [{"port": "left_lut", "bank": "bank0", "by": by[0], "cycles": {"list": tiles}}],
         },
         "events": {"rows": len(events["lane"]), "columns": columns(events)},

@@ -30,11 +30,13 @@ export function addRowMap(page, {id, title, note, columns, shareOf, tipOf, numbe
   const rows = columns[0].values.length;
   const state = {from: 0, to: rows};
   const draw = (host, width) => {
-    const {plot, width: inner, height, svg} = drawing(host, width, 380, {left: 44, right: 4, top: 44, bottom: 8}, title);
+    const upright = (width - 48) / columns.length < 44;  // names from bottom to top
+    const top = upright ? 96 : 44;
+    const {plot, width: inner, height, svg} = drawing(host, width, 380 + top - 44, {left: 44, right: 4, top, bottom: 8}, title);
     const y = linear([state.from, state.to], [0, height]);
     const step = inner / columns.length;
     const {canvas, context} = canvasOf(inner, height);
-    canvas.style.cssText += ';position:absolute;left:44px;top:44px';
+    canvas.style.cssText += `;position:absolute;left:44px;top:${top}px`;
     host.prepend(canvas);
     host.classList.add('layered');
     const shownRows = state.to - state.from;
@@ -54,11 +56,13 @@ export function addRowMap(page, {id, title, note, columns, shareOf, tipOf, numbe
     plot.append(axisLeft(y, inner, height, 'row', {grid: false, ticks: 8}));
     columns.forEach((column, i) => {
       const words = column.name.split(step < 70 ? /(?<=_)| · / : ' · ');
-      words.slice(0, 2).forEach((word, line) => plot.append(s('text', {x: i * step + step / 2,
+      if (upright) {
+        plot.append(s('text', {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`}, cut(column.name, 86)));
+      } else words.slice(0, 2).forEach((word, line) => plot.append(s('text', {x: i * step + step / 2,
         y: -6 - 13 * (Math.min(words.length, 2) - 1 - line), 'text-anchor': 'middle'}, cut(word, step))));
       const total = sumOf(column.values);
       const some = column.values.filter(each => each !== 0).length;
-      plot.append(mark(s('rect', {x: i * step + 1, y: -40, width: Math.max(1, step - 2), height: 38, class: 'reach'}),
+      plot.append(mark(s('rect', {x: i * step + 1, y: 4 - top, width: Math.max(1, step - 2), height: top - 6, class: 'reach'}),
           [`${column.name} ${column.of}`, `${whole(total)} cycles in all`, `in ${some} of ${count(rows, 'row')}`]));
     });
     const {area} = addBrush(plot, {axis: 'y', width: inner, height, end: box => {

@@ -1,5 +1,6 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {count, fixed, percent, rate, signed, whole} from './format.js';
+import {unpack} from './table.js';
 
 const kWorthwhile = 0.01;   // least gain of a change worth naming, of the present rate
 const kCheapSlices = 1;     // percent of the FPGA that a cheap change may take in addition
@@ -8,14 +9,16 @@ const sum = numbers => numbers.reduce((total, number) => total + number, 0);
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
-// The rate of a run and its bound.
+// The rate of a run and its bound. The bound of a computer is that of the rate from power-up; of a few frames
+// the steady rate may be above it, and is then not compared with it.
 export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
-  const now = rates.steady ?? rates.system ?? rates.core;
   const limit = computer ? bound.system : bound.core;
+  const steady = rates.steady <= limit;
+  const now = steady ? rates.steady : rates.system ?? rates.core;
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
-  return {now, limit, by, computer, share: now / limit, kind: rates.steady ? 'steady' : computer ? 'system' : 'core'};
+  return {now, limit, by, computer, share: now / limit, steady};
 }
 
 // Stalls of the ports, the most first: {port, bank, by, cycles, share of all cycles}.
@@ -79,6 +82,14 @@ function mainRows(amounts) {
   return {first, last, total};
 }
 
+// The columns that hold the stalls.
+function mainColumns({columns, rows, width, stalls}) {
+  const amounts = new Array(columns).fill(0);
+  for (const {cycles} of stalls) unpack(cycles, columns * rows).forEach((value, i) => { amounts[i % columns] += value; });
+  const {first, last} = mainRows(amounts);
+  return first === 0 && last === columns - 1 ? 'In all columns.' : `In columns ${first * width} to ${(last + 1) * width - 1}.`;
+}
+
 // Where in the picture the stalls are.
 export function whereText(run) {
   const tiles = run.recording?.tiles;
@@ -106,7 +117,7 @@ export function whereText(run) {
     texts.push(`In ${longer} of ${count(frames.length, 'frame')}: these take up to ` +
         `${whole(Math.max(...frames))} cycles, the others ${whole(least)}.`);
   }
-  if (tiles) texts.push('The picture below shows the columns too.');
+  if (tiles) texts.push(mainColumns(tiles));
   return texts;
 }
 
@@ -173,8 +184,8 @@ function whatItCosts(run) {
 }
 
 export function headlineOf(run) {
-  const {now, limit, by, share, kind} = rateOf(run);
-  return `${rate(now)} frames/s${kind === 'steady' ? ', steady' : ''}: ${percent(share)} of the bound ` +
+  const {now, limit, by, share, steady, computer} = rateOf(run);
+  return `${rate(now)} frames/s${steady ? ', steady' : computer ? ' from power-up' : ''}: ${percent(share)} of the bound ` +
       `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets`;
 }
 
