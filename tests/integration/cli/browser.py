@@ -61,6 +61,15 @@ class Browser:
     def one(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
+    def cells(self, rows, place):
+        """The texts of one column of some rows."""
+        return self.run(
+            "return [...document.querySelectorAll(arguments[0])]"
+            ".map(row => row.cells[arguments[1]].textContent)",
+            rows,
+            place,
+        )
+
     def text(self, selector):
         return self.run("return document.querySelector(arguments[0]).textContent", selector)
 

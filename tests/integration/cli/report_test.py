@@ -55,7 +55,8 @@ class Run(ReportTest):
 
     def test_with_cameras_has_their_bounds(self):
         data = self.data(self.run_of("a", *CAMERA_RATES, "--frames", "3"))["run"]
-        self.assertEqual([each["resource"] for each in data["bounds"]["computer"]], ["camera", "pci", "bridge"])
+        names = [bound["resource"] for bound in data["bounds"]["computer"]]
+        self.assertEqual(names, ["camera", "pci", "bridge"])
 
     def test_without_pixels_has_no_pictures(self):
         self.assertNotIn("pictures", self.data(self.run_of("a", *PRELOADED, "--timing-only"))["run"])
@@ -106,7 +107,7 @@ class Refusals(ReportTest):
                 self.assertFalse(self.page.exists())
 
     def test_of_a_database_without_points(self):
-        plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3]}\nset: {image.width: 32, image.height: 24}\n")
+        plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3]}\n")
         self.succeeds(run("sweep", plan, "--out", self.folder / "a.db"))
         with sqlite3.connect(self.folder / "a.db") as store:
             store.execute("DELETE FROM points")
@@ -120,7 +121,8 @@ class Refusals(ReportTest):
             self.refused(run("report", folder, "--out", self.page))
 
     def test_of_a_page_that_cannot_be_written(self):
-        self.refused(run("report", self.run_of("a", *PRELOADED), "--out", self.folder / "none/a.html"), "--out")
+        folder = self.run_of("a", *PRELOADED)
+        self.refused(run("report", folder, "--out", self.folder / "none/a.html"), "--out")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-// The stalls, painted over the picture: a slider between the picture and its disparities, and one for the paint.
+// The stalls, painted over the picture: a slider between the picture and its disparities, one for the paint.
+import {addChart, canvasOf} from './chart.js';
 import {h} from './dom.js';
 import {whole} from './format.js';
-import {addChart, canvasOf} from './chart.js';
 import {unpack} from './table.js';
 import {viridis} from './theme.js';
 import {hideTooltip, showTooltip} from './tooltip.js';
@@ -55,12 +55,18 @@ export function layersOf(run) {
   if (recording?.tiles) {
     const {columns, rows: tileRows, stalls} = recording.tiles;
     for (const {port, bank, by, cycles} of stalls) {
-      layers.push({name: `${port} on ${bank} for ${by}`, values: unpack(cycles, columns * tileRows), columns, rows: tileRows});
+      layers.push({
+        name: `${port} on ${bank} for ${by}`,
+        values: unpack(cycles, columns * tileRows),
+        columns,
+        rows: tileRows
+      });
     }
     layers.sort((a, b) => b.values.reduce((x, y) => x + y, 0) - a.values.reduce((x, y) => x + y, 0));
   } else if (rows) {
     for (const [port, values] of Object.entries(rows.stalls)) {
-      if (values.some(value => value > 0)) layers.push({name: `${port}, by row`, values, columns: 1, rows: values.length});
+      if (values.some(value => value > 0))
+        layers.push({name: `${port}, by row`, values, columns: 1, rows: values.length});
     }
   }
   return layers;
@@ -71,15 +77,26 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
   const state = {split: 0.5, paint: 0.35, layer: 0};
   let loaded = null;
   let drawn = null;
-  const slider = (name, label, key) => h('label', null, `${label} `, h('input', {type: 'range', min: 0, max: 100,
-    value: 100 * state[key], id: `${id}-${name}`, input: event => {
-      state[key] = event.target.value / 100;
-      drawn?.();
-    }}));
-  const choose = h('select', {id: `${id}-layer`, change: event => {
-    state.layer = Number(event.target.value);
-    drawn?.();
-  }}, layers.map((layer, i) => h('option', {value: i}, layer.name)));
+  const slider = (name, label, key) => h('label', null, `${label} `, h('input', {
+                                           type: 'range',
+                                           min: 0,
+                                           max: 100,
+                                           value: 100 * state[key],
+                                           id: `${id}-${name}`,
+                                           input: event => {
+                                             state[key] = event.target.value / 100;
+                                             drawn?.();
+                                           }
+                                         }));
+  const choose =
+      h('select', {
+        id: `${id}-layer`,
+        change: event => {
+          state.layer = Number(event.target.value);
+          drawn?.();
+        }
+      },
+        layers.map((layer, i) => h('option', {value: i}, layer.name)));
   const draw = (host, width) => {
     if (!loaded) return;
     const {width: columns, height: rows} = loaded.first.canvas;
@@ -115,12 +132,15 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
       const grey = loaded.grey?.[y * columns + x];
       if (grey !== undefined) lines.push(grey === kInvalid ? 'no disparity' : `disparity ${grey}`);
       for (const layer of layers) {
-        const value = layer.values[Math.floor(y / rows * layer.rows) * layer.columns + Math.floor(x / columns * layer.columns)];
+        const line = Math.floor(y / rows * layer.rows);
+        const value = layer.values[line * layer.columns + Math.floor(x / columns * layer.columns)];
         if (value) lines.push(`${layer.name}: ${whole(value)} cycles`);
       }
       showTooltip(lines, clientX, clientY);
     };
-    const place = (x, y) => { at = [Math.max(0, Math.min(columns - 1, x)), Math.max(0, Math.min(rows - 1, y))]; };
+    const place = (x, y) => {
+      at = [Math.max(0, Math.min(columns - 1, x)), Math.max(0, Math.min(rows - 1, y))];
+    };
     canvas.addEventListener('pointermove', event => {
       const box = canvas.getBoundingClientRect();
       place(Math.floor((event.clientX - box.left) / scale), Math.floor((event.clientY - box.top) / scale));
@@ -128,7 +148,8 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
     });
     canvas.addEventListener('pointerleave', hideTooltip);
     canvas.addEventListener('keydown', event => {
-      const [x, y] = {ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key] ?? [];
+      const [x, y] =
+          {ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key] ?? [];
       if (x === undefined) return;
       event.preventDefault();
       place(at[0] + x, at[1] + y);
@@ -139,17 +160,31 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
     drawn();
   };
   const chart = addChart(page, {
-    id, title, note, draw,
-    body: h('div', {class: 'controls'}, names[1] && slider('split', `${names[0]} | ${names[1]}`, 'split'),
-        layers.length > 0 && slider('paint', 'paint', 'paint'), layers.length > 0 && h('label', null, 'stalls of ', choose)),
-    numbers: () => layers.length === 0 ? [['cycles'], []] : [['row', 'column', 'cycles'],
-      [...layers[state.layer].values].map((value, i) => [Math.floor(i / layers[state.layer].columns), i % layers[state.layer].columns, value])
-        .filter(row => row[2] !== 0)]});
+    id,
+    title,
+    note,
+    draw,
+    body:
+        h('div', {class: 'controls'}, names[1] && slider('split', `${names[0]} | ${names[1]}`, 'split'),
+          layers.length > 0 && slider('paint', 'paint', 'paint'),
+          layers.length > 0 && h('label', null, 'stalls of ', choose)),
+    numbers: () => layers.length === 0 ? [['cycles'], []] :
+                                         [
+                                           ['row', 'column', 'cycles'],
+                                           [...layers[state.layer].values]
+                                               .map(
+                                                   (value, i) =>
+                                                       [Math.floor(i / layers[state.layer].columns),
+                                                        i % layers[state.layer].columns, value])
+                                               .filter(row => row[2] !== 0)
+                                         ]
+  });
   (async () => {
     const first = await pixelsOf(pictures[0].url);
     const second = pictures[1] ? await pixelsOf(pictures[1].url) : null;
     const all = [first, second];
-    const greys = pictures.map((picture, i) => picture.disparities ? colourDisparities(all[i], picture.disparities) : null);
+    const greys = pictures.map(
+        (picture, i) => picture.disparities ? colourDisparities(all[i], picture.disparities) : null);
     loaded = {first, second, grey: greys.find(Boolean)};
     chart.redraw();
   })();

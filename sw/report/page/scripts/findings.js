@@ -1,9 +1,7 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {count, fixed, percent, rate, signed, whole} from './format.js';
 import {unpack} from './table.js';
-
-const kWorthwhile = 0.01;   // least gain of a change worth naming, of the present rate
-const kCheapSlices = 1;     // percent of the FPGA that a cheap change may take in addition
+import {adviceOf, priceText, stepText} from './advice.js';
 
 const sum = numbers => numbers.reduce((total, number) => total + number, 0);
 
@@ -23,7 +21,7 @@ export function rateOf(run) {
 
 // Stalls of the ports, the most first: {port, bank, by, cycles, share of all cycles}.
 export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.cycles / run.stats.cycles}))
-  .sort((a, b) => b.cycles - a.cycles);
+                                   .sort((a, b) => b.cycles - a.cycles);
 
 export const waitText = ({port, bank, by, share}) => by === 'turnaround' ?
     `${port} waits ${percent(share)} of all cycles, while ${bank} turns round` :
@@ -45,12 +43,14 @@ function whatLimits(run) {
     camera: () => 'The cameras: the board could do more',
     pci: () => 'The PCI bus: the words of pictures and results fill it',
     bridge: () => 'The local bus behind the bridge',
-  }[kind]?.() ?? by;
+  }[kind]?.() ??
+      by;
   const lost = [];
   if (computer && share < 0.995) {
     const dropped = run.stats.cameras?.[0];
     if (dropped?.dropped_not_armed > 0) {
-      lost.push(`A capture begins with a camera frame: ${dropped.dropped_not_armed} of ${dropped.frames} frames ` +
+      lost.push(
+          `A capture begins with a camera frame: ${dropped.dropped_not_armed} of ${dropped.frames} frames ` +
           'of the camera found no free buffer');
     }
     if (run.stats.cameras?.some(camera => camera.dropped_pixels > 0)) lost.push('captures lose pixels');
@@ -64,30 +64,40 @@ function whatLimits(run) {
 function whoWaits(run) {
   const blames = blamesOf(run);
   if (blames.length === 0) return ['Nobody: no port of the banks ever stalls.'];
-  const others = blames.slice(1, 3).map(row => `${row.port} for ${row.by} on ${row.bank} (${percent(row.share)})`);
-  return [`${waitText(blames[0])}.`,
-    others.length > 0 ? `Then ${others.join(', ')}${blames.length > 3 ? ' and less' : ''}.` : null];
+  const others =
+      blames.slice(1, 3).map(row => `${row.port} for ${row.by} on ${row.bank} (${percent(row.share)})`);
+  return [
+    `${waitText(blames[0])}.`,
+    others.length > 0 ? `Then ${others.join(', ')}${blames.length > 3 ? ' and less' : ''}.` : null
+  ];
 }
 
 // The stalls of each row, of all ports together.
-export const stallsByRow = rows => rows.cycles.map((_, row) => sum(Object.values(rows.stalls).map(all => all[row])));
+export const stallsByRow = rows =>
+    rows.cycles.map((_, row) => sum(Object.values(rows.stalls).map(all => all[row])));
 
 // The rows that hold all but 1 % of an amount at each end.
 function mainRows(amounts) {
   const total = sum(amounts);
   let first = 0;
-  for (let below = amounts[0]; below < 0.005 * total; below += amounts[++first]);
+  for (let below = amounts[0]; below < 0.005 * total; below += amounts[++first])
+    ;
   let last = amounts.length - 1;
-  for (let above = amounts[last]; above < 0.005 * total; above += amounts[--last]);
+  for (let above = amounts[last]; above < 0.005 * total; above += amounts[--last])
+    ;
   return {first, last, total};
 }
 
 // The columns that hold the stalls.
 function mainColumns({columns, rows, width, stalls}) {
   const amounts = new Array(columns).fill(0);
-  for (const {cycles} of stalls) unpack(cycles, columns * rows).forEach((value, i) => { amounts[i % columns] += value; });
+  for (const {cycles} of stalls)
+    unpack(cycles, columns * rows).forEach((value, i) => {
+      amounts[i % columns] += value;
+    });
   const {first, last} = mainRows(amounts);
-  return first === 0 && last === columns - 1 ? 'In all columns.' : `In columns ${first * width} to ${(last + 1) * width - 1}.`;
+  return first === 0 && last === columns - 1 ? 'In all columns.' :
+                                               `In columns ${first * width} to ${(last + 1) * width - 1}.`;
 }
 
 // Where in the picture the stalls are.
@@ -107,69 +117,34 @@ export function whereText(run) {
     if (window > best.sum) best = {sum: window, row: Math.max(0, row - tenth + 1)};
   }
   const uneven = best.sum / total > 2 * tenth / inside.length;
-  const texts = [uneven ?
-      `Most in rows ${best.row} to ${best.row + tenth - 1}: ${percent(best.sum / total, 0)} of all stalls.` :
-      `Rows ${first} to ${last} of ${amounts.length}, evenly: ${whole(mean)} cycles a row and frame.`];
+  const texts =
+      [uneven ?
+           `Most in rows ${best.row} to ${best.row + tenth - 1}: ${
+               percent(best.sum / total, 0)} of all stalls.` :
+           `Rows ${first} to ${last} of ${amounts.length}, evenly: ${whole(mean)} cycles a row and frame.`];
   const frames = run.stats.frame_cycles;
   const least = Math.min(...frames);
   const longer = frames.filter(cycles => cycles > 1.01 * least).length;
   if (longer > 0) {
-    texts.push(`In ${longer} of ${count(frames.length, 'frame')}: these take up to ` +
+    texts.push(
+        `In ${longer} of ${count(frames.length, 'frame')}: these take up to ` +
         `${whole(Math.max(...frames))} cycles, the others ${whole(least)}.`);
   }
   if (tiles) texts.push(mainColumns(tiles));
   return texts;
 }
 
-// What a step costs beside the board as it is.
-export function priceOf(step, board) {
-  return {
-    slices: step.area.slices - board.area.slices,
-    slicesPercent: step.area.slices_percent - board.area.slices_percent,
-    blockRams: step.area.block_rams - board.area.block_rams,
-    multipliers: step.area.multipliers - board.area.multipliers,
-    banks: step.banks_used - board.banks_used,
-  };
-}
-
-export function priceText(step, board) {
-  const price = priceOf(step, board);
-  const parts = [];
-  if (price.slices) parts.push(`${signed(price.slices, whole)} slices (${signed(price.slicesPercent, n => fixed(n, 1))} % of the FPGA)`);
-  if (price.blockRams) parts.push(`${signed(price.blockRams, whole)} block RAMs`);
-  if (price.multipliers) parts.push(`${signed(price.multipliers, whole)} multipliers`);
-  if (price.banks) parts.push(`${signed(price.banks, whole)} ${Math.abs(price.banks) === 1 ? 'bank' : 'banks'}`);
-  if (step.clock_mhz !== board.clock_mhz) parts.push(`a clock of ${step.clock_mhz} MHz`);
-  if (!step.area.fits) parts.push('it does not fit');
-  return parts.length ? parts.join(', ') : 'nothing that is counted';
-}
-
-// The changes worth naming: the largest gain of those that are cheap, and the largest of all. Changes of the
-// disparities, boards that lose pixels and boards that do not fit are left out.
-export function adviceOf(run) {
-  if (!run.knobs) return null;
-  const {board, steps} = run.knobs;
-  const gain = step => step.frames_per_second / board.frames_per_second - 1;
-  const useful = steps.filter(step => gain(step) >= kWorthwhile && !step.changes_disparities &&
-      step.area.fits && (!step.loses_pixels || board.loses_pixels));
-  const cheap = useful.filter(step => {
-    const price = priceOf(step, board);
-    return price.banks <= 0 && price.slicesPercent <= kCheapSlices && price.blockRams <= 0 &&
-        step.clock_mhz === board.clock_mhz;
-  });
-  return {first: cheap[0] ?? useful[0] ?? null, largest: useful[0] ?? null, gain, board, isCheap: cheap.length > 0};
-}
-
-export const stepText = step => `${step.knob}: ${step.from} → ${step.to}`;
-
 function whatFirst(run) {
   const advice = adviceOf(run);
   if (!advice) return ['Not known: this report was made with --quick.'];
   const {first, largest, gain, isCheap} = advice;
   if (!first) return ['Nothing in one step: no knob gains 1 % or more and keeps the disparities.'];
-  const text = step => `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s (${signed(gain(step), percent)})`;
-  return [`${text(first)}${isCheap ? ', with the FPGA and the banks there are' : ''}.`,
-    largest === first ? null : `The largest step: ${text(largest)}.`];
+  const text = step =>
+      `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s (${signed(gain(step), percent)})`;
+  return [
+    `${text(first)}${isCheap ? ', with the FPGA and the banks there are' : ''}.`,
+    largest === first ? null : `The largest step: ${text(largest)}.`
+  ];
 }
 
 function whatItCosts(run) {
@@ -179,21 +154,25 @@ function whatItCosts(run) {
       `${device.name}) and ${count(total.block_rams, 'block RAM')}.`;
   if (!advice?.first) return [now];
   const texts = [`The first change takes ${priceText(advice.first, advice.board)}.`];
-  if (advice.largest !== advice.first) texts.push(`The largest takes ${priceText(advice.largest, advice.board)}.`);
+  if (advice.largest !== advice.first)
+    texts.push(`The largest takes ${priceText(advice.largest, advice.board)}.`);
   return [...texts, now];
 }
 
 export function headlineOf(run) {
   const {now, limit, by, share, steady, computer} = rateOf(run);
-  return `${rate(now)} frames/s${steady ? ', steady' : computer ? ' from power-up' : ''}: ${percent(share)} of the bound ` +
+  return `${rate(now)} frames/s${
+             steady       ? ', steady' :
+                 computer ? ' from power-up' :
+                            ''}: ${percent(share)} of the bound ` +
       `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets`;
 }
 
 // [question, [answer, ..]] in the order in which they are asked.
 export const answersOf = run => [
-  ['What limits?', whatLimits(run)],
-  ['Who waits for whom?', whoWaits(run)],
-  ['Where in the picture?', whereText(run)],
-  ['What to change first?', whatFirst(run)],
-  ['What does it cost?', whatItCosts(run)],
+    ['What limits?', whatLimits(run)],
+    ['Who waits for whom?', whoWaits(run)],
+    ['Where in the picture?', whereText(run)],
+    ['What to change first?', whatFirst(run)],
+    ['What does it cost?', whatItCosts(run)],
 ];

@@ -13,7 +13,7 @@ export function brief(number) {
   if (typeof number !== 'number') return String(number);
   const size = Math.abs(number);
   for (const [unit, letter] of [[1e9, 'G'], [1e6, 'M'], [1e3, 'k']]) {
-    if (size >= unit) return `${+(number / unit).toPrecision(3)}${letter}`;
+    if (size >= unit) return `${+ (number / unit).toPrecision(3)}${letter}`;
   }
   return String(+number.toPrecision(4));
 }
@@ -21,7 +21,14 @@ export function brief(number) {
 // A value of a table: every digit that it has.
 export const value = any => any === null || any === undefined ? '' : String(any);
 
-export const csvText = (names, rows) => [names, ...rows].map(row => row.map(cell => {
-  const text = value(cell);
-  return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-}).join(',')).join('\n') + '\n';
+export const csvText = (names, rows) => [names, ...rows]
+                                            .map(
+                                                row => row.map(cell => {
+                                                            const text = value(cell);
+                                                            return /[",\n\r]/.test(text) ?
+                                                                `"${text.replaceAll('"', '""')}"` :
+                                                                text;
+                                                          })
+                                                           .join(','))
+                                            .join('\n') +
+    '\n';

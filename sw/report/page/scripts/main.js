@@ -9,4 +9,6 @@ const data = JSON.parse(document.getElementById('data').textContent);
 const page = document.getElementById('page');
 startTooltips();
 ({run: showRun, two_runs: showTwoRuns, database: showDatabase})[data.kind](page, data);
-page.append(h('footer', {class: 'foot'}, `Written by stereotlm ${data.version}. The page is one file and needs no network.`));
+page.append(
+    h('footer', {class: 'foot'},
+      `Written by stereotlm ${data.version}. The page is one file and needs no network.`));

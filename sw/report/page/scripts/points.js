@@ -2,8 +2,10 @@
 import {Table} from './table.js';
 
 // Rates and prices first, then keys, then the other figures.
-const kFirst = ['frames_per_second.steady', 'frames_per_second.system', 'frames_per_second.core', 'bound.system', 'bound.core',
-  'area.slices', 'area.block_rams', 'area.multipliers', 'latency_ms.capture_to_host.p50'];
+const kFirst = [
+  'frames_per_second.steady', 'frames_per_second.system', 'frames_per_second.core', 'bound.system',
+  'bound.core', 'area.slices', 'area.block_rams', 'area.multipliers', 'latency_ms.capture_to_host.p50'
+];
 
 export class Points {
   constructor({columns, points, keys}) {
@@ -28,30 +30,45 @@ export class Points {
     if (!this.table.has('cycles')) return;
     const cycles = this.table.column('cycles');
     for (const name of [...this.table.names]) {
-      const target = name.startsWith('banks.') ? name.replace(/busy_cycles$/, 'utilization') : name.startsWith('ports.') ?
-        name.replace(/stall_cycles$/, 'stall_percent') : name;
+      const target = name.startsWith('banks.') ? name.replace(/busy_cycles$/, 'utilization') :
+          name.startsWith('ports.')            ? name.replace(/stall_cycles$/, 'stall_percent') :
+                                                 name;
       if (target === name) continue;
       if (this.table.isConstant(name)) continue;
       const factor = target.endsWith('percent') ? 100 : 1;
-      this.table.add(target, this.table.column(name).map((value, row) => value === null ? null : factor * value / cycles[row]));
+      this.table.add(
+          target,
+          this.table.column(name).map((value, row) => value === null ? null : factor * value / cycles[row]));
     }
   }
-  get names() { return [...this.figures, ...this.keys]; }
-  column(name) { return this.table.column(name); }
-  isNumeric(name) { return this.column(name).every(value => value === null || typeof value === 'number'); }
-  whenSelected(listener) { this.listeners.add(listener); }
+  get names() {
+    return [...this.figures, ...this.keys];
+  }
+  column(name) {
+    return this.table.column(name);
+  }
+  isNumeric(name) {
+    return this.column(name).every(value => value === null || typeof value === 'number');
+  }
+  whenSelected(listener) {
+    this.listeners.add(listener);
+  }
 
   // Sets or (with null) takes away the filter of a name. `final`: false while a brush moves.
   filter(name, passes, final = true) {
-    if (passes) this.filters.set(name, passes);
-    else this.filters.delete(name);
+    if (passes)
+      this.filters.set(name, passes);
+    else
+      this.filters.delete(name);
     this.selected.fill(1);
     for (const each of this.filters.values()) {
       for (let row = 0; row < this.size; ++row) this.selected[row] &= each(row) ? 1 : 0;
     }
     for (const listener of this.listeners) listener(final);
   }
-  get count() { return this.selected.reduce((sum, is) => sum + is, 0); }
+  get count() {
+    return this.selected.reduce((sum, is) => sum + is, 0);
+  }
 
   // The selected points than which none is better in both columns, from left to right.
   front(x, y) {

@@ -68,17 +68,25 @@ export function axisBelow(scale, width, height, label, {ticks = width / 70, text
     end = tick.at + half;
     return true;
   });
-  return s('g', {class: 'axis', 'aria-hidden': 'true'}, shown.map(tick => [
-    grid && s('line', {x1: tick.at, x2: tick.at, y1: 0, y2: height, class: 'grid'}),
-    s('text', {x: tick.at, y: height + 15, 'text-anchor': 'middle'}, tick.label),
-  ]), s('line', {x1: 0, x2: width, y1: height, y2: height, class: 'base'}),
-  s('text', {x: width, y: height + 31, 'text-anchor': 'end', class: 'label'}, label));
+  return s(
+      'g', {class: 'axis', 'aria-hidden': 'true'},
+      shown.map(
+          tick =>
+              [grid && s('line', {x1: tick.at, x2: tick.at, y1: 0, y2: height, class: 'grid'}),
+               s('text', {x: tick.at, y: height + 15, 'text-anchor': 'middle'}, tick.label),
+  ]),
+      s('line', {x1: 0, x2: width, y1: height, y2: height, class: 'base'}),
+      s('text', {x: width, y: height + 31, 'text-anchor': 'end', class: 'label'}, label));
 }
 
 // The same on the left side. The label stands above.
 export function axisLeft(scale, width, height, label, {ticks = height / 45, text = brief, grid = true} = {}) {
-  return s('g', {class: 'axis', 'aria-hidden': 'true'}, scale.ticks(ticks).map(tick => [
-    grid && s('line', {x1: 0, x2: width, y1: scale(tick), y2: scale(tick), class: 'grid'}),
-    s('text', {x: -6, y: scale(tick) + 4, 'text-anchor': 'end'}, text(tick)),
-  ]), label && s('text', {x: -6, y: -10, class: 'label'}, label));
+  return s(
+      'g', {class: 'axis', 'aria-hidden': 'true'},
+      scale.ticks(ticks).map(
+          tick =>
+              [grid && s('line', {x1: 0, x2: width, y1: scale(tick), y2: scale(tick), class: 'grid'}),
+               s('text', {x: -6, y: scale(tick) + 4, 'text-anchor': 'end'}, text(tick)),
+  ]),
+      label && s('text', {x: -6, y: -10, class: 'label'}, label));
 }

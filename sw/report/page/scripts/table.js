@@ -2,7 +2,9 @@
 
 const kLetters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
 const kDigits = new Uint8Array(128);
-[...kLetters].forEach((letter, digit) => { kDigits[letter.charCodeAt(0)] = digit; });
+[...kLetters].forEach((letter, digit) => {
+  kDigits[letter.charCodeAt(0)] = digit;
+});
 
 // The values of a column, one for each row.
 export function unpack(column, rows) {
@@ -30,9 +32,15 @@ export class Table {
     this.packed = new Map(columns.map(column => [column.name, column]));
     this.unpacked = new Map();
   }
-  get names() { return [...this.packed.keys()]; }
-  has(name) { return this.packed.has(name); }
-  isConstant(name) { return 'constant' in (this.packed.get(name) ?? {constant: null}); }
+  get names() {
+    return [...this.packed.keys()];
+  }
+  has(name) {
+    return this.packed.has(name);
+  }
+  isConstant(name) {
+    return 'constant' in (this.packed.get(name) ?? {constant: null});
+  }
   // A column that follows from others.
   add(name, values) {
     this.packed.set(name, {name});
@@ -57,10 +65,12 @@ export class Boards {
   text(row) {
     const shape = this.shape[row];
     if (!this.words.has(shape)) {
-      this.words.set(shape, this.shapes[shape].map(
-          word => typeof word === 'string' ? word : unpack(word, this.sizes[shape])));
+      this.words.set(
+          shape,
+          this.shapes[shape].map(word => typeof word === 'string' ? word : unpack(word, this.sizes[shape])));
     }
-    return this.words.get(shape).map(
-        word => typeof word === 'string' ? word : word[this.place[row]]).join('');
+    return this.words.get(shape)
+        .map(word => typeof word === 'string' ? word : word[this.place[row]])
+        .join('');
   }
 }

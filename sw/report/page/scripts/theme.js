@@ -37,16 +37,23 @@ document.documentElement.dataset.theme = isDark() ? 'dark' : 'light';
 export const styleColour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 const kNamed = {
-  left_lut: '--blue', right_lut: '--sky', left_pixel: '--vermilion', right_pixel: '--orange',
-  result: '--green', host: '--purple', turnaround: '--grey',
+  left_lut: '--blue',
+  right_lut: '--sky',
+  left_pixel: '--vermilion',
+  right_pixel: '--orange',
+  result: '--green',
+  host: '--purple',
+  turnaround: '--grey',
 };
 const kOthers = ['--blue', '--vermilion', '--green', '--orange', '--sky', '--purple', '--yellow', '--grey'];
 // The variable of the colour of a port or a cause; `host capture` has that of the host.
 export const namedColour = name => kNamed[name] ?? kNamed[name.split(' ')[0]] ?? '--grey';
 export const nthColour = number => kOthers[number % kOthers.length];
 
-const kViridis = [[68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137],
-                  [53, 183, 121], [110, 206, 88], [181, 222, 43], [253, 231, 37]];
+const kViridis = [
+  [68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137], [53, 183, 121],
+  [110, 206, 88], [181, 222, 43], [253, 231, 37]
+];
 const kHeatLight = [[250, 247, 243], [253, 212, 158], [253, 141, 60], [217, 72, 1], [127, 39, 4]];
 const kHeatDark = [[32, 35, 40], [92, 40, 40], [176, 64, 28], [240, 140, 40], [255, 236, 170]];
 

@@ -1,4 +1,4 @@
-// One tooltip for the page, shown for the mark under the pointer or with the focus; and the keys that move the
+// One tooltip for the page, for the mark under the pointer or with the focus; and the keys that move the
 // focus from mark to mark of a chart.
 import {h} from './dom.js';
 
@@ -18,7 +18,9 @@ export function showTooltip(lines, x, y) {
   tooltip.hidden = false;
   moveTooltip(x, y);
 }
-export const hideTooltip = () => { tooltip.hidden = true; };
+export const hideTooltip = () => {
+  tooltip.hidden = true;
+};
 
 // Makes an element a mark: `lines` are the lines of its tooltip, and its name for a screen reader.
 export function mark(element, lines) {
@@ -49,8 +51,10 @@ export function startTooltips() {
   const linesOf = event => tooltipTexts.get(event.target.closest?.('.mark'));
   document.addEventListener('pointermove', event => {
     const lines = linesOf(event);
-    if (lines) showTooltip(lines, event.clientX, event.clientY);
-    else if (!event.target.closest?.('.hovers')) hideTooltip();
+    if (lines)
+      showTooltip(lines, event.clientX, event.clientY);
+    else if (!event.target.closest?.('.hovers'))
+      hideTooltip();
   });
   const showFocused = element => {
     const lines = tooltipTexts.get(element);
@@ -59,7 +63,11 @@ export function startTooltips() {
     showTooltip(lines, box.left + box.width / 2, box.top + box.height / 2);
   };
   document.addEventListener('focusin', event => showFocused(event.target));
-  document.addEventListener('keydown', event => { if (event.key === 'Escape') hideTooltip(); });
+  document.addEventListener('keydown', event => {
+    if (event.key === 'Escape') hideTooltip();
+  });
   // The page also scrolls to show a mark that gets the focus.
-  addEventListener('scroll', () => { if (!tooltip.hidden) showFocused(document.activeElement); }, {passive: true});
+  addEventListener('scroll', () => {
+    if (!tooltip.hidden) showFocused(document.activeElement);
+  }, {passive: true});
 }
