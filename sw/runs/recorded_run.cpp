@@ -124,7 +124,7 @@ std::optional<RecordedRun> load_recorded_run(const std::string& argument, const 
       is_right = false;
     }
   };
-  const std::string rule = "A and B must be folders that run --out has written: ";
+  const std::string rule = argument + " must be a folder that run --out has written: ";
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::is_directory(status)) {

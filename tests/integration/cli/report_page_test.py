@@ -157,7 +157,7 @@ class EveryChart(PageTest):
 
     CHARTS = {
         "core": "bounds roofline memory banks blame ports rows picture frames knobs area audit configuration",
-        "recorded": "bounds roofline memory banks blame ports rows picture frames time latency knobs area "
+        "recorded": "memory bounds roofline banks blame ports rows picture frames time latency knobs area "
         "audit configuration",
         "two": "rows picture frames blame ports-A ports-B settings totals",
         "database": "scatter chosen filters parallel points constants",

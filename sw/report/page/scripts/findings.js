@@ -3,6 +3,8 @@ import {count, fixed, percent, rate, signed, whole} from './format.js';
 import {unpack} from './table.js';
 import {adviceOf, priceText, stepText} from './advice.js';
 
+const kAbout = 1 + 1e-6;  // a rate that reaches its bound may be above it by rounding
+
 const sum = numbers => numbers.reduce((total, number) => total + number, 0);
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
@@ -13,7 +15,7 @@ export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
   const limit = computer ? bound.system : bound.core;
-  const steady = rates.steady <= limit;
+  const steady = rates.steady <= limit * kAbout;
   const now = steady ? rates.steady : rates.system ?? rates.core;
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
   return {now, limit, by, computer, share: now / limit, steady};

@@ -33,10 +33,11 @@ export function showRun(page, {run}) {
   });
   addAnswers(page, answersOf(run));
 
+  if (run.memory_chart) addMemory(addGroup(page, 'The board and its traffic'), run);
   const limits = addGroup(page, 'What limits');
   addBounds(limits, run);
   addRoofline(limits, run);
-  addMemory(limits, run);
+  if (!run.memory_chart) addMemory(limits, run);
   addBankUse(limits, run);
 
   const waits = addGroup(page, 'Who waits for whom, where and when');
