@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "sw/explore/store/database.h"

@@ -244,7 +244,7 @@ class Paths(ProgramTest):
             ([*pictures, "--left", self.left, "--right"], "--right", ""),
             ([*calibrate, "--synthetic", "1", "--out"], "--out", ".yaml"),
             (["calibrate", "--print-grid", *grid, "--out"], "--out", ".pdf"),
-            (["diff", self.out], "A and B", ""),
+            (["diff", self.out], "B must be a folder", ""),
             (["diff", self.out, self.out, "--csv"], "--csv", ".csv"),
             (sweep, "--out", ""),
             ([*sweep, self.folder / "a.db", "--known"], "--known", ""),
