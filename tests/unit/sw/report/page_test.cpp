@@ -54,7 +54,7 @@ TEST(HtmlPage, IsOneFile) {
   EXPECT_THAT(page, Not(HasSubstr("\nimport ")));
   EXPECT_THAT(page, Not(HasSubstr("\nexport ")));
   EXPECT_THAT(page, Not(HasSubstr("innerHTML")));
-  EXPECT_LT(page.size(), 150'000U);
+  EXPECT_LT(page.size(), 200'000U);
 }
 
 TEST(Base64, IsThatOfRfc4648) {
