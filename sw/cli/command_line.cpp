@@ -11,7 +11,6 @@
 #include "platform/config/board_keys.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/text.h"
-#include "sw/cli/unbuilt.h"
 #include "sw/process/installation.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
@@ -45,7 +44,7 @@ void check_first_argument(const CLI::App& program, int argc, const char* const* 
   bool is_known = program.get_option_no_throw(first) != nullptr;
   for (const CLI::App* command : program.get_subcommands({})) {
     is_known = is_known || command->get_name() == first;
-    if (!is_unbuilt(*command)) commands.push_back(command->get_name());
+    commands.push_back(command->get_name());
   }
   const std::string all = platform::listed(commands);
   if (is_known) return;
@@ -91,8 +90,7 @@ Action parse_command_line(int argc, const char* const* argv) {
   program.require_subcommand(1);
   program.footer(
       "Exit status: 0 done; 1 failed after the first simulated cycle; 2 refused before it; 130\n"
-      "interrupted. Not in this version: " +
-      unbuilt_commands() + ".");
+      "interrupted.");
   Action action;
   add_run(program, action);
   add_check(program, action);
@@ -107,9 +105,9 @@ Action parse_command_line(int argc, const char* const* argv) {
   add_plot(program, action);
   add_diff(program, action);
   add_diagram(program, action);
+  add_report(program, action);
   add_paper(program, action);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
-  add_unbuilt_commands(program);
   check_first_argument(program, argc, argv);
   try {
     program.parse(argc, argv);

@@ -27,6 +27,7 @@ void add_merge(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
 void add_diagram(CLI::App& program, Action& action);
 void add_diff(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_paper(CLI::App& program, Action& action);
 
 }  // namespace stereotlm::cli

@@ -33,10 +33,4 @@ class UnbuiltOption {
 
 inline constexpr const char* kNotInThisVersion = "not in this version";
 
-// The names of the commands of contract section 5 that this version does not implement, separated by commas.
-std::string unbuilt_commands();
-// Adds these commands to the program, hidden from its help. Each throws Refused with kNotInThisVersion.
-void add_unbuilt_commands(CLI::App& program);
-bool is_unbuilt(const CLI::App& command);
-
 }  // namespace stereotlm::cli

@@ -153,8 +153,8 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
 
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems) {
-  auto run =
-      read_recorded_run(argument, folder, "A and B must be folders that run --out has written: ", problems);
+  auto run = read_recorded_run(argument, folder,
+                               argument + " must be a folder that run --out has written: ", problems);
   if (!run) return std::nullopt;
   bool is_right = true;
   for (const RecordedFile& input : inputs_of(run->options)) {

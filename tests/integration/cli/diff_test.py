@@ -316,7 +316,7 @@ class Folders(DiffTest):
         return run("diff", self.a, self.b)
 
     def test_folders_without_a_run_are_refused(self):
-        rule = "A and B must be folders that run --out has written"
+        rule = "B must be a folder that run --out has written"
         none = self.folder / "none"
         rows = [(none, f"error: {rule}: '{none}': no such folder"),
                 (self.left, f"error: {rule}: '{self.left}': not a folder")]

@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include "sw/cli/add_command.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/temporary_files.h"
+#include "sw/cli/typed_option.h"
+#include "sw/explore/store/bank_names.h"
+#include "sw/files/replaced_file.h"
+#include "sw/process/installation.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/report/html_page.h"
+#include "sw/report/page_data/database_data.h"
+#include "sw/report/page_data/difference_data.h"
+#include "sw/report/page_data/run_data.h"
+#include "sw/runs/explanation.h"
+#include "sw/runs/frame_alignment.h"
+#include "sw/runs/recorded_run.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kReportFooter =
+    "INPUT is a folder that run --out has written, a database of sweep, or two such folders, which are\n"
+    "compared. The page is one file; a browser shows it without a network. Runs are run again, as diff "
+    "does,\n"
+    "for what happens in the rows of the picture. For one run every knob of the board is also tried one "
+    "step\n"
+    "up and down, as explain does.";
+
+struct ReportOptions {
+  TypedList inputs;
+  Typed out;
+  bool quick = false;
+
+  void add_to(CLI::App& command) {
+    inputs.add_to(command, "INPUT", "...", "One run or database, or two runs");
+    out.add_to(command, "--out", "F.html", "The page to write");
+    add_flag(command, "--quick", quick, "Simulate nothing: no rows of the picture, no gain of the knobs");
+  }
+
+  bool is_database() const {
+    std::error_code ignored;
+    return inputs.text.size() == 1 && std::filesystem::is_regular_file(inputs.text.front(), ignored);
+  }
+
+  void check_usage() {
+    process::Problems problems;
+    if (inputs.text.empty())
+      problems.add("INPUT: missing: a folder of run --out, two of them, or a database");
+    if (inputs.text.size() > 2) {
+      problems.add(fmt::format("INPUT: {} given: one run or database, or two runs", inputs.text.size()));
+    }
+    if (!out.is_given()) {
+      problems.add("--out: missing: the page to write");
+    } else if (std::filesystem::path(out.text).extension() != ".html") {
+      problems.add(fmt::format("--out '{}': must end in .html", out.text));
+    }
+    if (quick && inputs.text.size() == 2)
+      problems.add("--quick: not with two runs: they are compared row by row");
+    if (quick && is_database()) problems.add("--quick: not with a database, for which nothing is simulated");
+    problems.check();
+  }
+};
+
+// nullopt if interrupted.
+std::optional<Json> data_of_run(const ReportOptions& options, process::Problems& problems) {
+  const auto run = runs::load_recorded_run("RUN", options.inputs.text.front(), problems);
+  if (!run) return std::nullopt;
+  runs::RunInput input = runs::open_again(*run, problems);
+  if (!options.quick) {
+    temporary_folder(problems);  // the simulations need one: reports now if it cannot be created
+    if (const auto problem = explore::bank_names_problem(run->board)) {
+      problems.add(fmt::format("'{}': {}; --quick simulates nothing", run->folder, *problem));
+    }
+  }
+  problems.check();
+  process::catch_interrupts();
+  Json data = report::run_data(*run, input.tables);
+  if (!options.quick) {
+    if (!report::add_repetition(*run, input, data)) return std::nullopt;
+    runs::Explanation explanation(run->board, input.tables, input.camera);
+    const bool calibrated = run->options.calibration.has_value();
+    if (!explanation.simulate(calibrated ? runs::PointSimulator(input.tables) : runs::PointSimulator()))
+      return std::nullopt;
+    data["knobs"] = report::knobs_data(run->board, explanation);
+  }
+  return Json{{"kind", "run"}, {"run", std::move(data)}};
+}
+
+std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Problems& problems) {
+  const auto a = runs::load_recorded_run("A", options.inputs.text[0], problems);
+  const auto b = runs::load_recorded_run("B", options.inputs.text[1], problems);
+  problems.check();
+  const runs::RunInput input_a = runs::open_again(*a, problems);
+  const runs::RunInput input_b = runs::open_again(*b, problems);
+  problems.check();
+  process::catch_interrupts();
+  const runs::DiffLimits limits(*a, *b);
+  runs::FrameAlignment aligned(*a, *b, limits, nullptr);
+  if (!aligned.run()) return std::nullopt;
+  return Json{{"kind", "two_runs"},
+              {"runs", {report::run_data(*a, input_a.tables), report::run_data(*b, input_b.tables)}},
+              {"difference", report::difference_data(a->board.image, aligned, limits)}};
+}
+
+std::optional<Json> data_of(const ReportOptions& options, process::Problems& problems) {
+  if (options.inputs.text.size() == 2) return data_of_two_runs(options, problems);
+  if (!options.is_database()) return data_of_run(options, problems);
+  try {
+    return Json{{"kind", "database"}, {"database", report::database_data(options.inputs.text.front())}};
+  } catch (const std::runtime_error& error) {  // a DatabaseError, or no points
+    problems.add(error.what());
+  }
+  return std::nullopt;
+}
+
+int report(const ReportOptions& options) {
+  process::Problems problems;
+  std::optional<files::ReplacedFile> file;
+  try {
+    file.emplace(options.out.text);
+  } catch (const std::system_error& error) {
+    problems.add(fmt::format("--out '{}': {}", options.out.text, error.code().message()));
+  }
+  std::optional<Json> data = data_of(options, problems);
+  problems.check();
+  if (!data) {
+    process::say("note", "interrupted: no page is written");
+    return kInterrupted;
+  }
+  Json whole = {{"format", 1}, {"version", process::kVersion}};
+  whole.update(*data);
+  const std::string page = report::html_page(whole);
+  file->write(page);
+  file->commit();
+  process::print(fmt::format("{}: {} kB\n", options.out.text, (page.size() + 999) / 1000));
+  return kDone;
+}
+
+}  // namespace
+
+void add_report(CLI::App& program, Action& action) {
+  add_command(program, action, "report", "Write a page that shows a run, a database, or two runs compared",
+              report, kReportFooter);
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace stereotlm::report {
+
+// A page that shows the data (sw/report/page/README.md) in a browser. It is one file and needs no network.
+// Text of the data is shown as text, whatever it holds; bytes that are not UTF-8 are shown as replacement
+// characters.
+std::string html_page(const nlohmann::ordered_json& data);
+
+}  // namespace stereotlm::report

@@ -1,0 +1,192 @@
+// The stalls, painted over the picture: a slider between the picture and its disparities, one for the paint.
+import {addChart, canvasOf} from './chart.js';
+import {h} from './dom.js';
+import {whole} from './format.js';
+import {unpack} from './table.js';
+import {viridis} from './theme.js';
+import {hideTooltip, showTooltip} from './tooltip.js';
+
+const kInvalid = 255;
+const kMostHeight = 900;
+const kPaint = [255, 60, 0];
+
+async function pixelsOf(url) {
+  const image = new Image();
+  image.src = url;
+  await image.decode();
+  const canvas = h('canvas', {width: image.naturalWidth, height: image.naturalHeight});
+  const context = canvas.getContext('2d', {willReadFrequently: true});
+  context.drawImage(image, 0, 0);
+  return {canvas, context, data: context.getImageData(0, 0, canvas.width, canvas.height)};
+}
+
+// The disparities in colours; no answer is black. Returns the grey values.
+function colourDisparities({context, data}, disparities) {
+  const grey = new Uint8Array(data.data.length / 4);
+  for (let i = 0; i < grey.length; ++i) {
+    grey[i] = data.data[4 * i];
+    const colour = grey[i] === kInvalid ? [0, 0, 0] : viridis(grey[i] / Math.max(1, disparities - 1));
+    data.data.set(colour, 4 * i);
+  }
+  context.putImageData(data, 0, 0);
+  return grey;
+}
+
+// The amounts as a picture of their own, transparent where there is none.
+function paintOf({values, columns, rows}) {
+  const canvas = h('canvas', {width: columns, height: rows});
+  const context = canvas.getContext('2d');
+  const data = context.createImageData(columns, rows);
+  let most = 0;
+  for (const value of values) most = Math.max(most, value);
+  values.forEach((value, i) => {
+    if (value <= 0) return;
+    data.data.set(kPaint, 4 * i);
+    data.data[4 * i + 3] = 40 + 215 * value / most;
+  });
+  context.putImageData(data, 0, 0);
+  return canvas;
+}
+
+// The layers of paint of a run: {name, values, columns, rows}.
+export function layersOf(run) {
+  const {recording, rows} = run;
+  const layers = [];
+  if (recording?.tiles) {
+    const {columns, rows: tileRows, stalls} = recording.tiles;
+    for (const {port, bank, by, cycles} of stalls) {
+      layers.push({
+        name: `${port} on ${bank} for ${by}`,
+        values: unpack(cycles, columns * tileRows),
+        columns,
+        rows: tileRows
+      });
+    }
+    layers.sort((a, b) => b.values.reduce((x, y) => x + y, 0) - a.values.reduce((x, y) => x + y, 0));
+  } else if (rows) {
+    for (const [port, values] of Object.entries(rows.stalls)) {
+      if (values.some(value => value > 0))
+        layers.push({name: `${port}, by row`, values, columns: 1, rows: values.length});
+    }
+  }
+  return layers;
+}
+
+// pictures: {disparity, disparities, left or other}, layers as above; names: of the two pictures.
+export function addPicture(page, {id = 'picture', title, note, pictures, layers, names}) {
+  const state = {split: 0.5, paint: 0.35, layer: 0};
+  let loaded = null;
+  let drawn = null;
+  const slider = (name, label, key) => h('label', null, `${label} `, h('input', {
+                                           type: 'range',
+                                           min: 0,
+                                           max: 100,
+                                           value: 100 * state[key],
+                                           id: `${id}-${name}`,
+                                           input: event => {
+                                             state[key] = event.target.value / 100;
+                                             drawn?.();
+                                           }
+                                         }));
+  const choose =
+      h('select', {
+        id: `${id}-layer`,
+        change: event => {
+          state.layer = Number(event.target.value);
+          drawn?.();
+        }
+      },
+        layers.map((layer, i) => h('option', {value: i}, layer.name)));
+  const draw = (host, width) => {
+    if (!loaded) return;
+    const {width: columns, height: rows} = loaded.first.canvas;
+    const scale = Math.min(width / columns, kMostHeight / rows);
+    const {canvas, context} = canvasOf(Math.round(columns * scale), Math.round(rows * scale));
+    const [w, hgt] = [columns * scale, rows * scale];
+    canvas.classList.add('picture', 'hovers');
+    canvas.setAttribute('tabindex', '0');
+    canvas.setAttribute('aria-label', `${title}. Arrow keys read the picture.`);
+    let at = [Math.round(columns / 2), Math.round(rows / 2)];
+    const paints = layers.map(paintOf);
+    drawn = () => {
+      context.imageSmoothingEnabled = scale < 1;
+      context.globalAlpha = 1;
+      context.drawImage(loaded.first.canvas, 0, 0, w, hgt);
+      if (loaded.second && state.split < 1) {
+        context.save();
+        context.beginPath();
+        context.rect(w * state.split, 0, w, hgt);
+        context.clip();
+        context.drawImage(loaded.second.canvas, 0, 0, w, hgt);
+        context.restore();
+        context.fillStyle = '#fff';
+        context.fillRect(w * state.split - 1, 0, 2, hgt);
+      }
+      context.imageSmoothingEnabled = false;
+      context.globalAlpha = state.paint;
+      if (paints[state.layer]) context.drawImage(paints[state.layer], 0, 0, w, hgt);
+    };
+    const tip = (clientX, clientY) => {
+      const [x, y] = at;
+      const lines = [`column ${x}, row ${y}`];
+      const grey = loaded.grey?.[y * columns + x];
+      if (grey !== undefined) lines.push(grey === kInvalid ? 'no disparity' : `disparity ${grey}`);
+      for (const layer of layers) {
+        const line = Math.floor(y / rows * layer.rows);
+        const value = layer.values[line * layer.columns + Math.floor(x / columns * layer.columns)];
+        if (value) lines.push(`${layer.name}: ${whole(value)} cycles`);
+      }
+      showTooltip(lines, clientX, clientY);
+    };
+    const place = (x, y) => {
+      at = [Math.max(0, Math.min(columns - 1, x)), Math.max(0, Math.min(rows - 1, y))];
+    };
+    canvas.addEventListener('pointermove', event => {
+      const box = canvas.getBoundingClientRect();
+      place(Math.floor((event.clientX - box.left) / scale), Math.floor((event.clientY - box.top) / scale));
+      tip(event.clientX, event.clientY);
+    });
+    canvas.addEventListener('pointerleave', hideTooltip);
+    canvas.addEventListener('keydown', event => {
+      const [x, y] =
+          {ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key] ?? [];
+      if (x === undefined) return;
+      event.preventDefault();
+      place(at[0] + x, at[1] + y);
+      const box = canvas.getBoundingClientRect();
+      tip(box.left + at[0] * scale, box.top + at[1] * scale);
+    });
+    host.append(canvas);
+    drawn();
+  };
+  const chart = addChart(page, {
+    id,
+    title,
+    note,
+    draw,
+    body:
+        h('div', {class: 'controls'}, names[1] && slider('split', `${names[0]} | ${names[1]}`, 'split'),
+          layers.length > 0 && slider('paint', 'paint', 'paint'),
+          layers.length > 0 && h('label', null, 'stalls of ', choose)),
+    numbers: () => layers.length === 0 ? [['cycles'], []] :
+                                         [
+                                           ['row', 'column', 'cycles'],
+                                           [...layers[state.layer].values]
+                                               .map(
+                                                   (value, i) =>
+                                                       [Math.floor(i / layers[state.layer].columns),
+                                                        i % layers[state.layer].columns, value])
+                                               .filter(row => row[2] !== 0)
+                                         ]
+  });
+  (async () => {
+    const first = await pixelsOf(pictures[0].url);
+    const second = pictures[1] ? await pixelsOf(pictures[1].url) : null;
+    const all = [first, second];
+    const greys = pictures.map(
+        (picture, i) => picture.disparities ? colourDisparities(all[i], picture.disparities) : null);
+    loaded = {first, second, grey: greys.find(Boolean)};
+    chart.redraw();
+  })();
+  return chart;
+}

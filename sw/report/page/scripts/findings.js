@@ -1,0 +1,180 @@
+// What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
+import {count, fixed, percent, rate, signed, whole} from './format.js';
+import {unpack} from './table.js';
+import {adviceOf, priceText, stepText} from './advice.js';
+
+const kAbout = 1 + 1e-6;  // a rate that reaches its bound may be above it by rounding
+
+const sum = numbers => numbers.reduce((total, number) => total + number, 0);
+
+export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
+
+// The rate of a run and its bound. The bound of a computer is that of the rate from power-up; of a few frames
+// the steady rate may be above it, and is then not compared with it.
+export function rateOf(run) {
+  const {frames_per_second: rates, bound} = run.stats;
+  const computer = rates.system !== undefined;
+  const limit = computer ? bound.system : bound.core;
+  const steady = rates.steady <= limit * kAbout;
+  const now = steady ? rates.steady : rates.system ?? rates.core;
+  const by = computer ? bound.system_limited_by : bound.core_limited_by;
+  return {now, limit, by, computer, share: now / limit, steady};
+}
+
+// Stalls of the ports, the most first: {port, bank, by, cycles, share of all cycles}.
+export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.cycles / run.stats.cycles}))
+                                   .sort((a, b) => b.cycles - a.cycles);
+
+export const waitText = ({port, bank, by, share}) => by === 'turnaround' ?
+    `${port} waits ${percent(share)} of all cycles, while ${bank} turns round` :
+    `${port} waits ${percent(share)} of all cycles, for ${by}, on ${bank}`;
+
+function whatLimits(run) {
+  const {by, limit, share, now, computer} = rateOf(run);
+  const [kind, name] = by.split(' ');
+  const reached = `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s`;
+  const because = {
+    bank: () => {
+      const bank = run.banks.find(each => each.name === name);
+      const busy = run.stats.banks.find(each => each.name === name);
+      return `Bank ${name}: it holds ${bank.buffers.map(each => each.name).join(', ')}, and is busy in ` +
+          `${percent(busy.utilization)} of the cycles`;
+    },
+    port: () => `Port ${name}: it takes one slot or word a cycle`,
+    matcher: () => 'The matcher: it takes one slot of both pictures a cycle, and the frame has so many slots',
+    camera: () => 'The cameras: the board could do more',
+    pci: () => 'The PCI bus: the words of pictures and results fill it',
+    bridge: () => 'The local bus behind the bridge',
+  }[kind]?.() ??
+      by;
+  const lost = [];
+  if (computer && share < 0.995) {
+    const dropped = run.stats.cameras?.[0];
+    if (dropped?.dropped_not_armed > 0) {
+      lost.push(
+          `A capture begins with a camera frame: ${dropped.dropped_not_armed} of ${dropped.frames} frames ` +
+          'of the camera found no free buffer');
+    }
+    if (run.stats.cameras?.some(camera => camera.dropped_pixels > 0)) lost.push('captures lose pixels');
+  }
+  if (!computer && share < 0.99 && run.stats.blame.length === 0) {
+    lost.push('no port stalls: the matcher waits for the queue of results, which no bound counts');
+  }
+  return [`${because}.`, `${reached}: ${rate(now)}.${lost.length ? ` ${lost.join('; ')}.` : ''}`];
+}
+
+function whoWaits(run) {
+  const blames = blamesOf(run);
+  if (blames.length === 0) return ['Nobody: no port of the banks ever stalls.'];
+  const others =
+      blames.slice(1, 3).map(row => `${row.port} for ${row.by} on ${row.bank} (${percent(row.share)})`);
+  return [
+    `${waitText(blames[0])}.`,
+    others.length > 0 ? `Then ${others.join(', ')}${blames.length > 3 ? ' and less' : ''}.` : null
+  ];
+}
+
+// The stalls of each row, of all ports together.
+export const stallsByRow = rows =>
+    rows.cycles.map((_, row) => sum(Object.values(rows.stalls).map(all => all[row])));
+
+// The rows that hold all but 1 % of an amount at each end.
+function mainRows(amounts) {
+  const total = sum(amounts);
+  let first = 0;
+  for (let below = amounts[0]; below < 0.005 * total; below += amounts[++first])
+    ;
+  let last = amounts.length - 1;
+  for (let above = amounts[last]; above < 0.005 * total; above += amounts[--last])
+    ;
+  return {first, last, total};
+}
+
+// The columns that hold the stalls.
+function mainColumns({columns, rows, width, stalls}) {
+  const amounts = new Array(columns).fill(0);
+  for (const {cycles} of stalls)
+    unpack(cycles, columns * rows).forEach((value, i) => {
+      amounts[i % columns] += value;
+    });
+  const {first, last} = mainRows(amounts);
+  return first === 0 && last === columns - 1 ? 'In all columns.' :
+                                               `In columns ${first * width} to ${(last + 1) * width - 1}.`;
+}
+
+// Where in the picture the stalls are.
+export function whereText(run) {
+  const tiles = run.recording?.tiles;
+  const rows = run.rows;
+  if (!rows) return ['Not known: this report was made with --quick.'];
+  const amounts = stallsByRow(rows);
+  if (sum(amounts) === 0) return ['Nowhere: no row of the picture waits.'];
+  const {first, last, total} = mainRows(amounts);
+  const inside = amounts.slice(first, last + 1);
+  const mean = total / rows.frames / inside.length;
+  const tenth = Math.max(1, Math.round(amounts.length / 10));
+  let best = {sum: 0, row: 0};
+  for (let row = 0, window = 0; row < amounts.length; ++row) {
+    window += amounts[row] - (row >= tenth ? amounts[row - tenth] : 0);
+    if (window > best.sum) best = {sum: window, row: Math.max(0, row - tenth + 1)};
+  }
+  const uneven = best.sum / total > 2 * tenth / inside.length;
+  const texts =
+      [uneven ?
+           `Most in rows ${best.row} to ${best.row + tenth - 1}: ${
+               percent(best.sum / total, 0)} of all stalls.` :
+           `Rows ${first} to ${last} of ${amounts.length}, evenly: ${whole(mean)} cycles a row and frame.`];
+  const frames = run.stats.frame_cycles;
+  const least = Math.min(...frames);
+  const longer = frames.filter(cycles => cycles > 1.01 * least).length;
+  if (longer > 0) {
+    texts.push(
+        `In ${longer} of ${count(frames.length, 'frame')}: these take up to ` +
+        `${whole(Math.max(...frames))} cycles, the others ${whole(least)}.`);
+  }
+  if (tiles) texts.push(mainColumns(tiles));
+  return texts;
+}
+
+function whatFirst(run) {
+  const advice = adviceOf(run);
+  if (!advice) return ['Not known: this report was made with --quick.'];
+  const {first, largest, gain, isCheap} = advice;
+  if (!first) return ['Nothing in one step: no knob gains 1 % or more and keeps the disparities.'];
+  const text = step =>
+      `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s (${signed(gain(step), percent)})`;
+  return [
+    `${text(first)}${isCheap ? ', with the FPGA and the banks there are' : ''}.`,
+    largest === first ? null : `The largest step: ${text(largest)}.`
+  ];
+}
+
+function whatItCosts(run) {
+  const {total, device} = run.area;
+  const advice = adviceOf(run);
+  const now = `The board takes ${whole(total.slices)} slices (${fixed(total.slices_percent, 1)} % of the ` +
+      `${device.name}) and ${count(total.block_rams, 'block RAM')}.`;
+  if (!advice?.first) return [now];
+  const texts = [`The first change takes ${priceText(advice.first, advice.board)}.`];
+  if (advice.largest !== advice.first)
+    texts.push(`The largest takes ${priceText(advice.largest, advice.board)}.`);
+  return [...texts, now];
+}
+
+export function headlineOf(run) {
+  const {now, limit, by, share, steady, computer} = rateOf(run);
+  return `${rate(now)} frames/s${
+             steady       ? ', steady' :
+                 computer ? ' from power-up' :
+                            ''}: ${percent(share)} of the bound ` +
+      `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets`;
+}
+
+// [question, [answer, ..]] in the order in which they are asked.
+export const answersOf = run => [
+    ['What limits?', whatLimits(run)],
+    ['Who waits for whom?', whoWaits(run)],
+    ['Where in the picture?', whereText(run)],
+    ['What to change first?', whatFirst(run)],
+    ['What does it cost?', whatItCosts(run)],
+];

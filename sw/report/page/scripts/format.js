@@ -1,0 +1,34 @@
+// Numbers as text.
+
+export const whole = number => Math.round(number).toLocaleString('en-US');
+export const fixed = (number, digits) =>
+    number.toLocaleString('en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits});
+export const percent = (share, digits = 1) => `${fixed(100 * share, digits)} %`;
+export const rate = number => fixed(number, number < 100 ? 2 : 1);
+export const signed = (number, text) => `${number < 0 ? '−' : '+'}${text(Math.abs(number))}`;
+export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? '' : 's'}`;
+
+// For ticks: 1200 -> 1.2k.
+export function brief(number) {
+  if (typeof number !== 'number') return String(number);
+  const size = Math.abs(number);
+  for (const [unit, letter] of [[1e9, 'G'], [1e6, 'M'], [1e3, 'k']]) {
+    if (size >= unit) return `${+ (number / unit).toPrecision(3)}${letter}`;
+  }
+  return String(+number.toPrecision(4));
+}
+
+// A value of a table: every digit that it has.
+export const value = any => any === null || any === undefined ? '' : String(any);
+
+export const csvText = (names, rows) => [names, ...rows]
+                                            .map(
+                                                row => row.map(cell => {
+                                                            const text = value(cell);
+                                                            return /[",\n\r]/.test(text) ?
+                                                                `"${text.replaceAll('"', '""')}"` :
+                                                                text;
+                                                          })
+                                                           .join(','))
+                                            .join('\n') +
+    '\n';

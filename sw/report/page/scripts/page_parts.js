@@ -1,0 +1,31 @@
+// What all pages have: the head line, the answers, groups of charts.
+import {addChart} from './chart.js';
+import {h} from './dom.js';
+import {themeSwitch} from './theme.js';
+
+export function addHead(page, {kind, name, headline, sub}) {
+  document.title = `${name}: ${headline}`;
+  page.append(
+      h('header', {class: 'head'},
+        h('div', {class: 'top'}, h('span', null, `stereotlm ${kind}`), h('b', null, name), themeSwitch()),
+        h('h1', null, headline), sub));
+}
+
+export function addAnswers(page, answers) {
+  page.append(
+      h('dl', {class: 'answers'},
+        answers.map(
+            ([question, texts]) =>
+                h('div', null, h('dt', null, question),
+                  texts.filter(Boolean).map(text => h('dd', null, text))))));
+}
+
+// A heading, and below it the place of charts.
+export function addGroup(page, title) {
+  const group = h('div', {class: 'cards'});
+  page.append(h('h2', {class: 'group'}, title), group);
+  return group;
+}
+
+// A line in the place of a chart whose numbers were not recorded.
+export const addAbsent = text => (page, id, title) => addChart(page, {id, title, note: text});

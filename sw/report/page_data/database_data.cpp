@@ -1,0 +1,138 @@
+#include "sw/report/page_data/database_data.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "sw/explore/store/database.h"
+#include "sw/explore/store/store_layout.h"
+#include "sw/report/page_data/packed_column.h"
+
+namespace stereotlm::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool begins(std::string_view text, std::string_view head) { return text.substr(0, head.size()) == head; }
+bool ends(std::string_view text, std::string_view tail) {
+  return text.size() >= tail.size() && text.substr(text.size() - tail.size()) == tail;
+}
+
+// Of the counters of each bank and each port the page has one: the others would make it too large.
+bool is_shown(const std::string& column) {
+  static const std::set<std::string> never = {"hash", "config", "frame_cycles"};
+  if (never.count(column) > 0) return false;
+  if (begins(column, "banks.")) return ends(column, ".busy_cycles");
+  if (begins(column, "ports.")) return ends(column, ".stall_cycles");
+  return true;
+}
+
+PackedColumn::Value value_of(const explore::Statement& row, int column) {
+  switch (sqlite3_column_type(row.handle(), column)) {
+    case SQLITE_NULL:
+      return std::monostate();
+    case SQLITE_INTEGER:
+      return row.integer(column);
+    case SQLITE_FLOAT:
+      return row.real(column);
+    default:
+      return row.text(column);
+  }
+}
+
+// Packs texts of which most parts are the same: files of boards.
+class PackedTexts {
+ public:
+  void add(const std::string& text) {
+    const std::vector<std::string> words = words_of(text);
+    const auto [shape, is_new] =
+        shapes_.emplace(words.size(), std::pair(shapes_.size(), std::vector<PackedColumn>(words.size())));
+    shape_of_row_.add(static_cast<std::int64_t>(shape->second.first));
+    for (std::size_t i = 0; i < words.size(); ++i) shape->second.second[i].add(words[i]);
+  }
+
+  Json json() const {
+    std::vector<Json> shapes(shapes_.size());
+    for (const auto& [length, shape] : shapes_) shapes[shape.first] = shape_json(shape.second);
+    return {{"shape", shape_of_row_.json()}, {"shapes", shapes}};
+  }
+
+ private:
+  // The text in pieces, each of which ends with a space or a newline.
+  static std::vector<std::string> words_of(const std::string& text) {
+    std::vector<std::string> words(1);
+    for (const char letter : text) {
+      words.back() += letter;
+      if (letter == ' ' || letter == '\n') words.emplace_back();
+    }
+    return words;
+  }
+
+  static Json shape_json(const std::vector<PackedColumn>& words) {
+    Json all = Json::array();
+    std::string same;
+    for (const PackedColumn& word : words) {
+      if (word.is_constant()) {
+        same += std::get<std::string>(word.constant());
+        continue;
+      }
+      all.push_back(same);
+      all.push_back(word.json());
+      same.clear();
+    }
+    all.push_back(same);
+    return all;
+  }
+
+  // By the number of words: the number of the shape, and its words.
+  std::map<std::size_t, std::pair<std::size_t, std::vector<PackedColumn>>> shapes_;
+  PackedColumn shape_of_row_;
+};
+
+}  // namespace
+
+Json database_data(const std::string& path) {
+  explore::Database database(path, explore::Database::Access::kRead);
+  explore::check_layout(database);
+  const std::vector<std::string> names = explore::columns_of(database);
+  std::vector<PackedColumn> columns(names.size());
+  PackedTexts boards;
+  explore::Statement points(database, "SELECT * FROM points ORDER BY hash");
+  std::size_t size = 0;
+  for (; points.step(); ++size) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const int column = static_cast<int>(i);
+      if (is_shown(names[i])) columns[i].add(value_of(points, column));
+      if (names[i] == "config") boards.add(points.text(column));
+    }
+  }
+  if (size == 0) throw std::runtime_error(fmt::format("'{}': has no points", path));
+  Json shown = Json::array();
+  Json left_out = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!is_shown(names[i])) {
+      left_out.push_back(names[i]);
+      continue;
+    }
+    Json column = {{"name", names[i]}};
+    column.update(columns[i].json());
+    shown.push_back(std::move(column));
+  }
+  return {{"path", path},
+          {"points", size},
+          {"keys", explore::first_column_of(database, "SELECT name FROM keys ORDER BY name")},
+          {"columns", std::move(shown)},
+          {"left_out", std::move(left_out)},
+          {"boards", boards.json()}};
+}
+
+}  // namespace stereotlm::report

@@ -1,0 +1,307 @@
+#include "sw/report/page_data/run_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "models/fpga/core_ports.h"
+#include "models/kernels/rectification_table.h"
+#include "models/memory/bank_traits.h"
+#include "platform/bounds.h"
+#include "platform/config/board_area.h"
+#include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
+#include "sw/files/base64.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/interrupt.h"
+#include "sw/report/row_comparison.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/sources/media_library.h"
+
+namespace stereotlm::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using platform::BoardConfig;
+
+constexpr std::chrono::milliseconds kBetweenPolls{100};
+
+// The word as a POSIX shell reads it.
+std::string quoted(const std::string& word) {
+  const auto is_plain = [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) != 0 ||
+           std::string_view("_-./=:,+@%").find(letter) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string text = "'";
+  for (const char letter : word) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return text + "'";
+}
+
+// The command that runs the run again.
+std::string command_of(const runs::RecordedRun& run) {
+  const runs::RecordedOptions& options = run.options;
+  std::string text = "stereotlm run " + quoted((std::filesystem::path(run.folder) / "config.yaml").string());
+  const auto add = [&text](const char* name, const std::string& value) {
+    text += fmt::format(" {} {}", name, quoted(value));
+  };
+  if (options.source != "camera") add("--source", options.source);
+  if (options.fidelity != "fast") add("--fidelity", options.fidelity);
+  add("--frames", std::to_string(options.frames));
+  if (options.left) add("--left", options.left->path);
+  if (options.right) add("--right", options.right->path);
+  if (options.sequence) add("--sequence", options.sequence->path);
+  if (!options.video.empty()) {
+    text += " --video";
+    for (const runs::InputFile& file : options.video) text += " " + quoted(file.path);
+    add("--video-layout", options.video_layout);
+  }
+  if (options.synthetic) add("--synthetic", std::to_string(*options.synthetic));
+  if (options.calibration) add("--calibration", options.calibration->file.path);
+  if (options.truth) {
+    add("--truth", options.truth->path);
+    add("--truth-scale", fmt::format("{}", options.truth_scale));
+  }
+  if (options.timing_only) text += " --timing-only";
+  return text + " --out DIR";
+}
+
+Json json_of(const std::variant<std::int64_t, double, std::string>& value) {
+  return std::visit([](const auto& each) { return Json(each); }, value);
+}
+
+// The name of the key in keys(): the name of a bank is NAME there.
+std::string listed_path(const std::string& path) {
+  const std::string banks = "ssram.banks.";
+  if (path.compare(0, banks.size(), banks) != 0) return path;
+  return banks + "NAME" + path.substr(path.find('.', banks.size()));
+}
+
+Json settings_of(const BoardConfig& board) {
+  std::map<std::string, platform::KeyInfo> known;
+  for (const platform::KeyInfo& key : platform::keys()) known[key.path] = key;
+  Json all = Json::array();
+  for (const platform::BoardValue& value : platform::values_of(board)) {
+    Json setting = {{"key", value.path}, {"value", json_of(value.value)}};
+    const auto key = known.find(listed_path(value.path));
+    if (key != known.end()) {
+      setting["meaning"] = key->second.meaning;
+      if (!key->second.unit.empty()) setting["unit"] = key->second.unit;
+    }
+    all.push_back(std::move(setting));
+  }
+  return all;
+}
+
+Json banks_of(const BoardConfig& board) {
+  Json all = Json::array();
+  for (const platform::BankConfig& bank : board.banks) {
+    const memory::BankTraits& traits = memory::traits_of(bank.kind);
+    Json buffers = Json::array();
+    for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+      if (buffer.bank != bank.name) continue;
+      buffers.push_back({{"name", buffer.label()}, {"words", buffer_words(buffer, board.image)}});
+    }
+    all.push_back({{"name", bank.name},
+                   {"kind", traits.name},
+                   {"words", bank.words},
+                   {"accesses_per_cycle", traits.ports},
+                   {"buffers", std::move(buffers)}});
+  }
+  return all;
+}
+
+// For each port of the core: the banks that hold its buffers.
+Json ports_of(const BoardConfig& board) {
+  Json all = Json::array();
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+    Json banks = Json::array();
+    for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+      if (std::string(platform::name_of(buffer.buffer)) == fpga::kPorts[port].buffer)
+        banks.push_back(buffer.bank);
+    }
+    all.push_back({{"name", fpga::kPorts[port].name},
+                   {"writes", fpga::kPorts[port].write},
+                   {"banks", std::move(banks)}});
+  }
+  return all;
+}
+
+Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool camera) {
+  Json core = Json::array();
+  for (std::uint64_t frame = 0; frame < platform::allocation_period_frames(board); ++frame) {
+    Json resources = Json::array();
+    for (const platform::ResourceBound& bound : platform::frame_bounds(board, tables, frame))
+      resources.push_back({{"resource", bound.resource}, {"cycles", bound.cycles}});
+    core.push_back(std::move(resources));
+  }
+  Json bounds = {{"core", std::move(core)}};
+  if (!camera) return bounds;
+  bounds["computer"] = Json::array();
+  for (const platform::RateBound& bound : platform::computer_bounds(board, true)) {
+    bounds["computer"].push_back(
+        {{"resource", bound.resource}, {"frames_per_second", bound.frames_per_second}});
+  }
+  return bounds;
+}
+
+Json json_of(const area::Area& area) {
+  return {{"slices", area.slices},
+          {"slices_percent", area.slices_percent},
+          {"luts", area.luts},
+          {"flip_flops", area.flip_flops},
+          {"block_rams", area.block_rams},
+          {"block_rams_percent", area.block_rams_percent},
+          {"multipliers", area.multipliers},
+          {"multipliers_percent", area.multipliers_percent},
+          {"fits", area.fits()}};
+}
+
+Json area_data(const BoardConfig& board) {
+  const area::Device& device = platform::device_of(board);
+  Json items = Json::array();
+  for (const area::Item& item : platform::area_items(board)) {
+    items.push_back({{"name", item.name},
+                     {"count", item.count},
+                     {"luts", item.all.luts},
+                     {"flip_flops", item.all.flip_flops},
+                     {"block_rams", item.all.block_rams},
+                     {"multipliers", item.all.multipliers},
+                     {"lut_equivalents", item.lut_equivalents()}});
+  }
+  return {{"device",
+           {{"name", device.name},
+            {"slices", device.slices},
+            {"block_rams", device.block_rams},
+            {"multipliers", device.multipliers}}},
+          {"items", std::move(items)},
+          {"total", json_of(platform::area_of(board))}};
+}
+
+std::string png_url(const std::string& bytes) {
+  return "data:image/png;base64," + files::base64(bytes.data(), bytes.size());
+}
+
+std::size_t banks_used(const BoardConfig& board) {
+  std::set<std::string> banks;
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) banks.insert(buffer.bank);
+  return banks.size();
+}
+
+// What a board costs and how hard its busiest bank works.
+void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& busiest, Json& data) {
+  const double pixels = static_cast<double>(board.image.width) * board.image.height;
+  data["area"] = json_of(platform::area_of(board));
+  data["banks_used"] = banks_used(board);
+  data["busiest_bank"] = {{"name", busiest.name},
+                          {"accesses_per_pixel", busiest.accesses_per_frame / pixels}};
+  data["clock_mhz"] = board.fpga.clock_mhz;
+}
+
+}  // namespace
+
+Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
+  const BoardConfig& board = run.board;
+  const auto read = [&run](const char* name) {
+    return files::read_whole_file(std::filesystem::path(run.folder) / name);
+  };
+  Json data = {{"folder", run.folder},
+               {"command", command_of(run)},
+               {"stats", Json::parse(run.stats_json)},
+               {"config_yaml", read("config.yaml")},
+               {"options", Json::parse(run.run_json)},
+               {"settings", settings_of(board)},
+               {"banks", banks_of(board)},
+               {"ports", ports_of(board)},
+               {"bounds", bounds_of(board, tables, run.options.source == "camera")},
+               {"area", area_data(board)}};
+  if (!run.options.timing_only) {
+    data["pictures"] = {{"disparity", png_url(read("disparity.png"))},
+                        {"disparities", board.matcher.disparities}};
+  }
+  return data;
+}
+
+bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& data) {
+  const auto height = static_cast<std::size_t>(run.board.image.height);
+  std::vector<std::uint64_t> cycles(height);
+  std::array<std::vector<std::uint64_t>, fpga::kCorePortCount> stalls;
+  stalls.fill(cycles);
+  runs::Rerun rerun(run);
+  runs::ProgressLine progress;
+  std::uint64_t frames = 0;
+  std::uint64_t last = 0;  // camera frame
+  while (true) {
+    while (!rerun.has_news(kBetweenPolls)) {
+      if (process::interrupted()) return false;
+      progress.show([&](double) { return fmt::format("{}/{} frames repeated", frames, run.options.frames); });
+    }
+    const auto frame = rerun.next();
+    if (!frame) break;
+    ++frames;
+    last = frame->number;
+    const fpga::RowProfile rows = rows_alone(frame->rows);
+    for (std::size_t row = 0; row < height; ++row) {
+      cycles[row] += rows[row].cycles;
+      for (std::size_t port = 0; port < stalls.size(); ++port) stalls[port][row] += rows[row].stalls[port];
+    }
+  }
+  Json by_port = Json::object();
+  for (std::size_t port = 0; port < stalls.size(); ++port) by_port[fpga::kPorts[port].name] = stalls[port];
+  data["rows"] = {{"frames", frames}, {"cycles", cycles}, {"stalls", std::move(by_port)}};
+  if (run.options.timing_only) return true;
+  kernels::GrayImage left = input.pairs->pair(last).left;
+  if (input.tables.left) left = kernels::rectify(left, *input.tables.left);
+  const std::vector<std::uint8_t> png = runs::media_functions().encode_png_gray(left);
+  data["pictures"]["left"] = png_url(std::string(png.begin(), png.end()));
+  return true;
+}
+
+Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
+  using Explanation = runs::Explanation;
+  const Explanation::Rate now = explanation.now();
+  Json base = {{"frames_per_second", now.frames_per_second},
+               {"frames", explanation.frames()},
+               {"loses_pixels", now.loses_pixels}};
+  add_prices(board, explanation.busiest_bank(), base);
+  Json steps = Json::array();
+  Json failed = Json::array();
+  std::set<std::string> shown;  // knobs of which only the best step counts
+  for (const Explanation::Step& found : explanation.steps()) {
+    const explore::KnobStep& knob = *found.step;
+    Json step = {{"knob", knob.knob}, {"from", knob.from}, {"to", knob.to}};
+    if (!found.rate.failure.empty()) {
+      step["reason"] = found.rate.failure;
+      failed.push_back(std::move(step));
+      continue;
+    }
+    if (knob.only_best && !shown.insert(knob.knob).second) continue;
+    step["frames_per_second"] = found.rate.frames_per_second;
+    step["has_effect"] = found.effect == Explanation::Effect::kSeen;
+    step["changes_disparities"] = knob.changes_disparities;
+    step["loses_pixels"] = found.rate.loses_pixels;
+    add_prices(knob.board, found.busiest, step);
+    steps.push_back(std::move(step));
+  }
+  Json forbidden = Json::array();
+  for (const explore::ForbiddenStep& step : explanation.knobs().forbidden)
+    forbidden.push_back({{"knob", step.knob}, {"from", step.from}, {"to", step.to}, {"reason", step.reason}});
+  return {{"board", std::move(base)},
+          {"steps", std::move(steps)},
+          {"forbidden", std::move(forbidden)},
+          {"failed", std::move(failed)}};
+}
+
+}  // namespace stereotlm::report

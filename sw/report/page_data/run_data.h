@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "platform/config/tables.h"
+#include "sw/runs/explanation.h"
+#include "sw/runs/recorded_run.h"
+#include "sw/runs/rerun.h"
+
+namespace stereotlm::report {
+
+// Parts of a page's data (sw/report/page/README.md).
+
+// A recorded run: what its folder holds, and what follows from its board without a simulation.
+nlohmann::ordered_json run_data(const runs::RecordedRun& run, const platform::Tables& tables);
+
+// Repeats the run and adds what only a repetition shows: `rows`, and `pictures.left`, the left picture of the
+// last frame as the matcher sees it. Returns false if interrupted. Throws what Rerun::next() throws.
+bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, nlohmann::ordered_json& data);
+
+// The part `knobs`: what one step of each knob gains, and what it takes of the FPGA.
+nlohmann::ordered_json knobs_data(const platform::BoardConfig& board, runs::Explanation& explanation);
+
+}  // namespace stereotlm::report

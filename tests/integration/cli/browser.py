@@ -1,0 +1,155 @@
+"""A page of `report` in a browser without a window: Debian's chromium, driven by selenium."""
+
+import contextlib
+import os
+import pathlib
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+
+def number(text):
+    return float(text.replace(",", "").replace("−", "-").replace(" %", "").replace("+", ""))
+
+
+class Browser:
+    def __init__(self, downloads):
+        options = webdriver.ChromeOptions()
+        options.binary_location = "/usr/bin/chromium"
+        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"):
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.downloads = pathlib.Path(downloads)
+        self.driver.execute_cdp_cmd(
+            "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(downloads)}
+        )
+
+    def quit(self):
+        self.driver.quit()
+
+    def open(self, path, width=1280, theme="light"):
+        """Opens a page; the milliseconds until it is drawn."""
+        metrics = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        begin = time.monotonic()
+        self.driver.get(pathlib.Path(path).resolve().as_uri())
+        self.drawn()
+        took = 1000 * (time.monotonic() - begin)
+        self.choose("theme", theme)
+        self.drawn()
+        return took
+
+    def drawn(self):
+        """Waits for two frames of the screen."""
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()));"
+        )
+
+    def errors(self):
+        """What the console has said since the last call."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def all(self, selector):
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def one(self, selector):
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def cells(self, rows, place):
+        """The texts of one column of some rows."""
+        return self.run(
+            "return [...document.querySelectorAll(arguments[0])]"
+            ".map(row => row.cells[arguments[1]].textContent)",
+            rows,
+            place,
+        )
+
+    def text(self, selector):
+        return self.run("return document.querySelector(arguments[0]).textContent", selector)
+
+    def choose(self, name, value):
+        self.run(
+            "const box = document.getElementById(arguments[0]); box.value = arguments[1];"
+            "box.dispatchEvent(new Event('input')); box.dispatchEvent(new Event('change'));",
+            name,
+            value,
+        )
+
+    def click(self, selector):
+        """By the keyboard's way: no other element may lie above it."""
+        element = self.one(selector)
+        self.run("arguments[0].scrollIntoView({block: 'center'})", element)
+        element.click()
+        self.drawn()
+
+    def button(self, chart, label):
+        """Clicks the button of a chart with this label or name."""
+        for button in self.all(f"#{chart} button"):
+            if label in (button.text, button.get_attribute("aria-label")):
+                self.run("arguments[0].scrollIntoView({block: 'center'})", button)
+                button.click()
+                self.drawn()
+                return
+        raise AssertionError(f"no button {label} in {chart}")
+
+    def table(self, chart):
+        """The rows of the table of a chart, as dictionaries of texts."""
+        self.button(chart, "Table")
+        rows = self.run(
+            "return [...document.querySelectorAll('#' + CSS.escape(arguments[0]) + ' .numbers tr')]"
+            ".map(row => [...row.cells].map(cell => cell.textContent))",
+            chart,
+        )
+        self.button(chart, "Table")
+        return [dict(zip(rows[0], row)) for row in rows[1:]]
+
+    def csv(self, chart):
+        """The text of the CSV of a chart."""
+        path = self.downloads / f"{chart}.csv"
+        with contextlib.suppress(FileNotFoundError):
+            path.unlink()
+        self.button(chart, "CSV")
+        end = time.monotonic() + 10
+        while not path.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        return path.read_text()
+
+    def drag(self, selector, start, end, steps=4):
+        """Drags over an element, from one place to another; places are shares of its width and height."""
+        element = self.one(selector)
+        self.run("arguments[0].scrollIntoView({block: 'center'})", element)
+        box = self.run("return arguments[0].getBoundingClientRect().toJSON()", element)
+        at = [
+            (box["width"] * (start[0] + (end[0] - start[0]) * i / steps - 0.5),
+             box["height"] * (start[1] + (end[1] - start[1]) * i / steps - 0.5))
+            for i in range(steps + 1)
+        ]
+        chain = ActionChains(self.driver, duration=10)
+        chain.move_to_element_with_offset(element, *map(int, at[0])).click_and_hold()
+        for place in at[1:]:
+            chain.move_to_element_with_offset(element, *map(int, place))
+        chain.release().perform()
+        self.drawn()
+
+    def keys(self, *keys):
+        chain = ActionChains(self.driver, duration=10)
+        for key in keys:
+            chain.send_keys(key)
+        chain.perform()
+        self.drawn()
+
+    def screenshot(self, name):
+        """Saves the whole page, if STEREOTLM_SCREENSHOTS names a folder."""
+        folder = os.environ.get("STEREOTLM_SCREENSHOTS")
+        if folder:
+            size = self.run("return [innerWidth, document.documentElement.scrollHeight]")
+            metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": False}
+            self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+            self.drawn()
+            self.driver.save_screenshot(f"{folder}/{name}.png")

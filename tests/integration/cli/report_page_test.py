@@ -1,0 +1,496 @@
+"""The pages of `report` in a browser: every chart shown, used and read back."""
+
+import csv
+import functools
+import io
+import json
+import random
+import sqlite3
+import tempfile
+import unittest
+
+import program
+from browser import Browser, number
+from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets, shared_folder
+from report_data import data_of, with_data
+from selenium.webdriver.common.keys import Keys
+
+SCENE = [*SMALL, "--synthetic", "1"]
+SHARED = sets("allocation.left_lut=bank0")
+NASTY = "<script>hacked=1</script><img src=x onerror=hacked=1> \"q\" 'a' $x & {{y}}"
+NASTY_FOLDER = "<img src=x onerror=hacked=1> \"q\" 'a' $x & y"
+
+
+@functools.cache
+def browser():
+    downloads = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(downloads.cleanup)
+    made = Browser(downloads.name)
+    unittest.addModuleCleanup(made.quit)
+    return made
+
+
+def made(process):
+    assert process.returncode == 0, process.stderr
+
+
+@functools.cache
+def shared_run(name, *arguments):
+    out = shared_folder() / name
+    made(run("run", "fpl2003", *SCENE, *arguments, "--out", out))
+    return out
+
+
+@functools.cache
+def core():
+    """A run of the core alone, in which left_lut waits in every second frame."""
+    return shared_run("core", *PRELOADED, *SHARED, "--frames", "4")
+
+
+@functools.cache
+def computer():
+    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6")
+
+
+@functools.cache
+def page_of(*inputs):
+    out = shared_folder() / ("_".join(path.name.replace(".", "_") for path in inputs) + ".html")
+    made(run("report", *inputs, "--out", out))
+    return out
+
+
+@functools.cache
+def database():
+    plan = shared_folder() / "plan.yaml"
+    plan.write_text(
+        "board: fpl2003\n"
+        "run: {source: preloaded}\n"
+        "set: {image.width: 32, image.height: 24}\n"
+        "vary:\n"
+        "  matcher.window: [3, 5, 7]\n"
+        "  matcher.disparities: [8, 12, 16, 20]\n"
+        "  matcher.fetch: [column, line_buffer]\n"
+        "  allocation.left_lut: [bank6, bank0]\n"
+        "  matcher.filter: [none, log7, {kernel: [[0, 0, 0], [1, -2, 1], [0, 0, 0]], shift: 0}]\n"
+    )
+    out = shared_folder() / "points.db"
+    made(run("sweep", plan, "--out", out))
+    return out
+
+
+def recording(data):
+    """A recording, as a run may hold one; made up, but its sums are those of the run."""
+    drawn = random.Random(1)
+    stats = data["stats"]
+    height = len(data["rows"]["cycles"])
+    rows = data["rows"]["stalls"]["left_lut"]
+    by = [row["by"] for row in stats["blame"] if row["port"] == "left_lut"]
+    tiles = [value / 8 for value in rows for _ in range(8)]
+    events = {name: [] for name in ("lane", "kind", "frame", "start_us", "end_us", "waited_us", "why")}
+    for frame in range(40):
+        for lane, kind, start, end, waited in (
+            ("left camera", "capture", 0, 900, 100),
+            ("core", "core", 1000, 2500, 100),
+            ("read-back", "read-back", 2600, 2800, 50),
+            ("left camera", "drop", 950, 950, 0),
+            ("host", "interrupt", 2800, 2800, 0),
+        ):
+            for name, value in zip(
+                events, (lane, kind, frame, 3000 * frame + start, 3000 * frame + end, waited, "for <b>a</b>")
+            ):
+                events[name].append(value)
+    parts = ("capture_ms", "wait_for_core_ms", "core_ms", "wait_for_read_back_ms", "read_back_ms")
+    latency = {"frame": list(range(40)), **{part: [drawn.random() for _ in range(40)] for part in parts}}
+    columns = lambda table: [{"name": name, "list": values} for name, values in table.items()]
+    return {
+        "rows": {
+            "banks": [{"bank": bank["name"], "busy": {"constant": 3}} for bank in stats["banks"]],
+            "stalls": [{"port": "left_lut", "bank": "bank0", "by": by[0], "cycles": {"list": rows}}],
+        },
+        "tiles": {
+            "columns": 8,
+            "rows": height,
+            "width": 4,
+            "height": 1,
+            "stalls": [{"port": "left_lut", "bank": "bank0", "by": by[0], "cycles": {"list": tiles}}],
+        },
+        "events": {"rows": len(events["lane"]), "columns": columns(events)},
+        "latency": {"rows": 40, "columns": columns(latency)},
+    }
+
+
+CHART = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 40" onload="hacked=1"><script>hacked=1</script>'
+    '<rect id="bank-bank0" x="5" y="5" width="40" height="30"/>'
+    '<text x="10" y="20">bank0 &lt;script&gt;</text></svg>'
+)
+
+
+@functools.cache
+def recorded():
+    """The page of the computer, with a recording and a drawing."""
+    data = data_of(page_of(computer()))
+    data["run"]["recording"] = recording(data["run"])
+    data["run"]["memory_chart"] = CHART
+    return with_data(page_of(computer()), data, shared_folder() / "recorded.html")
+
+
+class PageTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.browser = browser()
+        self.browser.errors()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.errors(), [])
+        super().tearDown()
+
+    def charts(self):
+        return [card.get_attribute("id") for card in self.browser.all("section.card")]
+
+    def rows_by_name(self, chart):
+        return {row["name"]: row for row in self.browser.table(chart)}
+
+
+class EveryChart(PageTest):
+    """At both widths, light and dark."""
+
+    CHARTS = {
+        "core": "bounds roofline memory banks blame ports rows picture frames knobs area audit configuration",
+        "recorded": "memory bounds roofline banks blame ports rows picture frames time latency knobs area "
+        "audit configuration",
+        "two": "rows picture frames blame ports-A ports-B settings totals",
+        "database": "scatter chosen filters parallel points constants",
+    }
+
+    def test_is_drawn_at_both_widths_and_in_both_themes(self):
+        pages = {
+            "core": page_of(core()),
+            "recorded": recorded(),
+            "two": page_of(shared_run("plain", *PRELOADED, "--frames", "4"), core()),
+            "database": page_of(database()),
+        }
+        for name, page in pages.items():
+            for width in (390, 1280, 2560):
+                for theme in ("light", "dark"):
+                    with self.subTest(page=name, width=width, theme=theme):
+                        self.browser.open(page, width, theme)
+                        self.assertEqual(self.charts(), self.CHARTS[name].split())
+                        self.is_whole(width, theme)
+                        self.browser.screenshot(f"{name}_{width}_{theme}")
+
+    def is_whole(self, width, theme):
+        self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+        self.assertEqual(self.browser.run("return document.documentElement.dataset.theme"), theme)
+        empty = "return [...document.querySelectorAll('.plot')].filter(plot => !plot.firstChild).length"
+        self.assertEqual(self.browser.run(empty), 0)
+        outside = (
+            "return [...document.querySelectorAll('.plot svg text')].filter(text => {"
+            " const box = text.getBoundingClientRect();"
+            " const card = text.closest('.card').getBoundingClientRect();"
+            " return box.width && (box.left < card.left - 1 || box.right > card.right + 1);"
+            "}).map(text => text.textContent)"
+        )
+        self.assertEqual(self.browser.run(outside), [])
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('svg [d*=NaN], svg [cx=NaN], "
+                                          "svg [points*=NaN], svg [x=NaN], svg [width=NaN]')].length"), 0)
+
+    def test_tells_its_numbers_to_the_keyboard(self):
+        self.browser.open(recorded())
+        for chart in "bounds roofline banks blame ports rows frames time latency knobs area memory".split():
+            with self.subTest(chart=chart):
+                marks = f"#{chart} .mark"
+                self.browser.run("document.querySelector(arguments[0]).focus()", marks)
+                first = self.browser.text("#tooltip")
+                self.assertNotEqual(first, "")
+                self.assertFalse(self.browser.run("return document.getElementById('tooltip').hidden"))
+                if len(self.browser.all(marks)) > 1:
+                    self.browser.keys(Keys.ARROW_RIGHT)
+                    self.assertNotEqual(self.browser.text("#tooltip"), first)
+                self.browser.keys(Keys.ESCAPE)
+                self.assertTrue(self.browser.run("return document.getElementById('tooltip').hidden"))
+
+    def test_is_there_in_print_too(self):
+        self.browser.open(page_of(core()), theme="dark")
+        self.browser.run("dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(self.browser.run("return document.documentElement.dataset.theme"), "light")
+        self.assertGreater(len(self.browser.driver.print_page()), 100000)
+
+
+class Numbers(PageTest):
+    """What the page shows is what the files hold."""
+
+    def test_of_a_run_equal_stats_json(self):
+        for folder in (core(), computer()):
+            stats = self.stats(folder)
+            self.browser.open(page_of(folder))
+            for chart, list_name in (("ports", "ports"), ("banks", "banks")):
+                shown = self.rows_by_name(chart)
+                self.assertEqual(list(shown), [item["name"] for item in stats[list_name]])
+                for item in stats[list_name]:
+                    for key, text in shown[item["name"]].items():
+                        if key != "name":
+                            self.assertEqual(number(text), item[key], (chart, item["name"], key))
+            causes = lambda rows, read: sorted(
+                (row["port"], row["bank"], row["by"], read(row["cycles"])) for row in rows
+            )
+            self.assertEqual(causes(self.browser.table("blame"), number), causes(stats["blame"], float))
+            frames = self.browser.table("frames")
+            self.assertEqual([number(row["cycles"]) for row in frames], stats["frame_cycles"])
+            rows = self.browser.table("rows")
+            self.assertEqual(sum(number(row["cycles"]) for row in rows), stats["cycles"])
+            for port in stats["ports"][:-1]:
+                column = f"{port['name']} waits"
+                self.assertEqual(sum(number(row[column]) for row in rows), port["stall_cycles"])
+            self.assertIn("identities hold", self.browser.text("#audit h2"))
+
+    def test_of_the_gain_of_knobs_equal_explain(self):
+        folder = core()
+        self.browser.open(page_of(folder))
+        text = self.succeeds(run("explain", folder / "config.yaml", *PRELOADED))
+        shown = {f"{row['knob']}: {row['from']} -> {row['to']}": row for row in self.browser.table("knobs")}
+        lines = text.split("one step of each knob")[1].splitlines()[2:]
+        steps = [line for line in lines if line[:11].strip().replace(".", "").isdigit()]
+        self.assertGreater(len(steps), 8)
+        for line in steps:
+            rate, _, _, step = line.split(None, 3)
+            row = shown[step.replace(" *:", ":")]
+            self.assertEqual(f"{number(row['frames_per_second']):.3f}", rate)
+            self.assertEqual(row["changes_disparities"], str(" *:" in step).lower())
+
+    def test_of_the_csv_are_those_of_the_table(self):
+        self.browser.open(page_of(core()))
+        for chart in ("ports", "bounds", "area"):
+            rows = list(csv.DictReader(io.StringIO(self.browser.csv(chart))))
+            table = self.browser.table(chart)
+            self.assertEqual([[cell.replace(",", "") for cell in row.values()] for row in table],
+                             [[cell.replace(",", "") for cell in row.values()] for row in rows])
+
+    def test_of_a_database_equal_the_database(self):
+        page = page_of(database())
+        self.browser.open(page)
+        stored = sqlite3.connect(database())
+        stored.row_factory = sqlite3.Row
+        points = list(stored.execute("SELECT * FROM points ORDER BY hash"))
+        text = self.browser.csv("points")
+        rows = list(csv.DictReader(io.StringIO(text)))
+        self.assertEqual(len(rows), len(points))
+        names = [name for name in rows[0] if name in points[0].keys()]
+        self.assertGreater(len(names), 20)
+        plain = lambda value: "" if value is None else value if isinstance(value, str) else float(value)
+        read = lambda text, value: text if isinstance(value, str) or value is None else float(text)
+        expected = sorted([plain(point[name]) for name in names] for point in points)
+        found = sorted([read(row[name], points[0][name]) for name in names] for row in rows)
+        self.assertEqual(found, expected)
+        name = "banks.bank0.utilization"  # not in the data: follows from busy_cycles
+        self.assertEqual(sorted(float(row[name]) for row in rows), sorted(point[name] for point in points))
+
+
+class Database(PageTest):
+    def setUp(self):
+        super().setUp()
+        self.browser.open(page_of(database()))
+        self.size = sqlite3.connect(database()).execute("SELECT count(*) FROM points").fetchone()[0]
+
+    def rows(self, chart):
+        """Those of the CSV of a chart."""
+        return list(csv.DictReader(io.StringIO(self.browser.csv(chart))))
+
+    def selected(self):
+        return int(self.browser.text("#front-text").split()[0])
+
+    def test_is_brushed_in_the_scatter_and_along_an_axis(self):
+        self.assertEqual(self.selected(), self.size)
+        self.browser.drag("#scatter .brush-xy", (0.01, 0.02), (0.6, 0.98))
+        part = self.selected()
+        self.assertGreater(part, 0)
+        self.assertLess(part, self.size)
+        self.browser.drag("#parallel .brush-y", (0.5, 0.02), (0.5, 0.45))
+        self.assertLess(self.selected(), part)
+        self.browser.button("filters", "Select all points")
+        self.assertEqual(self.selected(), self.size)
+
+    def test_is_filtered_by_values(self):
+        self.browser.click("#filters input[data-key='matcher.window'][data-value='7']")
+        self.assertEqual(self.selected(), self.size * 2 // 3)
+        self.assertEqual({row["matcher.window"] for row in self.rows("points")}, {"3", "5"})
+        self.browser.click("#filters input[data-key='matcher.window'][data-value='7']")
+        self.assertEqual(self.selected(), self.size)
+
+    def test_gives_the_board_of_a_point_on_the_front_and_in_the_table(self):
+        stored = sqlite3.connect(database())
+        boards = {config for (config,) in stored.execute("SELECT config FROM points")}
+        seen = set()
+        front = self.browser.all("#scatter .on-front")
+        self.browser.run("arguments[0].focus()", front[0])
+        self.browser.keys(Keys.ENTER)
+        seen.add(self.browser.text("#board pre"))
+        last = self.browser.all("#scatter .on-front")[-1]
+        self.browser.run("arguments[0].dispatchEvent(new MouseEvent('click'))", last)
+        seen.add(self.browser.text("#board pre"))
+        for row in range(self.size):
+            found = self.browser.all(f"#points button[data-row='{row}']")
+            if found:
+                self.browser.run("arguments[0].click()", found[0])
+                seen.add(self.browser.text("#board pre"))
+        self.assertLessEqual(seen, boards)
+        self.assertGreater(len(seen), 90)
+        config = self.file("point.yaml", self.browser.text("#board pre"))
+        self.succeeds(run("check", config))
+
+    def test_front_holds_what_no_point_beats(self):
+        pairs = lambda chart: sorted(
+            (float(row["area.slices"]), float(row["frames_per_second.core"])) for row in self.rows(chart)
+        )
+        rows = pairs("points")
+        beaten = lambda a: any(b != a and b[0] <= a[0] and b[1] >= a[1] for b in rows)
+        self.assertEqual(pairs("scatter"), [row for row in rows if not beaten(row)])
+        self.browser.choose("best-y", "min")
+        self.assertIn(min(row[1] for row in rows), [row[1] for row in pairs("scatter")])
+
+    def test_shows_other_columns_and_sorts_by_them(self):
+        drawn = lambda: self.browser.run("return document.querySelector('#scatter canvas').toDataURL()")
+        before = drawn()
+        self.browser.choose("scatter-x", "matcher.filter")
+        self.browser.choose("scatter-colour", "matcher.disparities")
+        self.browser.drawn()
+        self.assertNotEqual(drawn(), before)
+        self.browser.run("document.querySelectorAll('#points button.sort')[1].click()")
+        self.browser.run("document.querySelectorAll('#points button.sort')[1].click()")
+        cells = self.browser.cells("#points tbody tr", 2)
+        self.assertEqual([number(cell) for cell in cells], sorted(number(cell) for cell in cells))
+
+
+class Tools(PageTest):
+    """Zoom, sliders and search."""
+
+    def picture(self):
+        return self.browser.run("return document.querySelector('#picture canvas').toDataURL()")
+
+    def test_rows_are_zoomed_by_brush_and_buttons(self):
+        self.browser.open(page_of(core()))
+        shown = lambda: self.browser.text("#rows .controls .note")
+        self.assertEqual(shown(), "rows 0 to 23")
+        self.browser.drag("#rows .brush-y", (0.5, 0.26), (0.5, 0.74))
+        self.assertEqual(shown(), "rows 6 to 17")
+        self.browser.button("rows", "Zoom in")
+        self.assertEqual(shown(), "rows 9 to 14")
+        self.browser.button("rows", "All rows")
+        self.assertEqual(shown(), "rows 0 to 23")
+
+    def test_the_time_line_is_zoomed_by_brush_and_buttons(self):
+        self.browser.open(recorded())
+        axis = lambda: self.browser.text("#time .axis")
+        first = axis()
+        self.browser.drag("#time .brush-x", (0.3, 0.98), (0.5, 0.98))
+        self.assertNotEqual(axis(), first)
+        self.browser.button("time", "All")
+        self.assertEqual(len(self.browser.all("#time .mark")), 200)
+
+    def test_sliders_move_the_picture_and_the_paint(self):
+        self.browser.open(recorded())
+        self.browser.drawn()
+        states = [self.picture()]
+        for slider, value in (("split", 0), ("split", 100), ("paint", 100), ("paint", 0)):
+            self.browser.choose(f"picture-{slider}", value)
+            states.append(self.picture())
+        self.assertEqual(len(set(states)), 5)
+        self.browser.run("document.querySelector('#picture canvas').focus()")
+        self.browser.keys(Keys.ARROW_DOWN)
+        self.assertIn("row 13", self.browser.text("#tooltip"))
+
+    def test_keys_are_searched(self):
+        self.browser.open(page_of(core()))
+        self.browser.choose("search-keys", "left_lut")
+        keys = self.browser.cells("#configuration .scroll tbody tr", 0)
+        self.assertIn("allocation.left_lut", keys)
+        self.assertLess(len(keys), 8)
+
+    def test_a_chart_without_numbers_says_how_to_record_them(self):
+        data = data_of(page_of(computer()))
+        data["run"]["record_command"] = "stereotlm the command"
+        self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
+        self.assertIn("stereotlm the command", self.browser.text("#time"))
+        self.assertEqual(self.browser.all("#time svg"), [])
+
+
+class Names(PageTest):
+    """Names of boards and paths are shown as text, and never run."""
+
+    def is_harmless(self, *texts):
+        self.assertIsNone(self.browser.run("return window.hacked ?? null"))
+        self.assertEqual(len(self.browser.all("script")), 2)
+        self.assertEqual(self.browser.all("img"), [])
+        for text in texts:
+            self.assertIn(text, self.browser.text("main"))
+
+    def test_of_a_run(self):
+        out = self.folder / NASTY_FOLDER
+        text = "name=" + json.dumps(NASTY)
+        self.succeeds(run("run", "fpl2003", *SCENE, *PRELOADED, "--set", text, "--out", out))
+        page = self.folder / f"{NASTY_FOLDER}.html"
+        self.succeeds(run("report", out, "--out", page))
+        self.browser.open(page)
+        self.is_harmless(NASTY, NASTY_FOLDER)
+        self.succeeds(run("report", out, out, "--out", page))
+        self.browser.open(page)
+        self.is_harmless(NASTY_FOLDER)
+
+    def test_of_a_database(self):
+        plan = self.file("plan.yaml", "board: fpl2003\nset: {image.width: 32, image.height: 24, name: %s}\n"
+                         "vary: {matcher.window: [3, 5]}\n" % json.dumps(NASTY))
+        out = self.folder / f"{NASTY_FOLDER}.db"
+        self.succeeds(run("sweep", plan, "--out", out))
+        page = self.folder / "page.html"
+        self.succeeds(run("report", out, "--out", page))
+        self.browser.open(page)
+        self.browser.run("document.querySelector('#points button[data-row]').click()")
+        self.is_harmless(NASTY, NASTY_FOLDER)
+
+    def test_of_a_drawing(self):
+        self.browser.open(recorded())
+        self.is_harmless("bank0 <script>")
+        self.assertEqual(len(self.browser.all("#memory svg script")), 0)
+        self.assertEqual(len(self.browser.all("#memory svg .mark")), 1)
+
+
+class Large(PageTest):
+    """12,000 points. The limits are wide, because the machine may have other work."""
+
+    def test_open_and_brush_quickly(self):
+        data = data_of(page_of(database()))
+        drawn = random.Random(1)
+        points = 12000
+        columns = [{"name": f"figure_{i}", "list": [drawn.random() for _ in range(points)]} for i in range(8)]
+        columns.append({"name": "matcher.window", "list": [drawn.choice([3, 5, 7]) for _ in range(points)]})
+        data["database"].update(points=points, columns=columns, keys=["matcher.window"],
+                                boards={"shape": {"constant": 0}, "shapes": [["name: a\n"]]})
+        took = self.browser.open(with_data(page_of(database()), data, self.folder / "large.html"))
+        self.browser.run("document.getElementById('scatter').scrollIntoView()")
+        rate = self.browser.driver.execute_async_script("""
+            const done = arguments[0];
+            const area = document.querySelector('#scatter .brush-xy');
+            const box = area.getBoundingClientRect();
+            const send = (type, share) => area.dispatchEvent(new PointerEvent(type, {
+                bubbles: true, pointerId: 1, buttons: 1, clientX: box.left + share * box.width,
+                clientY: box.top + share * box.height}));
+            area.setPointerCapture = () => {};
+            send('pointerdown', 0.1);
+            let frames = 0;
+            const begin = performance.now();
+            const step = now => {
+              if (++frames > 60) {
+                send('pointerup', 0.9);
+                return done(1000 * 60 / (performance.now() - begin));
+              }
+              send('pointermove', 0.1 + 0.8 * frames / 60);
+              requestAnimationFrame(step);
+            };
+            requestAnimationFrame(step);""")
+        print(f"12,000 points: opened in {took:.0f} ms, brushed at {rate:.0f} frames/s")
+        self.assertLess(took, 6000)
+        self.assertGreater(rate, 8)
+
+
+if __name__ == "__main__":
+    program.main()

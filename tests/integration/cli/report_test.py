@@ -1,0 +1,129 @@
+"""report: the page's data, and what is refused. The page itself: report_page_test.py."""
+
+import os
+import shutil
+import sqlite3
+
+import program
+from report_data import data_of
+from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
+
+SHARED = sets("allocation.left_lut=bank0")
+MOST_BYTES = 1_000_000
+
+
+class ReportTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.page = self.folder / "page.html"
+
+    def run_of(self, name, *arguments, size=SMALL):
+        out = self.folder / name
+        self.succeeds(run("run", "fpl2003", *size, "--synthetic", "1", *arguments, "--out", out))
+        return out
+
+    def data(self, *inputs):
+        """The data of the report, which is a small page without bytes from elsewhere."""
+        self.assertRegex(self.succeeds(run("report", *inputs, "--out", self.page)), r"page\.html: \d+ kB\n$")
+        text = self.page.read_text()
+        self.assertLess(len(text), MOST_BYTES)
+        for attribute in ('src="', "src='", 'href="http', "url(", "import("):
+            self.assertNotIn(attribute, text.split('id="data">')[0])
+        return data_of(self.page)
+
+
+class Run(ReportTest):
+    def test_holds_the_files_and_the_rows_of_the_run(self):
+        folder = self.run_of("a", *PRELOADED, *SHARED, "--frames", "3")
+        data = self.data(folder)["run"]
+        stats = self.stats(folder)
+        self.assertEqual(data["stats"], stats)
+        self.assertEqual(data["config_yaml"], (folder / "config.yaml").read_text())
+        self.assertEqual(sum(data["rows"]["cycles"]), stats["cycles"])
+        stalls = {port["name"]: port["stall_cycles"] for port in stats["ports"] if port["name"] != "host"}
+        self.assertEqual({port: sum(rows) for port, rows in data["rows"]["stalls"].items()}, stalls)
+        self.assertEqual(sum(item["luts"] for item in data["area"]["items"]), stats["area"]["luts"])
+
+    def test_names_the_command_that_repeats_it(self):
+        folder = self.run_of("a b'c", *PRELOADED, "--frames", "2")
+        command = self.data(folder)["run"]["command"]
+        again = self.folder / "again"
+        self.assertTrue(command.startswith("stereotlm run ") and command.endswith(" --out DIR"))
+        line = f"{program.PROGRAM} {command[len('stereotlm '):-len('DIR')]}'{again}' > /dev/null"
+        self.assertEqual(os.system(line), 0)
+        self.assertEqual(self.result(again), self.result(folder))
+
+    def test_with_cameras_has_their_bounds(self):
+        data = self.data(self.run_of("a", *CAMERA_RATES, "--frames", "3"))["run"]
+        names = [bound["resource"] for bound in data["bounds"]["computer"]]
+        self.assertEqual(names, ["camera", "pci", "bridge"])
+
+    def test_without_pixels_has_no_pictures(self):
+        self.assertNotIn("pictures", self.data(self.run_of("a", *PRELOADED, "--timing-only"))["run"])
+
+    def test_quick_simulates_nothing(self):
+        data = self.data(self.run_of("a", *PRELOADED), "--quick")["run"]
+        self.assertNotIn("rows", data)
+        self.assertNotIn("knobs", data)
+        self.assertIn("disparity", data["pictures"])
+
+
+class TwoRuns(ReportTest):
+    def test_differences_of_rows_add_up(self):
+        a = self.run_of("a", *PRELOADED, "--frames", "2")
+        b = self.run_of("b", *PRELOADED, *SHARED, "--frames", "2")
+        difference = self.data(a, b)["difference"]
+        self.assertEqual(sum(difference["rows"]["cycles"]), self.stats(b)["cycles"] - self.stats(a)["cycles"])
+        self.assertEqual(difference["rows"]["parting"]["row"], 0)
+        self.assertEqual(difference["pixels"]["pixels"], 0)
+
+    def test_of_different_sizes_have_no_rows(self):
+        a = self.run_of("a", *PRELOADED)
+        b = self.run_of("b", *PRELOADED, size=sets("image.width=32", "image.height=28"))
+        difference = self.data(a, b)["difference"]
+        self.assertIn("images of 32x24 in A", difference["no_rows"])
+        self.assertNotIn("rows", difference)
+
+
+class Refusals(ReportTest):
+    def test_of_usage(self):
+        self.all_refused([
+            (["--out", "a.html"], "INPUT: missing"),
+            (["a", "b", "c", "--out", "a.html"], "INPUT: 3 given"),
+            (["a"], "--out: missing"),
+            (["a", "--out", "a.txt"], "--out 'a.txt': must end in .html"),
+            (["a", "b", "--out", "a.html", "--quick"], "--quick: not with two runs"),
+        ], lambda *arguments: run("report", *arguments))
+
+    def test_of_what_is_no_input(self):
+        text = self.file("text.db", "no database")
+        empty = self.folder / "empty.db"
+        other = sqlite3.connect(empty)
+        other.execute("CREATE TABLE points(a)")
+        other.close()
+        for path in (self.folder / "missing", self.folder, text, empty):
+            with self.subTest(path=path):
+                self.refused(run("report", path, "--out", self.page), path)
+                self.assertFalse(self.page.exists())
+
+    def test_of_a_database_without_points(self):
+        plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3]}\n")
+        self.succeeds(run("sweep", plan, "--out", self.folder / "a.db"))
+        with sqlite3.connect(self.folder / "a.db") as store:
+            store.execute("DELETE FROM points")
+        self.refused(run("report", self.folder / "a.db", "--out", self.page), "has no points")
+
+    def test_leave_an_earlier_page(self):
+        folder = self.run_of("a", *PRELOADED)
+        self.data(folder)
+        shutil.rmtree(folder)
+        with self.unchanged(self.page):
+            self.refused(run("report", folder, "--out", self.page))
+
+    def test_of_a_page_that_cannot_be_written(self):
+        folder = self.run_of("a", *PRELOADED)
+        self.refused(run("report", folder, "--out", self.folder / "none/a.html"), "--out")
+
+
+if __name__ == "__main__":
+    program.main()
