@@ -11,9 +11,9 @@ import lines
 KEY = "matcher.window"
 
 
-def draw(points, _):
+def draw(points, options):
     points.need_variation(KEY)
-    return lines.draw(points, KEY, [KEY], lines.rate_panels(points))
+    return lines.draw(points, options, "Frame rate against the size of the window", KEY, [KEY], lines.rate_panels(points))
 
 
 if __name__ == "__main__":
