@@ -3,6 +3,7 @@
 import style
 from drawing import LOSES_PIXELS, Drawing, Sheet, bound_of, mark_handle, scale, ticks_at, title
 from families import MOST_DOTS, Families
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from points import LOST_PIXELS, counted, natural
 from style import GRAY, bound, bound_handle, line_handle
@@ -16,7 +17,7 @@ class Panel:
     """One column over x, with its bound above each point.
 
     beside: another column, drawn thin and dotted; None: no other.
-    limit: (value, text) of a line that is drawn if the column comes near to the value; None: no line.
+    limit: (value, text in the legend) of a line that is drawn if the column comes near to the value; None: no line.
     listed: further columns for the table.
     partial: some points have no value in this column.
     """
@@ -66,7 +67,9 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
     with_dots = len(places) <= MOST_DOTS
     for group in families.legend:
         sheet.legend([(line_handle(look.color, look.marker, look.dashes), text) for text, look in group])
-    sheet.legend([*handles(families, panels, best, with_dots), *([mark_handle(LOSES_PIXELS)] if losing else [])])
+    limits = [(Line2D([], [], **style.FAINT_LINE), panel.limit[1]) for panel in panels if reaches_limit(points, panel, places)]
+    marks = [mark_handle(LOSES_PIXELS)] if losing else []
+    sheet.legend([*handles(families, panels, best, with_dots), *limits, *marks])
     for text in (families.note, points.pixels_note(places), above_note(points, places, panels), points.size_note(places),
                  points.note(len(places))):
         sheet.note(text)
@@ -80,7 +83,8 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
             mark(axes, [(xs[place], points.column(panel.column)[place]) for place in losing])
         values = [points.column(each)[place] for each in panel.drawn() for place in places]
         scale(axes, "y", title(panel.column), values)
-        draw_limit(axes, panel, values)
+        if reaches_limit(points, panel, places):
+            axes.axhline(panel.limit[0], **style.FAINT_LINE)
     ticks_at(sheet.panels[-1], sorted({xs[place] for place in places}))
     sheet.panels[-1].set_xlabel(title(x))
     listed = [each for panel in panels for each in panel.listed]
@@ -137,12 +141,9 @@ def mark(axes, points):
         axes.plot(*zip(*points), **LOSES_PIXELS)
 
 
-def draw_limit(axes, panel, values):
-    values = [value for value in values if value is not None]
-    if panel.limit and values and max(values) > 0.9 * panel.limit[0]:
-        axes.axhline(panel.limit[0], **style.FAINT_LINE)
-        axes.annotate(panel.limit[1], (0, panel.limit[0]), (4, 2), ("axes fraction", "data"), "offset points",
-                      fontsize=7.5)
+def reaches_limit(points, panel, places):
+    values = [value for place in places if (value := points.column(panel.column)[place]) is not None]
+    return panel.limit and values and max(values) > 0.9 * panel.limit[0]
 
 
 def greatest_places(xs, values, places):
