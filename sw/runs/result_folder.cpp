@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 constexpr const char* kFrames = "frames";
 constexpr const char* kRunJson = "run.json";
 
-constexpr std::array kFileNames = {"config.yaml",   "depth.ply", "depth.png",           "disparity.pfm",
-                                   "disparity.png", "run.json",  "disparity_color.png", "stats.json"};
+constexpr std::array kFileNames = {"config.yaml",     "depth.ply",           "depth.png",
+                                   "depth_color.png", "disparity.pfm",       "disparity.png",
+                                   "run.json",        "disparity_color.png", "stats.json"};
 
 bool is_file_name(const std::string& name) {
   return std::find(kFileNames.begin(), kFileNames.end(), name) != kFileNames.end();
