@@ -104,7 +104,7 @@ def write_csv(path, found):
 
 
 def panels(count, height=3.6, width=4.4, rows=1, width_ratios=None):
-    """A figure of so many panels a row. height, width: of a panel, in inches."""
+    """A figure of panels in rows, and the panels. count: in a row; height, width: of a panel, in inches."""
     figure, axes = plt.subplots(rows, count, figsize=(width * count, height * rows), squeeze=False,
                                 gridspec_kw={"width_ratios": width_ratios})
     return figure, list(axes.flat)

@@ -190,10 +190,11 @@ def parse(arguments, description, has_pareto):
     parser.add_argument("--only", metavar="KEY=VALUE", action="append", default=[],
                         help="only points whose key has that value; may be given for several keys")
     parser.add_argument("--format", metavar="F,..",
-                        help=f"kinds of files, out of {', '.join(style.FORMATS)}; default {','.join(style.USUAL_FORMATS)}")
+                        help=f"kinds of files, out of {', '.join(style.FORMATS)}; "
+                             f"default {','.join(style.USUAL_FORMATS)}")
     parser.add_argument("--size", metavar="WxH",
-                        help=f"width and height of each figure in inches, {LEAST_SIZE} to {MOST_SIZE}; default: 7.2, and as "
-                             "high as its content")
+                        help=f"width and height of each figure in inches, {LEAST_SIZE} to {MOST_SIZE}; default: 7.2, "
+                             "and as high as its content")
     if has_pareto:
         parser.add_argument("--pareto", metavar="X:SENSE,Y:SENSE",
                             help="columns of the Pareto front, and whether the most or the least of each is best: "
@@ -217,9 +218,9 @@ def size_of(text):
 def read_looks(options):
     """Replaces the texts of --format and --size by their values, or None if they are not given. Returns problems."""
     problems = []
-    for name, read, rule in (("format", formats_of, f"must be {', '.join(style.FORMATS)}, or several with commas"),
-                             ("size", size_of, f"must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to {MOST_SIZE}, such as "
-                                               "7.2x4.5")):
+    kinds = f"must be {', '.join(style.FORMATS)}, or several with commas"
+    inches = f"must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to {MOST_SIZE}, such as 7.2x4.5"
+    for name, read, rule in (("format", formats_of, kinds), ("size", size_of, inches)):
         text = getattr(options, name)
         value = None if text is None else read(text)
         if text is not None and value is None:

@@ -28,8 +28,8 @@ MARK = {"color": "#000000", "linestyle": "", "zorder": 3.5}
 TOO_LARGE = {**MARK, "marker": "x", "markersize": 4.5, "label": "more area than the FPGA has"}
 LOSES_PIXELS = {**MARK, "marker": "+", "markersize": 6.5, "label": "loses pixels"}
 
-UNITS = [("_percent", "%"), ("_mhz", "MHz"), ("_hz", "Hz"), ("megabytes_per_second", "MB/s"), ("_us", "us"), ("_ms", "ms"),
-         ("_cycles", "cycles"), ("clocks", "clocks"), ("_words", "words"), ("_slots", "slots"), ("_bytes", "bytes"),
+UNITS = [("_percent", "%"), ("_mhz", "MHz"), ("_hz", "Hz"), ("megabytes_per_second", "MB/s"), ("_us", "us"),
+         ("_ms", "ms"), ("_cycles", "cycles"), ("clocks", "clocks"), ("_words", "words"), ("_slots", "slots"), ("_bytes", "bytes"),
          ("_pixels", "pixels"), ("_frames", "frames"), ("image.width", "pixels"), ("image.height", "pixels")]
 MEANINGS = {
     "frames_per_second.core": "core, frames/s",
@@ -168,15 +168,15 @@ class Sheet:
     def below(self, text, distance=0.38):
         """Writes the name of the x axis of all columns below them, at this distance in inches."""
         boxes = [axes.get_position() for axes in self.panels]
-        self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, boxes[0].y0 - distance / self.figure.get_size_inches()[1], text,
-                         ha="center", va="center", fontsize=LABEL_SIZE)
+        bottom = boxes[0].y0 - distance / self.figure.get_size_inches()[1]
+        self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, bottom, text, ha="center", va="center", fontsize=LABEL_SIZE)
 
     def color_bar(self, shown, text, below):
         """Draws the scale of the colors of `shown` under the panels, `below` inches from them."""
         box, total = self.panels[0].get_position(), self.figure.get_size_inches()[1]
         width = min(3, length_of(self.panels[0], "x"))
-        center = (box.x0 + self.panels[-1].get_position().x1) / 2
-        axes = self.figure.add_axes([center - width / 2 / self.width, box.y0 - below / total, width / self.width, 0.1 / total])
+        left = (box.x0 + self.panels[-1].get_position().x1 - width / self.width) / 2
+        axes = self.figure.add_axes([left, box.y0 - below / total, width / self.width, 0.1 / total])
         bar = self.figure.colorbar(shown, cax=axes, orientation="horizontal")
         bar.outline.set_visible(False)
         axes.tick_params(labelsize=8)
@@ -209,8 +209,8 @@ class Sheet:
             at -= group.lines * LINE
         for number, line in enumerate(reversed(below)):
             is_note = number < len(self._notes)
-            self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line, fontsize=SMALL_SIZE, va="bottom",
-                             color=QUIET if is_note else INK)
+            self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line, fontsize=SMALL_SIZE,
+                             va="bottom", color=QUIET if is_note else INK)
         return total, inside, top
 
     def _need_width(self, around, least):

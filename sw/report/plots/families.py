@@ -113,7 +113,7 @@ class Families:
         return greatest
 
     def _find_envelopes(self, points, xs, column):
-        """Groups all points by the key of `told` whose values together leave the least range of the column at each x."""
+        """Groups all points by the key of `told` within whose values the column ranges least at each x."""
         values = points.column(column)
         best, self.envelopes = math.inf, []
         for key in self.told:

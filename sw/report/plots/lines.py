@@ -67,7 +67,8 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
     with_dots = len(places) <= MOST_DOTS
     for group in families.legend:
         sheet.legend([(line_handle(look.color, look.marker, look.dashes), text) for text, look in group])
-    limits = [(Line2D([], [], **style.FAINT_LINE), panel.limit[1]) for panel in panels if reaches_limit(points, panel, places)]
+    limits = [(Line2D([], [], **style.FAINT_LINE), panel.limit[1]) for panel in panels
+              if reaches_limit(points, panel, places)]
     marks = [mark_handle(LOSES_PIXELS)] if losing else []
     sheet.legend([*handles(families, panels, best, with_dots), *limits, *marks])
     for text in (families.note, points.pixels_note(places), above_note(points, places, panels), points.size_note(places),
@@ -75,7 +76,7 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
         sheet.note(text)
     for axes, panel in zip(sheet.rows([panel.height for panel in panels]), panels):
         for group, look in families.envelopes:
-            EnvelopeDrawing(points, group, xs, panel).draw(axes, look, len(families.envelopes))
+            EnvelopeDrawing(points, group, xs, panel).draw(axes, look)
         for family in [] if families.envelopes else families.all:
             not_best = set(losing) if best else None
             FamilyDrawing(points, family, xs, panel, families.as_points, not_best, with_dots).draw(axes)
@@ -182,14 +183,14 @@ class EnvelopeDrawing:
             there = [place for place in places if values[place] is not None]
             self.bounds = [bounds[place] for place in greatest_places(xs, bounds, there)]
 
-    def draw(self, axes, look, envelopes):
+    def draw(self, axes, look):
         lows, highs = ([each[end] for each in self.sorted] for end in (0, -1))
         draw_range(axes, self.xs, lows, highs, look.color, ALL)
         quarters = [[each[round(share * (len(each) - 1))] for each in self.sorted] for share in (0.25, 0.5, 0.75)]
         draw_range(axes, self.xs, quarters[0], quarters[2], look.color, MIDDLE)
         for edge in (lows, highs):
             axes.plot(self.xs, edge, color=look.color, linewidth=0.8, zorder=2)
-        axes.plot(self.xs, quarters[1], color=look.color, **{**style.POINT, "marker": look.marker}, zorder=3 + 0.01 * envelopes)
+        axes.plot(self.xs, quarters[1], color=look.color, **{**style.POINT, "marker": look.marker}, zorder=3)
         if self.bounds:
             axes.plot(self.xs, self.bounds, **bound(look.color))
 
@@ -243,4 +244,5 @@ class FamilyDrawing:
         for place in self.places:
             by_x.setdefault(self.xs[place], []).append(self.values[place])
         if by_x:
-            draw_range(axes, list(by_x), list(map(min, by_x.values())), list(map(max, by_x.values())), self.look.color, ALL)
+            lows, highs = (list(map(end, by_x.values())) for end in (min, max))
+            draw_range(axes, list(by_x), lows, highs, self.look.color, ALL)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Frames per second against the number of banks that the allocation uses.
 
-Every allocation is a dot, or many of them a range. A line goes through the best allocation for each number of banks. There is a line
-for each combination of the other keys that vary.
+Every allocation is a dot, or many of them a range. A line goes through the best allocation for each number of
+banks. There is a line for each combination of the other keys that vary.
 """
 
 import sys

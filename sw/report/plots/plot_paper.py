@@ -124,7 +124,8 @@ def banks(folder):
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]
     board = rows[0]
     sheet = Sheet("Frame rate against the number of memory banks")
-    sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"), (bound_handle(MODEL), "bound"),
+    sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"),
+                  (bound_handle(MODEL), "bound"),
                   (line_handle(SECOND, "^", ""), "the whole computer, one allocation each"),
                   (line_handle(PAPER, None, (0, (4, 2))), "banks that the paper says are needed")])
     sheet.note(f"{image_of(board)}, {window_of(board)}, {board['matcher.disparities']} disparities, "

@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""Frames per second and area against the rows of results at once, a line for each combination of the other keys that vary."""
+"""Frames per second and area against the rows of results at once.
+
+There is a line for each combination of the other keys that vary.
+"""
 
 import sys
 

@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""Frames per second and area against the number of column and window modules, a line for each combination of the other keys that vary."""
+"""Frames per second and area against the number of column and window modules.
+
+There is a line for each combination of the other keys that vary.
+"""
 
 import sys
 

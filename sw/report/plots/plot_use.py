@@ -12,7 +12,7 @@ from drawing import Drawing, Sheet, length_of
 from matplotlib.patches import Patch
 from points import counted, natural
 
-LEAST_BAR = 0.15  # inches
+LEAST_HEIGHT = 0.3  # inches
 TEXT_CHANGES = 55  # percent; above it white text is easier to read than black
 
 
@@ -32,8 +32,8 @@ def draw(points, options):
     sheet.note("Of the cycles in which the core works on a frame, those in which the bank serves an access.")
     sheet.note(points.pixels_note(rows.places))
     sheet.note(points.note(len(rows.places), rows.left_out))
-    least = max(rows.least, 2 * LEAST_BAR)
-    (axes,) = sheet.columns(1, max(rows.height, 2 * LEAST_BAR), rows.left(), least, headed=False, bottom=0.95, right=0.3)
+    height, least = (max(each, LEAST_HEIGHT) for each in (rows.height, rows.least))
+    (axes,) = sheet.columns(1, height, rows.left(), least, headed=False, bottom=0.95, right=0.3)
     numbers = [[float("nan") if use is None else use for use in row] for row in percent]
     axes.set_facecolor(style.MISSING)
     shown = axes.pcolormesh(range(len(banks) + 1), rows.edges, numbers, cmap=style.SHARES, vmin=0, vmax=100,

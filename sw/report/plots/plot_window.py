@@ -13,7 +13,8 @@ KEY = "matcher.window"
 
 def draw(points, options):
     points.need_variation(KEY)
-    return lines.draw(points, options, "Frame rate against the size of the window", KEY, [KEY], lines.rate_panels(points))
+    heading = "Frame rate against the size of the window"
+    return lines.draw(points, options, heading, KEY, [KEY], lines.rate_panels(points))
 
 
 if __name__ == "__main__":

@@ -96,7 +96,7 @@ def text_width(text, size, bold=False):
 
 
 def wrapped(text, size, width, indent="", bold=False):
-    """The lines of a text that is broken at blanks; where a word is longer than a line, at no-break spaces or inside."""
+    """The lines of a text, broken at blanks; in words that are longer than a line at no-break spaces, or anywhere."""
     lines = []
     line = ""
     for word in text.split(" "):

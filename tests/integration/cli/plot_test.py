@@ -83,7 +83,7 @@ class FigureTest(PlotTest):
                 for line, found_width in found if found_width == width]
 
     def bounds(self, name):
-        """The places of the marks of bounds in a drawing: a list of (x, y) for each line, without those of the legend."""
+        """The places of the marks of bounds in a drawing, without the legend: a list of (x, y) for each line."""
         groups = re.findall(r'<g id="bound">(.*?)</g>\n   </g>', (self.out / f"{name}.svg").read_text(), re.DOTALL)
         return [[tuple(map(float, pair)) for pair in re.findall(r'<use [^>]*x="([^"]*)" y="([^"]*)"', group)]
                 for group in groups if "clip-path" in group]
@@ -267,7 +267,8 @@ class Figures(FigureTest):
         self.assertEqual(len(self.table("window")), 360)
         many = "120 combinations of fpga.clock_mhz, matcher.fetch are more than can be told apart"
         self.shows("window", f"Envelopes: {many}; --only KEY=VALUE draws fewer.", "matcher.fetch = column",
-                   "matcher.fetch = line_buffer", "all points, from the least to the greatest", "greatest bound", "median")
+                   "matcher.fetch = line_buffer", "all points, from the least to the greatest", "greatest bound",
+                   "median")
         medians, (all_column, middle_column, all_kept, _) = self.curves("window"), self.ranges("window")
         self.assertEqual([len(curve) for curve in medians], [3, 3])
         bounds = self.bounds("window")
@@ -508,9 +509,9 @@ class Names(FigureTest):
     def test_names_are_shown_as_they_are(self):
         """Neither as mathematics nor as parts of the drawing, wherever they are."""
         names = ["<script>alert('$x^2$')</script>", '_b $\\alpha$ 100 % "c" \\n', "$\\frac{1"]
-        ports = [f"ports.{port}.{count}" for port in reader.PORTS
-                 for count in ("grants", "passed_cycles", "stall_cycles", "blocked_cycles", "starved_cycles", "idle_cycles")]
-        header = [*HEADER, "allocation.disparity", *RATES, "banks.$a_0$.utilization", "banks.<b>&.utilization", "frames", *ports]
+        ports = [f"ports.{port}.{count}" for port in reader.PORTS for count in STATES]
+        banks = [f"banks.{bank}.utilization" for bank in ("$a_0$", "<b>&")]
+        header = [*HEADER, "allocation.disparity", *RATES, *banks, "frames", *ports]
         rows = [(name, "preloaded", window, "[bank0]", number * 9 / window, 99, 0.5, 0.7, 1, *[5] * len(ports))
                 for number, name in enumerate(names, 1) for window in (3, 5)]
         store = make_database(self.folder / "$x_2$ <i> 5%.db", header, rows)
@@ -521,7 +522,8 @@ class Names(FigureTest):
         for figure in ("window", "states", "stalls", "use"):
             drawing = xml.etree.ElementTree.parse(self.out / f"{figure}.svg")
             self.assertEqual([each.tag for each in drawing.iter() if "script" in each.tag], [])
-            texts = " ".join(text for each in drawing.iter() for text in each.itertext()).replace("\N{NO-BREAK SPACE}", " ")
+            texts = " ".join(text for each in drawing.iter() for text in each.itertext())
+            texts = texts.replace("\N{NO-BREAK SPACE}", " ")
             for name in names:
                 self.assertIn(name, texts)
             self.assertIn("6 of 6 points of $x_2$ <i> 5%.db.", texts)
@@ -584,7 +586,8 @@ for size in (None, (4.6, 6)):
             panels = sheet.columns(count, 2, 0.6)
             drawing.ticks_of_columns(panels, most)
             sheet.figure.canvas.draw()
-            boxes = [label.get_window_extent() for axes in panels for label in axes.get_xticklabels() if label.get_text()]
+            labels = [label for axes in panels for label in axes.get_xticklabels() if label.get_text()]
+            boxes = [label.get_window_extent() for label in labels]
             assert len(boxes) >= count, (count, most)
             for before, after in zip(boxes, boxes[1:]):
                 assert before.x1 < after.x0, (size, count, most, before, after)
