@@ -1,5 +1,6 @@
 #include "calib/canvas.h"
 
+#include <cairo-ft.h>
 #include <cairo.h>
 #include <fmt/format.h>
 
@@ -16,7 +17,6 @@
 namespace stereotlm::calib {
 namespace {
 
-constexpr const char* kFont = "DejaVu Sans";
 constexpr double kFontSize = 14;  // pixels
 constexpr double kSmallestScale = 0.5;
 constexpr int kFractionBits = 4;  // of the fixed-point positions and lengths for OpenCV
@@ -41,6 +41,19 @@ struct DestroyOptions {
 using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
 using Context = std::unique_ptr<cairo_t, DestroyContext>;
 
+// The letters of the font of figures, or Cairo's own where its file is missing. The file is read directly:
+// a search for fonts takes longer than a drawing. The font stays until the process ends.
+cairo_font_face_t* letters() {
+  static cairo_font_face_t* const face = [] {
+    FT_Library library = nullptr;
+    FT_Face font = nullptr;
+    if (FT_Init_FreeType(&library) == 0 && FT_New_Face(library, STEREOTLM_FONT, 0, &font) == 0)
+      return cairo_ft_font_face_create_for_ft_face(font, FT_LOAD_NO_HINTING);
+    return cairo_toy_font_face_create("@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  }();
+  return face;
+}
+
 Surface mask_of(int width, int height) {
   return Surface(cairo_image_surface_create(CAIRO_FORMAT_A8, width, height));
 }
@@ -53,7 +66,7 @@ Context context_on(cairo_surface_t* surface, double scale) {
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
   cairo_set_font_options(context.get(), options.get());
-  cairo_select_font_face(context.get(), kFont, CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_face(context.get(), letters());
   cairo_set_font_size(context.get(), scale * kFontSize);
   return context;
 }

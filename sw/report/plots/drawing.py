@@ -247,12 +247,8 @@ class LegendGroup:
         self.lines = max(sum(len(each) for each in part) for part in parted(lines, self.columns))
 
     def draw(self, figure, top):
-        legend = figure.legend(self.artists, [""] * len(self.texts), loc="upper center", ncol=self.columns, borderpad=0,
-                               borderaxespad=0, labelspacing=0.25, columnspacing=1.6, handlelength=2.6,
-                               bbox_to_anchor=(0.5, top))
-        # Legend leaves out texts that begin with an underscore, as names may.
-        for text, words in zip(legend.get_texts(), self.texts):
-            text.set_text(words)
+        figure.legend(self.artists, self.texts, loc="upper center", ncol=self.columns, borderpad=0, borderaxespad=0,
+                      labelspacing=0.25, columnspacing=1.6, handlelength=2.6, bbox_to_anchor=(0.5, top))
 
 
 def parted(items, count):
