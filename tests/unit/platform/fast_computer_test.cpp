@@ -343,12 +343,20 @@ TEST(FastComputer, IsMadeAtAllFidelitiesButCycle) {
 // Errors end the simulation with a report of the kernel.
 class FastComputerErrors : public ::testing::Test {
  protected:
-  // The report of a computer whose program is `script`.
-  static std::string report(RunningComputer& running) {
-    const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
-    EXPECT_THROW(sc_core::sc_start(20, sc_core::SC_MS), sc_core::sc_report);
-    EXPECT_FALSE(running.finished());
-    return expected.text();
+  using Script = std::function<void(LoggedBus&)>;
+  // The report of a computer whose program is `script` and which `change` has changed. In a child, because the
+  // kernel does not unwind the stack of the program.
+  static std::string report(
+      Fidelity fidelity, const Script& script,
+      const std::function<void(RunningComputer&)>& change = [](auto&) {}) {
+    return test::run_for_text([&] {
+      RunningComputer running(fidelity, script);
+      change(running);
+      const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
+      EXPECT_THROW(sc_core::sc_start(20, sc_core::SC_MS), sc_core::sc_report);
+      EXPECT_FALSE(running.finished());
+      return expected.text();
+    });
   }
   static void start_core(LoggedBus& bus, std::uint32_t disparity_bank) {
     const std::uint64_t bases[] = {core::kLeftImageBase, core::kRightImageBase, core::kLeftLutBase,
@@ -360,47 +368,44 @@ class FastComputerErrors : public ::testing::Test {
   static void wait_forever(LoggedBus& bus) {
     for (;;) bus.wait_for_interrupt();
   }
+  static void capture(LoggedBus& bus) {
+    for (const std::uint64_t board : kCaptures)
+      bus.write(board + capture_map::kControl, capture_map::kControlArm);
+    wait_forever(bus);
+  }
 };
 
 TEST_F(FastComputerErrors, OfTheLoopReachTheReport) {
-  RunningComputer running(Fidelity::kFast, [](LoggedBus& bus) {
+  const std::string text = report(Fidelity::kFast, [](LoggedBus& bus) {
     start_core(bus, 0);  // over the left image
     wait_forever(bus);
   });
-  EXPECT_NE(report(running).find("core: a frame that does not work directly on memory needs fidelity cycle"),
+  EXPECT_NE(text.find("core: a frame that does not work directly on memory needs fidelity cycle"),
             std::string::npos);
 }
 
 TEST_F(FastComputerErrors, OfABurstBesideAFrameReachTheReport) {
-  RunningComputer running(Fidelity::kTiming, [](LoggedBus& bus) {
+  const std::string text = report(Fidelity::kTiming, [](LoggedBus& bus) {
     bus.write(kDevices.bridge_registers + bridge::kPage + 12, core::base(4, 5));
     start_core(bus, 4);
     bus.write(kWindow, 0);
     wait_forever(bus);
   });
-  EXPECT_NE(report(running).find("writes words 5..5 of bank number 4, where the running frame has its "
-                                 "disparity: needs fidelity cycle"),
+  EXPECT_NE(text.find("writes words 5..5 of bank number 4, where the running frame has its "
+                      "disparity: needs fidelity cycle"),
             std::string::npos);
 }
 
 TEST_F(FastComputerErrors, OfACameraSourceReachTheReport) {
-  RunningComputer running(Fidelity::kFast, [](LoggedBus& bus) {
-    for (const std::uint64_t board : kCaptures)
-      bus.write(board + capture_map::kControl, capture_map::kControlArm);
-    wait_forever(bus);
-  });
-  running.right.fails = true;
-  EXPECT_NE(report(running).find("the disk is gone"), std::string::npos);
+  const std::string text =
+      report(Fidelity::kFast, capture, [](RunningComputer& running) { running.right.fails = true; });
+  EXPECT_NE(text.find("the disk is gone"), std::string::npos);
 }
 
 TEST_F(FastComputerErrors, OfAPictureOfAnotherSizeReachTheReport) {
-  RunningComputer running(Fidelity::kFast, [](LoggedBus& bus) {
-    for (const std::uint64_t board : kCaptures)
-      bus.write(board + capture_map::kControl, capture_map::kControlArm);
-    wait_forever(bus);
-  });
-  running.left = CountedPictures(5);
-  EXPECT_NE(report(running).find("picture of frame 1 = 16 x 5: must be 16 x 6"), std::string::npos);
+  const std::string text =
+      report(Fidelity::kFast, capture, [](RunningComputer& running) { running.left = CountedPictures(5); });
+  EXPECT_NE(text.find("picture of frame 1 = 16 x 5: must be 16 x 6"), std::string::npos);
 }
 
 TEST(FastComputerConfig, MustHaveNoProblems) {
