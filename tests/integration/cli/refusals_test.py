@@ -11,7 +11,7 @@ import program
 from pictures import noise, pgm, ppm
 from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
 
-COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate plot diff report paper".split()
+COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate plot diff diagram report paper".split()
 UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
