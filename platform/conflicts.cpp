@@ -30,7 +30,7 @@ std::vector<AddressRange> captured(const BoardConfig& board) {
 }  // namespace
 
 Conflicts::Conflicts(const BoardConfig& board, std::size_t most_tiles)
-    : recorder_(core_config(board), board.banks.size(), captured(board), most_tiles),
+    : recorder_(core_config(board), ssram_configs(board), captured(board), most_tiles),
       accesses_(board.banks.size()) {}
 
 std::vector<fpga::FrameConflicts> Conflicts::take_frames() {
@@ -56,7 +56,7 @@ std::vector<std::string> Conflicts::failed(const Statistics& statistics) const {
   audit.equal("recorded: frames with rows", frames_, "frames", statistics.frames);
   audit.equal("recorded: frames in tiles", recorder_.frames(), "frames", statistics.frames);
   audit.equal("recorded: cycles of the rows", cycles_, "cycles", statistics.cycles);
-  const std::vector<std::uint64_t>& tiles = recorder_.tile_cycles();
+  const std::vector<std::uint64_t> tiles = recorder_.tile_cycles();
   audit.equal("recorded: cycles of the tiles", std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0}),
               "cycles", statistics.cycles);
   std::array<std::uint64_t, fpga::kPortCount> stalls{};

@@ -19,12 +19,6 @@ const BoardConfig& checked(const BoardConfig& config) {
   return config;
 }
 
-std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board) {
-  std::vector<memory::SsramBankConfig> banks;
-  for (const BankConfig& bank : board.banks) banks.push_back(ssram_config(board, bank));
-  return banks;
-}
-
 }  // namespace
 
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,

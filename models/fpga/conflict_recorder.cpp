@@ -40,19 +40,24 @@ TileGrid::TileGrid(const FrameGeometry& geometry, std::size_t most_tiles)
     (columns > 1 && (columns_of_tile <= rows_of_tile || rows == 1) ? groups_of_tile : strips_of_tile) *= 2;
 }
 
-ConflictRecorder::ConflictRecorder(const CoreConfig& config, std::size_t banks,
+ConflictRecorder::ConflictRecorder(const CoreConfig& config,
+                                   const std::vector<memory::SsramBankConfig>& banks,
                                    std::vector<AddressRange> captured, std::size_t most_tiles)
     : geometry_(checked(config)),
-      banks_(banks),
+      banks_(banks.size()),
       captured_(std::move(captured)),
       grid_(geometry_, most_tiles),
       group_shift_(static_cast<unsigned>(__builtin_ctzll(grid_.groups_of_tile))),
       groups_of_strip_(groups_of_strip(geometry_)),
       strips_(1 + strips_of_results(geometry_)),
-      ends_(1 + (strips_ - 1) * grid_.columns),
       strip_ends_(strips_),
-      tile_cycles_(1 + grid_.columns * grid_.rows),
-      indices_(kRequesters * banks * (kRequesters + 1)) {}
+      cycles_up_to_(1 + (strips_ - 1) * grid_.columns),
+      indices_(kRequesters * banks_ * (kRequesters + 1)) {
+  const bool may_refuse = std::any_of(banks.begin(), banks.end(), [](const memory::SsramBankConfig& bank) {
+    return bank.turnaround_cycles != 0;
+  });
+  if (may_refuse) ends_.resize(cycles_up_to_.size());
+}
 
 bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control) {
   is_recording_ = frames_begun_++ < frames_wanted_;
@@ -74,7 +79,7 @@ std::vector<std::uint64_t>& ConflictRecorder::stalls_of(std::size_t requester, s
                                                         std::size_t by) {
   std::size_t& index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
   if (index == 0) {
-    stalls_.push_back({requester, bank, by, std::vector<std::uint64_t>(tile_cycles_.size())});
+    stalls_.push_back({requester, bank, by, std::vector<std::uint64_t>(tiles())});
     index = stalls_.size();
   }
   return stalls_[index - 1].cycles;
@@ -98,8 +103,7 @@ void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& co
   cycle_ = next_cycle;
   columns_ = control.match().columns();
   if (strip_ != 0) {
-    ends_[place_of(strip_, group_)] = cycle_;
-    ++group_;
+    end_group_of_strip();
   }
   if (is_at_strip_end()) {
     end_strip(control, arbitration);
@@ -134,19 +138,24 @@ void ConflictRecorder::repeat(const std::vector<const GroupConflicts*>& groups, 
         continue;
       }
       const std::size_t first_tile = tile_of(strip_, 0);
+      const std::uint64_t of_group = stall.cycles;
+      if (groups.size() == 1 && group_shift_ == 0) {  // mostly, and faster
+        std::uint64_t* const its = cycles + first_tile + group_;
+        for (std::size_t next = 0; next < count; ++next) its[next] += of_group;
+        continue;
+      }
       for (std::size_t next = group_ + first; next < group_ + count; next += groups.size())
-        cycles[first_tile + (next >> group_shift_)] += stall.cycles;
+        cycles[first_tile + (next >> group_shift_)] += of_group;
     }
   }
   if (strip_ == 0) {
     for (const GroupConflicts* group : groups) cycle_ += group->cycles * times;
     return;
   }
-  const std::size_t first_place = place_of(strip_, 0);
   for (std::uint64_t time = 0; time < times; ++time) {
     for (const GroupConflicts* group : groups) {
       cycle_ += group->cycles;
-      ends_[first_place + (group_++ >> group_shift_)] = cycle_;
+      end_group_of_strip();
     }
   }
   tile_ = tile_of(strip_, std::min(group_, groups_of_strip_ - 1));
@@ -154,7 +163,8 @@ void ConflictRecorder::repeat(const std::vector<const GroupConflicts*>& groups, 
 
 void ConflictRecorder::end_strip(const CoreControl& control, const memory::Arbitration& arbitration) {
   if (strip_ + 1 == strips_) return;  // the last strip ends with the frame
-  if (strip_ == 0) ends_[0] = cycle_;
+  if (strip_ == 0) end_place(0);
+  strip_ends_[strip_] = cycle_;
   count_grants(control, arbitration);
   ++strip_;
   group_ = 0;
@@ -191,22 +201,16 @@ void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& con
                                  const memory::Arbitration& arbitration) {
   is_recording_ = false;
   count_grants(control, arbitration);
-  ends_.back() = end_cycle;
+  // The last group has ended in cycle_.
+  cycles_up_to_.back() += end_cycle - cycle_;
+  if (!ends_.empty()) ends_.back() = end_cycle;
+  strip_ends_.back() = end_cycle;
   std::uint64_t begin = first_cycle_;
   for (std::size_t strip = 0; strip < strips_; ++strip) {
-    strip_ends_[strip] = ends_[place_of(strip, groups_of_strip_ - 1)];
     frame_.strips[strip].cycles = strip_ends_[strip] - begin;
     begin = strip_ends_[strip];
   }
   count_served();
-  begin = first_cycle_;
-  for (std::size_t strip = 0; strip < strips_; ++strip) {
-    std::uint64_t* cycles = &tile_cycles_[tile_of(strip, 0)];
-    for (std::size_t place = place_of(strip, 0); place <= place_of(strip, groups_of_strip_ - 1); ++place) {
-      *cycles++ += ends_[place] - begin;
-      begin = ends_[place];
-    }
-  }
   ++frames_;
   ended_.push_back(std::move(frame_));
 }
@@ -234,6 +238,19 @@ void ConflictRecorder::count_served() {
       cycle = until;
     }
   }
+}
+
+std::vector<std::uint64_t> ConflictRecorder::tile_cycles() const {
+  std::vector<std::uint64_t> cycles(tiles());
+  std::uint64_t before = 0;
+  for (std::size_t strip = 0; strip < strips_; ++strip) {
+    std::size_t tile = tile_of(strip, 0);
+    for (std::size_t place = place_of(strip, 0); place <= place_of(strip, groups_of_strip_ - 1); ++place) {
+      cycles[tile++] += cycles_up_to_[place] - before;
+      before = cycles_up_to_[place];
+    }
+  }
+  return cycles;
 }
 
 std::vector<const ConflictRecorder::Stalls*> ConflictRecorder::stalls() const {

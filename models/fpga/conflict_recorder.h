@@ -89,8 +89,8 @@ class ConflictRecorder {
   static constexpr std::size_t kMostTiles = std::size_t{1} << 18U;
 
   // `captured`: the addresses that the capture boards write to.
-  ConflictRecorder(const CoreConfig& config, std::size_t banks, std::vector<AddressRange> captured,
-                   std::size_t most_tiles = kMostTiles);
+  ConflictRecorder(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
+                   std::vector<AddressRange> captured, std::size_t most_tiles = kMostTiles);
 
   // Frames from number `frames` on are not recorded.
   void record_only(std::uint64_t frames) { frames_wanted_ = frames; }
@@ -132,7 +132,7 @@ class ConflictRecorder {
   std::uint64_t frames() const { return frames_; }
   const TileGrid& grid() const { return grid_; }
   // [tile]: [0] is the fill; then the tiles, row by row.
-  const std::vector<std::uint64_t>& tile_cycles() const { return tile_cycles_; }
+  std::vector<std::uint64_t> tile_cycles() const;
   // The stall cycles of one requester at one bank, because of one other.
   struct Stalls {
     std::size_t requester = 0;
@@ -172,6 +172,17 @@ class ConflictRecorder {
     return accesses_of(strip, bank)[1 + static_cast<std::size_t>(traffic)];
   }
   void count_grants(const CoreControl& control, const memory::Arbitration& arbitration);
+  std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
+  // The group ends before cycle_.
+  void end_group_of_strip() {
+    const std::size_t group = group_++;
+    const bool ends_place = (group_ & (grid_.groups_of_tile - 1)) == 0 || group_ == groups_of_strip_;
+    if (ends_place) end_place(place_of(strip_, group));
+  }
+  void end_place(std::size_t place) {
+    cycles_up_to_[place] += cycle_ - first_cycle_;
+    if (!ends_.empty()) ends_[place] = cycle_;
+  }
   void count_served();
 
   FrameGeometry geometry_;
@@ -194,15 +205,19 @@ class ConflictRecorder {
   std::size_t tile_ = 0;                                // of the next group
   std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
   std::array<const AccessPattern*, 2> assumed_{};
-  std::vector<std::uint64_t> ends_;  // [place_of()]: the first cycle after the part of a tile in its strip
-  std::vector<std::uint64_t> strip_ends_;  // [strip]: the same, once the frame has ended
+  // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in an
+  // uncontended bank: then its stalls are brought to their tiles when the frame has ended.
+  std::vector<std::uint64_t> ends_;
+  std::vector<std::uint64_t> strip_ends_;  // [strip]: the first cycle after it
   std::vector<Served> served_;
   FrameConflicts frame_;
 
   std::uint64_t frames_begun_ = 0;
   std::uint64_t frames_ = 0;
   std::vector<FrameConflicts> ended_;
-  std::vector<std::uint64_t> tile_cycles_;
+  // [place_of()]: cycles of the frames up to the end of the part of a tile in its strip. Sums, because one
+  // addition for each group and frame is the main cost of recording.
+  std::vector<std::uint64_t> cycles_up_to_;
   std::vector<Stalls> stalls_;        // in the order of their first cycles
   std::vector<std::size_t> indices_;  // [requester][bank][by]: 1 + the index in stalls_; 0: none yet
 };
