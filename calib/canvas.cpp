@@ -1,11 +1,15 @@
 #include "calib/canvas.h"
 
+#include <cairo-ft.h>
+#include <cairo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "calib/opencv_conversions.h"
@@ -13,10 +17,7 @@
 namespace stereotlm::calib {
 namespace {
 
-constexpr int kMargin = 8;          // pixels, around each picture
-constexpr int kCaptionHeight = 24;  // pixels
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double kFontScale = 0.5;
+constexpr double kFontSize = 14;  // pixels
 constexpr double kSmallestScale = 0.5;
 constexpr int kFractionBits = 4;  // of the fixed-point positions and lengths for OpenCV
 // OpenCV cannot draw positions beyond this limit, in pixels.
@@ -28,10 +29,76 @@ int fixed_point(double pixels) {
 
 cv::Point fixed_point(const cv::Point2d& point) { return {fixed_point(point.x), fixed_point(point.y)}; }
 
-void draw_caption(cv::Mat& canvas, const std::string& caption, const cv::Rect& picture) {
-  const double fits = static_cast<double>(picture.width) / std::max(text_width(caption), 1);
-  cv::Mat above = canvas({picture.x, 0, picture.width, picture.y});
-  draw_text(above, caption, {0, picture.y - 8}, std::clamp(fits, kSmallestScale, 1.0));
+struct DestroySurface {
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+struct DestroyContext {
+  void operator()(cairo_t* context) const { cairo_destroy(context); }
+};
+struct DestroyOptions {
+  void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
+using Context = std::unique_ptr<cairo_t, DestroyContext>;
+
+// The letters of the font of figures, or Cairo's own where its file is missing. The file is read directly:
+// a search for fonts takes longer than a drawing. The font stays until the process ends.
+cairo_font_face_t* letters() {
+  static cairo_font_face_t* const face = [] {
+    FT_Library library = nullptr;
+    FT_Face font = nullptr;
+    if (FT_Init_FreeType(&library) == 0 && FT_New_Face(library, STEREOTLM_FONT, 0, &font) == 0)
+      return cairo_ft_font_face_create_for_ft_face(font, FT_LOAD_NO_HINTING);
+    return cairo_toy_font_face_create("@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  }();
+  return face;
+}
+
+Surface mask_of(int width, int height) {
+  return Surface(cairo_image_surface_create(CAIRO_FORMAT_A8, width, height));
+}
+
+// A context with the font. The letters do not depend on settings of the user.
+Context context_on(cairo_surface_t* surface, double scale) {
+  Context context(cairo_create(surface));
+  const std::unique_ptr<cairo_font_options_t, DestroyOptions> options(cairo_font_options_create());
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_set_font_options(context.get(), options.get());
+  cairo_set_font_face(context.get(), letters());
+  cairo_set_font_size(context.get(), scale * kFontSize);
+  return context;
+}
+
+// Returns nullopt if the text is not UTF-8.
+std::optional<double> advance_of(const std::string& text, double scale) {
+  const Surface surface = mask_of(1, 1);
+  const Context context = context_on(surface.get(), scale);
+  cairo_text_extents_t extents;
+  cairo_text_extents(context.get(), text.c_str(), &extents);
+  if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return std::nullopt;
+  return extents.x_advance;
+}
+
+// The text, or if it is not UTF-8, with '?' for each byte that is not ASCII.
+std::string drawable(std::string text) {
+  if (!advance_of(text, 1)) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) > 127; }, '?');
+  }
+  return text;
+}
+
+// The beginning of a text that is not wider than `width`.
+std::string cut_off(const std::string& text, double scale, int width) {
+  std::string begin = drawable(text);
+  while (!begin.empty() && text_width(begin, scale) > width) {
+    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    while (begin.size() > 1 && continues(begin.back())) begin.pop_back();
+    begin.pop_back();
+  }
+  return begin;
 }
 
 }  // namespace
@@ -73,13 +140,84 @@ cv::Point2d enlarged(const cv::Point2d& pixel, int enlargement) {
   return (pixel + half) * enlargement - half;
 }
 
+cv::Mat in_colors(const cv::Mat1f& values, double first, double last) {
+  const double step = last == first ? 0 : 255 / (last - first);
+  cv::Mat1b levels(values.size());
+  cv::Mat1b missing(values.size());
+  for (int row = 0; row < values.rows; ++row) {
+    for (int column = 0; column < values.cols; ++column) {
+      const float value = values(row, column);
+      missing(row, column) = std::isnan(value) ? 255 : 0;
+      const double level = std::isnan(value) ? 0 : std::clamp((value - first) * step, 0.0, 255.0);
+      levels(row, column) = static_cast<std::uint8_t>(std::lround(level));
+    }
+  }
+  cv::Mat colors;
+  cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
+  colors.setTo(kMissing, missing);
+  return colors;
+}
+
 int text_width(const std::string& text, double scale) {
-  return cv::getTextSize(text, kFont, scale * kFontScale, 1, nullptr).width;
+  return static_cast<int>(std::ceil(advance_of(drawable(text), scale).value()));
 }
 
 void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_bottom, double scale,
                const cv::Scalar& color) {
-  cv::putText(canvas, text, left_bottom, kFont, scale * kFontScale, color, 1, cv::LINE_AA);
+  const std::string words = drawable(text);
+  const int ascent = cvCeil(1.2 * scale * kFontSize);
+  const cv::Size size(text_width(words, scale) + 2, ascent + cvCeil(0.4 * scale * kFontSize));
+  const Surface surface = mask_of(size.width, size.height);
+  {
+    const Context context = context_on(surface.get(), scale);
+    cairo_move_to(context.get(), 0, ascent);
+    cairo_show_text(context.get(), words.c_str());
+  }
+  cairo_surface_flush(surface.get());
+  const cv::Mat1b mask(size.height, size.width, cairo_image_surface_get_data(surface.get()),
+                       static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));
+  const cv::Rect whole({left_bottom.x, left_bottom.y - ascent}, size);
+  const cv::Rect place = whole & cv::Rect({0, 0}, canvas.size());
+  for (int y = place.y; y < place.br().y; ++y) {
+    for (int x = place.x; x < place.br().x; ++x) {
+      const double opacity = mask(y - whole.y, x - whole.x) / 255.0;
+      auto& pixel = canvas.at<cv::Vec3b>(y, x);
+      for (int i = 0; i < 3; ++i)
+        pixel[i] = cv::saturate_cast<std::uint8_t>(pixel[i] + opacity * (color[i] - pixel[i]));
+    }
+  }
+}
+
+void draw_color_scale(cv::Mat& canvas, cv::Point left_bottom, int width, const std::string& first,
+                      const std::string& last, const std::string& missing) {
+  constexpr int kWidest = 160;
+  constexpr int kNarrowest = 40;
+  constexpr int kGap = 6;
+  constexpr int kWideGap = 24;
+  constexpr int kSwatchWidth = 20;
+  const auto [left, bottom] = left_bottom;
+  const int top = bottom - kTextHeight;
+  const int texts = text_width(first) + text_width(last) + text_width(missing);
+  const int colored = std::clamp(width - texts - 3 * kGap - kWideGap - kSwatchWidth, kNarrowest, kWidest);
+  draw_text(canvas, first, {left, bottom});
+  int at = left + text_width(first) + kGap;
+  cv::Mat1f values(1, colored);
+  for (int x = 0; x < colored; ++x) values(0, x) = static_cast<float>(x);
+  const cv::Mat colors = in_colors(values, 0, colored - 1);
+  for (int x = 0; x < colored; ++x) {
+    cv::line(canvas, {at + x, top}, {at + x, bottom}, cv::Scalar(colors.at<cv::Vec3b>(0, x)));
+  }
+  at += colored + kGap;
+  draw_text(canvas, last, {at, bottom});
+  at += text_width(last) + kWideGap;
+  cv::rectangle(canvas, {at, top}, {at + kSwatchWidth, bottom}, kMissing, cv::FILLED);
+  draw_text(canvas, missing, {at + kSwatchWidth + kGap, bottom});
+}
+
+void draw_caption(cv::Mat& canvas, const std::string& caption, const cv::Rect& picture) {
+  const double fits = static_cast<double>(picture.width) / std::max(text_width(caption), 1);
+  const double scale = std::clamp(fits, kSmallestScale, 1.0);
+  draw_text(canvas, cut_off(caption, scale, picture.width), {picture.x, picture.y - 8}, scale);
 }
 
 void draw_line(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to, const cv::Scalar& color,

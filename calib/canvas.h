@@ -9,13 +9,16 @@
 #include "models/kernels/gray_image.h"
 #include "models/kernels/rectification_table.h"
 
-// Drawing functions that the drawings of this folder share. Components of colours are in the order blue,
-// green, red.
+// Drawing functions that the drawings of this folder and of sw/media share. Font and colours are those of the
+// figures (sw/report/plots/style.py). Components of colours are in the order blue, green, red.
 namespace stereotlm::calib {
 
 inline const cv::Scalar kBlack(0, 0, 0);
 inline const cv::Scalar kWhite(255, 255, 255);
 inline const cv::Scalar kGray(128, 128, 128);
+inline const cv::Scalar kBlue(178, 114, 0);
+inline const cv::Scalar kVermilion(0, 94, 213);
+inline const cv::Scalar kMissing(217, 217, 217);  // where there is no value
 
 // Throws std::invalid_argument if the sizes differ.
 void check_sizes(cv::Size left, cv::Size right);
@@ -32,11 +35,16 @@ cv::Mat enlarged(const kernels::GrayImage& image);
 // The position of a pixel in the enlarged picture.
 cv::Point2d enlarged(const cv::Point2d& pixel, int enlargement);
 
+// Colours (Viridis) for values from `first`, dark, to `last`, bright. `last` may be less than `first`. Values
+// beyond them have the colour of the nearer one, and NaN has kMissing.
+cv::Mat in_colors(const cv::Mat1f& values, double first, double last);
+
 // The size of a text that draw_text() draws. The height is that of digits and capital letters.
-inline constexpr int kTextHeight = 11;  // pixels
+inline constexpr int kTextHeight = 10;  // pixels
 int text_width(const std::string& text, double scale = 1);
 
-// `left_bottom` is the bottom left corner of the first letter.
+// Draws UTF-8; of any other text, '?' for each byte that is not ASCII. `left_bottom` is the bottom left corner
+// of the first letter.
 void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_bottom, double scale = 1,
                const cv::Scalar& color = kBlack);
 
@@ -49,6 +57,19 @@ void draw_circle(cv::Mat& canvas, const cv::Point2d& middle, double radius, cons
 // A filled polygon must be convex.
 void draw_polygon(cv::Mat& canvas, const std::vector<cv::Point2d>& points, const cv::Scalar& color,
                   int thickness = 1);
+
+// Draws the scale of in_colors() in one line, which is not wider than `width` pixels: `first`, the colours,
+// `last`, and what kMissing stands for.
+inline constexpr int kScaleHeight = 28;       // pixels, with its margins
+inline constexpr int kLeastScaleWidth = 300;  // pixels, for texts such as those of this program
+void draw_color_scale(cv::Mat& canvas, cv::Point left_bottom, int width, const std::string& first,
+                      const std::string& last, const std::string& missing);
+
+// Draws the caption into the strip of this height above the picture: smaller if it is wider than the picture,
+// by half at most, then cut off.
+inline constexpr int kMargin = 8;          // pixels, around each picture
+inline constexpr int kCaptionHeight = 24;  // pixels
+void draw_caption(cv::Mat& canvas, const std::string& caption, const cv::Rect& picture);
 
 // Two pictures of one size side by side, under their captions, on white.
 struct Pair {

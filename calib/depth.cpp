@@ -1,8 +1,10 @@
 #include "calib/depth.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -49,6 +51,16 @@ std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
            static_cast<std::size_t>(column)] = static_cast<std::uint16_t>(depth);
   });
   return result;
+}
+
+std::optional<DepthRange> depth_range(const std::vector<std::uint16_t>& millimetres) {
+  std::vector<std::uint16_t> known;
+  std::copy_if(millimetres.begin(), millimetres.end(), std::back_inserter(known),
+               [](int depth) { return depth > 0; });
+  if (known.empty()) return std::nullopt;
+  std::sort(known.begin(), known.end());
+  const int near = known[known.size() / 100];
+  return DepthRange{near, std::max<int>(near + 1, known[known.size() - 1 - known.size() / 100])};
 }
 
 std::string point_cloud_ply(const DepthGeometry& geometry, const kernels::GrayImage& disparity,

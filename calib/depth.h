@@ -26,6 +26,14 @@ struct DepthGeometry {
 std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
                                              const kernels::GrayImage& disparity);
 
+// The nearest and the farthest depth that a coloured picture distinguishes. A hundredth of all known depths is
+// nearer, and one is farther. Nullopt if no depth is known.
+struct DepthRange {
+  int near_mm = 0;
+  int far_mm = 0;  // above near_mm
+};
+std::optional<DepthRange> depth_range(const std::vector<std::uint16_t>& millimetres);
+
 // The points of all pixels with a disparity as a PLY file (binary, little endian): x, y, z in mm as floats,
 // and the grey of the pixel of `rectified_left` as red, green, blue. Throws std::invalid_argument if the
 // images differ in size.

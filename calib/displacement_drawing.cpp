@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
@@ -12,41 +13,68 @@
 namespace stereotlm::calib {
 namespace {
 
-constexpr int kLegendHeight = 28;  // pixels
+constexpr int kSpacing = 40;  // of the arrows in pixels of the drawing, at most
 
-std::uint32_t entry_at(const kernels::RectificationTable& table, int column, int row) {
-  return table.entries[static_cast<std::size_t>(row) * static_cast<std::size_t>(table.width) +
-                       static_cast<std::size_t>(column)];
+bool is_valid(const kernels::RectificationTable& table, int column, int row) {
+  return kernels::entry_is_valid(
+      table.entries[static_cast<std::size_t>(row) * static_cast<std::size_t>(table.width) +
+                    static_cast<std::size_t>(column)]);
 }
 
-// The distance of each entry from its source in pixels; -1 where the entry is not valid.
-cv::Mat1f distances(const kernels::RectificationTable& table) {
-  cv::Mat1f result(table.height, table.width);
+// From the position of a valid entry to its source.
+cv::Point2d displacement(const kernels::RectificationTable& table, int column, int row) {
+  const std::uint32_t entry =
+      table.entries[static_cast<std::size_t>(row) * static_cast<std::size_t>(table.width) +
+                    static_cast<std::size_t>(column)];
+  return {kernels::entry_column(entry) - static_cast<double>(column),
+          kernels::entry_row(entry) - static_cast<double>(row)};
+}
+
+// The mean of all displacements: what the table moves the whole picture by.
+cv::Point2d offset_of(const kernels::RectificationTable& table) {
+  cv::Point2d sum;
+  int count = 0;
   for (int row = 0; row < table.height; ++row) {
     for (int column = 0; column < table.width; ++column) {
-      const std::uint32_t entry = entry_at(table, column, row);
-      const double distance =
-          std::hypot(kernels::entry_column(entry) - column, kernels::entry_row(entry) - row);
-      result(row, column) = kernels::entry_is_valid(entry) ? static_cast<float>(distance) : -1.0F;
+      if (!is_valid(table, column, row)) continue;
+      sum += displacement(table, column, row);
+      ++count;
+    }
+  }
+  return sum / std::max(count, 1);
+}
+
+// The length of each displacement without the offset, in pixels; NaN where the entry is not valid.
+cv::Mat1f lengths(const kernels::RectificationTable& table, const cv::Point2d& offset) {
+  cv::Mat1f result(table.height, table.width, std::numeric_limits<float>::quiet_NaN());
+  for (int row = 0; row < table.height; ++row) {
+    for (int column = 0; column < table.width; ++column) {
+      if (is_valid(table, column, row))
+        result(row, column) = static_cast<float>(cv::norm(displacement(table, column, row) - offset));
     }
   }
   return result;
 }
 
-double largest(const cv::Mat1f& distances) {
+double largest(const cv::Mat1f& lengths) {
   double most = 0;
-  cv::minMaxLoc(distances, nullptr, &most);
-  return std::max(most, 0.0);
+  for (const float length : lengths) {
+    if (!std::isnan(length)) most = std::max(most, static_cast<double>(length));
+  }
+  return most;
 }
 
-// Colours for distances of 0 to `most`. Negative distances are grey.
-cv::Mat in_colors(const cv::Mat1f& distances, double most) {
-  cv::Mat levels;
-  distances.convertTo(levels, CV_8U, most > 0 ? 255 / most : 0);
-  cv::Mat colors;
-  cv::applyColorMap(levels, colors, cv::COLORMAP_TURBO);
-  colors.setTo(kGray, distances < 0);
-  return colors;
+// The factor by which arrows are lengthened so that none reaches the next position: 1, 2 or 5 times a power of ten.
+// `most`: the length of the longest one, in pixels of the drawing.
+double arrow_factor(double most, int spacing) {
+  constexpr double kShareOfSpacing = 0.9;
+  constexpr double kLargest = 100;
+  const double fits = std::min(kLargest, kShareOfSpacing * spacing / std::max(most, 1e-9));
+  const double power = std::pow(10, std::floor(std::log10(fits) + 1e-9));
+  for (const double digit : {5.0, 2.0}) {
+    if (digit * power <= fits) return digit * power;
+  }
+  return power;
 }
 
 // Draws an arrow in white with a black edge, so that it is visible on every colour. If the arrow is shorter
@@ -69,47 +97,34 @@ void draw_arrow(cv::Mat& panel, const cv::Point2d& from, const cv::Point2d& to) 
   draw_polygon(panel, head, kWhite, cv::FILLED);
 }
 
-cv::Mat drawn(const kernels::RectificationTable& table, const cv::Mat1f& distances, double most) {
-  constexpr int kSpacing = 40;  // pixels of the drawing, at most
+struct Side {
+  cv::Point2d offset;
+  cv::Mat1f lengths;
+};
+
+Side side_of(const kernels::RectificationTable& table) {
+  const cv::Point2d offset = offset_of(table);
+  return {offset, lengths(table, offset)};
+}
+
+cv::Mat drawn(const kernels::RectificationTable& table, const Side& side, double most, double arrows) {
   const int factor = enlargement({table.width, table.height});
   cv::Mat panel;
-  cv::resize(in_colors(distances, most), panel, {}, factor, factor, cv::INTER_NEAREST);
+  cv::resize(in_colors(side.lengths, 0, most), panel, {}, factor, factor, cv::INTER_NEAREST);
   const int spacing = std::max(1, kSpacing / factor);
   for (int row = spacing / 2; row < table.height; row += spacing) {
     for (int column = spacing / 2; column < table.width; column += spacing) {
-      const std::uint32_t entry = entry_at(table, column, row);
-      if (!kernels::entry_is_valid(entry)) continue;
-      const cv::Point2d source(kernels::entry_column(entry), kernels::entry_row(entry));
-      draw_arrow(panel, enlarged(cv::Point2d(column, row), factor), enlarged(source, factor));
+      if (!is_valid(table, column, row)) continue;
+      const cv::Point2d from = enlarged(cv::Point2d(column, row), factor);
+      draw_arrow(panel, from, from + (displacement(table, column, row) - side.offset) * factor * arrows);
     }
   }
   return panel;
 }
 
-void draw_legend(cv::Mat& canvas, int left, int bottom, double most) {
-  constexpr int kBarWidth = 160;
-  constexpr int kGap = 6;
-  constexpr int kWideGap = 30;
-  constexpr int kSwatchWidth = 20;
-  const int top = bottom - kTextHeight;
-  const std::string zero = "0";
-  draw_text(canvas, zero, {left, bottom});
-  left += text_width(zero) + kGap;
-
-  cv::Mat1f scale(1, kBarWidth);
-  for (int x = 0; x < kBarWidth; ++x) scale(0, x) = static_cast<float>(x);
-  const cv::Mat colors = in_colors(scale, kBarWidth - 1);
-  for (int x = 0; x < kBarWidth; ++x) {
-    const cv::Scalar color(colors.at<cv::Vec3b>(0, x));
-    cv::line(canvas, {left + x, top}, {left + x, bottom}, color);
-  }
-  left += kBarWidth + kGap;
-
-  const std::string longest = fmt::format("{:.1f} px", most);
-  draw_text(canvas, longest, {left, bottom});
-  left += text_width(longest) + kWideGap;
-  cv::rectangle(canvas, {left, top}, {left + kSwatchWidth, bottom}, kGray, cv::FILLED);
-  draw_text(canvas, "no source", {left + kSwatchWidth + kGap, bottom});
+std::string caption(const std::string& name, const Side& side, double arrows) {
+  return fmt::format("{} without its offset ({:+.1f}, {:+.1f}) px; arrows {:g} times as long", name,
+                     side.offset.x, side.offset.y, arrows);
 }
 
 }  // namespace
@@ -117,12 +132,16 @@ void draw_legend(cv::Mat& canvas, int left, int bottom, double most) {
 std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right) {
   check_tables(left, right);
-  const cv::Mat1f left_distances = distances(left);
-  const cv::Mat1f right_distances = distances(right);
-  const double most = std::max(largest(left_distances), largest(right_distances));
-  Pair pair = side_by_side("left table", drawn(left, left_distances, most), "right table",
-                           drawn(right, right_distances, most), kLegendHeight);
-  draw_legend(pair.canvas, pair.left.x, pair.left.br().y + kLegendHeight - 4, most);
+  const Side of_left = side_of(left);
+  const Side of_right = side_of(right);
+  const double most = std::max(largest(of_left.lengths), largest(of_right.lengths));
+  const int factor = enlargement({left.width, left.height});
+  const double arrows = arrow_factor(most * factor, std::max(1, kSpacing / factor) * factor);
+  Pair pair = side_by_side(caption("left table", of_left, arrows), drawn(left, of_left, most, arrows),
+                           caption("right table", of_right, arrows), drawn(right, of_right, most, arrows),
+                           kScaleHeight);
+  draw_color_scale(pair.canvas, {pair.left.x, pair.left.br().y + kScaleHeight - 4}, pair.left.width, "0",
+                   fmt::format("{:.1f} px", most), "no source");
   return encode_png(pair.canvas);
 }
 

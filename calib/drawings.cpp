@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "calib/canvas.h"
+#include "calib/depth.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -105,6 +109,25 @@ std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, 
     cv::line(pair.canvas, {pair.left.x, y}, {pair.right.br().x - 1, y}, colors[count++ % colors.size()]);
   }
   return encode_png(pair.canvas);
+}
+
+std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
+                                                 const std::vector<std::uint16_t>& millimetres) {
+  if (width < 1 || height < 1 ||
+      static_cast<long long>(width) * height != static_cast<long long>(millimetres.size())) {
+    throw std::invalid_argument(fmt::format("depths = {}x{} with {} values: must be whole and not empty",
+                                            width, height, millimetres.size()));
+  }
+  const std::optional<DepthRange> range = depth_range(millimetres);
+  cv::Mat1f depths(height, width, std::numeric_limits<float>::quiet_NaN());
+  std::transform(millimetres.begin(), millimetres.end(), depths.begin(), depths.begin(),
+                 [](int depth, float unknown) { return depth > 0 ? static_cast<float>(depth) : unknown; });
+  const DepthRange shown = range.value_or(DepthRange{0, 1});
+  cv::Mat canvas(height + kScaleHeight, std::max(width, kLeastScaleWidth), CV_8UC3, kWhite);
+  in_colors(depths, shown.far_mm, shown.near_mm).copyTo(canvas({0, 0, width, height}));
+  draw_color_scale(canvas, {kMargin, height + kScaleHeight - kMargin}, canvas.cols - 2 * kMargin,
+                   fmt::format("{} mm", shown.far_mm), fmt::format("{} mm", shown.near_mm), "unknown");
+  return encode_png(canvas);
 }
 
 }  // namespace stereotlm::calib

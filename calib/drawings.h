@@ -15,7 +15,7 @@
 namespace stereotlm::calib {
 
 struct CaptionedImage {
-  std::string caption;  // ASCII; if wider than the image, shrunk to half the size at most, then cut off
+  std::string caption;  // if wider than the image, shrunk to half the size at most, then cut off
   kernels::GrayImage image;
 };
 
@@ -33,11 +33,19 @@ std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const Capti
 // Draws lines through both pictures along about every 32nd row. Objects lie in the same row on both sides.
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right);
 
-// Draws the distance of each entry from its source, in colours (Turbo) from 0 to the largest distance of both
-// tables, and grey where the entry is not valid. Arrows lead from positions of the rectified picture to their
-// sources.
+// Draws where each entry's source lies from the entry, without the mean of the table, which the captions give:
+// the distance in colours (Viridis) from 0 to the largest one of both tables, and light grey where the entry
+// is not valid. Arrows show the direction. They are lengthened alike in both tables, by a factor that the
+// captions give, as far as none reaches the position of the next.
 std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right);
+
+// Draws depths in colours (Viridis), near ones bright, with the scale below the picture, which
+// is widened by white to the room of the scale. Depths beyond
+// depth_range() have the colours of its ends; 0 (unknown) is light grey. Throws std::invalid_argument unless
+// there are width * height depths, at least one.
+std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
+                                                 const std::vector<std::uint16_t>& millimetres);
 
 // Draws a chart of source_lines() for 1, 3, .. 31 lines, but no more than the height of the tables. It has
 // two curves for each table: the largest number and the mean.

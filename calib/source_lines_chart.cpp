@@ -15,9 +15,7 @@ constexpr int kMostLines = 31;
 constexpr int kTickLength = 5;  // pixels
 const cv::Size kChartSize(800, 500);
 const cv::Rect kPlot(52, 68, 724, 372);  // inside the axes
-const cv::Scalar kGridColor(228, 228, 228);
-const cv::Scalar kLeftColor(200, 110, 20);   // blue
-const cv::Scalar kRightColor(20, 110, 230);  // orange
+const cv::Scalar kGridColor(221, 221, 221);
 
 enum class Mark { kNone, kRing, kDisc };
 
@@ -89,9 +87,11 @@ void draw_axes(cv::Mat& chart, const Axis& axis) {
 }
 
 void draw_titles(cv::Mat& chart) {
-  draw_text(chart, "Lines of the source picture, from first to last, that n lines of the rectified one name",
+  draw_text(chart,
+            "Lines of the camera's picture, from first to last, that n rows of the rectified picture take "
+            "pixels from",
             {12, 24});
-  const std::string below = "n";
+  const std::string below = "n, rows of the rectified picture";
   draw_text(chart, below, {kPlot.x + (kPlot.width - text_width(below)) / 2, kChartSize.height - 14});
 }
 
@@ -132,8 +132,8 @@ std::vector<std::uint8_t> encode_source_lines_png(const kernels::RectificationTa
                                                   const kernels::RectificationTable& right) {
   check_tables(left, right);
   std::vector<Curve> curves = {{"n", kGray, 1, Mark::kNone, {}}};
-  for (const Curve& curve : curves_of(left, "left", kLeftColor, Mark::kRing)) curves.push_back(curve);
-  for (const Curve& curve : curves_of(right, "right", kRightColor, Mark::kDisc)) curves.push_back(curve);
+  for (const Curve& curve : curves_of(left, "left", kBlue, Mark::kRing)) curves.push_back(curve);
+  for (const Curve& curve : curves_of(right, "right", kVermilion, Mark::kDisc)) curves.push_back(curve);
   for (std::size_t i = 0; i < curves.back().values.size(); ++i) curves.front().values.push_back(lines_of(i));
   double most = 0;
   for (const Curve& curve : curves) {

@@ -12,8 +12,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "sw" / "report" / "plots"))
+import style  # noqa: E402
 from points import Points  # noqa: E402
 
+style.use()
 
 # A row that `allocate` prints: banks, allocations, simulated, best rate, bound, steady rate (only for a whole
 # computer), number of allocations that reach the best rate, one of them.
@@ -101,13 +103,17 @@ def write_csv(path, found):
         writer.writerows(found)
 
 
-def panels(count, height=3.6, width=4.4, **options):
-    figure, axes = plt.subplots(1, count, figsize=(width * count, height), squeeze=False, **options)
-    for axis in axes.flat:
-        axis.grid(True, alpha=0.3)
+def panels(count, height=3.6, width=4.4, rows=1, width_ratios=None):
+    """A figure of panels in rows, and the panels. count: in a row; height, width: of a panel, in inches."""
+    figure, axes = plt.subplots(rows, count, figsize=(width * count, height * rows), squeeze=False,
+                                gridspec_kw={"width_ratios": width_ratios})
     return figure, list(axes.flat)
+
+
+def legend(axis, **options):
+    axis.legend(**{"fontsize": 8, "title_fontsize": 8, **options})
 
 
 def save(figure, path):
     figure.tight_layout()
-    figure.savefig(path, dpi=110, metadata={"Software": None})
+    path.write_bytes(style.encoded(figure, "png", dpi=110))

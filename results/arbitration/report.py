@@ -8,6 +8,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
+from study import style  # noqa: E402
 
 DEFAULT = "[host, result, left_pixel, right_pixel, left_lut, right_lut]"
 BUFFERS = ("left_image", "right_image", "left_lut", "right_lut", "disparity")
@@ -30,6 +31,7 @@ POLICIES = {
     "host last": ("fixed_priority", "[result, left_pixel, right_pixel, left_lut, right_lut, host]"),
     "round robin": ("round_robin", DEFAULT),
 }
+DRAWN = dict(zip(POLICIES, zip((style.BLUE, style.SKY, style.VERMILION, style.ORANGE), "o^Xs")))
 
 
 def read_core(database):
@@ -87,26 +89,35 @@ def computer_table(rows):
 
 
 def draw(core, computer):
-    figure, (left, right) = study.panels(2, height=4.4, width=5.2)
+    figure, (left, middle, right) = study.panels(3, height=4.6, width=4.5, width_ratios=(1.15, 1, 0.95))
     names = list(CORE)[::-1]
-    for policy, shift, color, marker in (("fixed_priority", 0.14, "tab:blue", "o"), ("round_robin", -0.14, "tab:orange", "s")):
+    for policy, shift, color, marker in (("fixed_priority", 0.14, style.BLUE, "o"), ("round_robin", -0.14, style.ORANGE, "s")):
         rows = [study.only(core, shared=name, policy=policy) for name in names]
         at = [number + shift for number in range(len(rows))]
         left.hlines(at, [row["slowest"] for row in rows], [row["fastest"] for row in rows], color=color, linewidth=3)
         left.plot([row["default"] for row in rows], at, marker, color=color, label=policy.replace("_", " "))
-    left.set(yticks=range(len(names)), yticklabels=names, xlabel="frames per second, slowest to fastest of 120 orders",
-             title="the core alone", xlim=(0, 20))
-    left.legend(fontsize=8)
+    rows = [study.only(core, shared=name, policy="fixed_priority") for name in names]
+    left.plot([row["bound"] for row in rows], range(len(rows)), **style.bound(style.INK, of_x=True, label="bound"))
+    left.set(yticks=range(len(names)), yticklabels=names, title="the core alone: slowest to fastest of 120 orders",
+             xlabel="core, frames/s", xlim=(0, 20))
+    study.legend(left, ncol=3, loc="upper center", bbox_to_anchor=(0.4, -0.12), columnspacing=1)
     names = list(COMPUTER)[::-1]
-    for number, name in enumerate(POLICIES):
+    for number, (name, (color, marker)) in enumerate(DRAWN.items()):
         rows = [study.only(computer, shared=shared, ports=name) for shared in names]
-        right.barh([at + 0.3 - 0.2 * number for at in range(len(names))], [row["lost_percent"] for row in rows], 0.18)
-        for at, row in enumerate(rows):
-            right.text(row["lost_percent"] + 1, at + 0.3 - 0.2 * number, f"{name}: {row['steady']:.2f} frames/s", fontsize=7,
-                       va="center")
-    right.set(yticks=range(len(names)), yticklabels=[name.replace(" (", "\n(").replace(", ", ",\n") for name in names],
-              xlabel="pixels of the left camera that are lost, %", title="the whole computer, steady",
-              xlim=(0, 165), xticks=range(0, 101, 20))
+        at = [place + 0.27 - 0.18 * number for place in range(len(names))]
+        middle.plot([row["steady"] for row in rows], at, marker, color=color, markersize=6, label=name)
+        right.barh(at, [row["lost_percent"] for row in rows], 0.16, color=color)
+        right.plot([row["lost_percent"] for row in rows], at, marker, color=color, markersize=6)
+    for axis in (middle, right):
+        axis.set(yticks=range(len(names)), yticklabels=[], ylim=(-0.5, len(names) - 0.5))
+        axis.hlines([place + 0.5 for place in range(len(names) - 1)], 0, 1, transform=axis.get_yaxis_transform(),
+                    color=style.GRID, linewidth=0.8)
+        axis.grid(False, axis="y")
+    middle.set(yticklabels=[name.replace(" (", "\n(").replace(", ", ",\n") for name in names], xlabel="steady, frames/s",
+               title="the whole computer: rate", xlim=(0, 20))
+    right.set(xlabel="pixels of the left camera, %", title="the whole computer: pixels lost", xlim=(-3, 103))
+    study.legend(middle, ncol=4, loc="upper center", bbox_to_anchor=(0.9, -0.12), columnspacing=1)
+    middle.get_legend().set_in_layout(False)  # it may reach below the next panel
     study.save(figure, HERE / "arbitration.png")
 
 

@@ -54,9 +54,9 @@ def draw(axis, found, shares, rate, title):
         line = [point for point in found if point["shared"] == name and point["kind"] != "zbt_flow_through"]
         axis.plot([point["turnaround_cycles"] for point in line], [point[rate] for point in line], style, label=name,
                   markersize=9 if style == "s--" else 5)
-    axis.set(title=title, xlabel="clocks lost when the direction turns (0: ZBT)", ylabel="frames per second", ylim=(0, 20),
+    axis.set(title=title, xlabel="clocks lost when the direction turns (0: ZBT)", ylabel="core, frames/s", ylim=(0, 20),
              xticks=range(5))
-    axis.legend(fontsize=8, title="in one bank", title_fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.17))
+    study.legend(axis, title="in one bank", loc="upper center", bbox_to_anchor=(0.5, -0.17))
 
 
 TEXT = """# Kinds of memory

@@ -9,6 +9,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
+from study import style  # noqa: E402
 
 # By name of the output file: what `allocate` searched.
 SEARCHES = {
@@ -21,8 +22,8 @@ SEARCHES = {
     "computer_sync_burst": "computer, sync burst, 2 clocks",
     "computer_long_queues": "computer, ZBT, queues of 32 slots",
 }
-DRAWN = {"core": ("o-", "tab:blue"), "core_sync_burst": ("o--", "tab:cyan"), "computer": ("s-", "tab:red"),
-         "computer_sync_burst": ("s--", "tab:orange"), "computer_long_queues": ("s-", "tab:green")}
+DRAWN = {"core": ("o-", style.BLUE), "core_sync_burst": ("o--", style.SKY), "computer": ("s-", style.VERMILION),
+         "computer_sync_burst": ("s--", style.ORANGE), "computer_long_queues": ("s-", style.GREEN)}
 BANKS = range(1, 9)
 
 
@@ -35,20 +36,20 @@ def queues_table(queues):
 
 def draw(found, queues):
     figure, (left, right) = study.panels(2, height=4, width=4.8)
-    for name, (style, color) in DRAWN.items():
+    for name, (look, color) in DRAWN.items():
         rates = found[name]
-        left.plot(list(rates), [row["best"] for row in rates.values()], style, color=color, markersize=5, label=SEARCHES[name])
+        left.plot(list(rates), [row["best"] for row in rates.values()], look, color=color, markersize=5, label=SEARCHES[name])
     steady = found["computer"]
-    left.plot(list(steady), [row["steady"] for row in steady.values()], "s:", color="tab:red", markersize=4,
+    left.plot(list(steady), [row["steady"] for row in steady.values()], "s:", color=style.VERMILION, markersize=4,
               markerfacecolor="white", label="computer, ZBT, steady")
-    left.set(xlabel="banks", ylabel="best frames per second", xticks=range(3, 9), ylim=(0, 20))
-    left.legend(fontsize=8, loc="lower right")
-    right.axhline(steady[8]["steady"], color="0.6", linestyle="--", label="8 banks, 16 slots")
-    right.plot([point["lane_fifo_slots"] for point in queues], [point["steady"] for point in queues], "s-", color="tab:red",
+    left.set(title="the best of all allocations", xlabel="banks", ylabel="best rate, frames/s", xticks=range(3, 9), ylim=(0, 20))
+    study.legend(left, loc="lower right")
+    right.axhline(steady[8]["steady"], color=style.GRAY, linestyle="--", label="8 banks, 16 slots")
+    right.plot([point["lane_fifo_slots"] for point in queues], [point["steady"] for point in queues], "s-", color=style.VERMILION,
                markersize=5, label="5 banks")
-    right.set(xlabel="slots of a lane's queue (fpga.lane_fifo_slots)", ylabel="computer, steady frames per second",
+    right.set(title="longer queues, five banks", xlabel="slots of a lane's queue (fpga.lane_fifo_slots)", ylabel="whole computer, steady frames/s",
               ylim=(16, 18.2))
-    right.legend(fontsize=8, loc="lower right")
+    study.legend(right, loc="lower right")
     study.save(figure, HERE / "banks.png")
 
 

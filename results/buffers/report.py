@@ -8,9 +8,10 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
+from study import style  # noqa: E402
 
 NAMES = {1: "single", 2: "ping-pong", 3: "triple"}
-COLORS = {1: "tab:red", 2: "tab:blue", 3: "tab:green"}
+COLORS = {1: style.VERMILION, 2: style.BLUE, 3: style.GREEN}
 SHOWN = [10, 20, 29.97, 40, 60]
 PAPER_HZ = 29.97
 
@@ -44,13 +45,13 @@ def draw(found):
                 axis.plot([point["rate_hz"] for point in line], [point[what] for point in line], dashes, marker=".",
                           color=COLORS[pictures], linewidth=1.2, label=f"{NAMES[pictures]}, results {NAMES[results]}")
     core = found[0]["core"]
-    left.axhline(core, color="0.6", linewidth=4, alpha=0.4, zorder=0, label="the core alone")
+    left.axhline(core, label="the core alone", **style.FAINT_LINE)
     for axis in (left, right):
-        axis.axvline(PAPER_HZ, color="0.7", linewidth=0.8, linestyle=":", zorder=0)
+        axis.axvline(PAPER_HZ, color=style.GRAY, linewidth=0.8, linestyle=":", zorder=0)
         axis.set(xlabel="frame rate of the cameras, Hz")
-    left.set(ylabel="steady frames per second", ylim=(0, 20))
-    right.set(ylabel="capture to result in the host, median, ms", ylim=(0, 190))
-    left.legend(fontsize=7.5, title="pictures", title_fontsize=8, loc="lower right", ncol=2)
+    left.set(title="rate of results", ylabel="whole computer, steady frames/s", ylim=(0, 20))
+    right.set(title="age of results", ylabel="capture to result in the host, median, ms", ylim=(0, 190))
+    study.legend(left, fontsize=7.5, title="pictures", loc="lower right", ncol=2)
     study.save(figure, HERE / "buffers.png")
 
 

@@ -9,14 +9,15 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
+from study import style  # noqa: E402
 
 WINDOW, PAPER, FEW = 7, 80, 14
 FETCHES = {"column": "column fetch", "line_buffer": "line buffers"}
-DRAWN = {("column", 80): ("o-", "tab:blue"), ("line_buffer", 80): ("o-", "tab:red"),
-         ("column", 200): ("s--", "tab:cyan"), ("line_buffer", 200): ("s--", "tab:orange")}
+DRAWN = {("column", 80): ("o-", style.BLUE), ("line_buffer", 80): ("o-", style.VERMILION),
+         ("column", 200): ("s--", style.SKY), ("line_buffer", 200): ("s--", style.ORANGE)}
 TABLES = {"": "identity", "_rig": "real rig"}
 BANKS = ("one bank", "two banks", "eight banks")
-WINDOWS = {7: "tab:blue", 15: "tab:orange", 31: "tab:green"}
+WINDOWS = {7: style.BLUE, 15: style.ORANGE, 31: style.GREEN}
 
 
 def read(folder):
@@ -102,14 +103,14 @@ def banks_table(found):
 
 def draw(found):
     figure, (left, right) = study.panels(2, height=4.4, width=5.2)
-    for (fetch, disparities), (style, color) in DRAWN.items():
+    for (fetch, disparities), (look, color) in DRAWN.items():
         points = sorted((point for point in found["folds"] if point["window"] == WINDOW and point["fetch"] == fetch
                          and point["disparities"] == disparities), key=lambda point: point["slices"])
-        left.plot([point["slices"] for point in points], [point["core"] for point in points], style, color=color, markersize=4,
+        left.plot([point["slices"] for point in points], [point["core"] for point in points], look, color=color, markersize=4,
                   label=f"{FETCHES[fetch]}, D = {disparities}")
     left.set(title=f"fewer modules, {WINDOW}x{WINDOW}")
     here = [point for point in found["together"] if point["window"] == WINDOW]
-    for fetch, color in (("column", "tab:blue"), ("line_buffer", "tab:red")):
+    for fetch, color in (("column", style.BLUE), ("line_buffer", style.VERMILION)):
         points = [point for point in here if point["fetch"] == fetch]
         right.plot([point["slices"] for point in points], [point["core"] for point in points], "o", color=color, markersize=3,
                    label=f"{FETCHES[fetch]}{', 1 to 8 rows' if fetch == 'column' else ''}")
@@ -119,13 +120,13 @@ def draw(found):
     right.plot([paper["slices"]], [paper["core"]], "k*", markersize=11, label="the paper's board")
     right.set(title=f"rows and fewer modules together, D = {PAPER}")
     for axis in (left, right):
-        axis.axvline(100, color="0.5", linestyle=":")
-        axis.set(xlabel="% of the slices", ylabel="frames per second", xscale="log", yscale="log", xlim=(3, 200),
+        axis.axvline(100, color=style.GRAY, linestyle=":")
+        axis.set(xlabel="area, % of the slices", ylabel="core, frames/s", xscale="log", yscale="log", xlim=(3, 200),
                  ylim=(0.8, 200), xticks=(5, 10, 20, 50, 100), yticks=(1, 2, 5, 10, 20, 50, 100))
         axis.set_xticks([], minor=True)
         axis.set_yticks([], minor=True)
         axis.set(xticklabels=(5, 10, 20, 50, 100), yticklabels=(1, 2, 5, 10, 20, 50, 100))
-        axis.legend(fontsize=8, loc="upper left")
+        study.legend(axis, loc="upper left")
     study.save(figure, HERE / "folds.png")
 
 

@@ -9,10 +9,11 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
+from study import style  # noqa: E402
 
 WINDOW = 7
 FETCHES = ("column", "line_buffer")
-DRAWN = {3: "tab:green", 7: "tab:blue", 15: "tab:orange", 31: "tab:red"}
+DRAWN = {3: style.GREEN, 7: style.BLUE, 15: style.ORANGE, 31: style.VERMILION}
 TABLES = {"": "identity", "_rig": "real rig"}
 DRAWN_ROWS = 8
 CAMERA_ROWS = (1, 2, 3, 4, 5, 6, 8)
@@ -98,27 +99,27 @@ def cameras_table(found):
 def draw(found):
     figure, (left, right) = study.panels(2, height=4.2, width=5)
     points = line(point for point in found["core"] if point["window"] == WINDOW)
-    left.plot([point["rows"] for point in points], [point["core"] for point in points], "o-", color="tab:blue", markersize=5,
+    left.plot([point["rows"] for point in points], [point["core"] for point in points], "o-", color=style.BLUE, markersize=5,
               label="eight banks")
-    for tables, color in zip(TABLES.values(), ("tab:green", "tab:red")):
+    for tables, color in zip(TABLES.values(), (style.GREEN, style.VERMILION)):
         two = line(point for point in found["two_banks"] if point["tables"] == tables)
         left.plot([point["rows"] for point in two], [point["core"] for point in two], "s--", color=color, markersize=4,
                   label=f"two banks, {tables}")
     kept = study.only(found["core"], window=WINDOW, fetch="line_buffer")
-    left.axhline(kept["core"], color="0.5", linestyle=":", label="line buffers, eight banks")
-    left.set(xlabel="rows at once", ylabel="frames per second", title=f"the core alone, {WINDOW}x{WINDOW}", ylim=(0, 140),
+    left.axhline(kept["core"], color=style.GRAY, linestyle=":", label="line buffers, eight banks")
+    left.set(xlabel="rows at once", ylabel="core, frames/s", title=f"the core alone, {WINDOW}x{WINDOW}", ylim=(0, 140),
              xticks=range(1, 17, 3))
-    left.legend(fontsize=8)
+    study.legend(left)
     for window, color in DRAWN.items():
         points = line(point for point in found["core"] if point["window"] == window and point["rows"] <= DRAWN_ROWS)
         kept = study.only(found["core"], window=window, fetch="line_buffer")
         right.plot([point["slices"] for point in points], [point["core"] for point in points], "o-", color=color, markersize=4,
                    label=f"{window}x{window}")
         right.plot([kept["slices"]], [kept["core"]], "*", color=color, markersize=12)
-    right.axvline(100, color="0.5", linestyle=":")
-    right.set(xlabel="% of the slices", ylabel="frames per second", xlim=(0, 190), ylim=(0, 140),
+    right.axvline(100, color=style.GRAY, linestyle=":")
+    right.set(xlabel="area, % of the slices", ylabel="core, frames/s", xlim=(0, 190), ylim=(0, 140),
               title=f"one to {DRAWN_ROWS} rows; star: line buffers")
-    right.legend(fontsize=8, loc="center right")
+    study.legend(right, loc="center right")
     study.save(figure, HERE / "rows.png")
 
 

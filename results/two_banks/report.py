@@ -12,6 +12,7 @@ import numpy
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
+from study import style  # noqa: E402
 
 # By name of the output file: what `allocate` searched.
 SEARCHES = {
@@ -22,7 +23,7 @@ SEARCHES = {
     "core_both_four_rows": "both, four rows",
     "computer_both": "computer, both",
 }
-DRAWN = {"core": "tab:blue", "core_joint": "tab:green", "core_cache": "tab:orange", "core_both": "tab:red"}
+DRAWN = {"core": style.BLUE, "core_joint": style.GREEN, "core_cache": style.ORANGE, "core_both": style.VERMILION}
 BANKS = range(2, 9)
 # The points of ports.yaml and of banks.yaml.
 PORTS = ("two banks", "no cache", "round robin", "age", "queues of 8", "queues of 11", "queues of 12",
@@ -134,21 +135,21 @@ def cameras_table(runs):
 def draw_banks(found):
     figure, (left, right) = study.panels(2, height=4, width=4.8)
     for name, color in DRAWN.items():
-        for which, style in (("", "o-"), ("_rig", "s--")):
+        for which, look in (("", "o-"), ("_rig", "s--")):
             rates = found[name + which]
-            left.plot(list(rates), [row["best"] for row in rates.values()], style, color=color, markersize=5,
+            left.plot(list(rates), [row["best"] for row in rates.values()], look, color=color, markersize=5,
                       markerfacecolor="white" if which else color, label=f"{SEARCHES[name]}, {TABLES[which]}")
     left.set(title="the core alone")
-    for which, style in (("", "o-"), ("_rig", "s--")):
+    for which, look in (("", "o-"), ("_rig", "s--")):
         rates = found["computer_both" + which]
-        for what, color in (("best", "tab:red"), ("steady", "tab:purple")):
-            right.plot(list(rates), [row[what] for row in rates.values()], style, color=color, markersize=5,
+        for what, color in (("best", style.VERMILION), ("steady", style.PINK)):
+            right.plot(list(rates), [row[what] for row in rates.values()], look, color=color, markersize=5,
                        markerfacecolor="white" if which else color,
                        label=f"{'from power-up' if what == 'best' else 'steady'}, {TABLES[which]}")
     right.set(title="the whole computer, joint tables and word cache")
     for axis in (left, right):
-        axis.set(xlabel="banks", ylabel="best frames per second", xticks=BANKS, ylim=(0, 20))
-        axis.legend(fontsize=7.5, loc="lower right")
+        axis.set(xlabel="banks", ylabel="best rate, frames/s", xticks=BANKS, ylim=(0, 20))
+        study.legend(axis, fontsize=7.5, loc="lower right")
     study.save(figure, HERE / "banks.png")
 
 
@@ -165,10 +166,10 @@ def draw_misses(maps):
     for axis, side in zip(axes, SIDES):
         found = maps["_rig", side]
         share = 100 * smooth(found["read"]) / numpy.maximum(smooth(found["valid"]), 1e-3)
-        shown = axis.imshow(numpy.ma.masked_where(~found["valid"], share), cmap="viridis", vmin=20, vmax=32)
-        axis.set(title=f"{side} port", xlabel="column of the rectified picture", ylabel="row")
+        shown = axis.imshow(numpy.ma.masked_where(~found["valid"], share), vmin=20, vmax=32)
+        axis.set(title=f"{side} port", xlabel="column of the rectified picture, pixels", ylabel="row, pixels")
         axis.grid(False)
-        axis.set_facecolor("0.85")
+        axis.set_facecolor(style.MISSING)
         figure.colorbar(shown, ax=axis, label="slots that read a word, %")
     study.save(figure, HERE / "misses.png")
 

@@ -12,19 +12,21 @@ namespace stereotlm::cli {
 namespace {
 
 constexpr const char* kPlotFooter =
-    "Each figure that applies to the database is drawn, as NAME.png and NAME.svg, with its data in "
-    "NAME.csv:\n"
+    "Each figure that applies to the database is drawn, as NAME.png and NAME.svg or in the formats of\n"
+    "--format, with its data in NAME.csv:\n"
     "  window       frames per second against matcher.window\n"
     "  disparities  frames per second, and area, against matcher.disparities\n"
+    "  rows         the same against matcher.rows\n"
+    "  units        the same against the number of modules, matcher.units\n"
     "  banks        frames per second against the banks that the allocation uses\n"
     "  states       what each port does in the cycles of a frame\n"
     "  stalls       stall cycles of each port by their cause\n"
     "  use          how busy each bank is\n"
     "  pareto       two columns of the database, and the points that no other point dominates;\n"
-    "               beside the columns there is banks_used\n"
-    "Points that differ in keys besides the x axis are on separate lines. Of more than 16 points, states,\n"
-    "stalls and use show some; the figure says which. DIR must be empty or hold only such files, which\n"
-    "are replaced.\n"
+    "               beside the columns there are banks_used and units_used\n"
+    "Points that differ in keys besides the x axis are on separate lines; more than can be distinguished\n"
+    "are drawn as envelopes. Of more than 16 points, states, stalls and use show some; the figure says\n"
+    "which. DIR must be empty or hold only such files, which are replaced.\n"
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
 
@@ -34,6 +36,8 @@ struct PlotOptions {
   Typed out;
   TypedList only;
   Typed pareto;
+  Typed format;
+  Typed size;
 
   void add_to(CLI::App& command) {
     database.add_to(command, "DB", " ", "A database of sweep");
@@ -43,6 +47,11 @@ struct PlotOptions {
     pareto.add_to(command, "--pareto", "X:SENSE,Y:SENSE",
                   "Two columns, each with min or max: what is better; default "
                   "area.slices:min,frames_per_second.core:max");
+    format.add_to(command, "--format", "F,..", "png, svg, pdf, or several with commas; default png,svg");
+    size.add_to(
+        command, "--size", "WxH",
+        "Width and height of each figure in inches, such as 7.2x4.5; default: 7.2 wide, and as high as "
+        "its content");
   }
 
   void check_usage() const {}  // the script does that
@@ -53,6 +62,8 @@ struct PlotOptions {
     if (out.is_given()) words.push_back("--out=" + out.text);
     for (const std::string& each : only.text) words.push_back("--only=" + each);
     if (pareto.is_given()) words.push_back("--pareto=" + pareto.text);
+    if (format.is_given()) words.push_back("--format=" + format.text);
+    if (size.is_given()) words.push_back("--size=" + size.text);
     if (database.is_given()) words.insert(words.end(), {"--", database.text});
     return words;
   }

@@ -97,37 +97,37 @@ int parse_disparities(std::string_view text) {
   return value;
 }
 
+media::Panel disparity_panel(const std::string& caption, const kernels::GrayImage& image, int disparities,
+                             const std::string& missing) {
+  return {caption, image, disparities, "0", std::to_string(disparities - 1), missing};
+}
+
 void montage(const std::vector<std::string>& arguments) {
   const int disparities = parse_disparities(arguments[3]);
   std::vector<media::Panel> panels = {
-      {"left picture", media::load_gray(arguments[1]).image, 0},
-      {"disparity (black: no answer)", media::load_gray(arguments[2]).image, disparities}};
+      {"left picture", media::load_gray(arguments[1]).image, 0, "", "", ""},
+      disparity_panel("disparity, pixels", media::load_gray(arguments[2]).image, disparities, "no answer")};
   if (arguments.size() == 5) {
     const auto truth = media::load_truth(arguments[4], kTruthScale);
-    panels.push_back(
-        {"ground truth (black: unknown)", media::nearest_disparity(truth, disparities), disparities});
+    panels.push_back(disparity_panel("ground truth, pixels", media::nearest_disparity(truth, disparities),
+                                     disparities, "unknown"));
   }
   write_file(arguments[0], media::encode_side_by_side_png(panels));
 }
 
-// Colours depths: near is red, as for large disparities. The nearest and the farthest hundredth of the depths
-// are clamped.
 media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
-  std::vector<std::uint16_t> known;
-  std::copy_if(millimetres.begin(), millimetres.end(), std::back_inserter(known),
-               [](int depth) { return depth > 0; });
-  media::Panel panel = {"depth: no answers", kernels::GrayImage(width, height, 255), kLevels};
-  if (known.empty()) return panel;
-  std::sort(known.begin(), known.end());
-  const int near = known[known.size() / 100];
-  const int far = std::max<int>(near + 1, known[known.size() - 1 - known.size() / 100]);
+  media::Panel panel = {"depth", kernels::GrayImage(width, height, 255), kLevels, "far", "near", "no answer"};
+  const auto range = calib::depth_range(millimetres);
+  if (!range) return panel;
+  const auto [near, far] = *range;
   for (std::size_t i = 0; i < millimetres.size(); ++i) {
     if (millimetres[i] == 0) continue;
     const int depth = std::clamp<int>(millimetres[i], near, far);
     panel.image.pixels[i] = static_cast<std::uint8_t>((kLevels - 1) * (far - depth) / (far - near));
   }
-  panel.caption = "depth, " + std::to_string(near) + " mm (red) to " + std::to_string(far) + " mm (blue)";
+  panel.first = fmt::format("{} mm", far);
+  panel.last = fmt::format("{} mm", near);
   return panel;
 }
 
@@ -140,11 +140,12 @@ void depth_montage(const std::vector<std::string>& arguments) {
   const auto disparity = media::load_gray((fs::path(arguments[3]) / "disparity.png").string()).image;
   const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
   const auto depths = calib::depth_millimetres(geometry, disparity);
-  write_file(arguments[0], media::encode_side_by_side_png(
-                               {{"left picture", picture, 0},
-                                {"rectified by the left table", kernels::rectify(picture, table), 0},
-                                {"disparity (black: no answer)", disparity, calibration.disparities},
-                                depth_panel(depths, disparity.width, disparity.height)}));
+  write_file(arguments[0],
+             media::encode_side_by_side_png(
+                 {{"left picture", picture, 0, "", "", ""},
+                  {"rectified by the left table", kernels::rectify(picture, table), 0, "", "", ""},
+                  disparity_panel("disparity, pixels", disparity, calibration.disparities, "no answer"),
+                  depth_panel(depths, disparity.width, disparity.height)}));
 }
 
 int run(const std::vector<std::string>& arguments) {

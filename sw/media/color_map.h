@@ -8,8 +8,11 @@
 
 namespace stereotlm::media {
 
-// Internal to this folder. The disparity image in colours (BGR), see encode.h.
-cv::Mat in_colors(const kernels::GrayImage& disparity, int disparities);
+// Internal to this folder.
+
+// Throws std::invalid_argument if `disparities` is not allowed by kernels::kDisparitiesRule, or if a pixel is
+// neither less than `disparities` nor kernels::kInvalidDisparity.
+void check_levels(const kernels::GrayImage& disparity, int disparities);
 
 // A view of the image's pixels. The image must outlive the view; the view must not be written to. Throws
 // std::invalid_argument if the image is empty or its number of pixels does not fit its size.

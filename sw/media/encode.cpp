@@ -31,31 +31,20 @@ std::vector<std::uint8_t> encode_png(const cv::Mat& picture) {
   return bytes;
 }
 
-cv::Mat in_colors(const kernels::GrayImage& disparity, int disparities) {
+void check_levels(const kernels::GrayImage& disparity, int disparities) {
   if (!kernels::kDisparitiesRule.allows(disparities)) {
     throw std::invalid_argument(kernels::kDisparitiesRule.problem("disparities", disparities));
   }
-  cv::Mat levels(1, disparities, CV_8UC1);
-  for (int d = 0; d < disparities; ++d) {
-    levels.at<std::uint8_t>(d) =
-        static_cast<std::uint8_t>(disparities == 1 ? 0 : std::lround(255.0 * d / (disparities - 1)));
-  }
-  cv::Mat colors;
-  cv::applyColorMap(levels, colors, cv::COLORMAP_TURBO);
-
-  cv::Mat result = cv::Mat::zeros(view(disparity).size(), CV_8UC3);
+  view(disparity);  // throws for an empty image
   for (int y = 0; y < disparity.height; ++y) {
     for (int x = 0; x < disparity.width; ++x) {
       const int d = disparity.at(x, y);
-      if (d == kernels::kInvalidDisparity) continue;
-      if (d >= disparities) {
+      if (d != kernels::kInvalidDisparity && d >= disparities) {
         throw std::invalid_argument(fmt::format("disparity ({}, {}) = {}: must be {} or less than {}", x, y,
                                                 d, kernels::kInvalidDisparity, disparities));
       }
-      result.at<cv::Vec3b>(y, x) = colors.at<cv::Vec3b>(d);
     }
   }
-  return result;
 }
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image) { return encode_png(view(image)); }
@@ -70,7 +59,22 @@ std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector
 }
 
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities) {
-  return encode_png(in_colors(disparity, disparities));
+  check_levels(disparity, disparities);
+  cv::Mat levels(1, disparities, CV_8UC1);
+  for (int d = 0; d < disparities; ++d) {
+    levels.at<std::uint8_t>(d) =
+        static_cast<std::uint8_t>(disparities == 1 ? 0 : std::lround(255.0 * d / (disparities - 1)));
+  }
+  cv::Mat colors;
+  cv::applyColorMap(levels, colors, cv::COLORMAP_TURBO);
+  cv::Mat result = cv::Mat::zeros(view(disparity).size(), CV_8UC3);
+  for (int y = 0; y < disparity.height; ++y) {
+    for (int x = 0; x < disparity.width; ++x) {
+      const int d = disparity.at(x, y);
+      if (d != kernels::kInvalidDisparity) result.at<cv::Vec3b>(y, x) = colors.at<cv::Vec3b>(d);
+    }
+  }
+  return encode_png(result);
 }
 
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {

@@ -10,6 +10,7 @@
 #include "sw/report/console_table.h"
 #include "sw/report/stats_json.h"
 #include "sw/report/timeline_csv.h"
+#include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::runs {
@@ -26,8 +27,10 @@ void add_pictures(const RunInput& input, const Result& last, ResultFolder& folde
   const calib::DepthGeometry geometry = {input.calibration->rectification.q,
                                          input.calibration->disparity_offset};
   const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
-  folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height,
-                                              calib::depth_millimetres(geometry, disparity)));
+  const std::vector<std::uint16_t> depths = calib::depth_millimetres(geometry, disparity);
+  folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height, depths));
+  folder.add("depth_color.png",
+             calibration_functions().encode_depth_color_png(disparity.width, disparity.height, depths));
   folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
 }
 

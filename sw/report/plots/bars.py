@@ -1,22 +1,26 @@
 """Selects and names the points of figures that have a row for each point."""
 
-import textwrap
-
+import style
+from drawing import WIDTH
 from points import PORTS, natural, short_names, text_of
+from style import SMALL_SIZE
 
 MOST = 16
 ROW = 0.2  # inches
 LINE = 0.12
-NAME_CHARACTERS = 44
+CLOSEST = 0.112  # from line to line
+NAMES = 0.38  # share of the width that names may take
 
 
 class Rows:
     """The points of a figure, from its top, with their names.
 
+    height, least: in inches; the second with all lines as close as they can be.
+
     Of more than MOST points: those with the most stalls (most_stalled), or a selection over all frame rates.
     """
 
-    def __init__(self, points, most_stalled=False):
+    def __init__(self, points, options, most_stalled=False):
         stalls = [cycles / frames for cycles, frames in zip(points.stall_cycles(), points.frames())]
         points.need_numbers(["frames_per_second.core"])
         rates = points.column("frames_per_second.core")
@@ -35,19 +39,22 @@ class Rows:
         keys = [points.column(key) for key in points.varied]
         self.points = points
         self.places = sorted(chosen, key=lambda place: [natural(column[place]) for column in keys])
-        self.names = self._names()
+        self.names = self._names(NAMES * (options.size or (WIDTH,))[0])
         self.edges = self._lay_out()  # inches from the top
         self.centers = [(top + bottom) / 2 for top, bottom in zip(self.edges, self.edges[1:])]
         self.height = self.edges[-1]
+        self.least = CLOSEST * sum(name.count("\n") + 1.2 for name in self.names)
 
-    def _names(self):
+    def _names(self, width):
         short = short_names(self.points.varied)
         names = []
         for place in self.places:
             parts = [f"{short[key]}={text_of(self.points.column(key)[place])}".replace(" ", "\N{NO-BREAK SPACE}")
                      for key in self.points.varied]
-            names.append("\n".join(textwrap.wrap(", ".join(parts), NAME_CHARACTERS, break_long_words=False)))
-        return names if self.points.varied else [text_of(self.points.column("name")[place]) for place in self.places]
+            names.append(", ".join(parts))
+        if not self.points.varied:
+            names = [text_of(self.points.column("name")[place]) for place in self.places]
+        return ["\n".join(style.wrapped(name, SMALL_SIZE, width)) for name in names]
 
     def _lay_out(self):
         edges = [0]
@@ -57,12 +64,11 @@ class Rows:
 
     def left(self):
         """The width of the names in inches."""
-        longest = max(len(line) for name in self.names for line in name.split("\n"))
-        return 0.2 + min(longest, 46) * 0.062
+        return 0.2 + max(style.text_width(line, SMALL_SIZE) for name in self.names for line in name.split("\n"))
 
     def label(self, axes):
         axes.set_ylim(self.height, 0)
-        axes.set_yticks(self.centers, self.names, fontsize=7)
+        axes.set_yticks(self.centers, self.names, fontsize=SMALL_SIZE)
         axes.tick_params(axis="y", length=0)
         axes.grid(False, axis="y")
 

@@ -6,6 +6,7 @@ Exit status: 0 done; 2 refused before anything was drawn; 1 failed after that; 1
 import argparse
 import contextlib
 import os
+import re
 import shutil
 import signal
 import stat
@@ -48,8 +49,11 @@ except Exception as error:  # of any kind, such as one that a user's matplotlibr
     tell("error", f"matplotlib cannot be loaded: {error}")
     sys.exit(2)
 
-FIGURES = ["window", "disparities", "banks", "states", "stalls", "use", "pareto"]
-ENDINGS = [".png", ".svg", ".csv"]
+import style  # noqa: E402: it needs matplotlib
+
+FIGURES = ["window", "disparities", "rows", "units", "banks", "states", "stalls", "use", "pareto"]
+ENDINGS = [*(f".{kind}" for kind in style.FORMATS), ".csv"]
+LEAST_SIZE, MOST_SIZE = 2, 40  # inches
 ASIDE = ".partial"  # holds NEW, and during commit() EARLIER
 NEW, EARLIER = "new", "earlier"
 RULE = "must be empty or hold only files that plot writes"
@@ -178,17 +182,51 @@ class Parser(argparse.ArgumentParser):
 
 
 def parse(arguments, description, has_pareto):
-    usage = "%(prog)s DB --out DIR [--only KEY=VALUE].." + " [--pareto X:SENSE,Y:SENSE]" * has_pareto
+    usage = ("%(prog)s DB --out DIR [--only KEY=VALUE].." + " [--pareto X:SENSE,Y:SENSE]" * has_pareto +
+             " [--format F,..] [--size WxH]")
     parser = Parser(prog=NAME, description=description, allow_abbrev=False, usage=usage)
     parser.add_argument("database", metavar="DB", nargs="?", help="a database of stereotlm sweep")
     parser.add_argument("--out", metavar="DIR", help="folder of the figures, created if missing")
     parser.add_argument("--only", metavar="KEY=VALUE", action="append", default=[],
                         help="only points whose key has that value; may be given for several keys")
+    parser.add_argument("--format", metavar="F,..",
+                        help=f"kinds of files, out of {', '.join(style.FORMATS)}; "
+                             f"default {','.join(style.USUAL_FORMATS)}")
+    parser.add_argument("--size", metavar="WxH",
+                        help=f"width and height of each figure in inches, {LEAST_SIZE} to {MOST_SIZE}; default: 7.2, "
+                             "and as high as its content")
     if has_pareto:
         parser.add_argument("--pareto", metavar="X:SENSE,Y:SENSE",
                             help="columns of the Pareto front, and whether the most or the least of each is best: "
                                  "max or min; default area.slices:min,frames_per_second.core:max")
     return parser.parse_args(arguments)
+
+
+def formats_of(text):
+    """The value of --format as a list; None if it does not have this form."""
+    kinds = text.split(",")
+    return kinds if set(kinds) <= set(style.FORMATS) and len(set(kinds)) == len(kinds) else None
+
+
+def size_of(text):
+    """The value of --size as (width, height) in inches; None if it does not have this form or range."""
+    match = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text, re.ASCII)
+    size = tuple(map(float, match.groups())) if match else ()
+    return size if size and all(LEAST_SIZE <= each <= MOST_SIZE for each in size) else None
+
+
+def read_looks(options):
+    """Replaces the texts of --format and --size by their values, or None if they are not given. Returns problems."""
+    problems = []
+    kinds = f"must be {', '.join(style.FORMATS)}, or several with commas"
+    inches = f"must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to {MOST_SIZE}, such as 7.2x4.5"
+    for name, read, rule in (("format", formats_of, kinds), ("size", size_of, inches)):
+        text = getattr(options, name)
+        value = None if text is None else read(text)
+        if text is not None and value is None:
+            problems.append(f"--{name} = {text}: {rule}")
+        setattr(options, name, value)
+    return problems
 
 
 def prepare(options, check):
@@ -204,6 +242,7 @@ def prepare(options, check):
         except Unusable as error:
             problems += error.lines
     problems += check(points, options)
+    problems += read_looks(options)
     folder = Folder(options.out) if options.out else None
     if not folder:
         problems.append("--out: missing: the folder of the figures")
@@ -255,9 +294,10 @@ def run(description, figures, arguments, check):
         raise
     if boxed:
         texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each) for each in sorted(boxed)[:MOST_NAMED])
-        tell("note", f"the font of the figures lacks {texts}: boxes in PNG; SVG and CSV have the text")
+        tell("note", f"the font of the figures lacks {texts}: boxes in PNG and PDF; SVG and CSV have the text")
     lines += said
-    lines.append(f"{options.out}: {len(files)} files: a picture, a drawing and the data of each figure that is drawn")
+    kinds = ", ".join(options.format or style.USUAL_FORMATS)
+    lines.append(f"{options.out}: {len(files)} files: {kinds} and csv of each figure that is drawn")
     say(lines)
 
 

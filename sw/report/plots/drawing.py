@@ -1,49 +1,36 @@
-"""What all figures share: size, fonts, axes, legend. The bytes of a figure depend only on the data."""
+"""The page of a figure of plot and paper: title, panels, legend, notes, and the axes in them."""
 
 import csv
 import io
+import math
 import re
-import textwrap
-import warnings
 
-import matplotlib
-from matplotlib import font_manager
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullLocator, ScalarFormatter
+from matplotlib.ticker import FixedFormatter, FixedLocator, LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
-WIDTH = 7.2  # inches
-DPI = 200
-LINE = 0.146  # inches: a line of the legend
+import style
+from points import BANKS_USED, UNITS_USED, Unusable
+from style import INK, LABEL_SIZE, LEGEND_SIZE, QUIET, SIZE, SMALL_SIZE, TITLE_SIZE
+
+WIDTH = 7.2  # inches, if the user asks for no other size
+MARGIN = 0.1  # inches
+LINE = 0.148  # inches: a line of the legend
 NOTE_LINE = 0.14
-NOTE_CHARACTERS = 132
-CHARACTER, HANDLE = 0.071, 0.6  # inches: widths in the legend
-INK = "#222222"
-QUIET = "#666666"
+TITLE_LINE = 0.2
+HANDLE, BETWEEN = 0.42, 0.19  # inches: the sample of an entry of the legend, and the gap between two entries
+LEAST_HEIGHT, LEAST_WIDTH = 0.8, 0.5  # inches, of a panel
+MOST_TICKS = 14
 # Marks of points that do not fit the FPGA, or whose pictures are not complete.
 MARK = {"color": "#000000", "linestyle": "", "zorder": 3.5}
 TOO_LARGE = {**MARK, "marker": "x", "markersize": 4.5, "label": "more area than the FPGA has"}
 LOSES_PIXELS = {**MARK, "marker": "+", "markersize": 6.5, "label": "loses pixels"}
 
-FONT = "DejaVu Sans"
-
-# A bound is a wide pale line behind the simulated figures, so that it is visible where both are equal.
-BOUND_WIDTH = 5.5
-
-SETTINGS = {
-    "font.family": "sans-serif", "font.sans-serif": [FONT], "font.size": 9, "axes.labelsize": 9.5,
-    "xtick.labelsize": 9, "ytick.labelsize": 9, "legend.fontsize": 8.5,
-    "axes.edgecolor": QUIET, "axes.labelcolor": INK, "text.color": INK, "xtick.color": INK, "ytick.color": INK,
-    "axes.linewidth": 0.8, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.grid": True, "axes.axisbelow": True, "grid.color": "#DDDDDD", "grid.linewidth": 0.6,
-    "lines.linewidth": 1.4, "lines.markersize": 5,
-    "text.parse_math": False, "svg.fonttype": "none", "svg.hashsalt": "stereotlm",
-}
-
-UNITS = [("_percent", "%"), ("_mhz", "MHz"), ("_hz", "Hz"), ("megabytes_per_second", "MB/s"), ("_us", "us")]
+UNITS = [("_percent", "%"), ("_mhz", "MHz"), ("_hz", "Hz"), ("megabytes_per_second", "MB/s"), ("_us", "us"),
+         ("_ms", "ms"), ("_cycles", "cycles"), ("clocks", "clocks"), ("_words", "words"), ("_slots", "slots"), ("_bytes", "bytes"),
+         ("_pixels", "pixels"), ("_frames", "frames"), ("image.width", "pixels"), ("image.height", "pixels")]
 MEANINGS = {
     "frames_per_second.core": "core, frames/s",
     "frames_per_second.steady": "whole computer, steady frames/s",
@@ -52,6 +39,9 @@ MEANINGS = {
     "bound.system": "bound of the whole computer, frames/s",
     "matcher.window": "window n, pixels (of n x n)",
     "matcher.disparities": "disparities D",
+    "matcher.rows": "rows of results at once",
+    UNITS_USED: "column and window modules",
+    BANKS_USED: "banks used by the allocation",
     "area.slices": "area, slices",
     "area.slices_percent": "area, % of the slices",
     "area.luts": "area, LUTs",
@@ -60,7 +50,6 @@ MEANINGS = {
     "area.block_rams_percent": "block RAMs, % of the FPGA's",
     "area.multipliers": "multipliers",
     "area.multipliers_percent": "multipliers, % of the FPGA's",
-    "banks_used": "banks used by the allocation",
 }
 
 
@@ -85,7 +74,7 @@ class Drawing:
 
     def __init__(self, sheet, header, rows, said):
         """header, rows: the table; said: text about the figure, such as the number of its points."""
-        self.files = {".png": sheet.png(), ".svg": sheet.svg(), ".csv": table(header, rows)}
+        self.files = {**sheet.files(), ".csv": table(header, rows)}
         self.said = said
         self.boxed = sheet.boxed()  # see there
 
@@ -99,158 +88,271 @@ def table(header, rows):
 
 
 class Sheet:
-    """The page of a figure: panels with sizes in inches, and below them the legend, a list and notes.
+    """The page of a figure: a title, panels with sizes in inches, and below them the legend, a list and notes.
 
     legend(), list_entry() and note() must be called before rows() or columns(), which create the panels.
+    width: in inches.
     """
 
-    def __init__(self):
-        matplotlib.rcdefaults()  # so that settings of the user have no effect
-        matplotlib.rcParams.update(SETTINGS)
+    def __init__(self, heading, size=None, formats=None):
+        """size: (width, height) in inches; None: WIDTH, and as high as the content. formats: some of style.FORMATS."""
+        style.use()
         self.figure = Figure()
         FigureCanvasAgg(self.figure)
+        self.width, self.height = size or (WIDTH, None)
         self.panels = []
+        self._formats = formats or style.USUAL_FORMATS
+        self._heading = style.wrapped(heading, TITLE_SIZE, self._room(), bold=True)
         self._legends = []
         self._list = []
         self._notes = []
 
+    def _room(self):
+        return self.width - 2 * MARGIN
+
     def legend(self, handles):
         """Adds a group to the legend. handles: (artist, text) of each entry."""
         if handles:
-            self._legends.append(handles)
+            self._legends.append(LegendGroup(handles, self._room()))
 
     def note(self, text):
         if text:
-            self._notes += textwrap.wrap(text, NOTE_CHARACTERS)
+            self._notes += style.wrapped(text, SMALL_SIZE, self._room())
 
     def list_entry(self, number, text):
         """Adds an entry to the list between the legend and the notes."""
-        self._list += textwrap.wrap(f"{number}  {text}", NOTE_CHARACTERS, subsequent_indent=" " * 6)
+        self._list += style.wrapped(f"{number}  {text}", SMALL_SIZE, self._room(), indent=" " * 6)
 
-    def rows(self, heights, left=0.75, gap=0.15, bottom=0.5):
+    def rows(self, heights, left=0.85, gap=0.15, bottom=0.5, right=0.25):
         """Creates and returns panels above each other, from the top, which share their x axis."""
-        inside = sum(heights) + gap * (len(heights) - 1)
-        total = self._begin(inside, 0.12, bottom)
-        at = total - 0.12
+        gaps = gap * (len(heights) - 1)
+        total, inside, top = self._begin(sum(heights) + gaps, 0, bottom, LEAST_HEIGHT * len(heights) + gaps)
+        self._need_width(left + right, 2 * LEAST_WIDTH)
+        scale_of_heights = (inside - gaps) / sum(heights)
+        at = total - top
         for height in heights:
+            height *= scale_of_heights
             at -= height
-            axes = self.figure.add_axes([left / WIDTH, at / total, (WIDTH - left - 0.15) / WIDTH, height / total],
-                                        sharex=self.panels[0] if self.panels else None)
+            axes = self.figure.add_axes(
+                [left / self.width, at / total, (self.width - left - right) / self.width, height / total],
+                sharex=self.panels[0] if self.panels else None)
             self.panels.append(axes)
             at -= gap
         for axes in self.panels[:-1]:
             axes.tick_params(labelbottom=False)
         return self.panels
 
-    def columns(self, count, height, left, top=0.3, gap=0.1, bottom=0.5, right=0.15):
-        """Creates and returns panels side by side, from the left, which share their y axis."""
-        total = self._begin(height, top, bottom)
-        width = (WIDTH - left - right - gap * (count - 1)) / count
+    def columns(self, count, height, left, least=LEAST_HEIGHT, headed=True, gap=0.1, bottom=0.5, right=0.2):
+        """Creates and returns panels side by side, from the left, which share their y axis.
+
+        least: the least height. headed: the panels have titles of their own.
+        """
+        total, inside, top = self._begin(height, 0.22 * headed, bottom, least)
+        self._need_width(left + right + gap * (count - 1), LEAST_WIDTH * count)
+        width = (self.width - left - right - gap * (count - 1)) / count
         for number in range(count):
             axes = self.figure.add_axes(
-                [(left + number * (width + gap)) / WIDTH, (total - top - height) / total, width / WIDTH,
-                 height / total],
+                [(left + number * (width + gap)) / self.width, (total - top - inside) / total, width / self.width,
+                 inside / total],
                 sharey=self.panels[0] if self.panels else None)
             self.panels.append(axes)
             if number:
                 axes.tick_params(labelleft=False)
         return self.panels
 
-    def below(self, text):
-        """Writes the name of the x axis of all columns below them."""
-        boxes = [axes.get_position() for axes in self.panels]
-        self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, boxes[0].y0 - 0.38 / self.figure.get_size_inches()[1], text,
-                         ha="center", va="center", fontsize=9.5)
+    def head(self, axes, text):
+        """Writes the title of a column, smaller if the column is narrow."""
+        fits = (length_of(axes, "x") + 0.06) / style.text_width(text, SIZE)
+        axes.set_title(text, fontsize=SIZE * min(1, max(0.6, fits)), pad=4)
 
-    def _begin(self, inside, top, bottom):
-        """Draws legend, list and notes, and sets the size of the figure. Returns its height in inches."""
-        columns = [legend_columns([text for _, text in group]) for group in self._legends]
-        lines = [-(-len(group) // count) for group, count in zip(self._legends, columns)]
-        legend = sum(lines) * LINE + (0.06 if lines else 0)
+    def below(self, text, distance=0.38):
+        """Writes the name of the x axis of all columns below them, at this distance in inches."""
+        boxes = [axes.get_position() for axes in self.panels]
+        bottom = boxes[0].y0 - distance / self.figure.get_size_inches()[1]
+        self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, bottom, text, ha="center", va="center", fontsize=LABEL_SIZE)
+
+    def color_bar(self, shown, text, below):
+        """Draws the scale of the colors of `shown` under the panels, `below` inches from them."""
+        box, total = self.panels[0].get_position(), self.figure.get_size_inches()[1]
+        width = min(3, length_of(self.panels[0], "x"))
+        left = (box.x0 + self.panels[-1].get_position().x1 - width / self.width) / 2
+        axes = self.figure.add_axes([left, box.y0 - below / total, width / self.width, 0.1 / total])
+        bar = self.figure.colorbar(shown, cax=axes, orientation="horizontal")
+        bar.outline.set_visible(False)
+        axes.tick_params(labelsize=8)
+        axes.set_xlabel(text)
+        return axes
+
+    def _begin(self, inside, more_above, bottom, least):
+        """Draws title, legend, list and notes, and sets the size of the figure.
+
+        Returns in inches the height of the figure, that of the panels, and how far they are from the top.
+        """
+        top = MARGIN + TITLE_LINE * len(self._heading) + 0.04 + more_above
+        legend = sum(group.lines for group in self._legends) * LINE + (0.06 if self._legends else 0)
         below = [*self._list, *self._notes]
         notes = len(below) * NOTE_LINE + (0.1 if below else 0)
-        total = top + inside + bottom + legend + notes + 0.05
-        self.figure.set_size_inches(WIDTH, total)
+        around = top + bottom + legend + notes + 0.05
+        if self.height is not None:
+            inside = self.height - around
+            if inside < least:
+                raise Unusable(f"--size {self.width:g}x{self.height:g}: so wide, this figure needs a height of "
+                               f"{rounded_up(around + least)} inches")
+        total = around + inside
+        self.figure.set_size_inches(self.width, total)
+        for number, line in enumerate(self._heading):
+            self.figure.text(MARGIN / self.width, 1 - (MARGIN + number * TITLE_LINE) / total, line, va="top",
+                             fontsize=TITLE_SIZE, weight="bold")
         at = notes + legend + 0.05
-        for group, count, height in zip(self._legends, columns, lines):
-            handles, texts = zip(*group)
-            self.figure.legend(handles, texts, loc="upper center", ncol=count, frameon=False, borderpad=0,
-                               borderaxespad=0, labelspacing=0.25, columnspacing=1.6, handlelength=2.6,
-                               bbox_to_anchor=(0.5, at / total))
-            at -= height * LINE
+        for group in self._legends:
+            group.draw(self.figure, at / total)
+            at -= group.lines * LINE
         for number, line in enumerate(reversed(below)):
             is_note = number < len(self._notes)
-            self.figure.text(0.1 / WIDTH, (0.06 + number * NOTE_LINE) / total, line, fontsize=7, va="bottom",
-                             color=QUIET if is_note else INK)
-        return total
+            self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line, fontsize=SMALL_SIZE,
+                             va="bottom", color=QUIET if is_note else INK)
+        return total, inside, top
 
-    def png(self):
-        return self._bytes("png", {"Software": None})
+    def _need_width(self, around, least):
+        if self.width < around + least:
+            size = f"{self.width:g}x{self.height:g}"
+            raise Unusable(f"--size {size}: this figure needs a width of {rounded_up(around + least)} inches")
 
-    def svg(self):
-        return self._bytes("svg", {"Date": None})
-
-    def _bytes(self, kind, metadata):
-        out = io.BytesIO()
-        with warnings.catch_warnings():
-            for message in (r"Glyph \d+ ", "Matplotlib currently does not support"):  # see boxed()
-                warnings.filterwarnings("ignore", message)
-            self.figure.savefig(out, format=kind, dpi=DPI, metadata=metadata)
-        return out.getvalue()
+    def files(self):
+        """{ending: bytes}."""
+        return {f".{kind}": style.encoded(self.figure, kind) for kind in self._formats}
 
     def boxed(self):
-        """The parts of its texts for which the font has no characters. A PNG shows boxes for them."""
-        known = font_manager.get_font(font_manager.findfont(FONT)).get_charmap()
+        """The parts of its texts for which the font has no characters. PNG and PDF show boxes for them."""
         texts = {text.get_text() for text in self.figure.findobj(Text)}
-        unknown = re.escape("".join({each for text in texts for each in text if ord(each) not in known} - {"\n"}))
+        unknown = re.escape("".join(set().union(*map(style.unknown_characters, texts))))
         return {part for text in texts for part in re.findall(f"[{unknown}]+", text)} if unknown else set()
 
 
-def legend_columns(texts):
-    """The number of columns of the legend: as many as have room, and none that would be empty."""
-    room = int(WIDTH / (max(map(len, texts)) * CHARACTER + HANDLE))
-    lines = -(-len(texts) // max(1, room))
-    return -(-len(texts) // lines)
+def rounded_up(inches):
+    return f"{math.ceil(10 * inches - 1e-6) / 10:g}"
 
 
-def line_handle(color, marker, dashes="-", **look):
-    return Line2D([], [], color=color, marker=marker, linestyle=dashes, **look)
+class LegendGroup:
+    """Entries of the legend, in as many columns as have room, and none that would be empty. lines: its height."""
+
+    def __init__(self, handles, room):
+        self.artists = [artist for artist, _ in handles]
+        lines = [style.wrapped(text, LEGEND_SIZE, room - HANDLE) for _, text in handles]
+        self.texts = ["\n".join(each) for each in lines]
+        widest = max(style.text_width(line, LEGEND_SIZE) for each in lines for line in each)
+        most = max(1, int((room + BETWEEN) / (widest + HANDLE + BETWEEN)))
+        rows = -(-len(handles) // most)
+        self.columns = -(-len(handles) // rows)
+        self.lines = max(sum(len(each) for each in part) for part in parted(lines, self.columns))
+
+    def draw(self, figure, top):
+        figure.legend(self.artists, self.texts, loc="upper center", ncol=self.columns, borderpad=0, borderaxespad=0,
+                      labelspacing=0.25, columnspacing=1.6, handlelength=2.6, bbox_to_anchor=(0.5, top))
+
+
+def parted(items, count):
+    """The items in so many parts, as matplotlib distributes the entries of a legend on columns."""
+    size, larger = divmod(len(items), count)
+    parts = []
+    for number in range(count):
+        parts.append(items[: size + (number < larger)])
+        items = items[size + (number < larger) :]
+    return parts
 
 
 def mark_handle(mark):
     return (Line2D([], [], **mark), mark["label"])
 
 
-def ticks_at(axis, values):
-    """Sets the ticks of the axis to the values of the points, if there is room for that."""
-    if len(values) <= 14:
-        axis.set_major_locator(FixedLocator(values))
-        axis.set_minor_locator(NullLocator())
+def length_of(axes, which):
+    """The length of an axis in inches; which: "x" or "y"."""
+    box, (width, height) = axes.get_position(), axes.figure.get_size_inches()
+    return box.width * width if which == "x" else box.height * height
+
+
+def ticks_at(axes, values):
+    """Sets the ticks of the x axis to the values of the points, if there is room for that, with the labels that fit."""
+    if len(values) > MOST_TICKS:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=all(value == int(value) for value in values)))
+        return
+    low, high = axes.get_xlim()
+    labels = [f"{value:.10g}" for value in values]
+    free = -math.inf  # where the label before ends, in inches
+    for number, (value, label) in enumerate(zip(values, labels)):
+        width = style.text_width(label, SIZE)
+        center = (value - low) / (high - low) * length_of(axes, "x")
+        if center - width / 2 < free:
+            labels[number] = ""
+        else:
+            free = center + width / 2 + 0.05
+    axes.xaxis.set_major_locator(FixedLocator(values))
+    axes.xaxis.set_major_formatter(FixedFormatter(labels))
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
+def ticks_of_columns(panels, most, gap=0.1):
+    """Sets scale and ticks of panels side by side, from 0 to `most`, so that no labels of neighbors touch."""
+    length = length_of(panels[0], "x")
+    end = 1.03 * most
+    for count in (4, 3, 2, 1):
+        step = MaxNLocator(count, steps=[1, 2, 5, 10]).tick_values(0, most)[1]
+        ticks = [number * step for number in range(int(most / step + 1e-9) + 1)]
+        labels = [f"{tick:.10g}" for tick in ticks]
+        widths = [style.text_width(label, SIZE) for label in labels]
+        places = [tick / end * length for tick in ticks] + [length + gap]
+        widths.append(widths[0])
+        if all(places[at + 1] - places[at] > (widths[at] + widths[at + 1]) / 2 + 0.05 for at in range(len(ticks))):
+            break
     else:
-        axis.set_major_locator(MaxNLocator(integer=True))
+        ticks, labels = [0], ["0"]
+    for axes in panels:
+        axes.set_xlim(0, end)
+        axes.set_xticks(ticks, labels)
 
 
-def pale(color):
-    """The color of the bound of a line with this color."""
-    return tuple(0.3 * part + 0.7 for part in to_rgb(color))
+def in_words(most):
+    """(factor, word) with which numbers up to `most` are written."""
+    for factor, word in ((1e6, "million "), (1e3, "thousand ")):
+        if most >= 2 * factor:
+            return factor, word
+    return 1, ""
 
 
-def scale(axes, which, label, values, *remarks):
+def scale(axes, which, label, values, *remarks, are_counts=False):
     """Sets scale and label of an axis. The scale is logarithmic if the values differ much, else it begins at zero.
 
-    which: "x" or "y". remarks: added to the label in brackets.
+    which: "x" or "y". remarks: added to the label in brackets. are_counts: a few whole numbers, such as banks, are not
+    seen from zero.
     """
     values = [value for value in values if value is not None]
-    if values and min(values) > 0 and max(values) > 6 * min(values):
-        axis = getattr(axes, which + "axis")
+    axis, limit = getattr(axes, which + "axis"), getattr(axes, f"set_{which}lim")
+    is_short = values and max(values) - min(values) <= MOST_TICKS
+    if are_counts and is_short and all(value == int(value) for value in values):
+        limit(min(values) - 0.5, max(values) + 0.5)
+        axis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    elif values and min(values) > 0 and max(values) > 6 * min(values):
         getattr(axes, f"set_{which}scale")("log")
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_locator(LogLocator(subs=subs_that_fit(axes, which, min(values), max(values))))
         axis.set_minor_locator(NullLocator())
         formatter = ScalarFormatter()
         formatter.set_scientific(False)
         axis.set_major_formatter(formatter)
-        getattr(axes, f"set_{which}lim")(min(values) / 1.25, max(values) * 1.25)
+        limit(min(values) / 1.25, max(values) * 1.25)
         remarks = ("log scale", *remarks)
     elif values and min(values) >= 0 and max(values) > 0:
-        getattr(axes, f"set_{which}lim")(0, max(values) * 1.08)
-    getattr(axes, f"set_{which}label")(label + (f" ({', '.join(remarks)})" if remarks else ""))
+        limit(0, max(values) * 1.08)
+        axis.set_major_locator(MaxNLocator(max(2, min(9, int(length_of(axes, which) / 0.5)))))
+    text = label + (f" ({', '.join(remarks)})" if remarks else "")
+    lines = style.wrapped(text, LABEL_SIZE, length_of(axes, which) + 0.2)
+    getattr(axes, f"set_{which}label")("\n".join(lines))
+
+
+def subs_that_fit(axes, which, least, most):
+    """The ticks in each decade of a logarithmic axis, as many as have room for their labels."""
+    decades = math.log10(most / least) + 2 * math.log10(1.25)
+    room = style.text_width(f"{most:.0f}", SIZE) + 0.15 if which == "x" else 0.17
+    for subs, closest in (((1, 2, 5), math.log10(2)), ((1, 3), math.log10(3))):
+        if length_of(axes, which) * closest / decades > room:
+            return subs
+    return (1,)

@@ -9,8 +9,10 @@ import command
 import plot_banks
 import plot_disparities
 import plot_pareto
+import plot_rows
 import plot_stalls
 import plot_states
+import plot_units
 import plot_use
 import plot_window
 
@@ -18,6 +20,8 @@ if __name__ == "__main__":
     command.main(__doc__, {
         "window": plot_window.draw,
         "disparities": plot_disparities.draw,
+        "rows": plot_rows.draw,
+        "units": plot_units.draw,
         "banks": plot_banks.draw,
         "states": plot_states.draw,
         "stalls": plot_stalls.draw,

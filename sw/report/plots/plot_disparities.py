@@ -11,11 +11,10 @@ import lines
 KEY = "matcher.disparities"
 
 
-def draw(points, _):
+def draw(points, options):
     points.need_variation(KEY)
-    area = lines.Panel("area.slices_percent", lines.MORE_HEIGHT, limit=(100, "the FPGA is full"),
-                       listed=["area.slices"])
-    return lines.draw(points, KEY, [KEY], [*lines.rate_panels(points), area])
+    panels = [*lines.rate_panels(points), lines.area_panel()]
+    return lines.draw(points, options, "Frame rate and area against the disparities", KEY, [KEY], panels)
 
 
 if __name__ == "__main__":

@@ -8,12 +8,13 @@ import sys
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
+import style
 from command import tell
-from drawing import BOUND_WIDTH, QUIET, Sheet, line_handle, pale, ticks_at
+from drawing import Sheet, ticks_at
+from style import QUIET, bound, bound_handle, line_handle
 
-MODEL = "#0072B2"
-PAPER = "#D55E00"
-SECOND = "#009E73"
+MODEL, PAPER, SECOND = style.BLUE, style.VERMILION, style.GREEN
+RULE = "#EEEEEE"  # where the rule holds
 
 
 def read(folder, name):
@@ -41,17 +42,13 @@ def paper_handle():
     return (line_handle(PAPER, "D", "", markersize=5, markerfacecolor="white", markeredgewidth=1.3), "printed in the paper")
 
 
-def bound_handle():
-    return (line_handle(pale(MODEL), None, linewidth=BOUND_WIDTH), "bound")
-
-
 def paper_points(axes, xs, ys):
     axes.plot(xs, ys, color=PAPER, marker="D", linestyle="", markersize=5, markerfacecolor="white",
               markeredgewidth=1.3, zorder=4)
 
 
 def model_line(axes, xs, ys, color=MODEL, **look):
-    axes.plot(xs, ys, color=color, marker="o", markeredgecolor="white", markeredgewidth=0.6, zorder=3, **look)
+    axes.plot(xs, ys, color=color, zorder=3, **style.POINT, **look)
 
 
 def table1(folder):
@@ -59,20 +56,20 @@ def table1(folder):
     rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
     xs = [int(row["window"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["tolerance_percent"])
-    sheet = Sheet()
-    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"), bound_handle()])
+    sheet = Sheet("The paper's Table 1: frame rate against the window")
+    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"), (bound_handle(MODEL), "bound")])
     sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, {filter_of(board)}, "
                f"{board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule ({board['rule']}) shaded; the bar is "
                "what rounding to the printed digit leaves open.")
     rates, deviations = sheet.rows([2.7, 1.5])
     bounds, values = numbers(rows, "bound_frames_per_second"), numbers(rows, "model_frames_per_second")
     printed = numbers(rows, "paper_frames_per_second")
-    rates.plot(xs, bounds, color=pale(MODEL), linewidth=BOUND_WIDTH, solid_capstyle="butt", zorder=1.5)
+    rates.plot(xs, bounds, **bound(MODEL))
     model_line(rates, xs, values)
     paper_points(rates, xs, printed)
     rates.set_ylim(0, max(printed + bounds) * 1.08)
-    rates.set_ylabel("frames/s")
-    deviations.axhspan(-tolerance, tolerance, color="#EEEEEE", zorder=1)
+    rates.set_ylabel("core, frames/s")
+    deviations.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
     deviations.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     percents = numbers(rows, "deviation_percent")
     halves = [100 * half / value for half, value in zip(numbers(rows, "paper_half_digit"), printed)]
@@ -82,11 +79,11 @@ def table1(folder):
                             zorder=3)
         if row["verdict"] != "confirmed":
             deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points", fontsize=8)
-    deviations.set_ylabel("deviation, %")
+    deviations.set_ylabel("model less\npaper, %")
     most = max(abs(percent) + half for percent, half in zip(percents, halves))
     deviations.set_ylim(-1.15 * most, 1.15 * most)
     deviations.set_xlabel("window n, pixels (of n x n)")
-    ticks_at(deviations.xaxis, xs)
+    ticks_at(deviations, xs)
     return sheet
 
 
@@ -99,7 +96,7 @@ def table2(folder):
     least, most = numbers(rows, "paper_slices_percent_least"), numbers(rows, "paper_slices_percent_most")
     below = [value - low for value, low in zip(printed, least)]
     above = [high - value for value, high in zip(printed, most)]
-    sheet = Sheet()
+    sheet = Sheet("The paper's Table 2: area against the disparities")
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
     sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less paper, with the rule "
                f"({board['size_rule']}) shaded; the bars are what rounding to whole percents leaves open.")
@@ -108,15 +105,15 @@ def table2(folder):
     sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
                    markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
     sizes.set_ylim(0, max(most + values) * 1.08)
-    sizes.set_ylabel("slices, %")
-    errors.axhspan(-tolerance, tolerance, color="#EEEEEE", zorder=1)
+    sizes.set_ylabel("area, % of the slices")
+    errors.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
     errors.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="", marker="o",
                     markersize=5, capsize=3, linewidth=1, zorder=3)
     errors.set_ylim(-1.8 * tolerance, 1.8 * tolerance)
-    errors.set_ylabel("error, points")
+    errors.set_ylabel("model less paper,\npercentage points")
     errors.set_xlabel("disparities D")
-    ticks_at(errors.xaxis, xs)
+    ticks_at(errors, xs)
     return sheet
 
 
@@ -126,8 +123,9 @@ def banks(folder):
     printed = {row["claim"]: row["paper"] for row in read(folder, "claims")}
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]
     board = rows[0]
-    sheet = Sheet()
-    sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"), bound_handle(),
+    sheet = Sheet("Frame rate against the number of memory banks")
+    sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"),
+                  (bound_handle(MODEL), "bound"),
                   (line_handle(SECOND, "^", ""), "the whole computer, one allocation each"),
                   (line_handle(PAPER, None, (0, (4, 2))), "banks that the paper says are needed")])
     sheet.note(f"{image_of(board)}, {window_of(board)}, {board['matcher.disparities']} disparities, "
@@ -138,19 +136,17 @@ def banks(folder):
                                     ("with calibration", "without calibration")):
         every = [row for row in rows if row["claim"] == claim]
         xs = [int(row["banks"]) for row in every]
-        axes.plot(xs, numbers(every, "bound_frames_per_second"), color=pale(MODEL), linewidth=BOUND_WIDTH,
-                  solid_capstyle="butt", zorder=1.5)
+        axes.plot(xs, numbers(every, "bound_frames_per_second"), **bound(MODEL))
         model_line(axes, xs, numbers(every, "frames_per_second"))
         axes.axvline(float(printed[claim]), color=PAPER, linewidth=1.2, linestyle=(0, (4, 2)), zorder=1.2)
-        axes.set_title(heading, fontsize=9.5)
+        sheet.head(axes, heading)
         axes.set_xticks(xs, [f"{row['banks']}\n({row['allocations']})" for row in every])
         axes.set_xlim(min(xs) - 0.5, max(xs) + 0.5)
     panels[0].plot([int(row["banks"]) for row in computer], numbers(computer, "frames_per_second"), color=SECOND,
                    marker="^", linestyle="", markersize=5.5, zorder=2.8)
     panels[0].set_ylim(0, max(numbers(rows, "bound_frames_per_second")) * 1.12)
     panels[0].set_ylabel("frames/s")
-    sheet.figure.text(0.5, panels[0].get_position().y0 - 0.52 / sheet.figure.get_size_inches()[1],
-                      "banks that the allocation uses (allocations)", ha="center", va="center", fontsize=9.5)
+    sheet.below("banks that the allocation uses (allocations)", 0.52)
     return sheet
 
 
@@ -164,7 +160,7 @@ def main():
     options = parser.parse_args()
     for name, draw in FIGURES.items():
         sheet = draw(options.tables)
-        for ending, data in ((".png", sheet.png()), (".svg", sheet.svg())):
+        for ending, data in sheet.files().items():
             with open(os.path.join(options.out, name + ending), "wb") as file:
                 file.write(data)
 

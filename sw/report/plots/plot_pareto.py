@@ -7,14 +7,17 @@ import sys
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
 import command
-from drawing import LOSES_PIXELS, TOO_LARGE, Drawing, Sheet, bound_of, line_handle, mark_handle, pale, scale, title
-from families import COLORS
-from points import LOST_PIXELS, Unusable, counted, short_names, text_of
+import style
+from drawing import LOSES_PIXELS, TOO_LARGE, Drawing, Sheet, bound_of, mark_handle, scale, title
+from points import BANKS_USED, LOST_PIXELS, UNITS_USED, Unusable, counted, short_names, text_of
+from style import bound, bound_handle, line_handle
 
 DEFAULT = "area.slices:min,frames_per_second.core:max"
 SENSES = {"min": "less is better", "max": "more is better"}
 MOST_NAMED = 16
-FRONT, OTHER = COLORS[1], "#9AA5AE"
+MANY = 1500  # points; more are small and paler, and are pixels in SVG and PDF
+FRONT, OTHER = style.VERMILION, "#7A858E"
+NUMBER_SIZE = 8
 
 
 def parse(text):
@@ -68,11 +71,11 @@ def draw(points, options):
     bounds = {axis: points.column(bound_of(column)) for axis, column in (("x", x), ("y", y)) if bound_of(column)}
     points.need_numbers(filter(None, (bound_of(x), bound_of(y))), [places[at] for at in front])
 
-    sheet = Sheet()
-    handles = [(line_handle(FRONT, "o"), "Pareto front"), (line_handle(OTHER, "o", ""), "other points")]
+    heading = "Pareto front: " + ", ".join(re.sub(", (.*)", r" (\1)", title(column)) for column in (x, y))
+    sheet = Sheet(heading, options.size, options.format)
+    handles = [(line_handle(FRONT, "o"), "Pareto front"), (line_handle(OTHER, "o", "", markersize=4), "other points")]
     if bounds:
-        handles.append((line_handle(pale(FRONT), "_", "", markersize=12, markeredgewidth=4),
-                        "bound of a point of the front"))
+        handles.append((bound_handle(FRONT), "bound of a point of the front"))
     marks = [(mark, pairs_with_only(marked, places, xs, ys))
              for mark, marked in ((TOO_LARGE, points.too_large()), (LOSES_PIXELS, points.losing_pixels()))]
     handles += [mark_handle(mark) for mark, pairs in marks if pairs]
@@ -86,20 +89,21 @@ def draw(points, options):
     sheet.note(points.size_note(places))
     sheet.note(points.note(len(places)))
     (axes,) = sheet.rows([3.6])
-    axes.plot(xs, ys, "o", color=OTHER, markersize=4, alpha=0.7, markeredgewidth=0, zorder=2)
+    is_many = len(xs) > MANY
+    axes.plot(*zip(*dict.fromkeys(zip(xs, ys))), "o", color=OTHER, markersize=2 if is_many else 4,
+              alpha=0.35 if is_many else 0.6, markeredgewidth=0, zorder=2, rasterized=is_many)
     for mark, pairs in marks:
         if pairs:
             axes.plot(*zip(*pairs), **mark)
-    draw_front(axes, corners, xs, ys, axes_of)
     for axis, column in bounds.items():
-        for at in front:
-            limit = column[places[at]]
-            where = (limit, ys[at]) if axis == "x" else (xs[at], limit)
-            axes.plot(*where, "|" if axis == "x" else "_", color=pale(FRONT), markersize=14,
-                      markeredgewidth=4, zorder=1.5)
+        limits = [column[places[at]] for at in front]
+        others = [(ys if axis == "x" else xs)[at] for at in front]
+        axes.plot(*((limits, others) if axis == "x" else (others, limits)), **bound(FRONT, of_x=axis == "x"))
     for which, (column, sense) in zip("xy", axes_of):
         limits = [bounds[which][places[at]] for at in front] if which in bounds else []
-        scale(axes, which, title(column), [*(points.column(column)[place] for place in places), *limits], SENSES[sense])
+        scale(axes, which, title(column), [*(points.column(column)[place] for place in places), *limits], SENSES[sense],
+              are_counts=column in (*points.keys, BANKS_USED, UNITS_USED))
+    draw_front(axes, corners, xs, ys, axes_of)
 
     of_front = {place: number for number, place in enumerate(front)}
     lost = [each for each in LOST_PIXELS if each in points.names]
@@ -125,13 +129,38 @@ def draw_front(axes, corners, xs, ys, axes_of):
         line += [(worse[0](before[0], after[0]), worse[1](before[1], after[1])), after]
     line.append((worse[0](xs), corners[-1][1]))
     axes.plot(*zip(*line), "-", color=FRONT, linewidth=1.2, zorder=2.5)
-    axes.plot(*zip(*corners), "o", color=FRONT, markeredgecolor="white", markeredgewidth=0.6, zorder=3)
+    axes.plot(*zip(*corners), color=FRONT, linestyle="", **style.POINT, zorder=3)
     # The numbers stand on the side of the front that has no points.
     side, align = (-1, "right") if axes_of[0][1] == "min" else (1, "left")
     rise, seat = (1, "bottom") if axes_of[1][1] == "max" else (-1, "top")
-    for number, corner in enumerate(corners[:MOST_NAMED], 1):
-        axes.annotate(str(number), corner, (5 * side, 5 * rise), textcoords="offset points", fontsize=8, ha=align,
-                      va=seat, zorder=4)
+    for first, last in numbers_apart(axes, corners[:MOST_NAMED]):
+        text = str(first + 1) if first == last else f"{first + 1}\N{EN DASH}{last + 1}"
+        axes.annotate(text, corners[first], (5 * side, 6 * rise), textcoords="offset points", fontsize=NUMBER_SIZE,
+                      ha=align, va=seat, zorder=4)
+
+
+def numbers_apart(axes, corners):
+    """Groups (first, last) of corners, so that the numbers of two groups do not touch: those that do are merged."""
+    to_inches = axes.transData + axes.figure.dpi_scale_trans.inverted()
+    inches = [to_inches.transform(corner) for corner in corners]
+    groups = [(number, number) for number in range(len(corners))]
+
+    def box(group):
+        digits = len(str(group[0] + 1)) if group[0] == group[1] else len(f"{group[0] + 1}-{group[1] + 1}")
+        return inches[group[0]], 0.05 + 0.075 * digits, 0.15
+
+    def touch(one, other):
+        (a, width_a, height_a), (b, width_b, height_b) = box(one), box(other)
+        return abs(a[0] - b[0]) < max(width_a, width_b) and abs(a[1] - b[1]) < max(height_a, height_b)
+
+    at = 0
+    while at + 1 < len(groups):
+        if touch(groups[at], groups[at + 1]):
+            groups[at : at + 2] = [(groups[at][0], groups[at + 1][1])]
+            at = max(0, at - 1)
+        else:
+            at += 1
+    return groups
 
 
 def name(points, places):

@@ -7,43 +7,50 @@ sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves 
 
 import bars
 import command
-from drawing import Drawing, Sheet
+import style
+from drawing import Drawing, Sheet, in_words, ticks_of_columns
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 from points import counted
 
 STATES = [
-    ("grants", "granted", "#0072B2"),
-    ("passed_cycles", "passed without access", "#56B4E9"),
-    ("stall_cycles", "stalled", "#D55E00"),
-    ("blocked_cycles", "blocked", "#E69F00"),
+    ("grants", "granted", style.BLUE),
+    ("passed_cycles", "passed without access", style.SKY),
+    ("stall_cycles", "stalled", style.VERMILION),
+    ("blocked_cycles", "blocked", style.ORANGE),
     ("starved_cycles", "starved", "#999999"),
     ("idle_cycles", "idle", "#DDDDDD"),
 ]
 
 
-def draw(points, _):
-    rows = bars.Rows(points)
+def draw(points, options):
+    rows = bars.Rows(points, options)
     ports = bars.used_ports(points, rows.places)
     points.need_numbers([f"ports.{port}.{count}" for port in ports for count, _, _ in STATES])
-    sheet = Sheet()
-    sheet.legend([(Patch(color=color), name) for _, name, color in STATES])
+    frames = points.frames()
+
+    def cycles(place, port, count):
+        return points.column(f"ports.{port}.{count}")[place] / frames[place]
+
+    shown = [state for state in STATES if any(cycles(place, port, state[0]) for place in rows.places for port in ports)]
+    most = max(sum(cycles(place, port, count) for count, _, _ in shown) for place in rows.places for port in ports)
+    factor, word = in_words(most)
+    sheet = Sheet("What each port does in the cycles of a frame", options.size, options.format)
+    sheet.legend([(Patch(color=color), name) for _, name, color in shown])
     sheet.note(rows.note)
     sheet.note(points.pixels_note(rows.places))
     sheet.note(points.note(len(rows.places), rows.left_out))
-    frames = points.frames()
-    for axes, port in zip(sheet.columns(len(ports), rows.height, rows.left()), ports):
+    panels = sheet.columns(len(ports), rows.height, rows.left(), rows.least)
+    for axes, port in zip(panels, ports):
         for place, center in zip(rows.places, rows.centers):
             at = 0
-            for count, _, color in STATES:
-                width = points.column(f"ports.{port}.{count}")[place] / frames[place] / 1e6
+            for count, _, color in shown:
+                width = cycles(place, port, count) / factor
                 axes.barh(center, width, 0.14, at, color=color, linewidth=0)
                 at += width
-        axes.set_title(port, fontsize=9)
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.xaxis.set_major_locator(MaxNLocator(2, steps=[1, 2, 5, 10]))
+        sheet.head(axes, port)
         rows.label(axes)
-    sheet.below("million cycles a frame")
+    ticks_of_columns(panels, most / factor)
+    sheet.below(f"{word}cycles a frame")
     header = ["hash", *points.varied, "frames", "port", *(count for count, _, _ in STATES)]
     table = [[*(points.column(each)[place] for each in header[: len(points.varied) + 2]), port,
               *(points.column(f"ports.{port}.{count}")[place] for count, _, _ in STATES)]

@@ -11,9 +11,10 @@ import lines
 KEY = "matcher.window"
 
 
-def draw(points, _):
+def draw(points, options):
     points.need_variation(KEY)
-    return lines.draw(points, KEY, [KEY], lines.rate_panels(points))
+    heading = "Frame rate against the size of the window"
+    return lines.draw(points, options, heading, KEY, [KEY], lines.rate_panels(points))
 
 
 if __name__ == "__main__":

@@ -18,8 +18,9 @@ ADMINISTRATION = {"hash", "status", "reason", "version", "config"}
 
 MOST_NAMED = 12  # names or values in a message
 
-# An additional column: the number of distinct banks that the allocation names.
+# Additional columns: the number of distinct banks that the allocation names; the number that matcher.units stands for.
 BANKS_USED = "banks_used"
+UNITS_USED = "units_used"
 
 PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
 TURNAROUND = "turnaround"
@@ -172,11 +173,14 @@ class Points:
         return problems
 
     def column(self, name):
-        """The values of a column or of BANKS_USED by place; None for a point without value."""
+        """The values of a column, of BANKS_USED or of UNITS_USED by place; None for a point without value."""
         if name not in self._columns:
             if name == BANKS_USED:
                 allocated = [self.column(key) for key in self.names if key.startswith("allocation.")]
                 self._columns[name] = [len(set().union(*map(banks_of, each))) for each in zip(*allocated)]
+            elif name == UNITS_USED:
+                units = zip(self.column("matcher.units"), self.column("matcher.disparities"))
+                self._columns[name] = [disparities if each == "all" else each for each, disparities in units]
             elif name in self.names:
                 rows = self._rows(f"SELECT {quoted(name)} FROM points WHERE {self._condition} ORDER BY hash",
                                   *self._values)
@@ -233,7 +237,7 @@ class Points:
 
     def number_problem(self, name):
         """Why the values of a column, as far as present, cannot be drawn as numbers; empty if they can."""
-        known = [*self.names, BANKS_USED]
+        known = [*self.names, BANKS_USED, UNITS_USED]
         if name not in known:
             return unknown("column", name, [each for each in known if each not in ADMINISTRATION])
         places = self.places_with(name)

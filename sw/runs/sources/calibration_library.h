@@ -31,6 +31,8 @@ struct CalibrationFunctions {
                                                        const kernels::RectificationTable& right);
   std::vector<std::uint8_t> (*encode_source_lines_png)(const kernels::RectificationTable& left,
                                                        const kernels::RectificationTable& right);
+  std::vector<std::uint8_t> (*encode_depth_color_png)(int width, int height,
+                                                      const std::vector<std::uint16_t>& millimetres);
   // grid_sheet.h
   std::string (*grid_sheet_pdf)(const calib::GridShape& shape);
   std::string (*grid_sheet_svg)(const calib::GridShape& shape);

@@ -125,7 +125,7 @@ class Run(CalibrateTest):
         accuracy = self.stats()["accuracy"]
         self.assertLess(accuracy["bad_1_percent"], 3)
         self.assertGreater(accuracy["answered_percent"], 60)
-        self.is_in(self.out, *RESULT_FILES, "depth.ply", "depth.png")
+        self.is_in(self.out, *RESULT_FILES, "depth.ply", "depth.png", "depth_color.png")
         self.check_depths(self.rig, 0)
         options = self.run_json()["calibration"]
         self.assertEqual(options["path"], str(self.rig))
@@ -151,6 +151,11 @@ class Run(CalibrateTest):
                 if rows[y][x] not in no_depth:
                     expected = int(q[11] / (q[14] * (rows[y][x] + offset) + q[15]) + 0.5)
                 self.assertEqual(depths[y][x], expected, (x, y))
+        width, height, channels, colors = read_png(self.out / "depth_color.png")
+        self.assertEqual((width, height, channels), (max(len(rows[0]), 300), len(rows) + 28, 3))
+        for row, shown in zip(depths, colors):
+            unknown = [shown[3 * x : 3 * x + 3] == b"\xd9\xd9\xd9" for x in range(len(row))]
+            self.assertEqual(unknown, [depth == 0 for depth in row])
         points = sum(1 for row in rows for disparity in row if disparity not in no_depth)
         self.assertIn(b"element vertex %d\n" % points, (self.out / "depth.ply").read_bytes())
 
@@ -160,7 +165,7 @@ class Run(CalibrateTest):
         whole = self.folder / "whole"
         command = [word for word in self.scene(*small, "--out", whole) if word not in PRELOADED]
         self.succeeds(run(*command))
-        for name in ("disparity.png", "depth.png", "depth.ply"):
+        for name in ("disparity.png", "depth.png", "depth_color.png", "depth.ply"):
             self.assertEqual((whole / name).read_bytes(), (self.out / name).read_bytes())
 
     def test_tells_check_and_bounds_which_entries_have_no_source(self):

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -79,6 +80,24 @@ class Refusals(PlotTest):
             process = run("plot", self.store, "--out", self.out, "--pareto", wrong)
             self.refused_in_one_line(process, f"--pareto = {wrong}: must be two columns")
 
+    def test_formats_and_sizes_that_cannot_be_are_refused(self):
+        kinds = "must be png, svg, pdf, or several with commas"
+        size = "must be WIDTHxHEIGHT in inches, each 2 to 40, such as 7.2x4.5"
+        for wrong in ("", "jpg", "PDF", "png,", "svg,png,svg"):
+            self.assertEqual(self.refused_plot(self.store, "--format", wrong), [f"--format = {wrong}: {kinds}"])
+        for wrong in ("", "7", "7x", "7x4x2", "1.9x5", "5x1.9", "40.1x5", "5x40.1", "-7x5", "7 x 5", "1e1x5", "nanx5"):
+            self.assertEqual(self.refused_plot(self.store, f"--size={wrong}"), [f"--size = {wrong}: {size}"])
+        lines = self.refused(run("plot", self.store, "--out", self.out, "--format", "x", "--size", "y"))
+        self.assertEqual(lines, [f"stereotlm: error: --format = x: {kinds}", f"stereotlm: error: --size = y: {size}"])
+
+    def test_figures_for_which_the_size_is_too_small_are_not_drawn(self):
+        """The size that is asked for instead is the least that is enough."""
+        needs = re.compile(r"window not drawn: --size 4x2: so wide, this figure needs a height of (\d+\.\d) inches$")
+        (line,) = self.refused(script("plot_window.py", self.store, "--out", self.out, "--size", "4x2"))
+        least = float(needs.search(line)[1])
+        self.refused(script("plot_window.py", self.store, "--out", self.out, "--size", f"4x{least - 0.1:.1f}"))
+        self.succeeds(script("plot_window.py", self.store, "--out", self.out, "--size", f"4x{least:.1f}"))
+
     @program.slow
     def test_unknown_keys_and_columns_are_refused_with_the_nearest(self):
         only = ("matcher.widow=3", "matcher.fetch=row", "frames_per_second.core=3")
@@ -127,7 +146,7 @@ class Refusals(PlotTest):
             path.symlink_to(self.left)
 
         folder = pathlib.Path.mkdir
-        for make, name in ((file, "notes.txt"), (file, "window.pdf"), (file, ".partial"), (folder, "frames"),
+        for make, name in ((file, "notes.txt"), (file, "window.ps"), (file, ".partial"), (folder, "frames"),
                            (folder, "window.png"), (link, "window.png"), (link, ".partial")):
             given = self.folder / "given"
             given.mkdir()

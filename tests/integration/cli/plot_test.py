@@ -1,15 +1,18 @@
 """plot: the figures of a sweep and their data."""
 
+import math
 import pathlib
 import random
 import re
 import shutil
 import sqlite3
 import subprocess
+import xml.etree.ElementTree
 
 import program
 from pictures import PYTHON, drawn
-from plots import ALLOCATIONS, ENDINGS, SMALL_BOARD, WINDOWS, PlotTest, change, make_database, reader, script
+from plots import ALLOCATIONS, ENDINGS, SCRIPTS, SMALL_BOARD, WINDOWS
+from plots import PlotTest, change, make_database, reader, script
 from program import run
 
 SIZES = [3, 5, 7]
@@ -79,6 +82,19 @@ class FigureTest(PlotTest):
         return [[tuple(map(float, pair)) for pair in re.findall(r"[ML] (\S+) (\S+)", line)]
                 for line, found_width in found if found_width == width]
 
+    def bounds(self, name):
+        """The places of the marks of bounds in a drawing, without the legend: a list of (x, y) for each line."""
+        groups = re.findall(r'<g id="bound">(.*?)</g>\n   </g>', (self.out / f"{name}.svg").read_text(), re.DOTALL)
+        return [[tuple(map(float, pair)) for pair in re.findall(r'<use [^>]*x="([^"]*)" y="([^"]*)"', group)]
+                for group in groups if "clip-path" in group]
+
+    def ranges(self, name):
+        """The surfaces in a drawing, each as the set of its corners."""
+        groups = re.findall(r'<g id="range">(.*?)</g>', (self.out / f"{name}.svg").read_text(), re.DOTALL)
+        origins = [float(re.search(r'<use [^>]*x="0" y="([^"]*)"', group)[1]) for group in groups]
+        return [{(float(x), float(y) + origin) for x, y in re.findall(r"[ML] (\S+) (\S+)", group)}
+                for group, origin in zip(groups, origins)]
+
 
 class Figures(FigureTest):
     def test_a_sweep_has_the_figures_that_apply_with_its_data(self):
@@ -90,12 +106,14 @@ class Figures(FigureTest):
         self.assertEqual(said[2:], [
             "window       12 points, 4 lines",
             "disparities  12 points, 6 lines",
+            "rows         not drawn: all points have matcher.rows = 1",
+            "units        not drawn: all points have matcher.units = all",
             "banks        not drawn: all points use 8 banks",
             "states       12 points, 5 ports",
             "stalls       not drawn: no port stalls in any point",
             "use          12 points, 8 banks",
             "pareto       12 points, " + said[-2].split(", ")[1],
-            f"{self.out}: 15 files: a picture, a drawing and the data of each figure that is drawn",
+            f"{self.out}: 15 files: png, svg and csv of each figure that is drawn",
         ])
         names = ["window", "disparities", "states", "use", "pareto"]
         self.is_in(self.out, *(name + ending for name in names for ending in ENDINGS))
@@ -126,8 +144,7 @@ class Figures(FigureTest):
         fetches = ("matcher.fetch = column", "matcher.fetch = line_buffer")
         self.shows("window", "window n, pixels (of n x n)", "bound", *fetches, *map(str, SIZES))
         self.assertIn("core, frames/s", " ".join(self.texts("window")))
-        for width in ("1.4", "5.5"):  # simulated, bound
-            curves = self.curves("window", width)
+        for curves in (self.curves("window"), self.bounds("window")):
             self.assertEqual(len(curves), FAMILIES)
             for curve in curves:
                 self.assertEqual(len(curve), len(SIZES))
@@ -205,7 +222,7 @@ class Figures(FigureTest):
         rates = {"frames_per_second.steady", "frames_per_second.system", "bound.system", *RATES}
         self.assertLessEqual(rates, set(self.table("window")[0]))
         self.shows("window", "whole computer, steady frames/s", "from power-up, tables included")
-        self.assertEqual((len(self.curves("window")), len(self.curves("window", "5.5"))), (2, 2))
+        self.assertEqual((len(self.curves("window")), len(self.bounds("window"))), (2, 2))
 
     def test_points_that_lose_pixels_are_marked(self):
         store = self.sweep(LOSING)
@@ -233,11 +250,70 @@ class Figures(FigureTest):
         self.assertIn("80 points, without lines", self.plot("window", store))
         self.assertEqual(self.curves("window"), [])
         many = "40 combinations of fpga.clock_mhz, fpga.arbitration are more than can be told apart"
-        self.shows("window", f"Points without lines: {many}; --only KEY=VALUE draws")
+        self.shows("window", f"Points without lines: {many}; --only KEY=VALUE draws fewer.")
         said = self.plot("window", store, "--only", "fpga.clock_mhz=20")
         self.assertIn("4 of 80 points; left out: 76 other than --only fpga.clock_mhz=20", said)
         self.assertIn("4 points, 2 lines", said)
         self.shows("window", "fpga.arbitration = $a$")
+
+    def test_many_points_without_lines_are_envelopes(self):
+        """One for each value of the key that leaves the least range: its corners are the least and the greatest."""
+        header = [*HEADER, "fpga.clock_mhz", "matcher.fetch", *RATES]
+        rates = {"column": 1, "line_buffer": 10}
+        rows = [("made", "preloaded", window, clock, fetch, clock * rate / window, 1.5 * clock * rate / window)
+                for window in (3, 5, 7) for clock in range(20, 80) for fetch, rate in rates.items()]
+        store = make_database(self.folder / "many.db", header, rows)
+        self.assertIn("360 points, 2 envelopes", self.plot("window", store))
+        self.assertEqual(len(self.table("window")), 360)
+        many = "120 combinations of fpga.clock_mhz, matcher.fetch are more than can be told apart"
+        self.shows("window", f"Envelopes: {many}; --only KEY=VALUE draws fewer.", "matcher.fetch = column",
+                   "matcher.fetch = line_buffer", "all points, from the least to the greatest", "greatest bound",
+                   "median")
+        medians, (all_column, middle_column, all_kept, _) = self.curves("window"), self.ranges("window")
+        self.assertEqual([len(curve) for curve in medians], [3, 3])
+        bounds = self.bounds("window")
+        self.assertEqual([len(curve) for curve in bounds], [3, 3])
+        # The scale is logarithmic: ratios are distances. The highest y is the least.
+        decade = medians[0][0][1] - medians[1][0][1]
+        for number in range(3):
+            x, column = medians[0][number]
+            self.assertAlmostEqual(column - medians[1][number][1], decade, places=3)
+            edges = sorted(y for at, y in all_column if at == x)
+            self.assertAlmostEqual(edges[-1] - edges[0], decade * math.log10(79 / 20), places=3)
+            self.assertAlmostEqual(edges[0] - bounds[0][number][1], decade * math.log10(1.5), places=3)
+            self.assertAlmostEqual(column - edges[0], decade * math.log10(79 / 50), places=3)
+            middle = sorted(y for at, y in middle_column if at == x)
+            self.assertAlmostEqual(middle[-1] - middle[0], decade * math.log10(64 / 35), places=3)
+            self.assertAlmostEqual(edges[0] - min(y for at, y in all_kept if at == x), decade, places=3)
+        self.assertLess((self.out / "window.svg").stat().st_size, 50_000)
+
+    def test_many_allocations_are_a_range_below_the_best(self):
+        header = [*ALLOCATED, *RATES]
+        rows = [("made", "preloaded", f"bank{lut}", f"[bank0, bank{number}]", number / 10 + banks, 50)
+                for banks, lut in ((0, 0), (1, 400)) for number in range(1, 161)]
+        self.assertIn("320 points, 1 line\n", self.plot("banks", make_database(self.folder / "many.db", header, rows)))
+        ((best,), (surface,)) = self.curves("banks"), self.ranges("banks")
+        self.assertEqual(len(best), 2)
+        for x, y in best:
+            edges = [each for at, each in surface if at == x]
+            self.assertAlmostEqual(min(edges), y, places=3)
+            self.assertGreater(max(edges), y + 50)
+
+    def test_rows_and_units_have_figures(self):
+        store = self.sweep(SMALL_BOARD + "vary: {matcher.rows: [1, 2, 4], matcher.units: [all, 40, 20]}\n")
+        said = self.plot("all", store)
+        self.assertIn("rows         9 points, 3 lines\n", said)
+        self.assertIn("units        9 points, 3 lines\n", said)
+        self.is_from(store, self.table("rows"))
+        self.is_from(store, self.table("units"), "units_used")
+        for row in self.table("units"):
+            units = row["matcher.units"]
+            self.assertEqual(row["units_used"], "80" if units == "all" else units)
+        self.shows("rows", "rows of results at once", "matcher.units = all", "1", "2", "4")
+        self.shows("units", "column and window modules", "matcher.rows = 4", "20", "40", "80")
+        self.assertEqual([len(self.curves(name)) for name in ("rows", "units")], [6, 6])  # in two panels
+        axes = "units_used:min,frames_per_second.core:max"
+        self.assertIn("9 points, 3 of them on the front", self.plot("pareto", store, "--pareto", axes))
 
     def test_lines_that_look_the_same_are_noted_with_their_difference(self):
         header = [*HEADER, "fpga.lane_fifo_slots", *RATES]
@@ -294,6 +370,35 @@ class ParetoFront(FigureTest):
         self.front(make_database(self.folder / "named.db", self.HEADER, rows), "min", "max")
         axes = ("area, LUTs (less is better)", "capture_to_host.p50, ms (more is better)")
         self.shows("pareto", "1  clock_mhz=40", "2  2 points with other clock_mhz", *axes)
+
+
+    def numbers(self, pairs, *senses):
+        """The texts beside the front, and the labels of the x axis that are fractions."""
+        rows = [("made", "preloaded", number, *pair) for number, pair in enumerate(pairs)]
+        self.out = self.folder / f"out{len(list(self.folder.iterdir()))}"
+        self.front(make_database(self.folder / f"{self.out.name}.db", self.HEADER, rows), *senses)
+        return [text for text in self.texts("pareto") if re.fullmatch(r"\d+(\N{EN DASH}\d+)?", text)]
+
+    def test_numbers_that_would_touch_are_merged(self):
+        apart = [(100 * number, 10 * number) for number in range(1, 5)]
+        self.assertLessEqual({"1", "2", "3", "4"}, set(self.numbers(apart, "min", "max")))
+        close = [*apart, (401, 40.1), (402, 40.2)]
+        found = self.numbers(close, "min", "max")
+        self.assertLessEqual({"1", "2", "3", "4\N{EN DASH}6"}, set(found))
+        self.assertNotIn("5", found)
+        all_close = [(400 + number, 40 + number / 10) for number in range(20)]
+        self.assertIn("1\N{EN DASH}16", self.numbers(all_close, "min", "max"))
+
+    def test_counts_have_whole_ticks(self):
+        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", *RATES]
+        rows = [("made", "preloaded", lut, image, rate, 9) for lut, image, rate in
+                (("bank0", "[bank0]", 4), ("bank1", "[bank0]", 5.5), ("bank2", "[bank0, bank1]", 7))]
+        self.plot("pareto", make_database(self.folder / "counts.db", header, rows), "--pareto",
+                  "banks_used:min,frames_per_second.core:max")
+        texts = self.texts("pareto")
+        ticks = texts[: texts.index("banks used by the allocation (less is better)")]
+        self.assertEqual(ticks[-3:], ["1", "2", "3"])
+        self.assertEqual([len(line) for line in self.bounds("pareto")], [3])
 
 
 class Columns(FigureTest):
@@ -396,9 +501,108 @@ class Names(FigureTest):
         store = self.sweep(SMALL_BOARD + f"vary: {{matcher.window: [3, 5], name: [{names}]}}\n")
         process = script("plot_window.py", store, "--out", self.out)
         self.assertIn("8 points, 4 lines\n", self.succeeds(process))
-        lacks = "the font of the figures lacks '\u65e5\u672c': boxes in PNG; SVG and CSV have the text\n"
+        lacks = "the font of the figures lacks '\u65e5\u672c': boxes in PNG and PDF; SVG and CSV have the text\n"
         self.assertEqual(process.stderr, f"plot_window.py: note: {lacks}")
         self.assertIn("\u65e5\u672c board", " ".join(self.texts("window")))
+
+
+    def test_names_are_shown_as_they_are(self):
+        """Neither as mathematics nor as parts of the drawing, wherever they are."""
+        names = ["<script>alert('$x^2$')</script>", '_b $\\alpha$ 100 % "c" \\n', "$\\frac{1"]
+        ports = [f"ports.{port}.{count}" for port in reader.PORTS for count in STATES]
+        banks = [f"banks.{bank}.utilization" for bank in ("$a_0$", "<b>&")]
+        header = [*HEADER, "allocation.disparity", *RATES, *banks, "frames", *ports]
+        rows = [(name, "preloaded", window, "[bank0]", number * 9 / window, 99, 0.5, 0.7, 1, *[5] * len(ports))
+                for number, name in enumerate(names, 1) for window in (3, 5)]
+        store = make_database(self.folder / "$x_2$ <i> 5%.db", header, rows)
+        change(store, "INSERT INTO blame SELECT hash, 'left_lut', '$b$', 'result', 5 FROM points")
+        self.assertIn("window       6 points, 3 lines", self.plot("all", store, "--format", "png,svg,pdf"))
+        self.is_in(self.out, *(f"{name}.{kind}" for name in ("window", "states", "stalls", "use")
+                               for kind in ("png", "svg", "pdf", "csv")))
+        for figure in ("window", "states", "stalls", "use"):
+            drawing = xml.etree.ElementTree.parse(self.out / f"{figure}.svg")
+            self.assertEqual([each.tag for each in drawing.iter() if "script" in each.tag], [])
+            texts = " ".join(text for each in drawing.iter() for text in each.itertext())
+            texts = texts.replace("\N{NO-BREAK SPACE}", " ")
+            for name in names:
+                self.assertIn(name, texts)
+            self.assertIn("6 of 6 points of $x_2$ <i> 5%.db.", texts)
+        self.assertIn("$a_0$", texts)
+        self.assertIn("<b>&", texts)
+
+
+class Formats(FigureTest):
+    HEADER = [*HEADER, "matcher.fetch", "allocation.disparity", *RATES]
+
+    def store(self):
+        rows = [("made", "preloaded", window, fetch, "[bank0]", 90 / window + more, 99) for window in (3, 5, 7)
+                for fetch, more in (("column", 0), ("line_buffer", 9))]
+        return make_database(self.folder / "made.db", self.HEADER, rows)
+
+    def test_files_are_of_the_formats_that_are_asked_for(self):
+        store = self.store()
+        for asked, endings in (("pdf", ["pdf"]), ("svg", ["svg"]), ("pdf,png", ["pdf", "png"])):
+            said = self.succeeds(run("plot", store, "--out", self.out, "--format", asked))
+            self.assertIn(f"{len(endings) + 1} files: {', '.join(endings)} and csv of each figure", said)
+            # Those of the other formats have gone.
+            self.is_in(self.out, "window.csv", *(f"window.{each}" for each in endings))
+        pdf = (self.out / "window.pdf").read_bytes()
+        self.assertTrue(pdf.startswith(b"%PDF-"))
+        self.assertNotIn(b"CreationDate", pdf)
+        with self.unchanged(self.out):
+            self.succeeds(run("plot", store, "--out", self.out, "--format", asked))
+
+    def test_figures_have_the_size_that_is_asked_for(self):
+        store = self.store()
+        usual = self.succeeds(run("plot", store, "--out", self.out)) and self.table("window")
+        for size, width, height in (("5x4", 5, 4), ("3.5x3.25", 3.5, 3.25), ("12x9", 12, 9)):
+            self.succeeds(run("plot", store, "--out", self.out, "--size", size, "--format", "png,svg,pdf"))
+            ((pixels, lines, _, _),) = drawn(self.out / "window.png")
+            self.assertEqual((pixels, lines), (200 * width, 200 * height))
+            points = rf'width="{72 * width:g}pt" height="{72 * height:g}pt"'
+            self.assertIn(points, (self.out / "window.svg").read_text())
+            box = rf"/MediaBox \[ 0 0 {72 * width:g} {72 * height:g} \]"
+            self.assertRegex((self.out / "window.pdf").read_bytes().decode("latin-1"), box)
+            self.assertEqual(self.table("window"), usual)
+
+    def test_each_figure_has_a_title(self):
+        self.plot("window", self.store())
+        self.shows("window", "Frame rate against the size of the window")
+
+
+class Layout(FigureTest):
+    """Texts do not touch, whatever the numbers are."""
+
+    def test_labels_of_neighboring_columns_are_apart(self):
+        script_of = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import drawing, style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+for size in (None, (4.6, 6)):
+    for count in (1, 2, 4, 6):
+        for most in (0.37, 3, 20.4, 99.6, 1234, 1999, 104000.5):
+            sheet = drawing.Sheet("title", size)
+            panels = sheet.columns(count, 2, 0.6)
+            drawing.ticks_of_columns(panels, most)
+            sheet.figure.canvas.draw()
+            labels = [label for axes in panels for label in axes.get_xticklabels() if label.get_text()]
+            boxes = [label.get_window_extent() for label in labels]
+            assert len(boxes) >= count, (count, most)
+            for before, after in zip(boxes, boxes[1:]):
+                assert before.x1 < after.x0, (size, count, most, before, after)
+            assert all(axes.get_xlim()[1] >= most for axes in panels)
+print("apart")
+"""
+        command = [PYTHON, "-B", "-c", script_of, str(SCRIPTS)]
+        process = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(self.succeeds(process), "apart\n")
+
+    def test_use_has_a_scale_of_its_colors(self):
+        store = self.sweep(WINDOWS)
+        self.plot("use", store)
+        self.shows("use", "use of the bank, % of cycles", "0", "20", "40", "60", "80", "100")
+        self.assertIn("<image", (self.out / "use.svg").read_text())
 
 
 class Studies(FigureTest):

@@ -14,7 +14,7 @@ from pictures import PYTHON
 from program import HEIGHT, WIDTH, ProgramTest, run
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "sw" / "report" / "plots"
-ENDINGS = [".png", ".svg", ".csv"]
+ENDINGS = [".png", ".svg", ".csv"]  # of the files of a figure, without --format
 LAYOUT = 2
 
 sys.dont_write_bytecode = True
@@ -36,7 +36,8 @@ vary:
 """
 
 # Beginnings of the columns of made databases that are no keys.
-FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left", "cameras.right")
+FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left", "cameras.right", "ports.",
+                   "banks.")
 
 # Runs scripts, each in a fork of one process that has loaded matplotlib: that takes longer than most figures.
 SERVER = """

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace stereotlm::calib {
 namespace {
@@ -79,6 +80,20 @@ TEST(PointCloudPly, HoldsPointsWithADisparityAndTheirGreys) {
   EXPECT_EQ(file.substr(points + 12, 3), "\7\7\7");
   EXPECT_FLOAT_EQ(float_at(file, points + 15 + 8), 2000);
   EXPECT_EQ(file.substr(points + 15 + 12, 3), "\xC8\xC8\xC8");
+}
+
+TEST(DepthRange, LeavesOutTheNearestAndTheFarthestHundredthOfTheKnownDepths) {
+  std::vector<std::uint16_t> depths(50, 0);
+  EXPECT_FALSE(depth_range(depths));
+  for (int depth = 1000; depth < 1200; ++depth) depths.push_back(static_cast<std::uint16_t>(depth));
+  const auto range = depth_range(depths);
+  ASSERT_TRUE(range);
+  EXPECT_EQ(range->near_mm, 1002);
+  EXPECT_EQ(range->far_mm, 1197);
+  const auto one = depth_range({0, 700});
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->near_mm, 700);
+  EXPECT_EQ(one->far_mm, 701);
 }
 
 TEST(PointCloudPly, RefusesAPictureOfAnotherSize) {

@@ -15,10 +15,11 @@ using kernels::GrayImage;
 using kernels::RectificationTable;
 
 constexpr int kMargin = 8;
-constexpr int kTop = 32;  // of the pictures: margin and caption
+constexpr int kTop = 32;   // of the pictures: margin and caption
+constexpr int kEdge = 10;  // columns of parted() without source, on each side
 const GridShape kShape{4, 3, 25};
 const cv::Vec3b kWhite(255, 255, 255);
-const cv::Vec3b kGray(128, 128, 128);
+const cv::Vec3b kMissing(217, 217, 217);
 const cv::Vec3b kOrange(0, 150, 255);
 const cv::Vec3b kYellow(0, 220, 220);
 const cv::Vec3b kCyan(220, 200, 0);
@@ -65,10 +66,24 @@ RectificationTable shifted(int width, int height, int distance) {
   return table;
 }
 
-cv::Vec3b turbo(int level) {
+// A table that moves everything by (offset, 1), its left half by `residual` further to the right and its right
+// half by as much less. Columns that would leave the picture have no source.
+RectificationTable parted(int width, int height, int offset, int residual) {
+  RectificationTable table{width, height, {}};
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const int source = column + offset + (column < width / 2 ? residual : -residual);
+      const bool inside = column >= kEdge && column < width - kEdge && row + 1 < height;
+      table.entries.push_back(inside ? kernels::make_entry(source, row + 1) : 0);
+    }
+  }
+  return table;
+}
+
+cv::Vec3b viridis(int level) {
   const cv::Mat levels(1, 1, CV_8U, cv::Scalar(level));
   cv::Mat color;
-  cv::applyColorMap(levels, color, cv::COLORMAP_TURBO);
+  cv::applyColorMap(levels, color, cv::COLORMAP_VIRIDIS);
   return color.at<cv::Vec3b>(0, 0);
 }
 
@@ -125,6 +140,20 @@ TEST(CornersDrawing, EnlargesSmallPicturesWithTheirCorners) {
   EXPECT_EQ(count(drawing({kMargin + 320, 0, kMargin, kTop}), kWhite), kMargin * kTop);
 }
 
+TEST(CornersDrawing, ShowsNamesInAnyLettersInTheirWidth) {
+  const GrayImage image(320, 80, 90);
+  const auto inked = [&image](const std::string& caption) {
+    const cv::Mat3b drawing = decoded(encode_corners_png(kShape, {caption, image}, {}, {"", image}, {}));
+    EXPECT_EQ(count(drawing({kMargin + 320 + kMargin, 0, 320, kTop}), kWhite), 320 * kTop);
+    EXPECT_EQ(count(drawing({kMargin + 320, 0, kMargin, kTop}), kWhite), kMargin * kTop);
+    return 320 * kTop - count(drawing({kMargin, 0, 320, kTop}), kWhite);
+  };
+  EXPECT_GT(inked("\xc3\xa4\xc3\xb6\xc3\xbc"), inked("aou"));             // umlauts have dots
+  EXPECT_EQ(inked("a\xff\xfe"), inked("a??"));                            // no UTF-8
+  EXPECT_EQ(inked(std::string(300, 'm')), inked(std::string(200, 'm')));  // cut off
+  EXPECT_EQ(inked(""), 0);
+}
+
 TEST(CornersDrawing, RefusesPicturesAndCornersThatDoNotFit) {
   const CaptionedImage image{"", GrayImage(200, 160)};
   const auto draw = [&image](const CaptionedImage& right, const MarkedCorners& marked) {
@@ -169,32 +198,77 @@ TEST(RectifiedPairDrawing, RefusesPicturesOfDifferentSizesOrNone) {
   EXPECT_THROW(encode_rectified_pair_png({"", torn}, {"", torn}), std::invalid_argument);
 }
 
-TEST(DisplacementDrawing, ColorsTheDistanceOnOneScaleAndIsGreyWithoutSource) {
-  const cv::Mat3b drawing = decoded(encode_displacement_png(shifted(200, 80, 10), shifted(200, 80, 20)));
+TEST(DisplacementDrawing, ColorsTheDistanceWithoutTheOffsetOnOneScale) {
+  const cv::Mat3b drawing = decoded(encode_displacement_png(parted(200, 80, 7, 2), parted(200, 80, 5, 4)));
   EXPECT_EQ(drawing.cols, 3 * kMargin + 2 * 200);
   const int right = kMargin + 200 + kMargin;
-  EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(128)));  // half of the largest distance
-  EXPECT_TRUE(is(drawing, {kMargin + 189, kTop}, turbo(128)));
-  EXPECT_TRUE(is(drawing, {kMargin + 190, kTop}, kGray));
-  EXPECT_TRUE(is(drawing, {right, kTop}, turbo(255)));
-  EXPECT_TRUE(is(drawing, {right + 179, kTop + 79}, turbo(255)));
-  EXPECT_TRUE(is(drawing, {right + 180, kTop + 79}, kGray));
-  for (const int y : {20, 60}) {  // the first two arrows
-    EXPECT_EQ(count(drawing({kMargin + 21, kTop + y, 9, 1}), kWhite), 9);
+  EXPECT_TRUE(is(drawing, {kMargin + kEdge, kTop}, viridis(128)));  // half of the largest distance
+  EXPECT_TRUE(is(drawing, {kMargin + 199 - kEdge, kTop + 78}, viridis(128)));
+  EXPECT_TRUE(is(drawing, {right + kEdge, kTop}, viridis(255)));
+  EXPECT_TRUE(is(drawing, {right + 199 - kEdge, kTop + 78}, viridis(255)));
+  for (const int left : {kMargin, right}) {
+    EXPECT_TRUE(is(drawing, {left + kEdge - 1, kTop}, kMissing));
+    EXPECT_TRUE(is(drawing, {left + 200 - kEdge, kTop}, kMissing));
+    EXPECT_TRUE(is(drawing, {left + kEdge, kTop + 79}, kMissing));
+  }
+}
+
+TEST(DisplacementDrawing, HasArrowsWithoutTheOffsetThatDoNotReachTheNext) {
+  // Arrows begin 40 pixels apart. The longest distance is 4 pixels, so 5 times as long is the most that fits.
+  const cv::Mat3b drawing = decoded(encode_displacement_png(parted(200, 80, 7, 2), parted(200, 80, 5, 4)));
+  const int right = kMargin + 200 + kMargin;
+  for (const int y : {20, 60}) {
+    EXPECT_EQ(count(drawing({right + 21, kTop + y, 17, 1}), kWhite), 17);  // to the right, in the left half
+    EXPECT_FALSE(is(drawing, {right + 43, kTop + y}, kWhite));
+    EXPECT_FALSE(is(drawing, {right + 24, kTop + y - 2}, kWhite));
+    EXPECT_TRUE(is(drawing, {right + 35, kTop + y - 2}, kWhite));  // the head is wider than the shaft
+    EXPECT_EQ(count(drawing({right + 163, kTop + y, 17, 1}), kWhite), 17);  // and to the left in the other
+    EXPECT_EQ(count(drawing({kMargin + 21, kTop + y, 7, 1}), kWhite), 7);
     EXPECT_FALSE(is(drawing, {kMargin + 33, kTop + y}, kWhite));
-    EXPECT_FALSE(is(drawing, {kMargin + 22, kTop + y - 2}, kWhite));
-    EXPECT_TRUE(is(drawing, {kMargin + 26, kTop + y - 2}, kWhite));  // the head is wider than the shaft
   }
 }
 
 TEST(DisplacementDrawing, ShowsTablesThatMoveNothingOrHaveNoValidEntry) {
-  const RectificationTable identity = kernels::identity_table(200, 80);
-  const cv::Mat3b drawing = decoded(encode_displacement_png(identity, identity));
-  EXPECT_TRUE(is(drawing, {kMargin, kTop}, turbo(0)));
-  EXPECT_TRUE(is(drawing, {kMargin + 20, kTop + 20}, kWhite));
+  for (const RectificationTable& table : {kernels::identity_table(200, 80), shifted(200, 80, 10)}) {
+    const cv::Mat3b drawing = decoded(encode_displacement_png(table, table));
+    EXPECT_TRUE(is(drawing, {kMargin, kTop}, viridis(0)));
+    EXPECT_TRUE(is(drawing, {kMargin + 20, kTop + 20}, kWhite));
+    EXPECT_FALSE(is(drawing, {kMargin + 26, kTop + 20}, kWhite));
+  }
   const RectificationTable empty{4, 1, std::vector<std::uint32_t>(4)};
   const cv::Mat3b of_empty = decoded(encode_displacement_png(empty, empty));
-  EXPECT_EQ(count(of_empty({kMargin, kTop, 320, 80}), kGray), 320 * 80);
+  EXPECT_EQ(count(of_empty({kMargin, kTop, 320, 80}), kMissing), 320 * 80);
+}
+
+TEST(DepthColors, AreBrightForNearAndGreyForUnknownWithTheScaleBelow) {
+  constexpr int kWidth = 400;
+  std::vector<std::uint16_t> depths(3 * kWidth, 0);
+  for (std::size_t i = 0; i < kWidth; ++i) depths[i] = i < kWidth / 2 ? 500 : 1500;
+  depths[kWidth] = 1000;
+  // Among 402 depths, four beyond each end are clamped.
+  depths[2 * kWidth] = 10;
+  const cv::Mat3b drawing = decoded(encode_depth_color_png(kWidth, 3, depths));
+  EXPECT_EQ(drawing.size(), cv::Size(kWidth, 3 + 28));
+  EXPECT_TRUE(is(drawing, {0, 0}, viridis(255)));
+  EXPECT_TRUE(is(drawing, {kWidth - 1, 0}, viridis(0)));
+  EXPECT_TRUE(is(drawing, {0, 1}, viridis(128)));
+  EXPECT_TRUE(is(drawing, {0, 2}, viridis(255)));
+  EXPECT_EQ(count(drawing({1, 1, kWidth - 1, 1}), kMissing), kWidth - 1);
+  const cv::Mat below = drawing({0, 3, kWidth, 28});
+  for (const int level : {0, 128, 255}) EXPECT_GT(count(below, viridis(level)), 0);
+  EXPECT_GT(count(below, {0, 0, 0}), 20) << "the text";
+}
+
+TEST(DepthColors, ShowPicturesWithoutAnyDepthAndNarrowOnes) {
+  const cv::Mat3b drawing = decoded(encode_depth_color_png(2, 2, {0, 0, 0, 0}));
+  EXPECT_EQ(count(drawing({0, 0, 2, 2}), kMissing), 4);
+  EXPECT_GE(drawing.cols, 300);
+  EXPECT_EQ(count(drawing({2, 0, drawing.cols - 2, 2}), kWhite), 2 * (drawing.cols - 2));
+}
+
+TEST(DepthColors, RefusePicturesThatAreNotWhole) {
+  EXPECT_THROW(encode_depth_color_png(2, 2, {1, 2, 3}), std::invalid_argument);
+  EXPECT_THROW(encode_depth_color_png(0, 2, {}), std::invalid_argument);
 }
 
 TEST(SourceLinesDrawing, HasACurveForEachTable) {
@@ -209,11 +283,11 @@ TEST(SourceLinesDrawing, HasACurveForEachTable) {
   const auto place = [](double lines, double y) {
     return cv::Point(cvRound(52 + lines / 32 * 724), cvRound(68 + 372 * (1 - y / 45)));
   };
-  const cv::Vec3b blue(200, 110, 20);
-  const cv::Vec3b orange(20, 110, 230);
+  const cv::Vec3b blue(178, 114, 0);
+  const cv::Vec3b vermilion(0, 94, 213);
   for (const int lines : {1, 15, 31}) {
     EXPECT_TRUE(is(drawing, place(lines, lines), blue));
-    EXPECT_TRUE(is(drawing, place(lines, lines + 12), orange));
+    EXPECT_TRUE(is(drawing, place(lines, lines + 12), vermilion));
   }
 }
 

@@ -21,23 +21,40 @@ bool has_ink(const cv::Mat& canvas, const cv::Rect& area) {
   return cv::countNonZero(canvas(area).clone().reshape(1) != 255) > 0;
 }
 
-TEST(SideBySide, ShowsGreyAndColouredPicturesUnchanged) {
-  const cv::Mat canvas = drawn({{"left", kernels::GrayImage(100, 40, 77)},
-                                {"disparity", kernels::GrayImage(60, 50, 255), 80},
-                                {"truth", kernels::GrayImage(60, 50, 79), 80}});
-  ASSERT_EQ(canvas.size(), cv::Size(8 + 100 + 8 + 60 + 8 + 60 + 8, 32 + 50 + 8));
+Panel grey(const std::string& caption, const kernels::GrayImage& image) {
+  return {caption, image, 0, "", "", ""};
+}
+
+Panel colored(const kernels::GrayImage& image, int levels) {
+  return {"disparity", image, levels, "0", "79", "no answer"};
+}
+
+TEST(SideBySide, ShowsGreyAndColouredPictures) {
+  const cv::Mat canvas =
+      drawn({grey("left", kernels::GrayImage(100, 40, 77)), colored(kernels::GrayImage(60, 50, 255), 80),
+             colored(kernels::GrayImage(60, 50, 79), 80), colored(kernels::GrayImage(60, 50, 0), 80)});
+  ASSERT_EQ(canvas.size(), cv::Size(8 + 100 + 3 * (8 + 60) + 8, 32 + 50 + 28 + 8));
   EXPECT_EQ(canvas.at<cv::Vec3b>(kTop, kLeft), cv::Vec3b(77, 77, 77));
   EXPECT_EQ(canvas.at<cv::Vec3b>(kTop + 39, kLeft + 99), cv::Vec3b(77, 77, 77));
   EXPECT_EQ(canvas.at<cv::Vec3b>(kTop + 40, kLeft + 99), cv::Vec3b(255, 255, 255));
-  EXPECT_EQ(canvas.at<cv::Vec3b>(kTop + 49, kLeft + 108), cv::Vec3b(0, 0, 0));
-  const cv::Vec3b nearest = canvas.at<cv::Vec3b>(kTop, kLeft + 108 + 68);
-  EXPECT_GT(nearest[2], nearest[0]) << "the largest disparity is red";
+  EXPECT_EQ(canvas.at<cv::Vec3b>(kTop + 49, kLeft + 108), cv::Vec3b(217, 217, 217));
+  const cv::Vec3b most = canvas.at<cv::Vec3b>(kTop, kLeft + 108 + 68);
+  EXPECT_EQ(most, cv::Vec3b(37, 231, 253)) << "the last colour of Viridis, yellow";
+  const cv::Vec3b least = canvas.at<cv::Vec3b>(kTop, kLeft + 108 + 2 * 68);
+  EXPECT_EQ(least, cv::Vec3b(84, 1, 68)) << "the first one, dark violet";
+}
+
+TEST(SideBySide, HasAScaleBelowColouredPicturesOnly) {
+  const cv::Mat canvas =
+      drawn({grey("left", kernels::GrayImage(320, 50, 77)), colored(kernels::GrayImage(320, 50, 3), 80)});
+  EXPECT_FALSE(has_ink(canvas, {kLeft, kTop + 50, 320, 28}));
+  EXPECT_TRUE(has_ink(canvas, {kLeft + 328, kTop + 50, 320, 28}));
 }
 
 TEST(SideBySide, CaptionsEachPictureAboveItInItsWidth) {
   for (const std::string& caption : {std::string("left"), std::string(60, 'm')}) {
     const kernels::GrayImage picture(80, 10);
-    const cv::Mat canvas = drawn({{caption, picture}, {"", picture}, {"x", picture}});
+    const cv::Mat canvas = drawn({grey(caption, picture), grey("", picture), grey("x", picture)});
     EXPECT_TRUE(has_ink(canvas, {kLeft, 8, 80, 24}));
     EXPECT_FALSE(has_ink(canvas, {kLeft + 88, 8, 80, 24}));
     EXPECT_TRUE(has_ink(canvas, {kLeft + 176, 8, 80, 24}));
@@ -46,9 +63,9 @@ TEST(SideBySide, CaptionsEachPictureAboveItInItsWidth) {
 
 TEST(SideBySide, RefusesWhatCannotBeShown) {
   EXPECT_THROW(encode_side_by_side_png({}), std::invalid_argument);
-  EXPECT_THROW(encode_side_by_side_png({{"empty", kernels::GrayImage()}}), std::invalid_argument);
-  EXPECT_THROW(encode_side_by_side_png({{"d", kernels::GrayImage(4, 4, 80), 80}}), std::invalid_argument);
-  EXPECT_THROW(encode_side_by_side_png({{"d", kernels::GrayImage(4, 4), -1}}), std::invalid_argument);
+  EXPECT_THROW(encode_side_by_side_png({grey("empty", kernels::GrayImage())}), std::invalid_argument);
+  EXPECT_THROW(encode_side_by_side_png({colored(kernels::GrayImage(4, 4, 80), 80)}), std::invalid_argument);
+  EXPECT_THROW(encode_side_by_side_png({colored(kernels::GrayImage(4, 4), -1)}), std::invalid_argument);
 }
 
 }  // namespace
