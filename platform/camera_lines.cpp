@@ -146,8 +146,7 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::Side& of_side = line.sides[side];
     bridge_.count_skipped(addresses[side], words);
-    std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local + of_side.first_word,
-                                                     first_local + of_side.end_word);
+    std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
   }
@@ -222,8 +221,7 @@ void CameraLines::see_local_burst() {
     const std::uint64_t address = record_.addresses[side];
     if (burst.address < address || burst.address >= address + 4 * words_of_line()) continue;
     Line::Side& of_side = record_.line.sides[side];
-    if (record_.words_on_local_bus[side] == 0) of_side.first_word = first;
-    of_side.end_word = first + burst.words;
+    of_side.bursts.push_back({first, burst.words});
     record_.words_on_local_bus[side] += burst.words;
   }
   record_.bursts_seen = local_bus.bursts();

@@ -76,9 +76,8 @@ class CameraLines {
   struct Line {
     struct Side {
       pci::PciBusControl::MasterCounts pci;
-      std::uint64_t end_clock = 0;   // of the PCI bus: its last burst ends
-      std::uint64_t first_word = 0;  // of the local bus: its first word requests its bank
-      std::uint64_t end_word = 0;    // of the local bus: the one behind that of its last word
+      std::uint64_t end_clock = 0;                      // of the PCI bus: its last burst ends
+      std::vector<fpga::HostPort::ServedWords> bursts;  // on the local bus: when its words request their bank
     };
     OfSides<Side> sides;
     pci::PciBusControl::Position pci;  // after the line

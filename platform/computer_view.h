@@ -25,6 +25,7 @@ class ComputerView {
   // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
   virtual void record(Timeline& timeline) = 0;
   // See FrameRun.
+  virtual void record(fpga::ConflictRecorder& conflicts) = 0;
   virtual void record_rows() = 0;
   virtual std::vector<fpga::RowProfile> take_rows() = 0;
 };

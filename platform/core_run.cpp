@@ -18,19 +18,13 @@
 namespace stereotlm::platform {
 namespace {
 
-std::vector<memory::SsramBankConfig> bank_configs(const BoardConfig& board) {
-  std::vector<memory::SsramBankConfig> banks;
-  for (const BankConfig& bank : board.banks) banks.push_back(ssram_config(board, bank));
-  return banks;
-}
-
 // Runs frames for run_core(), and sums their counts.
 class CoreRun {
  public:
   CoreRun(const BoardConfig& board, const Tables& tables, std::uint64_t stall_timeout_cycles)
       : config_(core_config(board)),
         buffers_(buffer_bases(board)),
-        banks_(bank_configs(board)),
+        banks_(ssram_configs(board)),
         stall_timeout_cycles_(stall_timeout_cycles),
         arbitration_(board.fpga.arbiter, banks_),
         frames_(config_, banks_, arbitration_, stall_timeout_cycles) {

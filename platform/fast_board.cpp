@@ -19,12 +19,6 @@ const BoardConfig& checked(const BoardConfig& config) {
   return config;
 }
 
-std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board) {
-  std::vector<memory::SsramBankConfig> banks;
-  for (const BankConfig& bank : board.banks) banks.push_back(ssram_config(board, bank));
-  return banks;
-}
-
 }  // namespace
 
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,
@@ -57,12 +51,11 @@ bool FastBoard::takes_in_step(std::uint64_t address, std::uint64_t bytes) {
          fast_core_.is_apart(memory::bank_of_address(address), {address, address + bytes}, true);
 }
 
-std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,
-                                      std::uint64_t end_cycle) {
-  const std::size_t bank = memory::bank_of_address(address);
+std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                                      const std::vector<fpga::HostPort::ServedWords>& bursts) {
   local_bus_.count_skipped(address, words);
-  host_port_.count_skipped(bank, first_cycle, end_cycle, words);
-  sums_.add_accesses(bank, words);
+  host_port_.count_skipped(address, words, cycle, bursts);
+  sums_.add_accesses(memory::bank_of_address(address), words);
   changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }

@@ -65,11 +65,12 @@ class FastBoard : private fpga::LocalBusControl::Core,
   bool takes_in_step(std::uint64_t address, std::uint64_t bytes);
   // Such bursts have written `words` words from `address` on. See HostPort::count_skipped(). Returns the place
   // of the words.
-  std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,
-                             std::uint64_t end_cycle);
+  std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                             const std::vector<fpga::HostPort::ServedWords>& bursts);
 
   // See FrameRun.
   void observe(fpga::FrameObserver& observer) { frames_.observe(observer); }
+  void record(fpga::ConflictRecorder& conflicts) { frames_.record(conflicts); }
   void record_rows() { frames_.record_rows(); }
   std::vector<fpga::RowProfile> take_rows() { return frames_.take_rows(); }
   std::string waits() const { return frames_.waits(local_bus_.word_waits()); }

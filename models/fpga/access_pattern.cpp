@@ -200,24 +200,31 @@ bool AccessPattern::begins_alike(int strip, int column) const {
 
 std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
-  const std::uint64_t slots_per_strip = geometry_.columns_per_strip() * slots_per_column;
-  const std::uint64_t strip = slots / slots_per_strip;
+  const std::uint64_t columns = slots / slots_per_column;
+  const std::uint64_t strip = columns / geometry_.columns_per_strip();
   if (strip == static_cast<std::uint64_t>(geometry_.strips))
     return geometry_.slots - empty_slots_ - pixel_accesses_;
   std::uint64_t passes = passes_before_strip_[strip];
-  for (std::uint64_t slot = strip * slots_per_strip; slot < slots; ++slot) {
-    const PixelPosition pixel = position_of(slot);
-    if (geometry_.is_inside(pixel.row) && !needs_pixel(pixel.column, pixel.row)) ++passes;
+  if (needs_all_pixels_) return passes;
+  for (int k = 0; k < geometry_.slots_per_column; ++k) {
+    const int row = geometry_.first_row_of(static_cast<int>(strip)) + k;
+    if (!geometry_.is_inside(row)) continue;
+    const bool is_in_last_column = static_cast<std::uint64_t>(k) < slots % slots_per_column;
+    const std::uint64_t of_row = columns % geometry_.columns_per_strip() + std::uint64_t{is_in_last_column};
+    passes += of_row - accesses_of_row(row, of_row);
   }
   return passes;
 }
 
-AccessPattern::PixelPosition AccessPattern::position_of(std::uint64_t slot) const {
-  const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
-  const std::uint64_t column = slot / slots_per_column;
-  const std::uint64_t strip = column / geometry_.columns_per_strip();
-  return {static_cast<int>(column % geometry_.columns_per_strip()),
-          geometry_.first_row_of(static_cast<int>(strip)) + static_cast<int>(slot % slots_per_column)};
+// The number of the first `columns` pixels of a row that are accessed.
+std::uint64_t AccessPattern::accesses_of_row(int row, std::uint64_t columns) const {
+  const std::uint64_t* const bits = pixels_of_row(row);
+  std::uint64_t accesses = 0;
+  for (std::size_t word = 0; word < columns / 64; ++word)
+    accesses += static_cast<std::uint64_t>(__builtin_popcountll(bits[word]));
+  if (columns % 64 == 0) return accesses;
+  const std::uint64_t rest = bits[columns / 64] << (64 - columns % 64);
+  return accesses + static_cast<std::uint64_t>(__builtin_popcountll(rest));
 }
 
 std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {

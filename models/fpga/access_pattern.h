@@ -56,16 +56,12 @@ class AccessPattern {
   const std::uint64_t* pixels_of_row(int row) const {
     return pixels_.data() + static_cast<std::size_t>(row) * words_;
   }
-  struct PixelPosition {
-    int column;
-    int row;
-  };
   // Numbers of pixels of a row.
   struct RowCounts {
     std::uint64_t accesses = 0;
     std::uint64_t invalid = 0;
   };
-  PixelPosition position_of(std::uint64_t slot) const;
+  std::uint64_t accesses_of_row(int row, std::uint64_t columns) const;
   void set_all(std::uint64_t* row_bits) const;
   bool set_row(int row, const std::uint32_t* entries);
   bool set_row_cached(int row, const std::uint32_t* entries);

@@ -32,11 +32,11 @@ void AssumedAccesses::resolve() {
 }
 
 void AssumedAccesses::resolve(Side side) {
-  SideAccesses& accesses = sides_[index_of(side)];
-  if (!accesses.are_all || accesses.pattern->needs_all_pixels()) return;
-  accesses.are_all = false;
+  const AccessPattern* const pattern = assumed(side);
+  if (pattern == nullptr) return;
+  sides_[index_of(side)].are_all = false;
   const LaneControl& lane = stepper_.control().lane(side);
-  const std::uint64_t passed = accesses.pattern->passes_before(lane.handled());
+  const std::uint64_t passed = pattern->passes_before(lane.handled());
   stepper_.control().correct_passes(side, passed);
   stepper_.control().correct_marks(side, marks(side));
   stepper_.arbitration().retract_grants(pixel_port(side), passed);

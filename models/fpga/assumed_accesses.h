@@ -37,6 +37,11 @@ class AssumedAccesses {
     const SideAccesses& accesses = sides_[index_of(side)];
     return accesses.are_all || !stepper_.control().lane(side).has_table() ? nullptr : accesses.pattern;
   }
+  // The pattern of a side whose passes are counted as grants until resolve(); null if there are none.
+  const AccessPattern* assumed(Side side) const {
+    const SideAccesses& accesses = sides_[index_of(side)];
+    return accesses.are_all && !accesses.pattern->needs_all_pixels() ? accesses.pattern : nullptr;
+  }
   // LaneControl::correct_marks() of a side.
   std::uint64_t marks(Side side) const;
 

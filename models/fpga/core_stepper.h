@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/row_recorder.h"
@@ -30,10 +31,15 @@ class CoreStepper {
     using memory::PortMask;
     const CoreControl::Decision decision = control_.decide();
     const PortMask host = host_requests ? memory::mask_of(kHostPort) : PortMask{0};
-    const PortMask granted = arbitration_.arbitrate(cycle, static_cast<PortMask>(decision.requests() | host));
+    const auto requests = static_cast<PortMask>(decision.requests() | host);
+    const PortMask granted = arbitration_.arbitrate(cycle, requests);
     completed_group_ = control_.commit(decision, granted, move(decision, granted));
     control_.count_host(host_requests, (granted & host) != 0);
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
+    if (conflicts_ != nullptr) {
+      conflicts_->step(requests, granted, arbitration_);
+      if (completed_group_) conflicts_->end_group(cycle + 1, control_, arbitration_);
+    }
     return granted;
   }
   // Whether the matcher has completed a group of four columns in the last cycle.
@@ -43,6 +49,9 @@ class CoreStepper {
   const CoreControl& control() const { return control_; }
   RowRecorder& rows() { return rows_; }
   const RowRecorder& rows() const { return rows_; }
+  // The recorder of the running frame; null if it is not recorded.
+  void record(ConflictRecorder* conflicts) { conflicts_ = conflicts; }
+  ConflictRecorder* conflicts() { return conflicts_; }
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }
 
@@ -50,6 +59,7 @@ class CoreStepper {
   CoreControl control_;
   RowRecorder rows_;
   memory::Arbitration& arbitration_;
+  ConflictRecorder* conflicts_ = nullptr;
   bool completed_group_ = false;
 };
 

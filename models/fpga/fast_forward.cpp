@@ -43,6 +43,8 @@ FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t 
 
 void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes) {
   accesses_.start_direct_frame(patterns);
+  known_.keep_order(stepper_.conflicts() != nullptr);
+  tell_assumed();
   stepped_.reset();
   is_walking_ = false;
   routes_ = routes;
@@ -65,9 +67,15 @@ void FastForward::settle() {
   is_walking_ = false;
   granting_.reset();
   accesses_.resolve();
+  tell_assumed();
   for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
   if (is_host_routed_) stepper_.arbitration().unroute(kHostPort);
   is_host_routed_ = false;
+}
+
+void FastForward::tell_assumed() {
+  if (ConflictRecorder* const conflicts = stepper_.conflicts())
+    conflicts->assume_accesses({accesses_.assumed(Side::kLeft), accesses_.assumed(Side::kRight)});
 }
 
 // `kMayRequest`: false where the host requests in no cycle, which is most of them and costs less.
@@ -100,6 +108,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   if (!is_walking_) stepped_.reset();  // a group that is begun before the burst is not recorded
   keeps_route_ = true;
   route_host(cycle, route);
+  if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->set_host_traffic(route.traffic);
   host_ = {first, words};
   const Served served = grant_words(cycle);
   trust(route.write).note(keeps_route_);
@@ -148,6 +157,7 @@ FastForward::Served FastForward::grant_words(std::uint64_t& cycle) {
     }
     cycle += known_.progress(*found).cycles;
     follow(*found);
+    record_skipped(cycle);
     host_ = {cycle, host_.words - grants.words};
   }
   served.words = words - host_.words;
@@ -225,16 +235,22 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
     if (cycles > end - cycle) return cycle;
     cycle += cycles;
     follow(*granting_);
+    record_skipped(cycle);
     granting_.reset();
     host_ = {};
   }
-  Progress room = room_;
-  room.cycles = end - cycle;
-  Progress skipped = room;
-  state_ = walk_known(state_, room);
-  skipped.subtract(room);
-  skip(skipped);
-  return cycle + skipped.cycles;
+  do {
+    Progress room = room_;
+    room.cycles = end - cycle;
+    if (ConflictRecorder* const conflicts = stepper_.conflicts())
+      room.columns = std::min(room.columns, conflicts->columns_to_strip_end());
+    Progress skipped = room;
+    state_ = walk_known(state_, room);
+    skipped.subtract(room);
+    skip(skipped);
+    cycle += skipped.cycles;
+  } while (record_skipped(cycle));
+  return cycle;
 }
 
 // The transition of the group from `cycle` on, in which the host requests its words.
@@ -274,6 +290,25 @@ void FastForward::skip(const Progress& progress) {
   ahead_.add(progress);
   consumed_ += progress.columns * slots_of_group() / 4;
   skipped_cycles_ += progress.cycles;
+}
+
+// Hands what has been skipped to the recorder of the frame, if there is one. Returns true at the end of a
+// strip, where more may be skipped.
+bool FastForward::record_skipped(std::uint64_t cycle) {
+  ConflictRecorder* const conflicts = stepper_.conflicts();
+  if (conflicts == nullptr || known_.in_order().empty()) return false;
+  const std::vector<TransitionCache::InOrder>& in_order = known_.in_order();
+  for (auto next = in_order.begin(); next != in_order.end(); next += repeated_.size()) {
+    repeated_.clear();
+    for (std::uint32_t step = 0; step < next->length; ++step)
+      repeated_.push_back(&known_.conflicts((next + step)->effect));
+    conflicts->repeat(repeated_, next->times, stepper_.arbitration());
+  }
+  known_.forget_order();
+  if (!conflicts->is_at_strip_end()) return false;
+  catch_up(cycle);
+  conflicts->end_strip(control(), stepper_.arbitration());
+  return true;
 }
 
 // Takes the core and the arbiters to the state that the walk has reached.

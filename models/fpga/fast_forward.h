@@ -43,6 +43,7 @@ class FastForward {
   struct Route {
     std::size_t bank = 0;
     bool write = false;
+    HostTraffic traffic = HostTraffic::kCapture;
   };
   struct Served {
     std::size_t words = 0;         // of the burst
@@ -104,6 +105,8 @@ class FastForward {
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   void follow(const TransitionCache::Transition& transition);
   void skip(const Progress& progress);
+  bool record_skipped(std::uint64_t cycle);
+  void tell_assumed();
   void catch_up(std::uint64_t cycle);
   StateNumber walk_known(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
@@ -131,6 +134,7 @@ class FastForward {
   AssumedAccesses accesses_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
+  std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
   std::uint64_t skipped_cycles_ = 0;
   // Whether transitions are being followed, from the group before cycle() on. The next three are valid then.
   bool is_walking_ = false;

@@ -33,6 +33,8 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   watchdog_.start_frame(cycle_, control().work());
   stepper_.start_frame(route_ports(bases));
   stepper_.arbitration().begin_counting(first_cycle_);
+  const bool is_recorded = conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control());
+  stepper_.record(is_recorded ? conflicts_ : nullptr);
 }
 
 FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
@@ -69,6 +71,9 @@ void FrameRun::finish() {
   done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
   fast_forward_.settle();
   stepper_.arbitration().end_counting(cycle_);
+  if (stepper_.conflicts() == nullptr) return;
+  conflicts_->end_frame(cycle_, control(), stepper_.arbitration());
+  stepper_.record(nullptr);
 }
 
 void FrameRun::end() {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/fast_forward.h"
@@ -102,6 +103,10 @@ class FrameRun {
   void record_rows() { stepper_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
 
+  // Records all frames from the next one on. `conflicts` outlives this object.
+  void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }
+  ConflictRecorder* conflicts() { return conflicts_; }
+
  private:
   enum class State { kIdle, kRunning, kFinishing };
 
@@ -123,6 +128,7 @@ class FrameRun {
   std::uint64_t done_cycle_ = 0;
   std::uint64_t strobe_ps_ = 0;
   FrameObserver* observer_ = nullptr;
+  ConflictRecorder* conflicts_ = nullptr;
   std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
   std::vector<std::uint64_t> frame_cycles_;
   std::vector<RowProfile> row_profiles_;  // not yet taken

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/memory/crossbar_address.h"
+
 namespace stereotlm::fpga {
 namespace {
 
@@ -26,6 +28,7 @@ void HostPort::route(const HostRoute& route) {
 void HostPort::join() {
   if (!burst_.bank || is_joined_) return;
   is_joined_ = true;
+  if (ConflictRecorder* const conflicts = frames_.conflicts()) conflicts->set_host_traffic(traffic());
   frames_.host_route_changes();
   arbitration_.route(kHostPort, *burst_.bank, burst_.write);
 }
@@ -49,7 +52,7 @@ void HostPort::serve_contended() {
     return;
   }
   const FastForward::Served served =
-      frames_.serve_host({*burst_.bank, burst_.write}, first, bus_.words_left());
+      frames_.serve_host({*burst_.bank, burst_.write, traffic()}, first, bus_.words_left());
   if (served.words != 0)
     bus_.count_granted(served.words, clock_.edge_ps(served.last_cycle), usable_ps(served.last_cycle));
 }
@@ -75,6 +78,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   const std::size_t bank = *burst_.bank;
   count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
   served_bank_ = bank;
+  served_traffic_ = traffic();
   // The first cycle that is not decided. A word that was refused up to the end of a frame requests again in
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
@@ -146,22 +150,45 @@ bool HostPort::serves_in_step(std::size_t bank) const {
 
 // As in serve_in_step(), the words behind the first one change the state of the policy as cycles without
 // request do, which is what lies between two bursts.
-void HostPort::count_skipped(std::size_t bank, std::uint64_t first_cycle, std::uint64_t end_cycle,
-                             std::uint64_t words) {
+void HostPort::count_skipped(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                             const std::vector<ServedWords>& bursts) {
   const bool in_frame = frames_.is_running();
   count_served(UINT64_MAX, in_frame);
-  served_bank_ = bank;
-  served_.push_back(
-      {end_cycle - words, words, arbitration_.decide_unrouted(bank, first_cycle, kHostPort, true)});
-  count_served(UINT64_MAX, in_frame);
+  served_bank_ = memory::bank_of_address(address);
+  const std::uint64_t first = cycle + bursts.front().first_cycle;
+  const std::uint64_t end = cycle + bursts.back().first_cycle + bursts.back().words;
+  const memory::BankArbiter::Outcome outcome =
+      arbitration_.decide_unrouted(served_bank_, first, kHostPort, true);
+  count({end - words, words, outcome}, in_frame);
+  ConflictRecorder* const conflicts = frames_.conflicts();
+  if (conflicts == nullptr || !in_frame) return;
+  const HostTraffic traffic = conflicts->traffic_of(true, address);
+  for (const ServedWords& burst : bursts)
+    conflicts->add_served(traffic, served_bank_, cycle + burst.first_cycle, burst.words, true);
+}
+
+// What the burst is for; without meaning unless conflicts are recorded.
+HostTraffic HostPort::traffic() const {
+  const ConflictRecorder* const conflicts = frames_.conflicts();
+  return conflicts == nullptr ? HostTraffic::kCapture : conflicts->traffic_of(burst_.write, burst_.first);
+}
+
+void HostPort::count(const Served& served, bool in_frame) {
+  arbitration_.count_unrouted(served_bank_, served.cycle, served.outcome, served.cycles);
+  if (in_frame)
+    frames_.control().host_was_busy(arbitration_.grants(served_bank_, served.outcome), served.cycles);
 }
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
+  ConflictRecorder* const conflicts = in_frame ? frames_.conflicts() : nullptr;
   auto next = served_.begin();
   for (; next != served_.end() && next->cycle < end_cycle; ++next) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
-    arbitration_.count_unrouted(served_bank_, next->cycle, next->outcome, cycles);
-    if (in_frame) frames_.control().host_was_busy(arbitration_.grants(served_bank_, next->outcome), cycles);
+    count({next->cycle, cycles, next->outcome}, in_frame);
+    if (conflicts != nullptr) {
+      conflicts->add_served(served_traffic_, served_bank_, next->cycle, cycles,
+                            arbitration_.grants(served_bank_, next->outcome));
+    }
     next->cycle += cycles;
     next->cycles -= cycles;
     if (next->cycles != 0) break;

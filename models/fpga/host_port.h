@@ -63,10 +63,15 @@ class HostPort {
   //
   // Whether bursts to this bank are served one word a cycle, and independently of the frame.
   bool serves_in_step(std::size_t bank) const;
-  // Counts `words` words of skipped bursts that write to such a bank. The first is served in `first_cycle`,
-  // the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
-  void count_skipped(std::size_t bank, std::uint64_t first_cycle, std::uint64_t end_cycle,
-                     std::uint64_t words);
+  // Words that are served one a cycle, from this cycle on.
+  struct ServedWords {
+    std::uint64_t first_cycle;
+    std::uint64_t words;
+  };
+  // Counts the `words` words of skipped bursts that write to such a bank from byte address `address` on. The
+  // cycles of `bursts` are counted from `cycle` on. The running frame cannot have ended by the last of them.
+  void count_skipped(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                     const std::vector<ServedWords>& bursts);
 
   // Counts the words that were served before the frame's cycle(), as words in the frame.
   void count_words_in_frame() { count_served(frames_.cycle(), true); }
@@ -87,7 +92,9 @@ class HostPort {
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
   void serve_in_step(std::uint64_t first_cycle);
   memory::BankArbiter::Outcome decide(std::uint64_t cycle);
+  HostTraffic traffic() const;
   void count_served(std::uint64_t end_cycle, bool in_frame);
+  void count(const Served& served, bool in_frame);
   std::uint64_t usable_ps(std::uint64_t cycle) const {
     return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));
   }
@@ -105,6 +112,7 @@ class HostPort {
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
   std::size_t served_bank_ = 0;  // bank of all served_
+  HostTraffic served_traffic_ = HostTraffic::kCapture;
 };
 
 }  // namespace stereotlm::fpga

@@ -76,6 +76,7 @@ void TransitionCache::clear() {
   progress_.clear();
   host_.clear();
   followed_.clear();
+  conflicts_.clear();
   transitions_ = 0;
   mask_ = kFirstBuckets - 1;
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
@@ -197,6 +198,8 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
         follow(*transition, times);
         state = transition->next;
       }
+      for (std::size_t step = in_order_.size(); keeps_order_ && step > in_order_.size() - steps; --step)
+        in_order_[step - 1].length = static_cast<std::uint32_t>(steps);
       room.subtract(since_mark, times);
     } else if (steps == mark_after) {
       mark = state;
@@ -206,6 +209,16 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
     }
   }
   return state;
+}
+
+const GroupConflicts& TransitionCache::conflicts(std::uint32_t effect) {
+  if (effect >= conflicts_.size()) conflicts_.resize(effects_.size());
+  GroupConflicts& conflicts = conflicts_[effect];
+  if (conflicts.cycles == 0) {
+    conflicts = {progress_[effect].cycles, host_[effect].words,
+                 memory::Arbitration::stalls_of(effects_[effect]->decided)};
+  }
+  return conflicts;
 }
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {

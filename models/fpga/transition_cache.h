@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
+#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_control.h"
 #include "models/memory/arbitration.h"
 
@@ -134,7 +136,19 @@ class TransitionCache {
     std::uint64_t& followed = followed_[transition.effect];
     if (followed == 0) effects_followed_.push_back(transition.effect);
     followed += times;
+    if (keeps_order_) in_order_.push_back({transition.effect, 1, times});
   }
+  // While the order is kept: the transitions that have been followed since forget_order(), in their order.
+  // `length` consecutive ones are followed one after the other, and this `times` times.
+  struct InOrder {
+    std::uint32_t effect;
+    std::uint32_t length;
+    std::uint64_t times;
+  };
+  void keep_order(bool keeps_order) { keeps_order_ = keeps_order; }
+  const std::vector<InOrder>& in_order() const { return in_order_; }
+  void forget_order() { in_order_.clear(); }
+  const GroupConflicts& conflicts(std::uint32_t effect);
   // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
   // transitions is repeated in one step. Returns the state that comes next.
   StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room);
@@ -171,6 +185,9 @@ class TransitionCache {
   std::vector<HostGrants> host_;         // [number of the effect]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
+  bool keeps_order_ = false;
+  std::vector<InOrder> in_order_;
+  std::deque<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;

@@ -28,6 +28,31 @@ bool Arbitration::is_used_beside(Port port, std::size_t bank) const {
   return false;
 }
 
+std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
+  const Route& route = routes_[port];
+  const bool is_apart = arbiters_[route.bank].separates_directions();
+  for (unsigned ports = granted; ports != 0; ports &= ports - 1) {
+    const Port other = lowest_port(static_cast<PortMask>(ports));
+    if (routes_[other].bank == route.bank && (!is_apart || routes_[other].write == route.write)) return other;
+  }
+  return ArbiterStats::kTurnaround;
+}
+
+std::vector<Stall> Arbitration::stalls_of(const Decided& decided) {
+  std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts> sums{};  // [port][by]
+  for (const Decided::Shared& shared : decided.shared) {
+    BankArbiter::visit_stalls(shared.outcome,
+                              [&](Port port, std::size_t by) { sums[port][by] += shared.cycles; });
+  }
+  std::vector<Stall> stalls;
+  for (Port port = 0; port < kMostPorts; ++port) {
+    for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
+      if (sums[port][by] != 0) stalls.push_back({port, by, sums[port][by]});
+    }
+  }
+  return stalls;
+}
+
 BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port,
                                                   bool write) {
   return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});

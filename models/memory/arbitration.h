@@ -9,6 +9,13 @@
 
 namespace stereotlm::memory {
 
+// Stall cycles of a port.
+struct Stall {
+  Port port = 0;
+  std::size_t by = 0;  // the port that was granted, or ArbiterStats::kTurnaround
+  std::uint64_t cycles = 0;
+};
+
 // Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
 // requests. Used by Crossbar, by platform::run_core() without a crossbar, and by the core to skip cycles
 // (fpga::FastForward, fpga::HostPort). Plain C++, no SystemC.
@@ -36,6 +43,9 @@ class Arbitration {
     return static_cast<PortMask>(granted |
                                  arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
   }
+  // The cause of a stall of this port in the cycle in which arbitrate() has returned `granted`: the port that
+  // its bank has granted, or ArbiterStats::kTurnaround.
+  std::size_t cause_of(Port port, PortMask granted) const;
   // Whether the port is the only one on its bank, and the bank has no turnaround. Then each request is
   // granted in its cycle, as long as no route changes.
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
@@ -87,6 +97,8 @@ class Arbitration {
       return a.shared == b.shared && a.alone == b.alone;
     }
   };
+  // The stalls among them, without zero cycles, sorted by port and cause.
+  static std::vector<Stall> stalls_of(const Decided& decided);
   // For FastForward, which steps a group of columns, records its decisions, and skips the groups that repeat
   // it. Records decisions until take_recorded(). A change of routes drops the record.
   void begin_recording();

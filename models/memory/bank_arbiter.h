@@ -53,6 +53,18 @@ class BankArbiter {
   static PortMask granted_in(Outcome outcome) {
     return static_cast<PortMask>(granted_in_half(outcome & kHalfMask) | granted_in_half(outcome >> kHalf));
   }
+  // Calls visit(port, by) for each port that was refused: `by` is the port that was granted in its direction,
+  // or ArbiterStats::kTurnaround.
+  template <class Visit>
+  static void visit_stalls(Outcome outcome, const Visit& visit) {
+    for (const Outcome half : {outcome & kHalfMask, outcome >> kHalf}) {
+      const std::size_t by = half >> (kMostPorts + 1);
+      for (Outcome ports = half & (kMasks - 1); ports != 0; ports &= ports - 1) {
+        const Port port = lowest_port(static_cast<PortMask>(ports));
+        if (port != by) visit(port, by);
+      }
+    }
+  }
   // Counts `cycles` cycles with this outcome, of which `cycle` is the first.
   void count(std::uint64_t cycle, Outcome outcome, std::uint64_t cycles = 1) {
     if (counting_) {
@@ -84,6 +96,7 @@ class BankArbiter {
   void end_counting(std::uint64_t end_cycle);
 
   bool needs_turnaround() const { return other_direction_cycles_ > 1; }
+  bool separates_directions() const { return has_separate_ports_; }
   ArbiterStats stats() const;
   std::uint64_t uncounted_accesses() const { return uncounted_accesses_; }
 

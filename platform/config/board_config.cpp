@@ -205,6 +205,12 @@ memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig&
   return {static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles, board.fpga.clock_mhz};
 }
 
+std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board) {
+  std::vector<memory::SsramBankConfig> banks;
+  for (const BankConfig& bank : board.banks) banks.push_back(ssram_config(board, bank));
+  return banks;
+}
+
 fpga::CoreConfig core_config(const BoardConfig& board) {
   require_valid(board);
   fpga::CoreConfig core;

@@ -149,6 +149,8 @@ std::uint64_t allocation_period_frames(const BoardConfig& board);
 
 // The configuration of one bank's module.
 memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig& bank);
+// Those of all banks, in the order of the board.
+std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board);
 
 // The configuration of the core. Throws as layout_buffers() does.
 fpga::CoreConfig core_config(const BoardConfig& board);

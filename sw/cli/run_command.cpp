@@ -44,7 +44,7 @@ std::uint64_t least_frame_cycles(const runs::RunInput& input) {
 // finished.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
-  runs::begin_timeline(input);
+  runs::RecordFiles records(input);
   runs::ProgressLine progress;
   bool ends_early = false;
   while (!simulation.finished()) {
@@ -64,11 +64,11 @@ void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verific
       runs::save_frame(input, result);
       if (verification != nullptr) verification->add(result);
     }
-    runs::save_timeline(input, simulation.take_timeline());
+    records.add(simulation);
     progress.show({simulation.frames(), simulation.frames_done(), simulation.cycles_of_done(),
                    simulation.cycles(), frame_cycles});
   }
-  runs::save_timeline(input, simulation.take_timeline());  // what end_early() has left
+  records.finish(simulation);
 }
 
 void say_verified(const runs::RunInput& input) {

@@ -48,8 +48,9 @@ void RunOptions::add_to(CLI::App& command) {
            "--out, numbered by "
            "camera frame");
   add_flag(command, "--record", record,
-           "Write what happened when, and who waited for whom: timeline.csv and latency.csv in the folder of "
-           "--out; with cameras");
+           "Write where and when ports stall: rows.csv and conflicts.csv in the folder of --out; with "
+           "cameras also "
+           "what happened when, and why it waited: timeline.csv and latency.csv");
   trace_.add_to(command);
   set_footer(command,
              paragraph("", 0, fmt::format("Not in this version: {}.", trace_.name())) +
@@ -102,7 +103,6 @@ void RunOptions::check_combinations(process::Problems& problems) const {
     if (timing_only && given)
       problems.add(fmt::format("{}: does not go with --timing-only, which has no disparities", name));
   }
-  if (record && !camera) problems.add("--record: goes with --source camera, which has a time line");
   if (record && !out_.is_given()) problems.add("--record: goes with --out DIR");
   if (save_frames && !out_.is_given()) problems.add("--save-frames: goes with --out DIR");
 }

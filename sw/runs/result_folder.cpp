@@ -17,9 +17,10 @@ namespace fs = std::filesystem;
 constexpr const char* kFrames = "frames";
 constexpr const char* kRunJson = "run.json";
 
-constexpr std::array kFileNames = {"config.yaml",   "depth.ply",     "depth.png",           "depth_color.png",
-                                   "disparity.pfm", "disparity.png", "disparity_color.png", "latency.csv",
-                                   "run.json",      "stats.json",    "timeline.csv"};
+constexpr std::array kFileNames = {"config.yaml",     "conflicts.csv", "depth.ply",     "depth.png",
+                                   "depth_color.png", "disparity.pfm", "disparity.png", "disparity_color.png",
+                                   "latency.csv",     "rows.csv",      "run.json",      "stats.json",
+                                   "timeline.csv"};
 
 bool is_file_name(const std::string& name) {
   return std::find(kFileNames.begin(), kFileNames.end(), name) != kFileNames.end();

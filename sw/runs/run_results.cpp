@@ -6,6 +6,7 @@
 #include "calib/depth.h"
 #include "sw/process/streams.h"
 #include "sw/report/accuracy.h"
+#include "sw/report/conflicts_csv.h"
 #include "sw/report/console_table.h"
 #include "sw/report/stats_json.h"
 #include "sw/report/timeline_csv.h"
@@ -73,16 +74,28 @@ void save_frame(const RunInput& input, const Result& result) {
   input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
 }
 
-void begin_timeline(const RunInput& input) {
+RecordFiles::RecordFiles(const RunInput& input) : input_(input) {
   if (!input.record) return;
+  input.folder->append("rows.csv", report::rows_csv_head(input.board));
+  if (!input.camera) return;
   input.folder->append("timeline.csv", report::timeline_csv_head());
   input.folder->append("latency.csv", report::latency_csv_head());
 }
 
-void save_timeline(const RunInput& input, const platform::TimelineRecords& records) {
-  if (!input.record) return;
-  input.folder->append("timeline.csv", report::timeline_csv(records.events));
-  input.folder->append("latency.csv", report::latency_csv(records.latencies));
+void RecordFiles::add(Simulation& simulation) {
+  if (!input_.record) return;
+  for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
+    input_.folder->append("rows.csv", report::rows_csv(input_.board, frames_++, frame));
+  if (!input_.camera) return;
+  const platform::TimelineRecords records = simulation.take_timeline();
+  input_.folder->append("timeline.csv", report::timeline_csv(records.events));
+  input_.folder->append("latency.csv", report::latency_csv(records.latencies));
+}
+
+void RecordFiles::finish(Simulation& simulation) {
+  if (!input_.record) return;
+  add(simulation);
+  input_.folder->add("conflicts.csv", report::conflicts_csv(input_.board, *simulation.conflicts()));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {

@@ -14,10 +14,19 @@ namespace stereotlm::runs {
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// With --record: these begin timeline.csv and latency.csv in the result folder, and add records to them. They
-// throw as save_frame() does.
-void begin_timeline(const RunInput& input);
-void save_timeline(const RunInput& input, const platform::TimelineRecords& records);
+// With --record: writes what the simulation has recorded since the last call into the result folder. The first
+// call begins the files. finish() writes what is complete only at the end of the run. They throw as save_frame()
+// does.
+class RecordFiles {
+ public:
+  explicit RecordFiles(const RunInput& input);
+  void add(Simulation& simulation);
+  void finish(Simulation& simulation);
+
+ private:
+  const RunInput& input_;
+  std::uint64_t frames_ = 0;  // in rows.csv
+};
 
 // For a run that ended after `frames_done` frames: drops --truth, and prints a note, if the last frame does
 // not show the pair that the truth belongs to.

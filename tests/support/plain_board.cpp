@@ -55,10 +55,11 @@ PlainBoard::PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::f
   for (auto& words : banks_) words.resize(picture_pixels * 5);  // nine pictures and two tables at most
 }
 
-void PlainBoard::host_asks(int bank, std::uint64_t place, bool write, std::uint32_t& word, PlainTime from_ps,
+void PlainBoard::host_asks(int bank, std::uint64_t place, bool write, PlainTraffic traffic,
+                           std::uint32_t& word, PlainTime from_ps,
                            std::function<void(PlainTime, PlainTime)> granted) {
   if (host_) throw std::logic_error("plain board: a word of the host while one waits");
-  host_ = HostWord{bank, place, write, &word, from_ps, std::move(granted)};
+  host_ = HostWord{bank, place, write, traffic, &word, from_ps, std::move(granted)};
   await_cycle();
 }
 
@@ -84,7 +85,8 @@ void PlainBoard::await_cycle() {
 void PlainBoard::run_cycle(std::uint64_t cycle) {
   if (cycle < next_cycle_) return;  // another event has run it
   std::optional<PlainHostRequest> request;
-  if (host_ && host_->from_ps <= events_.now()) request = PlainHostRequest{host_->bank, host_->write};
+  if (host_ && host_->from_ps <= events_.now())
+    request = PlainHostRequest{host_->bank, host_->write, host_->traffic};
   const bool ran = core_.runs();
   if (!ran && !request) return;
   next_cycle_ = cycle + 1;

@@ -49,10 +49,10 @@ class PlainBoard {
   PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::function<void()> frame_ends);
 
   // The host requests a word of a bank from the first cycle that begins at or after `from_ps`, one word at a
-  // time. Calls `granted` with the begin of the cycle of the grant and, for a read, the time from which
+  // time, of a burst of this traffic. Calls `granted` with the begin of the cycle of the grant and, for a read, the time from which
   // `word` is usable.
-  void host_asks(int bank, std::uint64_t place, bool write, std::uint32_t& word, PlainTime from_ps,
-                 std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
+  void host_asks(int bank, std::uint64_t place, bool write, PlainTraffic traffic, std::uint32_t& word,
+                 PlainTime from_ps, std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
   // A write to one of these registers.
   void write_middle(PlainMiddle which, std::uint32_t value) {
     middles_[static_cast<std::size_t>(which)] = static_cast<int>(value);
@@ -68,6 +68,7 @@ class PlainBoard {
     int bank;
     std::uint64_t place;
     bool write;
+    PlainTraffic traffic;
     std::uint32_t* word;
     PlainTime from_ps;
     std::function<void(PlainTime, PlainTime)> granted;

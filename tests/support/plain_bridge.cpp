@@ -122,7 +122,11 @@ void PlainBridge::begin(LocalBurst burst) {
 void PlainBridge::await_word(PlainTime end_ps) {
   const std::uint64_t word = local_->word + word_;
   if (word < kPlainCoreRegisters) {
-    board_.host_asks(static_cast<int>(bank_of(word)), word % kPlainBankWords, local_->write,
+    // Only the capture boards post words to the banks, and only the channels write others.
+    const PlainTraffic traffic = !local_->write          ? PlainTraffic::kReadBack
+                                 : posted_on_local_ != 0 ? PlainTraffic::kCapture
+                                                         : PlainTraffic::kUpload;
+    board_.host_asks(static_cast<int>(bank_of(word)), word % kPlainBankWords, local_->write, traffic,
                      local_->words[word_], end_ps,
                      [this](PlainTime begin_ps, PlainTime usable_ps) { word_ends(begin_ps, usable_ps); });
     return;

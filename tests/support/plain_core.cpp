@@ -255,6 +255,8 @@ class Matcher {
   void begin(Cycle now) { began_ = now; }
   bool ends(Cycle now) const { return began_ && now == *began_ + is_.S - 1; }
 
+  // Whether column C - 1 has been consumed.
+  bool has_filled() const { return columns_consumed_ >= columns_ahead_; }
   // The end of a consume-cycle. Returns the rows in which it completes a result word, in their order.
   std::vector<int> consume() {
     began_.reset();
@@ -330,6 +332,9 @@ class PlainCore::Cycles {
     for (const PlainBank& bank : input.banks) banks_.push_back(ports_of(bank));
     result_.banks.resize(input.banks.size());
     blame_.resize(input.banks.size());
+    const int strips = (input.height + input.rows - 1) / input.rows;
+    groups_ = static_cast<std::size_t>(input.width / 4);
+    result_.tiles.resize(1 + static_cast<std::size_t>(strips) * groups_);
   }
 
   void start_frame(int frame) {
@@ -348,7 +353,10 @@ class PlainCore::Cycles {
               Matcher(input_, sequence_.size()),
               ResultQueue(input_),
               std::vector<PlainRowEnd>(static_cast<std::size_t>(input_.height)),
-              {}});
+              {},
+              0,
+              std::vector<PlainStrip>(1 + (result_.tiles.size() - 1) / groups_)});
+    for (PlainStrip& strip : frame_->strips) strip.accesses.resize(banks_.size());
   }
 
   bool runs() const { return frame_.has_value(); }
@@ -365,6 +373,7 @@ class PlainCore::Cycles {
     if (host) wishes[index_of(PlainPort::kHost)] = Wish::kAccess;
     bank_of_port_[index_of(PlainPort::kHost)] = host ? std::optional<int>(host->bank) : std::nullopt;
     host_direction_ = host && host->write ? Direction::kWrite : Direction::kRead;
+    if (host) traffic_ = host->traffic;
 
     const std::array<bool, kPlainPortCount> granted = arbitrate(wishes, now);
     if (frame_) step_frame(wishes, granted, now);
@@ -387,7 +396,23 @@ class PlainCore::Cycles {
     ResultQueue queue;
     std::vector<PlainRowEnd> rows;
     PlainRowEnd until_now;
+    std::size_t tile;  // of the next results
+    std::vector<PlainStrip> strips;
   };
+
+  std::size_t strip_of(std::size_t tile) const { return tile == 0 ? 0 : 1 + (tile - 1) / groups_; }
+  std::size_t waiter_of(std::size_t port) const {
+    return port < index_of(PlainPort::kHost) ? port : port + static_cast<std::size_t>(traffic_);
+  }
+  void note_loss(std::size_t port, std::size_t bank, const std::optional<PlainPort>& by) {
+    const std::size_t to_blame = by ? waiter_of(index_of(*by)) : kPlainWaiters;
+    ++result_.tiles[frame_->tile].lost[{waiter_of(port), static_cast<int>(bank), to_blame}];
+    ++frame_->strips[strip_of(frame_->tile)].lost[waiter_of(port)];
+  }
+  void note_access(PlainPort port, std::size_t bank) {
+    const std::size_t kind = port == PlainPort::kHost ? 1 + static_cast<std::size_t>(traffic_) : 0;
+    ++frame_->strips[strip_of(frame_->tile)].accesses[bank][kind];
+  }
 
   void step_frame(const std::array<Wish, kPlainPortCount>& wishes,
                   const std::array<bool, kPlainPortCount>& granted, Cycle now) {
@@ -402,6 +427,8 @@ class PlainCore::Cycles {
     count_port_states(wishes, granted);
     ++result_.counted_cycles;
     ++frame.until_now.cycles;
+    ++frame.strips[strip_of(frame.tile)].cycles;
+    ++result_.tiles[frame.tile].cycles;
     for (std::size_t port = 0; port < kPlainPortCount; ++port) {
       if (wishes[port] == Wish::kAccess && !granted[port]) ++frame.until_now.stalls[port];
     }
@@ -413,7 +440,10 @@ class PlainCore::Cycles {
       if (const auto row = frame.queue.word_is_written()) frame.rows[*row] = frame.until_now;
     }
     if (consumes) {
-      for (const int row : frame.matcher.consume()) frame.queue.word_enters(row);
+      const std::vector<int> rows = frame.matcher.consume();
+      for (const int row : rows) frame.queue.word_enters(row);
+      if (frame.tile == 0 ? frame.matcher.has_filled() : !rows.empty())
+        frame.tile = std::min(frame.tile + 1, result_.tiles.size() - 1);
     }
     if (consumes_slots) {
       frame.left.matcher_consumed();
@@ -426,6 +456,7 @@ class PlainCore::Cycles {
       frame.right.lut_port_took(now);
     if (!frame.queue.all_written()) return;
     result_.rows.push_back(frame.rows);
+    result_.strips.push_back(frame.strips);
     frame_.reset();
   }
 
@@ -490,10 +521,12 @@ class PlainCore::Cycles {
           ++(direction == Direction::kRead ? states.reads : states.writes);
           bank_port.arbiter.grant(winner, direction, now);
           granted[index_of(winner)] = true;
+          if (frame_) note_access(winner, bank);
         }
         for (std::size_t port = 0; port < kPlainPortCount; ++port) {
           if (!requests[port] || granted[port]) continue;
           ++blame[port][refused ? kTurnaround : index_of(winner)];
+          if (frame_) note_loss(port, bank, refused ? std::nullopt : std::optional(winner));
           bank_port.arbiter.refuse(static_cast<PlainPort>(port), now);
         }
       }
@@ -546,6 +579,8 @@ class PlainCore::Cycles {
   std::vector<std::vector<BankPort>> banks_;
   std::array<std::optional<int>, kPlainPortCount> bank_of_port_;
   Direction host_direction_ = Direction::kRead;
+  PlainTraffic traffic_ = PlainTraffic::kReadBack;
+  std::size_t groups_ = 0;      // of four columns, in a strip
   std::optional<Frame> frame_;  // that runs, until its last result write
   std::vector<BlameOfBank> blame_;
   PlainCycleResult result_;

@@ -51,11 +51,43 @@ struct PlainRowEnd {
   std::array<std::uint64_t, kPlainPortCount> stalls{};  // in these cycles, in the order of PlainPort
 };
 
+// What the host's port is used for.
+enum class PlainTraffic { kCapture, kUpload, kReadBack };
+
+// Where in the picture, and when in a frame, ports stall. A cycle belongs to the tile whose results leave next:
+// four columns of a strip of R rows. Number 0 is the fill: the cycles up to the one in which column C - 1 is
+// consumed. What comes after the last results belongs to the last tile.
+//
+// Who waits and who is to blame is a number: the ports in the order of PlainPort, with one for each
+// PlainTraffic in the place of the host, then turnaround.
+inline constexpr std::size_t kPlainWaiters = 8;
+struct PlainLoss {
+  std::size_t waiter = 0;
+  int bank = 0;
+  std::size_t by = 0;
+
+  friend bool operator<(const PlainLoss& a, const PlainLoss& b) {
+    return std::tie(a.waiter, a.bank, a.by) < std::tie(b.waiter, b.bank, b.by);
+  }
+};
+struct PlainTile {
+  std::uint64_t cycles = 0;
+  std::map<PlainLoss, std::uint64_t> lost;
+};
+// A strip of R rows in one frame; the first one is the fill.
+struct PlainStrip {
+  std::uint64_t cycles = 0;
+  std::array<std::uint64_t, kPlainWaiters> lost{};
+  std::vector<std::array<std::uint64_t, 4>> accesses;  // [bank]: of the core, and by PlainTraffic
+};
+
 // Counters are sums over the counted cycles of all frames: 0 .. frame_cycles - 1 - pipeline_latency_cycles.
 struct PlainCycleResult {
   bool hang = false;                        // a frame did not end in max_frame_cycles; the figures end there
   std::vector<std::uint64_t> frame_cycles;  // of the frames that ended
-  std::vector<std::vector<PlainRowEnd>> rows;  // of the same frames
+  std::vector<std::vector<PlainRowEnd>> rows;   // of the same frames
+  std::vector<std::vector<PlainStrip>> strips;  // of each frame
+  std::vector<PlainTile> tiles;                 // sums over the frames
   std::uint64_t counted_cycles = 0;
   std::array<PlainPortStates, kPlainPortCount> ports;  // in the order of PlainPort
   std::vector<PlainBankStates> banks;                  // in the order of PlainCycleInput::banks
@@ -72,6 +104,7 @@ struct PlainCycleResult {
 struct PlainHostRequest {
   int bank = 0;
   bool write = false;
+  PlainTraffic traffic = PlainTraffic::kReadBack;
 };
 
 class PlainCore {

@@ -75,6 +75,7 @@ platform::Statistics CameraSimulation::statistics() const {
   if (timeline_) {
     for (std::string& failed : timeline_->failed(statistics)) statistics.failed.push_back(std::move(failed));
   }
+  check_conflicts(statistics);
   return statistics;
 }
 

@@ -55,6 +55,8 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
+  void record(fpga::ConflictRecorder& conflicts) override { computer_->record(conflicts); }
+
   const platform::BoardConfig& board_;
   fpga::Fidelity fidelity_;
   const platform::Tables& tables_;

@@ -12,9 +12,13 @@ std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
     auto simulation =
         std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
     if (mode.record) simulation->record_timeline();
+    if (mode.record) simulation->record_conflicts();
     return simulation;
   }
-  return std::make_unique<PreloadedSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+  auto simulation =
+      std::make_unique<PreloadedSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+  if (mode.record) simulation->record_conflicts();
+  return simulation;
 }
 
 }  // namespace stereotlm::runs

@@ -17,7 +17,7 @@ struct RunMode {
   bool camera = true;  // true: the whole computer; false: the board alone (preloaded)
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
   std::uint64_t frames = 1;
-  bool record = false;  // the whole computer: see Simulation::take_timeline()
+  bool record = false;  // see Simulation::take_conflicts(); the whole computer: also take_timeline()
 };
 
 // Creates a CameraSimulation or a PreloadedSimulation. The arguments, except `mode`, outlive it. Throws

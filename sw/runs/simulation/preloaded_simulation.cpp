@@ -11,8 +11,20 @@ PreloadedSimulation::PreloadedSimulation(const platform::BoardConfig& board, con
       system_("system", board, tables, frames, *this, *this, binder, fidelity),
       counters_(platform::counters_of(system_.board)) {}
 
+void PreloadedSimulation::end_early() {
+  if (recorder() == nullptr) {
+    set_frames(frames_done());
+    return;
+  }
+  const std::uint64_t begun = recorder()->frames_begun();
+  set_frames(begun);
+  recorder()->record_only(begun);
+}
+
 platform::Statistics PreloadedSimulation::statistics() const {
-  return platform::collect_statistics(board_, tables_, system_.board, counters_);
+  platform::Statistics statistics = platform::collect_statistics(board_, tables_, system_.board, counters_);
+  check_conflicts(statistics);
+  return statistics;
 }
 
 // Saves the counters at the end of each frame, because the counters of an interrupted run must not include a

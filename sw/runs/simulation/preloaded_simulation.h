@@ -11,7 +11,7 @@
 namespace stereotlm::runs {
 
 // `--source preloaded`: the board alone with an ideal host. Frame f shows pair f. A run that ends early drops
-// the running frame.
+// the running frame, but finishes it if conflicts are recorded.
 class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
  public:
   // The referenced arguments outlive the simulation; `binder` binds its sockets. Throws std::exception if the
@@ -20,13 +20,14 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
                       host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
-  void end_early() override { set_frames(frames_done()); }
+  void end_early() override;
   void record_rows() override { system_.board.core.record_rows(); }
   std::vector<fpga::RowProfile> take_rows() override { return system_.board.core.take_rows(); }
   platform::Statistics statistics() const override;
 
  private:
   const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
+  void record(fpga::ConflictRecorder& conflicts) override { system_.board.core.record(conflicts); }
   void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
 
   const platform::BoardConfig& board_;

@@ -42,6 +42,17 @@ std::vector<Result> Simulation::advance() {
   return std::move(new_);
 }
 
+void Simulation::record_conflicts() { record(conflicts_.emplace(board_).recorder()); }
+
+std::vector<fpga::FrameConflicts> Simulation::take_conflicts() {
+  return conflicts_ ? conflicts_->take_frames() : std::vector<fpga::FrameConflicts>();
+}
+
+void Simulation::check_conflicts(platform::Statistics& statistics) const {
+  if (!conflicts_) return;
+  for (std::string& failed : conflicts_->failed(statistics)) statistics.failed.push_back(std::move(failed));
+}
+
 std::uint64_t Simulation::cycles() const {
   return static_cast<std::uint64_t>(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6 +
                                     0.5);

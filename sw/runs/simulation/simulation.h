@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <vector>
 
 #include "models/fpga/fidelity.h"
@@ -9,6 +10,7 @@
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "platform/config/board_config.h"
+#include "platform/conflicts.h"
 #include "platform/statistics.h"
 #include "platform/timeline_records.h"
 
@@ -57,6 +59,15 @@ class Simulation {
   // has none.
   virtual platform::TimelineRecords take_timeline() { return {}; }
 
+  // Records where and when the ports of the core stall, from the next frame of the core on. To be called before
+  // advance(). A board alone then finishes its running frame when it ends early. statistics() also checks the
+  // identities of what is recorded.
+  void record_conflicts();
+  // The frames of the core that have ended since the last call. To be called as take_timeline().
+  std::vector<fpga::FrameConflicts> take_conflicts();
+  // Null if conflicts are not recorded.
+  const fpga::ConflictRecorder* conflicts() const { return conflicts_ ? &conflicts_->recorder() : nullptr; }
+
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.
   virtual platform::Statistics statistics() const = 0;
@@ -72,6 +83,11 @@ class Simulation {
   // throws it.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
+  fpga::ConflictRecorder* recorder() { return conflicts_ ? &conflicts_->recorder() : nullptr; }
+  // Adds the identities of what is recorded that do not hold.
+  void check_conflicts(platform::Statistics& statistics) const;
+  // Hands everything that the core does to the recorder.
+  virtual void record(fpga::ConflictRecorder& conflicts) = 0;
   // Called by advance(). Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 
@@ -84,6 +100,7 @@ class Simulation {
   std::uint64_t cycles_of_done_ = 0;
   std::vector<Result> new_;  // results since the last advance() began
   Result last_;
+  std::optional<platform::Conflicts> conflicts_;
   std::exception_ptr failure_;  // exception of the source
 };
 

@@ -39,12 +39,13 @@ std::string blame_key(const std::string& port, const std::string& bank, const st
 
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
                            const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
-                           fpga::Fidelity fidelity, bool with_rows) {
+                           fpga::Fidelity fidelity, bool with_rows, platform::Conflicts* conflicts) {
   PairsInTurn source(pairs);
   KeptFrames sink;
   MonitoringBinder binder;
   platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder, fidelity);
   if (with_rows) system.board.core.record_rows();
+  if (conflicts != nullptr) system.board.core.record(conflicts->recorder());
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
   // Two of the host, three to five from the ports of the core, one to each bank.

@@ -9,6 +9,7 @@
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "platform/conflicts.h"
 #include "platform/statistics.h"
 #include "tests/support/plain_cycle_loop.h"
 
@@ -24,7 +25,8 @@ struct PreloadedRun {
 // monitor (a violation fails the test). Once per process.
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
                            const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
-                           fpga::Fidelity fidelity = fpga::Fidelity::kCycle, bool with_rows = false);
+                           fpga::Fidelity fidelity = fpga::Fidelity::kCycle, bool with_rows = false,
+                           platform::Conflicts* conflicts = nullptr);
 
 // Every counter under a name of its own, "left_lut granted", "bank0 reads", "left_lut blames result in
 // bank0", "frame 0 cycles": of the model and of the plain loop alike.

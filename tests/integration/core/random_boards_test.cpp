@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "platform/conflicts.h"
 #include "platform/core_run.h"
+#include "sw/report/conflicts_csv.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
+#include "tests/support/plain_conflicts.h"
 #include "tests/support/random_board.h"
 
 // Whole runs on random boards, each in a process of its own, against the plain cycle loop and the literal
@@ -32,12 +35,13 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 PreloadedRun run_board(const RandomBoard& board, const platform::BoardConfig& config,
-                       Fidelity fidelity = Fidelity::kCycle, bool with_rows = false) {
+                       Fidelity fidelity = Fidelity::kCycle, bool with_rows = false,
+                       platform::Conflicts* conflicts = nullptr) {
   std::vector<host::StereoPair> pairs;
   for (std::size_t pair = 0; pair < board.pictures.size(); ++pair)
     pairs.push_back(stereo_pair(board, static_cast<int>(pair)));
   return run_preloaded(config, board_tables(board), pairs, static_cast<std::uint64_t>(board.frames), fidelity,
-                       with_rows);
+                       with_rows, conflicts);
 }
 
 std::string pixel_differences(const kernels::GrayImage& image, const std::vector<std::uint8_t>& expected) {
@@ -94,6 +98,30 @@ std::string compare_rows_with_references(const RandomBoard& board, Fidelity fide
   EXPECT_EQ(run.rows.front().size(), static_cast<std::size_t>(board.height));
   EXPECT_EQ(text_of_rows(run.rows), text_of_rows(expected.rows));
   return differences(figures(run.statistics), figures(expected));
+}
+
+// What differs in rows.csv and conflicts.csv. Every fourth board has larger tiles.
+std::string compare_conflicts_with_references(const RandomBoard& board, Fidelity fidelity) {
+  const PlainCycleInput input = cycle_input(board);
+  const PlainCycleResult expected = run_plain_cycle_loop(input, board.frames, kMaxFrameCycles);
+  if (expected.hang) return kHang;
+  const platform::BoardConfig config = board_config(board);
+  const std::size_t most_tiles =
+      board.seed % 4 == 0 ? 1 + board.seed % 50 : fpga::ConflictRecorder::kMostTiles;
+  platform::Conflicts conflicts(config, most_tiles);
+  const PreloadedRun run = run_board(board, config, fidelity, false, &conflicts);
+  std::string rows = report::rows_csv_head(config);
+  std::uint64_t frames = 0;
+  for (const fpga::FrameConflicts& frame : conflicts.take_frames())
+    rows += report::rows_csv(config, frames++, frame);
+  const fpga::TileGrid& grid = conflicts.recorder().grid();
+  EXPECT_LE(grid.columns * grid.rows, most_tiles);
+  std::string text = differing_lines(plain_rows_csv(input, expected.strips), rows);
+  text +=
+      differing_lines(plain_conflicts_csv(input, expected.tiles, grid.strips_of_tile, grid.groups_of_tile),
+                      report::conflicts_csv(config, conflicts.recorder()));
+  for (const std::string& failed : conflicts.failed(run.statistics)) text += failed + "\n";
+  return text;
 }
 
 // What differs between the core's timing in a loop and the plain cycle loop.
@@ -165,6 +193,14 @@ TEST_P(RandomBoards, HaveTheRowsOfThePlainCycleLoop) {
 
 TEST_P(RandomBoards, HaveTheRowsOfThePlainCycleLoopAtFastFidelity) {
   expect_boards_equal_references(Fidelity::kTiming, GetParam(), 500, compare_rows_with_references);
+}
+
+TEST_P(RandomBoards, HaveTheConflictsOfThePlainCycleLoop) {
+  expect_boards_equal_references(Fidelity::kCycle, GetParam(), 100, compare_conflicts_with_references);
+}
+
+TEST_P(RandomBoards, HaveTheConflictsOfThePlainCycleLoopAtFastFidelity) {
+  expect_boards_equal_references(Fidelity::kTiming, GetParam(), 500, compare_conflicts_with_references);
 }
 
 std::string text_of(const std::vector<kernels::GrayImage>& disparities) {

@@ -15,12 +15,14 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "sw/report/conflicts_csv.h"
 #include "sw/report/timeline_csv.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/plain_computer.h"
+#include "tests/support/plain_conflicts.h"
 #include "tests/support/random_computer.h"
 
 namespace stereotlm::simulation {
@@ -241,9 +243,9 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fide
   return problems.empty() ? problems : problems + platform::to_yaml(board);
 }
 
-std::uint64_t computers() {
+std::uint64_t computers(std::uint64_t otherwise = 300) {
   const char* text = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
-  return text != nullptr ? std::stoull(text) : 300;
+  return text != nullptr ? std::stoull(text) : otherwise;
 }
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
@@ -307,6 +309,52 @@ TEST_P(RandomTimelines, AreTheSameAtEachFidelity) {
 
 INSTANTIATE_TEST_SUITE_P(Knobs, RandomTimelines, testing::Bool(),
                          [](const auto& suite) { return suite.param ? "With" : "Without"; });
+
+// What differs in rows.csv and conflicts.csv between a run and the plain loop over events.
+std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& knobs, Fidelity fidelity) {
+  const test::RandomComputer computer = test::make_random_computer(seed, knobs);
+  const platform::BoardConfig board = test::board_config(computer);
+  const platform::Tables tables = test::board_tables(computer.board);
+  Pictures pictures(computer.board);
+  const test::PlainComputerInput& input = computer.input;
+  test::MonitoringBinder binder;
+  runs::CameraSimulation simulation(board, tables, pictures, static_cast<std::uint64_t>(input.frames), binder,
+                                    fidelity);
+  simulation.record_conflicts();
+  std::string rows = report::rows_csv_head(board);
+  std::uint64_t frames = 0;
+  while (!simulation.finished()) {
+    simulation.advance();
+    for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
+      rows += report::rows_csv(board, frames++, frame);
+  }
+  const test::PlainCycleResult core = test::run_plain_computer(input).core;
+  std::string text = test::differing_lines(test::plain_rows_csv(input.board.core, core.strips), rows);
+  text += test::differing_lines(test::plain_conflicts_csv(input.board.core, core.tiles),
+                                report::conflicts_csv(board, *simulation.conflicts()));
+  for (const std::string& failed : simulation.statistics().failed) text += failed + '\n';
+  return text.empty() ? text : text + platform::to_yaml(board);
+}
+
+class RandomConflicts : public testing::TestWithParam<std::tuple<Fidelity, bool>> {};
+
+TEST_P(RandomConflicts, EqualThePlainLoopOverEvents) {
+  const auto [fidelity, with_knobs] = GetParam();
+  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
+  knobs.large_images = false;
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < computers(150); ++seed)
+    jobs.push_back(
+        [seed, knobs, fidelity = fidelity] { return conflicts_that_differ(seed, knobs, fidelity); });
+  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
+  for (std::size_t seed = 0; seed < results.size(); ++seed)
+    EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Fidelities, RandomConflicts,
+                         testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kTiming),
+                                          testing::Bool()),
+                         suite_name);
 
 // Four local clocks per cycle of the FPGA and one word per burst: the clocks between two words cost no cycle.
 TEST(SaturatedLocalBus, StaysBelowItsBound) {

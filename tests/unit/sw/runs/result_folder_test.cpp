@@ -66,9 +66,10 @@ TEST_F(ResultFolderTest, AcceptsATrailingSlashAndALinkToAnEmptyFolder) {
 }
 
 TEST_F(ResultFolderTest, ReplacesEveryFileThatARunWritesAtTheCommit) {
-  for (const char* name : {"disparity.png", "disparity.pfm", "disparity_color.png", "depth.ply", "depth.png",
-                           "depth_color.png", "stats.json", "config.yaml", "run.json", "timeline.csv",
-                           "latency.csv", "frames/000000.png", "frames/1234567.png"}) {
+  for (const char* name :
+       {"disparity.png", "disparity.pfm", "disparity_color.png", "depth.ply", "depth.png", "depth_color.png",
+        "stats.json", "config.yaml", "run.json", "timeline.csv", "latency.csv", "rows.csv", "conflicts.csv",
+        "frames/000000.png", "frames/1234567.png"}) {
     test::write_file(out_ / name, "old");
   }
   ResultFolder folder(out_);

@@ -1,0 +1,265 @@
+#include "models/fpga/conflict_recorder.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace stereotlm::fpga {
+namespace {
+
+constexpr std::array<const char*, kHostTraffics> kTrafficNames = {"host capture", "host upload",
+                                                                  "host read-back"};
+
+std::size_t parts_of(std::size_t whole, std::size_t part) { return (whole + part - 1) / part; }
+
+std::size_t groups_of_strip(const FrameGeometry& geometry) {
+  return static_cast<std::size_t>(geometry.columns_per_strip()) / 4;
+}
+
+std::size_t strips_of_results(const FrameGeometry& geometry) {
+  return static_cast<std::size_t>((geometry.height + geometry.rows - 1) / geometry.rows);
+}
+
+}  // namespace
+
+const char* requester_name(std::size_t requester) {
+  if (requester == kTurnaroundToBlame) return "turnaround";
+  return requester < kCorePortCount ? kPorts[requester].name : kTrafficNames[requester - kCorePortCount];
+}
+
+// Doubles the width or the height of the tiles, whichever is less, until they are few enough.
+TileGrid::TileGrid(const FrameGeometry& geometry, std::size_t most_tiles)
+    : groups_of_tile(1), strips_of_tile(1) {
+  const auto rows_of_strip = static_cast<std::size_t>(geometry.rows);
+  const auto divide = [&] {
+    columns_of_tile = 4 * groups_of_tile;
+    rows_of_tile = rows_of_strip * strips_of_tile;
+    columns = parts_of(groups_of_strip(geometry), groups_of_tile);
+    rows = parts_of(strips_of_results(geometry), strips_of_tile);
+  };
+  for (divide(); columns * rows > most_tiles; divide())
+    (columns > 1 && (columns_of_tile <= rows_of_tile || rows == 1) ? groups_of_tile : strips_of_tile) *= 2;
+}
+
+ConflictRecorder::ConflictRecorder(const CoreConfig& config,
+                                   const std::vector<memory::SsramBankConfig>& banks,
+                                   std::vector<AddressRange> captured, std::size_t most_tiles)
+    : geometry_(checked(config)),
+      banks_(banks.size()),
+      captured_(std::move(captured)),
+      grid_(geometry_, most_tiles),
+      group_shift_(static_cast<unsigned>(__builtin_ctzll(grid_.groups_of_tile))),
+      groups_of_strip_(groups_of_strip(geometry_)),
+      strips_(1 + strips_of_results(geometry_)),
+      strip_ends_(strips_),
+      cycles_up_to_(1 + (strips_ - 1) * grid_.columns),
+      indices_(kRequesters * banks_ * (kRequesters + 1)) {
+  const bool may_refuse = std::any_of(banks.begin(), banks.end(), [](const memory::SsramBankConfig& bank) {
+    return bank.turnaround_cycles != 0;
+  });
+  if (may_refuse) ends_.resize(cycles_up_to_.size());
+}
+
+bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control) {
+  is_recording_ = frames_begun_++ < frames_wanted_;
+  if (!is_recording_) return false;
+  first_cycle_ = cycle_ = cycle;
+  columns_ = 0;
+  strip_ = group_ = tile_ = 0;
+  for (std::size_t port = 0; port < kCorePortCount; ++port)
+    grants_[port] = control.port_cycles(port).granted();
+  assumed_ = {};
+  served_.clear();
+  frame_.banks = banks_;
+  frame_.strips.assign(strips_, {});
+  frame_.accesses.assign(strips_ * banks_, {});
+  return true;
+}
+
+std::vector<std::uint64_t>& ConflictRecorder::stalls_of(std::size_t requester, std::size_t bank,
+                                                        std::size_t by) {
+  std::size_t& index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
+  if (index == 0) {
+    stalls_.push_back({requester, bank, by, std::vector<std::uint64_t>(tiles())});
+    index = stalls_.size();
+  }
+  return stalls_[index - 1].cycles;
+}
+
+void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
+                            const memory::Arbitration& arbitration) {
+  if ((granted & memory::mask_of(kHostPort)) != 0)
+    ++host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_);
+  for (auto stalled = static_cast<unsigned>(requests & ~granted); stalled != 0; stalled &= stalled - 1) {
+    const memory::Port port = memory::lowest_port(static_cast<memory::PortMask>(stalled));
+    const std::size_t requester = requester_of_port(port);
+    const std::size_t by = requester_of_port(arbitration.cause_of(port, granted));
+    ++stalls_of(requester, arbitration.bank_of(port), by)[tile_];
+    ++frame_.strips[strip_].stalls[requester];
+  }
+}
+
+void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& control,
+                                 const memory::Arbitration& arbitration) {
+  cycle_ = next_cycle;
+  columns_ = control.match().columns();
+  if (strip_ != 0) {
+    end_group_of_strip();
+  }
+  if (is_at_strip_end()) {
+    end_strip(control, arbitration);
+  } else {
+    tile_ = tile_of(strip_, group_);
+  }
+}
+
+std::uint64_t ConflictRecorder::columns_to_strip_end() const {
+  return strip_ == 0 ? geometry_.result_delay_columns - columns_ : 4 * (groups_of_strip_ - group_);
+}
+
+bool ConflictRecorder::is_at_strip_end() const {
+  return strip_ == 0 ? columns_ == geometry_.result_delay_columns : group_ == groups_of_strip_;
+}
+
+void ConflictRecorder::repeat(const std::vector<const GroupConflicts*>& groups, std::uint64_t times,
+                              const memory::Arbitration& arbitration) {
+  const std::size_t count = groups.size() * static_cast<std::size_t>(times);
+  columns_ += 4 * count;
+  for (std::size_t first = 0; first < groups.size(); ++first) {
+    const GroupConflicts& group = *groups[first];
+    if (group.host_words != 0)
+      host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_) += group.host_words * times;
+    for (const memory::Stall& stall : group.stalls) {
+      const std::size_t requester = requester_of_port(stall.port);
+      const std::size_t by = requester_of_port(stall.by);
+      std::uint64_t* const cycles = stalls_of(requester, arbitration.bank_of(stall.port), by).data();
+      frame_.strips[strip_].stalls[requester] += stall.cycles * times;
+      if (strip_ == 0) {
+        cycles[0] += stall.cycles * times;
+        continue;
+      }
+      const std::size_t first_tile = tile_of(strip_, 0);
+      const std::uint64_t of_group = stall.cycles;
+      if (groups.size() == 1 && group_shift_ == 0) {  // mostly, and faster
+        std::uint64_t* const its = cycles + first_tile + group_;
+        for (std::size_t next = 0; next < count; ++next) its[next] += of_group;
+        continue;
+      }
+      for (std::size_t next = group_ + first; next < group_ + count; next += groups.size())
+        cycles[first_tile + (next >> group_shift_)] += of_group;
+    }
+  }
+  if (strip_ == 0) {
+    for (const GroupConflicts* group : groups) cycle_ += group->cycles * times;
+    return;
+  }
+  for (std::uint64_t time = 0; time < times; ++time) {
+    for (const GroupConflicts* group : groups) {
+      cycle_ += group->cycles;
+      end_group_of_strip();
+    }
+  }
+  tile_ = tile_of(strip_, std::min(group_, groups_of_strip_ - 1));
+}
+
+void ConflictRecorder::end_strip(const CoreControl& control, const memory::Arbitration& arbitration) {
+  if (strip_ + 1 == strips_) return;  // the last strip ends with the frame
+  if (strip_ == 0) end_place(0);
+  strip_ends_[strip_] = cycle_;
+  count_grants(control, arbitration);
+  ++strip_;
+  group_ = 0;
+  tile_ = tile_of(strip_, group_);
+}
+
+// Counts the accesses of the core since the end of the strip before.
+void ConflictRecorder::count_grants(const CoreControl& control, const memory::Arbitration& arbitration) {
+  for (std::size_t port = 0; port < kCorePortCount; ++port) {
+    std::uint64_t grants = control.port_cycles(port).granted();
+    for (const Side side : kSides) {
+      const AccessPattern* const assumed = assumed_[index_of(side)];
+      if (assumed != nullptr && port == pixel_port(side))
+        grants -= assumed->passes_before(control.lane(side).handled());
+    }
+    if (grants != grants_[port]) accesses_of(strip_, arbitration.bank_of(port))[0] += grants - grants_[port];
+    grants_[port] = grants;
+  }
+}
+
+HostTraffic ConflictRecorder::traffic_of(bool write, std::uint64_t address) const {
+  if (!write) return HostTraffic::kReadBack;
+  const bool is_captured = std::any_of(captured_.begin(), captured_.end(),
+                                       [&](const AddressRange& range) { return range.contains(address); });
+  return is_captured ? HostTraffic::kCapture : HostTraffic::kUpload;
+}
+
+void ConflictRecorder::add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle,
+                                  std::uint64_t cycles, bool granted) {
+  if (is_recording_) served_.push_back({cycle, cycles, bank, traffic, granted});
+}
+
+void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& control,
+                                 const memory::Arbitration& arbitration) {
+  is_recording_ = false;
+  count_grants(control, arbitration);
+  // The last group has ended in cycle_.
+  cycles_up_to_.back() += end_cycle - cycle_;
+  if (!ends_.empty()) ends_.back() = end_cycle;
+  strip_ends_.back() = end_cycle;
+  std::uint64_t begin = first_cycle_;
+  for (std::size_t strip = 0; strip < strips_; ++strip) {
+    frame_.strips[strip].cycles = strip_ends_[strip] - begin;
+    begin = strip_ends_[strip];
+  }
+  count_served();
+  ++frames_;
+  ended_.push_back(std::move(frame_));
+}
+
+// Distributes the words of uncontended bursts over the strips, and their stalls over the tiles.
+void ConflictRecorder::count_served() {
+  const auto first_behind = [](const std::vector<std::uint64_t>& ends, std::uint64_t cycle) {
+    return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cycle) - ends.begin());
+  };
+  for (const Served& served : served_) {
+    const std::size_t requester = requester_of(served.traffic);
+    const std::uint64_t end = served.cycle + served.cycles;
+    for (std::uint64_t cycle = served.cycle; cycle < end;) {
+      const std::size_t strip = first_behind(strip_ends_, cycle);
+      std::uint64_t until = std::min(end, strip_ends_[strip]);
+      if (served.granted) {
+        host_accesses(strip, served.bank, served.traffic) += until - cycle;
+      } else {
+        const std::size_t place = first_behind(ends_, cycle);
+        until = std::min(until, ends_[place]);
+        const std::size_t tile = tile_of(strip, 0) + place - place_of(strip, 0);
+        stalls_of(requester, served.bank, kTurnaroundToBlame)[tile] += until - cycle;
+        frame_.strips[strip].stalls[requester] += until - cycle;
+      }
+      cycle = until;
+    }
+  }
+}
+
+std::vector<std::uint64_t> ConflictRecorder::tile_cycles() const {
+  std::vector<std::uint64_t> cycles(tiles());
+  std::uint64_t before = 0;
+  for (std::size_t strip = 0; strip < strips_; ++strip) {
+    std::size_t tile = tile_of(strip, 0);
+    for (std::size_t place = place_of(strip, 0); place <= place_of(strip, groups_of_strip_ - 1); ++place) {
+      cycles[tile++] += cycles_up_to_[place] - before;
+      before = cycles_up_to_[place];
+    }
+  }
+  return cycles;
+}
+
+std::vector<const ConflictRecorder::Stalls*> ConflictRecorder::stalls() const {
+  std::vector<const Stalls*> sorted;
+  for (const Stalls& each : stalls_) sorted.push_back(&each);
+  std::sort(sorted.begin(), sorted.end(), [](const Stalls* a, const Stalls* b) {
+    return std::tie(a->requester, a->bank, a->by) < std::tie(b->requester, b->bank, b->by);
+  });
+  return sorted;
+}
+
+}  // namespace stereotlm::fpga

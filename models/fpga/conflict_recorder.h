@@ -1,0 +1,225 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/fpga/access_pattern.h"
+#include "models/fpga/core_control.h"
+#include "models/fpga/core_ports.h"
+#include "models/memory/arbitration.h"
+#include "models/words_by_range.h"
+
+namespace stereotlm::fpga {
+
+// What a burst of the host is for. A read of a bank is a read-back. A write is of a capture if the capture
+// boards write to its address, else an upload.
+enum class HostTraffic : std::uint8_t { kCapture, kUpload, kReadBack };
+inline constexpr std::size_t kHostTraffics = 3;
+
+// Who requests banks, or is to blame: the ports of the core, then the host's port for each HostTraffic. To
+// blame may also be the turnaround.
+inline constexpr std::size_t kRequesters = kCorePortCount + kHostTraffics;
+inline constexpr std::size_t kTurnaroundToBlame = kRequesters;
+constexpr std::size_t requester_of(HostTraffic traffic) {
+  return kCorePortCount + static_cast<std::size_t>(traffic);
+}
+// "left_lut", "host capture", "turnaround".
+const char* requester_name(std::size_t requester);
+// The port of a requester.
+constexpr memory::Port port_of_requester(std::size_t requester) {
+  return requester < kCorePortCount ? requester : kHostPort;
+}
+
+// How the image is divided into tiles. A tile is a group of four columns of one strip of results, but larger
+// where the image would have more tiles than wanted.
+struct TileGrid {
+  TileGrid(const FrameGeometry& geometry, std::size_t most_tiles);
+
+  std::size_t columns;          // tiles side by side
+  std::size_t rows;             // tiles one below the other
+  std::size_t columns_of_tile;  // pixels; the last tile may be narrower
+  std::size_t rows_of_tile;     // pixels; the last tile may be lower
+  std::size_t groups_of_tile;   // groups of four columns side by side in a tile
+  std::size_t strips_of_tile;
+};
+
+// The cycles of one group of four columns of the matcher: up to the end of the cycle in which it is complete.
+struct GroupConflicts {
+  std::uint64_t cycles = 0;
+  std::uint64_t host_words = 0;  // that the host is granted
+  std::vector<memory::Stall> stalls;
+};
+
+// The cycles of a strip of results in one frame: those after the last group of the strip before, up to its own
+// last group.
+struct StripConflicts {
+  std::uint64_t cycles = 0;
+  std::array<std::uint64_t, kRequesters> stalls{};  // [requester]
+};
+
+// One frame. Strip 0 is the fill: the cycles before the first group with results. The last strip has the
+// cycles up to the last write of the frame.
+struct FrameConflicts {
+  // Accesses of a bank: those of the core, then those of each HostTraffic.
+  static constexpr std::size_t kAccessKinds = 1 + kHostTraffics;
+  using BankAccesses = std::array<std::uint64_t, kAccessKinds>;
+
+  std::vector<StripConflicts> strips;
+  std::size_t banks = 0;
+  std::vector<BankAccesses> accesses;  // [strip * banks + bank]
+};
+
+// Records where in the picture, and when in a frame, the ports stall: the cycles of each frame are divided by
+// the completions of the matcher's groups of four columns. The cycles after one completion, up to and
+// including that of the next group, belong to the tile whose results leave with it. The cycles before the
+// first group with results are the fill; those after the last completion belong to the last tile. So fill and
+// tiles together have the counted cycles of the frame.
+//
+// The ports read ahead: when the results of column x leave, the lanes fetch for column x + C (C of contract
+// section 2).
+//
+// Tiles are summed over all frames. Strips are handed out frame by frame. Plain C++; used at every fidelity,
+// with the same numbers.
+class ConflictRecorder {
+ public:
+  static constexpr std::size_t kMostTiles = std::size_t{1} << 18U;
+
+  // `captured`: the addresses that the capture boards write to.
+  ConflictRecorder(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
+                   std::vector<AddressRange> captured, std::size_t most_tiles = kMostTiles);
+
+  // Frames from number `frames` on are not recorded.
+  void record_only(std::uint64_t frames) { frames_wanted_ = frames; }
+
+  // For FrameRun. A frame whose start returns false is not recorded: nothing else may be called for it.
+  bool start_frame(std::uint64_t cycle, const CoreControl& control);
+  void end_frame(std::uint64_t end_cycle, const CoreControl& control, const memory::Arbitration& arbitration);
+
+  // For CoreStepper: these ports requested and were granted in a cycle.
+  void step(memory::PortMask requests, memory::PortMask granted, const memory::Arbitration& arbitration);
+  // The group has been completed in the cycle before `next_cycle`.
+  void end_group(std::uint64_t next_cycle, const CoreControl& control,
+                 const memory::Arbitration& arbitration);
+
+  // For FastForward, which skips whole groups. The number of columns up to the end of the strip: there the core
+  // must be in the state after them when end_strip() is called.
+  std::uint64_t columns_to_strip_end() const;
+  // These groups follow each other, and this `times` times. They end at the end of the strip at the latest.
+  void repeat(const std::vector<const GroupConflicts*>& groups, std::uint64_t times,
+              const memory::Arbitration& arbitration);
+  bool is_at_strip_end() const;
+  void end_strip(const CoreControl& control, const memory::Arbitration& arbitration);
+  // [side]: the passes of the pixel port are counted as grants until this is called with null.
+  void assume_accesses(const std::array<const AccessPattern*, 2>& assumed) { assumed_ = assumed; }
+
+  // For HostPort. The traffic of a burst, and that of the words which take part in the arbitration from now on.
+  HostTraffic traffic_of(bool write, std::uint64_t address) const;
+  void set_host_traffic(HostTraffic traffic) { traffic_ = traffic; }
+  // Words of the host have been served in an uncontended bank, in cycles of the running frame, or, if not
+  // `granted`, were refused because of the turnaround.
+  void add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle, std::uint64_t cycles,
+                  bool granted);
+
+  // The frames that have ended since the last call. They fill memory until they are taken.
+  std::vector<FrameConflicts> take_frames() { return std::exchange(ended_, {}); }
+
+  std::uint64_t frames_begun() const { return frames_begun_; }
+  // Sums over the frames that have ended.
+  std::uint64_t frames() const { return frames_; }
+  const TileGrid& grid() const { return grid_; }
+  // [tile]: [0] is the fill; then the tiles, row by row.
+  std::vector<std::uint64_t> tile_cycles() const;
+  // The stall cycles of one requester at one bank, because of one other.
+  struct Stalls {
+    std::size_t requester = 0;
+    std::size_t bank = 0;
+    std::size_t by = 0;                 // requester, or kTurnaroundToBlame
+    std::vector<std::uint64_t> cycles;  // [tile]
+  };
+  // Those that have occurred, by requester, bank and `by`.
+  std::vector<const Stalls*> stalls() const;
+
+ private:
+  struct Served {
+    std::uint64_t cycle;
+    std::uint64_t cycles;
+    std::size_t bank;
+    HostTraffic traffic;
+    bool granted;
+  };
+
+  // Of a port, or of ArbiterStats::kTurnaround.
+  std::size_t requester_of_port(std::size_t port) const {
+    if (port == memory::ArbiterStats::kTurnaround) return kTurnaroundToBlame;
+    return port == kHostPort ? requester_of(traffic_) : port;
+  }
+  std::size_t tile_of(std::size_t strip, std::size_t group) const {
+    return strip == 0 ? 0 : 1 + (strip - 1) / grid_.strips_of_tile * grid_.columns + (group >> group_shift_);
+  }
+  // The index in ends_.
+  std::size_t place_of(std::size_t strip, std::size_t group) const {
+    return strip == 0 ? 0 : 1 + (strip - 1) * grid_.columns + (group >> group_shift_);
+  }
+  std::vector<std::uint64_t>& stalls_of(std::size_t requester, std::size_t bank, std::size_t by);
+  FrameConflicts::BankAccesses& accesses_of(std::size_t strip, std::size_t bank) {
+    return frame_.accesses[strip * banks_ + bank];
+  }
+  std::uint64_t& host_accesses(std::size_t strip, std::size_t bank, HostTraffic traffic) {
+    return accesses_of(strip, bank)[1 + static_cast<std::size_t>(traffic)];
+  }
+  void count_grants(const CoreControl& control, const memory::Arbitration& arbitration);
+  std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
+  // The group ends before cycle_.
+  void end_group_of_strip() {
+    const std::size_t group = group_++;
+    const bool ends_place = (group_ & (grid_.groups_of_tile - 1)) == 0 || group_ == groups_of_strip_;
+    if (ends_place) end_place(place_of(strip_, group));
+  }
+  void end_place(std::size_t place) {
+    cycles_up_to_[place] += cycle_ - first_cycle_;
+    if (!ends_.empty()) ends_[place] = cycle_;
+  }
+  void count_served();
+
+  FrameGeometry geometry_;
+  std::size_t banks_;
+  std::vector<AddressRange> captured_;
+  TileGrid grid_;
+  unsigned group_shift_;  // a tile has 2^group_shift_ groups side by side
+  std::size_t groups_of_strip_;
+  std::size_t strips_;  // the fill among them
+  std::uint64_t frames_wanted_ = UINT64_MAX;
+  HostTraffic traffic_ = HostTraffic::kCapture;
+
+  // The running frame.
+  bool is_recording_ = false;
+  std::uint64_t first_cycle_ = 0;
+  std::uint64_t cycle_ = 0;                             // the first one after the last group
+  std::uint64_t columns_ = 0;                           // consumed up to there
+  std::size_t strip_ = 0;                               // of the next group
+  std::size_t group_ = 0;                               // number of the next group in its strip
+  std::size_t tile_ = 0;                                // of the next group
+  std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
+  std::array<const AccessPattern*, 2> assumed_{};
+  // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in an
+  // uncontended bank: then its stalls are brought to their tiles when the frame has ended.
+  std::vector<std::uint64_t> ends_;
+  std::vector<std::uint64_t> strip_ends_;  // [strip]: the first cycle after it
+  std::vector<Served> served_;
+  FrameConflicts frame_;
+
+  std::uint64_t frames_begun_ = 0;
+  std::uint64_t frames_ = 0;
+  std::vector<FrameConflicts> ended_;
+  // [place_of()]: cycles of the frames up to the end of the part of a tile in its strip. Sums, because one
+  // addition for each group and frame is the main cost of recording.
+  std::vector<std::uint64_t> cycles_up_to_;
+  std::vector<Stalls> stalls_;        // in the order of their first cycles
+  std::vector<std::size_t> indices_;  // [requester][bank][by]: 1 + the index in stalls_; 0: none yet
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "models/fpga/conflict_recorder.h"
+#include "platform/config/board_config.h"
+
+namespace stereotlm::report {
+
+// The text of rows.csv: its head, and the lines of one frame. README.md describes the columns.
+std::string rows_csv_head(const platform::BoardConfig& board);
+std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
+                     const fpga::FrameConflicts& conflicts);
+
+// The text of conflicts.csv.
+std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder);
+
+}  // namespace stereotlm::report

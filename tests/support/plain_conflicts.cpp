@@ -1,0 +1,98 @@
+#include "tests/support/plain_conflicts.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+namespace stereotlm::test {
+namespace {
+
+constexpr std::array<const char*, kPlainWaiters + 1> kNames = {
+    "left_lut",     "right_lut",   "left_pixel",     "right_pixel", "result",
+    "host capture", "host upload", "host read-back", "turnaround"};
+
+std::string rows_of(const PlainCycleInput& input, std::size_t first_strip, std::size_t strips) {
+  const auto rows = static_cast<std::size_t>(input.rows);
+  const std::size_t end = std::min((first_strip + strips) * rows, static_cast<std::size_t>(input.height));
+  return std::to_string(first_strip * rows) + "," + std::to_string(end - 1);
+}
+
+}  // namespace
+
+std::string plain_rows_csv(const PlainCycleInput& input, const std::vector<std::vector<PlainStrip>>& frames) {
+  std::ostringstream text;
+  text << "frame,first_row,last_row,cycles,left_lut_stall_cycles,right_lut_stall_cycles,left_pixel_stall_"
+          "cycles,"
+          "right_pixel_stall_cycles,result_stall_cycles,host_capture_stall_cycles,host_upload_stall_cycles,"
+          "host_read_back_stall_cycles";
+  for (std::size_t bank = 0; bank < input.banks.size(); ++bank) {
+    for (const char* kind : {"core", "capture", "upload", "read_back"})
+      text << ",bank" << bank << "_" << kind << "_accesses";
+  }
+  text << "\n";
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+    for (std::size_t number = 0; number < frames[frame].size(); ++number) {
+      const PlainStrip& strip = frames[frame][number];
+      text << frame << "," << (number == 0 ? "," : rows_of(input, number - 1, 1)) << "," << strip.cycles;
+      for (const std::uint64_t lost : strip.lost) text << "," << lost;
+      for (const auto& bank : strip.accesses) {
+        for (const std::uint64_t accesses : bank) text << "," << accesses;
+      }
+      text << "\n";
+    }
+  }
+  return text.str();
+}
+
+std::string plain_conflicts_csv(const PlainCycleInput& input, const std::vector<PlainTile>& tiles,
+                                std::size_t strips, std::size_t groups) {
+  const auto groups_of_strip = static_cast<std::size_t>(input.width / 4);
+  const std::size_t all_strips = (tiles.size() - 1) / groups_of_strip;
+  std::ostringstream text;
+  text << "first_row,last_row,first_column,last_column,tile_cycles,port,bank,by,cycles\n";
+  const auto add = [&text](const std::string& place, const PlainTile& tile) {
+    for (const auto& [loss, cycles] : tile.lost) {
+      text << place << "," << tile.cycles << "," << kNames[loss.waiter] << ",bank" << loss.bank << ","
+           << kNames[loss.by] << "," << cycles << "\n";
+    }
+  };
+  add(",,,", tiles.front());
+  for (std::size_t first_strip = 0; first_strip < all_strips; first_strip += strips) {
+    for (std::size_t first_group = 0; first_group < groups_of_strip; first_group += groups) {
+      PlainTile sum;
+      const std::size_t end_strip = std::min(first_strip + strips, all_strips);
+      const std::size_t end_group = std::min(first_group + groups, groups_of_strip);
+      for (std::size_t strip = first_strip; strip < end_strip; ++strip) {
+        for (std::size_t group = first_group; group < end_group; ++group) {
+          const PlainTile& tile = tiles[1 + strip * groups_of_strip + group];
+          sum.cycles += tile.cycles;
+          for (const auto& [loss, cycles] : tile.lost) sum.lost[loss] += cycles;
+        }
+      }
+      add(rows_of(input, first_strip, strips) + "," + std::to_string(4 * first_group) + "," +
+              std::to_string(4 * end_group - 1),
+          sum);
+    }
+  }
+  return text.str();
+}
+
+std::string differing_lines(const std::string& expected, const std::string& found) {
+  constexpr int kMost = 20;
+  std::istringstream expected_lines(expected);
+  std::istringstream found_lines(found);
+  std::string text;
+  for (int differ = 0; differ < kMost;) {
+    std::string a;
+    std::string b;
+    const bool has_a = static_cast<bool>(std::getline(expected_lines, a));
+    const bool has_b = static_cast<bool>(std::getline(found_lines, b));
+    if (!has_a && !has_b) break;
+    if (a == b) continue;
+    ++differ;
+    text += "plain: " + a + "\nmodel: " + b + "\n";
+  }
+  return text;
+}
+
+}  // namespace stereotlm::test
