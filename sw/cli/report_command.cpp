@@ -32,11 +32,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kReportFooter =
     "INPUT is a folder that run --out has written, a database of sweep, or two such folders, which are\n"
-    "compared. The page is one file; a browser shows it without a network. Runs are run again, as diff "
-    "does,\n"
-    "for what happens in the rows of the picture. For one run every knob of the board is also tried one "
-    "step\n"
-    "up and down, as explain does.";
+    "compared. The page is one file; a browser shows it without a network. Runs are run again for what\n"
+    "happens where in the picture, and when. For one run every knob of the board is also tried one step up\n"
+    "and down, as explain does.";
 
 struct ReportOptions {
   TypedList inputs;
@@ -46,7 +44,8 @@ struct ReportOptions {
   void add_to(CLI::App& command) {
     inputs.add_to(command, "INPUT", "...", "One run or database, or two runs");
     out.add_to(command, "--out", "F.html", "The page to write");
-    add_flag(command, "--quick", quick, "Simulate nothing: no rows of the picture, no gain of the knobs");
+    add_flag(command, "--quick", quick,
+             "Simulate nothing: no gain of the knobs; rows and times only of a run with --record");
   }
 
   bool is_database() const {
@@ -87,7 +86,9 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   problems.check();
   process::catch_interrupts();
   Json data = report::run_data(*run, input.tables);
-  if (!options.quick) {
+  if (options.quick) {
+    report::add_recorded_files(*run, data);
+  } else {
     if (!report::add_repetition(*run, input, data)) return std::nullopt;
     runs::Explanation explanation(run->board, input.tables, input.camera);
     const bool calibrated = run->options.calibration.has_value();

@@ -44,7 +44,9 @@ std::uint64_t least_frame_cycles(const runs::RunInput& input) {
 // finished.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
-  runs::RecordFiles records(input);
+  runs::RecordFiles records(input, [&input](const std::string& name, const std::string& text) {
+    input.folder->append(name, text);
+  });
   runs::ProgressLine progress;
   bool ends_early = false;
   while (!simulation.finished()) {

@@ -78,8 +78,12 @@ std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
   return text;
 }
 
+std::string conflicts_csv_head() {
+  return "first_row,last_row,first_column,last_column,tile_cycles,port,bank,by,cycles\n";
+}
+
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder) {
-  std::string text = "first_row,last_row,first_column,last_column,tile_cycles,port,bank,by,cycles\n";
+  std::string text = conflicts_csv_head();
   const fpga::TileGrid& grid = recorder.grid();
   const std::vector<const fpga::ConflictRecorder::Stalls*> stalls = recorder.stalls();
   std::vector<std::string> names;

@@ -13,7 +13,8 @@ std::string rows_csv_head(const platform::BoardConfig& board);
 std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
                      const fpga::FrameConflicts& conflicts);
 
-// The text of conflicts.csv.
+// The text of conflicts.csv, and its head.
+std::string conflicts_csv_head();
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder);
 
 }  // namespace stereotlm::report

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <deque>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "models/binder.h"
@@ -13,12 +14,14 @@
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
 #include "sw/runs/run_mode.h"
+#include "sw/runs/run_results.h"
 
 namespace stereotlm::runs {
 namespace {
 
 constexpr char kFrame = 'f';
 constexpr char kFigures = 's';
+constexpr char kRecord = 'r';
 
 // put() and take() write and read the message in which the child sends a frame to the parent: kind, number,
 // rows, pixels. Values are copied as bytes, because both processes run the same program.
@@ -60,38 +63,52 @@ std::string figures_of(platform::Statistics statistics, const Result& last, cons
   return report::stats_json(statistics, accuracy);
 }
 
-void run_again(const RecordedRun& run, const process::Child::Tell& tell) {
+void run_again(const RecordedRun& run, bool record, const process::Child::Tell& tell) {
   process::Problems problems;
   RunInput input = open_again(run, problems);
   if (!problems.empty()) throw std::runtime_error("cannot be run any more: " + problems.in_one_line());
   input.fast = true;
+  input.record = record;
   BlankPairs blank(input.board);
   host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
   Binder binder;
   const auto simulation = make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
   simulation->record_rows();
+  RecordFiles files(input, [&tell](const std::string& name, const std::string& text) {
+    tell(kRecord + name + '\n' + text);
+  });
   std::deque<fpga::RowProfile> rows;  // rows of frames whose results are not delivered yet
   while (!simulation->finished()) {
     const std::vector<Result> results = simulation->advance();
     for (fpga::RowProfile& frame : simulation->take_rows()) rows.push_back(std::move(frame));
+    if (!results.empty()) files.add(*simulation);  // next() returns soon after
     for (const Result& result : results) {
       tell(message_of(result, rows.front()));
       rows.pop_front();
     }
   }
+  files.finish(*simulation);
   tell(kFigures + figures_of(simulation->statistics(), simulation->last(), input));
 }
 
 }  // namespace
 
-Rerun::Rerun(const RecordedRun& run)
-    : run_(run), child_(std::make_unique<process::Child>([&run](const process::Child::Tell& tell) {
-        run_again(run, tell);
-      })) {}
+Rerun::Rerun(const RecordedRun& run, Record record)
+    : run_(run),
+      record_(std::move(record)),
+      child_(std::make_unique<process::Child>(
+          [&run, records = record_ != nullptr](const process::Child::Tell& tell) {
+            run_again(run, records, tell);
+          })) {}
 
 std::optional<Rerun::Frame> Rerun::next() {
   try {
-    const std::optional<std::string> message = child_->next();
+    std::optional<std::string> message = child_->next();
+    while (message && message->front() == kRecord) {
+      const std::size_t end_of_name = message->find('\n');
+      record_(message->substr(1, end_of_name - 1), message->substr(end_of_name + 1));
+      message = child_->next();
+    }
     if (!message) throw std::runtime_error("has ended without figures");
     if (message->front() == kFrame) return frame_of(*message, run_);
     check_figures(message->substr(1));

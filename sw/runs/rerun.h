@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,12 +14,14 @@
 
 namespace stereotlm::runs {
 
-// Repeats a recorded run in a child process and records the rows of its frames. The repetition is always at
+// Repeats a recorded run in a child process and records the rows of its frames, and what `run --record` does. The repetition is always at
 // fidelity fast, because the figures do not depend on the fidelity.
 class Rerun {
  public:
-  // Starts the child. `run` outlives the object.
-  explicit Rerun(const RecordedRun& run);
+  // Takes text for the end of a file of `run --record`.
+  using Record = std::function<void(const std::string& name, const std::string& text)>;
+  // Starts the child. `run` outlives the object. With `record`, next() hands all files to it.
+  explicit Rerun(const RecordedRun& run, Record record = nullptr);
 
   // A finished frame of the repeated run.
   struct Frame {
@@ -37,6 +40,7 @@ class Rerun {
   void check_figures(const std::string& stats_json) const;
 
   const RecordedRun& run_;
+  Record record_;
   std::unique_ptr<process::Child> child_;
 };
 

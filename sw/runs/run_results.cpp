@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "calib/calibration.h"
 #include "calib/depth.h"
 #include "sw/process/streams.h"
@@ -74,28 +76,28 @@ void save_frame(const RunInput& input, const Result& result) {
   input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
 }
 
-RecordFiles::RecordFiles(const RunInput& input) : input_(input) {
+RecordFiles::RecordFiles(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {
   if (!input.record) return;
-  input.folder->append("rows.csv", report::rows_csv_head(input.board));
+  append_("rows.csv", report::rows_csv_head(input.board));
   if (!input.camera) return;
-  input.folder->append("timeline.csv", report::timeline_csv_head());
-  input.folder->append("latency.csv", report::latency_csv_head());
+  append_("timeline.csv", report::timeline_csv_head());
+  append_("latency.csv", report::latency_csv_head());
 }
 
 void RecordFiles::add(Simulation& simulation) {
   if (!input_.record) return;
   for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
-    input_.folder->append("rows.csv", report::rows_csv(input_.board, frames_++, frame));
+    append_("rows.csv", report::rows_csv(input_.board, frames_++, frame));
   if (!input_.camera) return;
   const platform::TimelineRecords records = simulation.take_timeline();
-  input_.folder->append("timeline.csv", report::timeline_csv(records.events));
-  input_.folder->append("latency.csv", report::latency_csv(records.latencies));
+  append_("timeline.csv", report::timeline_csv(records.events));
+  append_("latency.csv", report::latency_csv(records.latencies));
 }
 
 void RecordFiles::finish(Simulation& simulation) {
   if (!input_.record) return;
   add(simulation);
-  input_.folder->add("conflicts.csv", report::conflicts_csv(input_.board, *simulation.conflicts()));
+  append_("conflicts.csv", report::conflicts_csv(input_.board, *simulation.conflicts()));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {

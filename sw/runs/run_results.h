@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,17 +15,20 @@ namespace stereotlm::runs {
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// With --record: writes what the simulation has recorded since the last call into the result folder. The first
-// call begins the files. finish() writes what is complete only at the end of the run. They throw as save_frame()
-// does.
+// With --record: hands out what the simulation has recorded since the last call, as text for the files of the
+// result folder. The constructor begins the files. finish() adds what is complete only at the end of the run.
 class RecordFiles {
  public:
-  explicit RecordFiles(const RunInput& input);
+  // Adds text to the end of a file.
+  using Append = std::function<void(const std::string& name, const std::string& text)>;
+
+  RecordFiles(const RunInput& input, Append append);
   void add(Simulation& simulation);
   void finish(Simulation& simulation);
 
  private:
   const RunInput& input_;
+  Append append_;
   std::uint64_t frames_ = 0;  // in rows.csv
 };
 

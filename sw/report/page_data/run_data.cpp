@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,7 +26,8 @@
 #include "sw/files/base64.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
-#include "sw/report/row_comparison.h"
+#include "sw/report/chart/memory_chart.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/sources/media_library.h"
 
@@ -194,6 +195,14 @@ std::string png_url(const std::string& bytes) {
   return "data:image/png;base64," + files::base64(bytes.data(), bytes.size());
 }
 
+std::string memory_chart_of(const runs::RecordedRun& run) {
+  try {
+    return memory_chart_svg(run.board, chart_traffic(run.board, run.stats_json));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: stats.json {}", runs::name_of(run), error.what()));
+  }
+}
+
 std::size_t banks_used(const BoardConfig& board) {
   std::set<std::string> banks;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) banks.insert(buffer.bank);
@@ -226,7 +235,8 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
                {"banks", banks_of(board)},
                {"ports", ports_of(board)},
                {"bounds", bounds_of(board, tables, run.options.source == "camera")},
-               {"area", area_data(board)}};
+               {"area", area_data(board)},
+               {"memory_chart", memory_chart_of(run)}};
   if (!run.options.timing_only) {
     data["pictures"] = {{"disparity", png_url(read("disparity.png"))},
                         {"disparities", board.matcher.disparities}};
@@ -235,11 +245,9 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
 }
 
 bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& data) {
-  const auto height = static_cast<std::size_t>(run.board.image.height);
-  std::vector<std::uint64_t> cycles(height);
-  std::array<std::vector<std::uint64_t>, fpga::kCorePortCount> stalls;
-  stalls.fill(cycles);
-  runs::Rerun rerun(run);
+  RecordingData recording(run.board, input.camera);
+  runs::Rerun rerun(
+      run, [&recording](const std::string& name, const std::string& text) { recording.add(name, text); });
   runs::ProgressLine progress;
   std::uint64_t frames = 0;
   std::uint64_t last = 0;  // camera frame
@@ -252,21 +260,23 @@ bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& d
     if (!frame) break;
     ++frames;
     last = frame->number;
-    const fpga::RowProfile rows = rows_alone(frame->rows);
-    for (std::size_t row = 0; row < height; ++row) {
-      cycles[row] += rows[row].cycles;
-      for (std::size_t port = 0; port < stalls.size(); ++port) stalls[port][row] += rows[row].stalls[port];
-    }
   }
-  Json by_port = Json::object();
-  for (std::size_t port = 0; port < stalls.size(); ++port) by_port[fpga::kPorts[port].name] = stalls[port];
-  data["rows"] = {{"frames", frames}, {"cycles", cycles}, {"stalls", std::move(by_port)}};
+  data["recording"] = recording.json();
   if (run.options.timing_only) return true;
   kernels::GrayImage left = input.pairs->pair(last).left;
   if (input.tables.left) left = kernels::rectify(left, *input.tables.left);
   const std::vector<std::uint8_t> png = runs::media_functions().encode_png_gray(left);
   data["pictures"]["left"] = png_url(std::string(png.begin(), png.end()));
   return true;
+}
+
+void add_recorded_files(const runs::RecordedRun& run, Json& data) {
+  RecordingData recording(run.board, run.options.source == "camera");
+  try {
+    if (recording.add_folder(run.folder)) data["recording"] = recording.json();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: {}", runs::name_of(run), error.what()));
+  }
 }
 
 Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {

@@ -15,9 +15,13 @@ namespace stereotlm::report {
 // A recorded run: what its folder holds, and what follows from its board without a simulation.
 nlohmann::ordered_json run_data(const runs::RecordedRun& run, const platform::Tables& tables);
 
-// Repeats the run and adds what only a repetition shows: `rows`, and `pictures.left`, the left picture of the
-// last frame as the matcher sees it. Returns false if interrupted. Throws what Rerun::next() throws.
+// Repeats the run and adds what only a repetition shows: `recording`, and `pictures.left`, the left picture of
+// the last frame as the matcher sees it. Returns false if interrupted. Throws what Rerun::next() throws.
 bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, nlohmann::ordered_json& data);
+
+// Adds `recording` from the files of the run's folder, if it was run with --record. Throws std::runtime_error if
+// they are not as `run --record` writes them.
+void add_recorded_files(const runs::RecordedRun& run, nlohmann::ordered_json& data);
 
 // The part `knobs`: what one step of each knob gains, and what it takes of the FPGA.
 nlohmann::ordered_json knobs_data(const platform::BoardConfig& board, runs::Explanation& explanation);

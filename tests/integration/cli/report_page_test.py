@@ -2,6 +2,7 @@
 
 import csv
 import functools
+import html
 import io
 import json
 import random
@@ -49,7 +50,7 @@ def core():
 
 @functools.cache
 def computer():
-    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6")
+    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6", "--record")
 
 
 @functools.cache
@@ -78,63 +79,6 @@ def database():
     return out
 
 
-def recording(data):
-    """A recording, as a run may hold one; made up, but its sums are those of the run."""
-    drawn = random.Random(1)
-    stats = data["stats"]
-    height = len(data["rows"]["cycles"])
-    rows = data["rows"]["stalls"]["left_lut"]
-    by = [row["by"] for row in stats["blame"] if row["port"] == "left_lut"]
-    tiles = [value / 8 for value in rows for _ in range(8)]
-    events = {name: [] for name in ("lane", "kind", "frame", "start_us", "end_us", "waited_us", "why")}
-    for frame in range(40):
-        for lane, kind, start, end, waited in (
-            ("left camera", "capture", 0, 900, 100),
-            ("core", "core", 1000, 2500, 100),
-            ("read-back", "read-back", 2600, 2800, 50),
-            ("left camera", "drop", 950, 950, 0),
-            ("host", "interrupt", 2800, 2800, 0),
-        ):
-            for name, value in zip(
-                events, (lane, kind, frame, 3000 * frame + start, 3000 * frame + end, waited, "for <b>a</b>")
-            ):
-                events[name].append(value)
-    parts = ("capture_ms", "wait_for_core_ms", "core_ms", "wait_for_read_back_ms", "read_back_ms")
-    latency = {"frame": list(range(40)), **{part: [drawn.random() for _ in range(40)] for part in parts}}
-    columns = lambda table: [{"name": name, "list": values} for name, values in table.items()]
-    return {
-        "rows": {
-            "banks": [{"bank": bank["name"], "busy": {"constant": 3}} for bank in stats["banks"]],
-            "stalls": [{"port": "left_lut", "bank": "bank0", "by": by[0], "cycles": {"list": rows}}],
-        },
-        "tiles": {
-            "columns": 8,
-            "rows": height,
-            "width": 4,
-            "height": 1,
-            "stalls": [{"port": "left_lut", "bank": "bank0", "by": by[0], "cycles": {"list": tiles}}],
-        },
-        "events": {"rows": len(events["lane"]), "columns": columns(events)},
-        "latency": {"rows": 40, "columns": columns(latency)},
-    }
-
-
-CHART = (
-    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 40" onload="hacked=1"><script>hacked=1</script>'
-    '<rect id="bank-bank0" x="5" y="5" width="40" height="30"/>'
-    '<text x="10" y="20">bank0 &lt;script&gt;</text></svg>'
-)
-
-
-@functools.cache
-def recorded():
-    """The page of the computer, with a recording and a drawing."""
-    data = data_of(page_of(computer()))
-    data["run"]["recording"] = recording(data["run"])
-    data["run"]["memory_chart"] = CHART
-    return with_data(page_of(computer()), data, shared_folder() / "recorded.html")
-
-
 class PageTest(ProgramTest):
     def setUp(self):
         super().setUp()
@@ -156,8 +100,8 @@ class EveryChart(PageTest):
     """At both widths, light and dark."""
 
     CHARTS = {
-        "core": "bounds roofline memory banks blame ports rows picture frames knobs area audit configuration",
-        "recorded": "memory bounds roofline banks blame ports rows picture frames time latency knobs area "
+        "core": "memory bounds roofline banks blame ports rows picture frames knobs area audit configuration",
+        "computer": "memory bounds roofline banks blame ports rows picture frames time latency knobs area "
         "audit configuration",
         "two": "rows picture frames blame ports-A ports-B settings totals",
         "database": "scatter chosen filters parallel points constants",
@@ -166,7 +110,7 @@ class EveryChart(PageTest):
     def test_is_drawn_at_both_widths_and_in_both_themes(self):
         pages = {
             "core": page_of(core()),
-            "recorded": recorded(),
+            "computer": page_of(computer()),
             "two": page_of(shared_run("plain", *PRELOADED, "--frames", "4"), core()),
             "database": page_of(database()),
         }
@@ -196,7 +140,7 @@ class EveryChart(PageTest):
                                           "svg [points*=NaN], svg [x=NaN], svg [width=NaN]')].length"), 0)
 
     def test_tells_its_numbers_to_the_keyboard(self):
-        self.browser.open(recorded())
+        self.browser.open(page_of(computer()))
         for chart in "bounds roofline banks blame ports rows frames time latency knobs area memory".split():
             with self.subTest(chart=chart):
                 marks = f"#{chart} .mark"
@@ -239,10 +183,30 @@ class Numbers(PageTest):
             self.assertEqual([number(row["cycles"]) for row in frames], stats["frame_cycles"])
             rows = self.browser.table("rows")
             self.assertEqual(sum(number(row["cycles"]) for row in rows), stats["cycles"])
-            for port in stats["ports"][:-1]:
-                column = f"{port['name']} waits"
-                self.assertEqual(sum(number(row[column]) for row in rows), port["stall_cycles"])
+            for row in stats["blame"]:
+                column = f"{row['port']} on {row['bank']} for {row['by']}"
+                if column in rows[0]:  # not the host, whose traffic is divided
+                    self.assertEqual(sum(number(line[column]) for line in rows), row["cycles"])
             self.assertIn("identities hold", self.browser.text("#audit h2"))
+
+    def test_of_the_time_line_equal_what_the_run_has_recorded(self):
+        self.browser.open(page_of(computer()))
+        for chart, name in (("time", "timeline.csv"), ("latency", "latency.csv")):
+            recorded = list(csv.DictReader(io.StringIO((computer() / name).read_text())))
+            if chart == "latency":
+                recorded.sort(key=lambda row: int(row["latency_ps"]))
+            shown = list(csv.DictReader(io.StringIO(self.browser.csv(chart))))
+            none = lambda row: {key: "-1" if value == "" and "frame" in key else value
+                                for key, value in row.items()}
+            self.assertEqual(shown, [none(row) for row in recorded])
+
+    def test_of_the_memory_chart_add_up_to_the_traffic_of_each_bank(self):
+        self.browser.open(page_of(computer()))
+        links = self.browser.table("memory")
+        for bank in self.stats(computer())["banks"]:
+            ends = lambda row: bank["name"] in (row["from"], row["to"])
+            total = sum(number(row["megabytes_per_second"]) for row in links if ends(row))
+            self.assertAlmostEqual(total, bank["megabytes_per_second"], places=9)
 
     def test_of_the_gain_of_knobs_equal_explain(self):
         folder = core()
@@ -378,17 +342,24 @@ class Tools(PageTest):
         self.browser.button("rows", "All rows")
         self.assertEqual(shown(), "rows 0 to 23")
 
-    def test_the_time_line_is_zoomed_by_brush_and_buttons(self):
-        self.browser.open(recorded())
+    def test_the_time_line_is_zoomed_by_brush_overview_and_buttons(self):
+        self.browser.open(page_of(computer()))
         axis = lambda: self.browser.text("#time .axis")
-        first = axis()
-        self.browser.drag("#time .brush-x", (0.3, 0.98), (0.5, 0.98))
-        self.assertNotEqual(axis(), first)
+        seen = [axis()]
+        overview, window = "#time svg > g:nth-of-type(2) .brush-x", "#time svg > g:nth-of-type(1) .brush-x"
+        for brush, start, end in ((window, 0.3, 0.5), (overview, 0.4, 0.9), (overview, 0.2, 0.2)):
+            self.browser.drag(brush, (start, 0.98), (end, 0.98))
+            seen.append(axis())
+        self.browser.button("time", "Later")
+        seen.append(axis())
+        self.assertEqual(len(set(seen)), 5)
         self.browser.button("time", "All")
-        self.assertEqual(len(self.browser.all("#time .mark")), 200)
+        events = (computer() / "timeline.csv").read_text().splitlines()[1:]
+        instant = sum(line.startswith("wait") and line.split(",")[4] == line.split(",")[5] for line in events)
+        self.assertEqual(len(self.browser.all("#time .mark")), len(events) - instant)
 
     def test_sliders_move_the_picture_and_the_paint(self):
-        self.browser.open(recorded())
+        self.browser.open(page_of(computer()))
         self.browser.drawn()
         states = [self.picture()]
         for slider, value in (("split", 0), ("split", 100), ("paint", 100), ("paint", 0)):
@@ -406,12 +377,13 @@ class Tools(PageTest):
         self.assertIn("allocation.left_lut", keys)
         self.assertLess(len(keys), 8)
 
-    def test_a_chart_without_numbers_says_how_to_record_them(self):
+    def test_charts_that_quick_leaves_out_say_so(self):
         data = data_of(page_of(computer()))
-        data["run"]["record_command"] = "stereotlm the command"
+        del data["run"]["recording"], data["run"]["knobs"]
         self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
-        self.assertIn("stereotlm the command", self.browser.text("#time"))
-        self.assertEqual(self.browser.all("#time svg"), [])
+        for chart in ("rows", "time", "knobs"):
+            self.assertIn("--quick", self.browser.text(f"#{chart}"))
+            self.assertEqual(self.browser.all(f"#{chart} svg"), [])
 
 
 class Names(PageTest):
@@ -432,6 +404,7 @@ class Names(PageTest):
         self.succeeds(run("report", out, "--out", page))
         self.browser.open(page)
         self.is_harmless(NASTY, NASTY_FOLDER)
+        self.assertIn(NASTY[:8], self.browser.text("#memory svg"))
         self.succeeds(run("report", out, out, "--out", page))
         self.browser.open(page)
         self.is_harmless(NASTY_FOLDER)
@@ -447,11 +420,17 @@ class Names(PageTest):
         self.browser.run("document.querySelector('#points button[data-row]').click()")
         self.is_harmless(NASTY, NASTY_FOLDER)
 
-    def test_of_a_drawing(self):
-        self.browser.open(recorded())
-        self.is_harmless("bank0 <script>")
-        self.assertEqual(len(self.browser.all("#memory svg script")), 0)
-        self.assertEqual(len(self.browser.all("#memory svg .mark")), 1)
+    def test_of_the_memory_chart_are_text_without_handlers(self):
+        data = data_of(page_of(core()))
+        hostile = '<svg onload="hacked=1" width="9"><script>hacked=1</script><a href="javascript:hacked=1"></a>'
+        data["run"]["memory_chart"] = (
+            data["run"]["memory_chart"].replace("<svg", hostile.split(" width")[0], 1)
+            .replace("</svg>", hostile.split(">", 1)[1] + "</svg>").replace("fpl2003", html.escape(NASTY))
+        )
+        self.browser.open(with_data(page_of(core()), data, self.folder / "page.html"))
+        self.is_harmless(NASTY)
+        self.assertEqual(len(self.browser.all("#memory svg script, #memory svg [href]")), 0)
+        self.assertGreater(len(self.browser.all("#memory svg .mark")), 20)
 
 
 class Large(PageTest):

@@ -5,7 +5,7 @@ import shutil
 import sqlite3
 
 import program
-from report_data import data_of
+from report_data import data_of, unpacked
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
 
 SHARED = sets("allocation.left_lut=bank0")
@@ -33,16 +33,36 @@ class ReportTest(ProgramTest):
 
 
 class Run(ReportTest):
-    def test_holds_the_files_and_the_rows_of_the_run(self):
+    def test_holds_the_files_of_the_run_and_its_memory_chart(self):
         folder = self.run_of("a", *PRELOADED, *SHARED, "--frames", "3")
         data = self.data(folder)["run"]
         stats = self.stats(folder)
         self.assertEqual(data["stats"], stats)
         self.assertEqual(data["config_yaml"], (folder / "config.yaml").read_text())
-        self.assertEqual(sum(data["rows"]["cycles"]), stats["cycles"])
-        stalls = {port["name"]: port["stall_cycles"] for port in stats["ports"] if port["name"] != "host"}
-        self.assertEqual({port: sum(rows) for port, rows in data["rows"]["stalls"].items()}, stalls)
         self.assertEqual(sum(item["luts"] for item in data["area"]["items"]), stats["area"]["luts"])
+        chart = self.folder / "chart.svg"
+        self.succeeds(run("diagram", folder, "--out", chart))
+        self.assertEqual(data["memory_chart"], chart.read_text())
+
+    def test_holds_where_ports_stall_as_the_repetition_records_it(self):
+        folder = self.run_of("a", *PRELOADED, *SHARED, "--set", "matcher.rows=5", "--frames", "3")
+        stats = self.stats(folder)
+        recording = self.data(folder)["run"]["recording"]
+        lines = recording["rows"]["lines"]
+        self.assertEqual((lines, recording["rows"]["height"]), (5, 5))
+        values = lambda column: unpacked(column, 1 + lines)
+        self.assertEqual(sum(values(recording["rows"]["cycles"])), stats["cycles"])
+        stalls = {(each["port"], each["bank"], each["by"]): each for each in recording["stalls"]}
+        blame = {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]}
+        self.assertEqual({cause: sum(values(each["rows"])) for cause, each in stalls.items()}, blame)
+        tiles = recording["tiles"]
+        for each in stalls.values():
+            inside = unpacked(each["tiles"], tiles["columns"] * tiles["rows"])
+            self.assertEqual(sum(inside), sum(values(each["rows"])[1:]))
+        accesses = {bank["name"]: 0 for bank in stats["banks"]}
+        for each in recording["rows"]["accesses"]:
+            accesses[each["bank"]] += sum(values(each["accesses"]))
+        self.assertEqual(accesses, {bank["name"]: bank["reads"] + bank["writes"] for bank in stats["banks"]})
 
     def test_names_the_command_that_repeats_it(self):
         folder = self.run_of("a b'c", *PRELOADED, "--frames", "2")
@@ -61,12 +81,16 @@ class Run(ReportTest):
     def test_without_pixels_has_no_pictures(self):
         self.assertNotIn("pictures", self.data(self.run_of("a", *PRELOADED, "--timing-only"))["run"])
 
-    def test_quick_simulates_nothing(self):
-        data = self.data(self.run_of("a", *PRELOADED), "--quick")["run"]
-        self.assertNotIn("rows", data)
-        self.assertNotIn("knobs", data)
-        self.assertIn("disparity", data["pictures"])
-
+    def test_quick_simulates_nothing_and_takes_what_the_run_has_recorded(self):
+        plain = self.data(self.run_of("a", *PRELOADED), "--quick")["run"]
+        self.assertNotIn("recording", plain)
+        self.assertNotIn("knobs", plain)
+        self.assertIn("disparity", plain["pictures"])
+        folder = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "3", "--record")
+        self.assertEqual(self.data(folder, "--quick")["run"]["recording"],
+                         self.data(folder)["run"]["recording"])
+        (folder / "rows.csv").write_text("frame\n")
+        self.fails(run("report", folder, "--out", self.page, "--quick"), "rows.csv:1: is not as")
 
 class TwoRuns(ReportTest):
     def test_differences_of_rows_add_up(self):

@@ -1,18 +1,24 @@
 // From the first pixel of a capture to the results on the host: how long, and what of it is waiting.
 import {addChart, drawing, legend} from './chart.js';
 import {s} from './dom.js';
-import {count, fixed, percent} from './format.js';
+import {count, fixed, kPsOfMs, percent} from './format.js';
 import {axisBelow, axisLeft, linear} from './scale.js';
 import {Table} from './table.js';
 import {mark} from './tooltip.js';
 
+// Columns of latency.csv that are parts of it. The second of each is shown with the first.
 const kParts = [
-  ['capture_ms', 'capture', '--blue'], ['wait_for_core_ms', 'waiting for the core', '--pale-blue'],
-  ['core_ms', 'core', '--vermilion'], ['wait_for_read_back_ms', 'waiting for the read-back', '--pale'],
-  ['read_back_ms', 'read-back', '--green']
+  [['capture_ps'], 'capture', '--blue'],
+  [['wait_copy_ps'], 'waiting for the copy', '--pale'],
+  [['copy_ps'], 'copy to the board', '--sky'],
+  [['wait_core_ps'], 'waiting for the core', '--pale-blue'],
+  [['core_ps'], 'core', '--vermilion'],
+  [['wait_read_back_ps'], 'waiting for the read-back', '--faint'],
+  [['read_back_ps', 'delivery_ps'], 'read-back', '--green'],
 ];
+const kWaitParts = ['wait_copy_ps', 'wait_core_ps', 'wait_read_back_ps'];
 
-function addPercentiles(page, latency, absent) {
+function addPercentiles(page, latency) {
   const points = ['min', 'p50', 'p95', 'p99', 'max'].map(name => ({name, ms: latency[name]}));
   const draw = (host, width) => {
     const {plot, width: inner, height} =
@@ -37,62 +43,68 @@ function addPercentiles(page, latency, absent) {
     draw,
     title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${
         fixed(latency.max, 1)} ms`,
-    note: `From the first pixel of a capture to the results on the host. ${absent}`,
+    note:
+        'From the first pixel of a capture to the results on the host. What of it is waiting was left out ' +
+        'by --quick, because the run was not recorded.',
     numbers: () => [['percentile', 'ms'], points.map(({name, ms}) => [name, ms])]
   });
 }
 
-export function addLatency(page, run, absentText) {
-  const latency = run.stats.latency_ms?.capture_to_host;
-  if (!latency) return;
-  const recorded = run.recording?.latency;
-  if (!recorded) return addPercentiles(page, latency, absentText);
-  const table = new Table(recorded.columns, recorded.rows);
-  const parts = kParts.map(([name]) => table.column(name));
-  const frame = table.column('frame');
-  const total = frame.map((_, i) => parts.reduce((all, part) => all + part[i], 0));
-  const order = frame.map((_, i) => i).sort((a, b) => total[a] - total[b]);
-  const mean = part => part.reduce((a, b) => a + b, 0) / frame.length;
-  const waiting = (mean(parts[1]) + mean(parts[3])) / mean(total);
+export function addLatency(page, run) {
+  const percentiles = run.stats.latency_ms?.capture_to_host;
+  if (!percentiles) return;
+  if (!run.recording) return addPercentiles(page, percentiles);
+  const {rows, all, means_ps: means, columns} = run.recording.latency;
+  const table = new Table(columns, rows);
+  const inMs = name => table.column(name).map(ps => ps / kPsOfMs);
+  const parts =
+      kParts.filter(([names]) => names.some(name => means[name] > 0)).map(([names, text, colour]) => {
+        const all = names.map(inMs);
+        return {text, colour, ms: all[0].map((_, i) => all.reduce((sum, values) => sum + values[i], 0))};
+      });
+  const [frame, total] = [table.column('frame'), inMs('latency_ps')];
+  const share = kWaitParts.reduce((sum, name) => sum + means[name], 0) / means.latency_ps;
   const draw = (host, width) => {
     const {plot, width: inner, height} =
         drawing(host, width, 280, {left: 44, right: 8, top: 22, bottom: 34}, 'Latency of each frame');
-    const y = linear([0, Math.max(...total) * 1.05], [height, 0]);
-    const step = inner / order.length;
+    const y = linear([0, total[rows - 1] * 1.05], [height, 0]);
+    const step = inner / rows;
     plot.append(axisLeft(y, inner, height, 'ms'));
-    order.forEach((i, place) => {
+    for (let i = 0; i < rows; ++i) {
       const bar = s('g');
       let from = 0;
-      kParts.forEach(([, , colour], part) => {
-        const to = from + parts[part][i];
+      for (const {colour, ms} of parts) {
         bar.append(s('rect', {
-          x: place * step,
-          y: y(to),
+          x: i * step,
+          y: y(from + ms[i]),
           width: Math.max(0.6, step > 4 ? step - 1 : step),
-          height: Math.max(0, y(from) - y(to)),
+          height: Math.max(0, y(from) - y(from + ms[i])),
           style: `fill:var(${colour})`
         }));
-        from = to;
-      });
+        from += ms[i];
+      }
       plot.append(mark(bar, [
         `frame ${frame[i]}: ${fixed(total[i], 3)} ms`,
-        ...kParts.map(([, name], part) => `${name}: ${fixed(parts[part][i], 3)} ms`)
+        ...parts.map(({text, ms}) => `${text}: ${fixed(ms[i], 3)} ms`)
       ]));
-    });
+    }
     plot.append(
         s('line', {x1: 0, x2: inner, y1: height, y2: height, class: 'base'}),
         s('text', {x: inner, y: height + 20, 'text-anchor': 'end', class: 'label'},
-          `${count(order.length, 'frame')}, the quickest first`));
+          `${rows < all ? `${count(rows, 'frame')} of ${all}` : count(rows, 'frame')}, the quickest first`));
   };
   addChart(page, {
     id: 'latency',
     wide: true,
     draw,
-    title: `${percent(waiting, 0)} of the ${fixed(mean(total), 1)} ms from capture to host are waiting`,
-    note: 'One bar for each delivered frame, from the first pixel of the capture to the results on the host.',
-    body: legend(kParts.map(([, name, colour]) => [name, `var(${colour})`])),
-    numbers: () => [
-        ['frame', ...kParts.map(([name]) => name)],
-        frame.map((number, i) => [number, ...parts.map(part => part[i])])]
+    title: `${percent(share, 0)} of the ${
+        fixed(means.latency_ps / kPsOfMs, 1)} ms from capture to host are waiting`,
+    note:
+        'One bar for each delivered frame, from the first pixel of the capture to the results on the host. ' +
+        `Half of the frames take at most ${fixed(percentiles.p50, 1)} ms, 95 % at most ${
+            fixed(percentiles.p95, 1)}, the slowest ${fixed(percentiles.max, 1)}.`,
+    body: legend(parts.map(({text, colour}) => [text, `var(${colour})`])),
+    numbers: () =>
+        [table.names, Array.from({length: rows}, (_, i) => table.names.map(name => table.column(name)[i]))]
   });
 }

@@ -1,68 +1,18 @@
-// The memory chart: blocks, banks and links of the board with their traffic. Without a drawing, a list.
-import {addChart, htmlTable, shareBar} from './chart.js';
+// The memory chart: the block diagram of the board with the traffic of each link.
+import {addChart} from './chart.js';
 import {h} from './dom.js';
 import {settingOf} from './findings.js';
 import {fixed, percent} from './format.js';
-import {mark} from './tooltip.js';
+import {isDark, whenThemeChanges} from './theme.js';
+import {linkMarks, mark} from './tooltip.js';
 
 const kBytesPerWord = 4;
-
-// The links of the machine: {id, name, what, rate, peak} in 10^6 bytes a second.
-export function linksOf(run) {
-  const {stats} = run;
-  const clock = settingOf(run, 'fpga.clock_mhz');
-  const links = [];
-  for (const port of run.ports) {
-    const counted = stats.ports.find(each => each.name === port.name);
-    if (counted.grants === 0 && port.banks.length === 0) continue;
-    links.push({
-      id: `edge-${port.name}`,
-      name: `${port.name} ${port.writes ? '→' : '←'} ${[...new Set(port.banks)].join(', ')}`,
-      what: 'port',
-      rate: kBytesPerWord * counted.grants * clock / stats.cycles,
-      peak: kBytesPerWord * clock
-    });
-  }
-  for (const bank of stats.banks) {
-    const {buffers, accesses_per_cycle: ports} = run.banks.find(each => each.name === bank.name);
-    links.push({
-      id: `bank-${bank.name}`,
-      name: `${bank.name}: ${buffers.map(buffer => buffer.name).join(', ') || 'empty'}`,
-      what: 'bank',
-      rate: bank.megabytes_per_second,
-      peak: kBytesPerWord * clock * ports
-    });
-  }
-  if (stats.pci) {
-    const pciClock = settingOf(run, 'pci.clock_mhz');
-    const peak = kBytesPerWord * pciClock * (settingOf(run, 'pci.width_bits') ?? 32) / 32;
-    for (const master of stats.pci.masters) {
-      links.push({
-        id: `edge-pci-${master.name}`,
-        name: `${master.name} on the PCI bus`,
-        what: 'PCI',
-        rate: kBytesPerWord * master.words * pciClock / stats.pci.clocks,
-        peak
-      });
-    }
-    const local = settingOf(run, 'bridge.local_clock_mhz');
-    links.push({
-      id: 'edge-local-bus',
-      name: 'local bus',
-      what: 'bridge',
-      peak: kBytesPerWord * local,
-      rate: kBytesPerWord * (stats.bridge.posted_words + stats.bridge.dma_words) * local /
-          stats.bridge.local_clocks
-    });
-  }
-  return links;
-}
+const kMostEnlarged = 1.4;  // of its own size
 
 // The drawing as elements: without scripts, without handlers, without links to elsewhere.
 function parsedSvg(text) {
   const svg =
       document.importNode(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement, true);
-  if (svg.localName !== 'svg') return null;
   svg.querySelectorAll('script, foreignObject').forEach(element => element.remove());
   for (const element of [svg, ...svg.querySelectorAll('*')]) {
     for (const {name, value} of [...element.attributes]) {
@@ -73,48 +23,46 @@ function parsedSvg(text) {
   return svg;
 }
 
-export function addMemory(page, run) {
-  const links = linksOf(run);
-  const banks = links.filter(link => link.what === 'bank');
-  const fullest = [...banks].sort((a, b) => b.rate / b.peak - a.rate / a.peak)[0];
-  const bar = link =>
-      shareBar(link.rate / link.peak, `${link.name}: ${percent(link.rate / link.peak)} of its peak`);
-  const title = `${fullest.id.slice(5)} carries ${fixed(fullest.rate, 1)} MB/s, ${
-      percent(fullest.rate / fullest.peak)} of its peak`;
-  const numbers = () => [
-      ['link', 'kind', 'megabytes_per_second', 'peak', 'percent'],
-      links.map(link => [link.name, link.what, link.rate, link.peak, 100 * link.rate / link.peak])];
-  const svg = run.memory_chart && parsedSvg(run.memory_chart);
-  if (svg) {
-    for (const link of links) {
-      const element = svg.querySelector(`[id="${CSS.escape(link.id)}"]`);
-      if (element)
-        mark(element, [
-          link.name, `${fixed(link.rate, 2)} of ${fixed(link.peak, 2)} MB/s`,
-          `${percent(link.rate / link.peak)} of its peak`
-        ]);
-    }
-    svg.removeAttribute('width');
-    svg.removeAttribute('height');
-    addChart(page, {
-      id: 'memory',
-      wide: true,
-      title,
-      numbers,
-      note: 'Links of the board, as wide as their traffic.',
-      body: h('div', {class: 'memory'}, svg)
-    });
-    return;
+const nameOf = id => id.slice(id.indexOf('-') + 1);
+
+// Takes the titles of the drawing, which a browser would show beside the tooltips of the page.
+function markAll(svg) {
+  for (const title of svg.querySelectorAll('title')) {
+    const element = title.parentElement;
+    title.remove();
+    if (element !== svg) mark(element, title.textContent.split('\n'));
   }
+}
+
+export function addMemory(page, run) {
+  const svg = parsedSvg(run.memory_chart);
+  markAll(svg);
+  const clock = settingOf(run, 'fpga.clock_mhz');
+  const banks = run.stats.banks.map(({name, megabytes_per_second: rate}, i) => {
+    const peak = kBytesPerWord * clock * run.banks[i].accesses_per_cycle;
+    return {name, rate, peak, share: rate / peak};
+  });
+  const fullest = [...banks].sort((a, b) => b.share - a.share)[0];
+  const links = [...svg.querySelectorAll('.edge')].map(
+      ({dataset: {from, to, mbps, peak}}) => [nameOf(from), nameOf(to), Number(mbps), Number(peak)]);
+  const width = Number(svg.getAttribute('width'));
+  svg.removeAttribute('width');
+  svg.removeAttribute('height');
+  svg.style.cssText = `min-width:${width}px;max-width:${kMostEnlarged * width}px`;
+  const useTheme = () => svg.setAttribute('class', `memory-chart ${isDark() ? 'dark' : 'light'}`);
+  useTheme();
+  whenThemeChanges(useTheme);
+  const body = h('div', {class: 'memory'}, svg);
+  linkMarks(body);
   addChart(page, {
     id: 'memory',
-    title,
-    numbers,
-    note:
-        'Mean traffic of each link, and its share of the peak. Ports and banks: while the core works on ' +
-        'a frame; buses: all the time.',
-    body: htmlTable(
-        ['link', 'MB/s', 'of peak', ''],
-        links.map(link => [link.name, fixed(link.rate, 2), percent(link.rate / link.peak), bar(link)]), 200)
+    wide: true,
+    title: `${fullest.name} carries ${fixed(fullest.rate, 1)} MB/s, ${percent(fullest.share)} of its peak`,
+    note: 'The board as it was run, with the traffic of each link. Each block and link has its figures: ' +
+        'point at it, or go there with the arrow keys.',
+    body,
+    numbers: () => [
+        ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
+        links.map(([from, to, rate, peak]) => [from, to, rate, peak, 100 * rate / peak])]
   });
 }

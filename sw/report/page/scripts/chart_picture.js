@@ -2,7 +2,6 @@
 import {addChart, canvasOf} from './chart.js';
 import {h} from './dom.js';
 import {whole} from './format.js';
-import {unpack} from './table.js';
 import {viridis} from './theme.js';
 import {hideTooltip, showTooltip} from './tooltip.js';
 
@@ -48,31 +47,8 @@ function paintOf({values, columns, rows}) {
   return canvas;
 }
 
-// The layers of paint of a run: {name, values, columns, rows}.
-export function layersOf(run) {
-  const {recording, rows} = run;
-  const layers = [];
-  if (recording?.tiles) {
-    const {columns, rows: tileRows, stalls} = recording.tiles;
-    for (const {port, bank, by, cycles} of stalls) {
-      layers.push({
-        name: `${port} on ${bank} for ${by}`,
-        values: unpack(cycles, columns * tileRows),
-        columns,
-        rows: tileRows
-      });
-    }
-    layers.sort((a, b) => b.values.reduce((x, y) => x + y, 0) - a.values.reduce((x, y) => x + y, 0));
-  } else if (rows) {
-    for (const [port, values] of Object.entries(rows.stalls)) {
-      if (values.some(value => value > 0))
-        layers.push({name: `${port}, by row`, values, columns: 1, rows: values.length});
-    }
-  }
-  return layers;
-}
-
-// pictures: {disparity, disparities, left or other}, layers as above; names: of the two pictures.
+// pictures: one or two of {url, disparities}, the latter of a picture of disparities; names: of the pictures.
+// layers: maps of amounts as those of tilesOf().
 export function addPicture(page, {id = 'picture', title, note, pictures, layers, names}) {
   const state = {split: 0.5, paint: 0.35, layer: 0};
   let loaded = null;
@@ -97,6 +73,7 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
         }
       },
         layers.map((layer, i) => h('option', {value: i}, layer.name)));
+  const most = h('span', {class: 'note'});
   const draw = (host, width) => {
     if (!loaded) return;
     const {width: columns, height: rows} = loaded.first.canvas;
@@ -124,7 +101,15 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
       }
       context.imageSmoothingEnabled = false;
       context.globalAlpha = state.paint;
-      if (paints[state.layer]) context.drawImage(paints[state.layer], 0, 0, w, hgt);
+      const layer = layers[state.layer];
+      if (layer) {
+        context.drawImage(
+            paints[state.layer], 0, 0, layer.columns * layer.width * scale,
+            layer.rows * layer.height * scale);
+        most.textContent =
+            `strongest paint: ${whole(layer.values.reduce((a, b) => Math.max(a, b)))} cycles ` +
+            `in ${layer.width} × ${layer.height} pixels`;
+      }
     };
     const tip = (clientX, clientY) => {
       const [x, y] = at;
@@ -132,8 +117,8 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
       const grey = loaded.grey?.[y * columns + x];
       if (grey !== undefined) lines.push(grey === kInvalid ? 'no disparity' : `disparity ${grey}`);
       for (const layer of layers) {
-        const line = Math.floor(y / rows * layer.rows);
-        const value = layer.values[line * layer.columns + Math.floor(x / columns * layer.columns)];
+        const value =
+            layer.values[Math.floor(y / layer.height) * layer.columns + Math.floor(x / layer.width)];
         if (value) lines.push(`${layer.name}: ${whole(value)} cycles`);
       }
       showTooltip(lines, clientX, clientY);
@@ -167,15 +152,18 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
     body:
         h('div', {class: 'controls'}, names[1] && slider('split', `${names[0]} | ${names[1]}`, 'split'),
           layers.length > 0 && slider('paint', 'paint', 'paint'),
-          layers.length > 0 && h('label', null, 'stalls of ', choose)),
+          layers.length > 0 && h('label', null, 'stalls ', choose), layers.length > 0 && most),
     numbers: () => layers.length === 0 ? [['cycles'], []] :
                                          [
-                                           ['row', 'column', 'cycles'],
+                                           ['first_row', 'first_column', 'cycles'],
                                            [...layers[state.layer].values]
                                                .map(
                                                    (value, i) =>
-                                                       [Math.floor(i / layers[state.layer].columns),
-                                                        i % layers[state.layer].columns, value])
+                                                       [Math.floor(i / layers[state.layer].columns) *
+                                                            layers[state.layer].height,
+                                                        i % layers[state.layer].columns *
+                                                            layers[state.layer].width,
+                                                        value])
                                                .filter(row => row[2] !== 0)
                                          ]
   });

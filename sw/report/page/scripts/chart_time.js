@@ -1,93 +1,225 @@
-// The time line of the computer: captures, uploads, frames of the core, read-backs, drops.
+// The time line of the computer: captures, transfers, frames of the core, waits and drops, in a window that is
+// chosen in an overview of the whole run.
 import {addBrush} from './brush.js';
 import {addChart, cut, drawing, legend} from './chart.js';
 import {h, s} from './dom.js';
-import {fixed, whole} from './format.js';
+import {settingOf} from './findings.js';
+import {count, fixed, kPsOfMs, percent, whole} from './format.js';
 import {axisBelow, linear} from './scale.js';
-import {Table} from './table.js';
+import {Table, unpack} from './table.js';
 import {mark} from './tooltip.js';
 
-const kKinds = {
+const kFirstFrames = 6;
+const kMostMarks = 1500;
+const kLine = 34;
+const kOverviewLine = 9;
+
+const kColours = {
   capture: '--blue',
   upload: '--sky',
-  core: '--vermilion',
-  'read-back': '--green',
+  frame: '--vermilion',
+  read_back: '--green',
   drop: '--grey',
   interrupt: '--purple'
 };
-const kFirstFrames = 8;
-const kMostMarks = 1500;
+const kNames = {
+  capture: 'capture',
+  upload: 'upload to the board',
+  frame: 'core',
+  read_back: 'read-back',
+  drop: 'camera frame dropped',
+  interrupt: 'interrupt'
+};
+const kLanes = ['left camera', 'right camera', 'upload', 'pairs wait', 'core', 'read-back', 'interrupts'];
 
-const inMs = us => us / 1000;
+// The lane of an event.
+const laneOf = (kind, what) => ({
+  capture: `${what} camera`,
+  drop: `${what} camera`,
+  upload: 'upload',
+  frame: 'core',
+  read_back: 'read-back',
+  interrupt: 'interrupts',
+  wait: {ring: 'upload', pair: 'pairs wait', core: 'core', result: 'read-back'}[what]
+})[kind];
 
-export function addTimeLine(page, run, absent) {
-  const events = run.recording?.events;
-  if (!events) return absent(page, 'time', 'Time line of captures, core and read-backs');
+const kWaits = {
+  ring: 'A pair waits in host memory',
+  pair: 'A pair waits on the board',
+  core: 'The core waits',
+  result: 'A result waits'
+};
+const kWhy = {
+  'ring copy': 'the pair before is copied to the board',
+  'ring input_buffer': 'no input buffer is free',
+  'pair core': 'the core works on the frame before',
+  'pair output_buffer': 'no output buffer is free',
+  'core upload': 'the tables are uploaded',
+  'core camera': 'a capture begins with the next frame of the camera',
+  'core capture': 'the capture of the next pair runs',
+  'core copy': 'its pair is copied to the board',
+  'core output_buffer': 'no output buffer is free',
+  'result read_back': 'the result before is read back',
+  'drop not_armed': 'the capture board was not armed: no input buffer was free',
+  'drop busy': 'the capture before had not ended',
+  'drop partner': 'the other camera lost this frame'
+};
+const whyText = (who, why) => kWhy[`${who} ${why}`] ?? 'the driver works: register accesses and interrupts';
+
+// The longest waits of the core in words, as shares of the time.
+function coreWaits(run, span) {
+  return run.recording.waits.filter(wait => wait.class === 'core' && wait.ps > 0.001 * span)
+      .sort((a, b) => b.ps - a.ps)
+      .slice(0, 3)
+      .map(wait => `${percent(wait.ps / span)} because ${whyText('core', wait.why)}`);
+}
+
+export function addTimeLine(page, run) {
+  if (!run.recording) {
+    addChart(page, {
+      id: 'time',
+      title: 'Time line of captures, core and read-backs',
+      note: 'Left out by --quick, because the run was not recorded.'
+    });
+    return;
+  }
+  const {events, overview} = run.recording;
   const table = new Table(events.columns, events.rows);
-  const [lane, kind, frame, start, end, waited, why] =
-      ['lane', 'kind', 'frame', 'start_us', 'end_us', 'waited_us', 'why'].map(name => table.column(name));
-  const lanes = [...new Set(lane)];
-  const last = Math.max(...end);
-  const drops = kind.filter(each => each === 'drop').length;
-  const begin = Math.min(...start.filter((_, i) => kind[i] === 'capture'), last);
-  const early = Math.max(...end.filter((_, i) => frame[i] < kFirstFrames), 1);
+  const [kind, what, frame, cameraFrame, start, end, why] =
+      ['kind', 'class', 'frame', 'camera_frame', 'start_ps', 'end_ps', 'why'].map(name => table.column(name));
+  const lane = kind.map((each, i) => laneOf(each, what[i]));
+  const lanes = kLanes.filter(each => lane.includes(each));
+  const last = overview.end_ps;
+  const isCapture = kind.map(each => each === 'capture');
+  const begin = Math.min(...start.filter((_, i) => isCapture[i]), last);
+  const early = Math.max(...end.filter((_, i) => frame[i] >= 0 && frame[i] < kFirstFrames), 1);
   const state = {from: Math.min(begin, early), to: early};
-  const draw = (host, width) => {
-    const left = Math.min(100, width * 0.26);
-    const {plot, width: inner, height} =
-        drawing(host, width, lanes.length * 34 + 50, {left, right: 8, top: 6, bottom: 40}, 'Time line');
-    const x = linear([inMs(state.from), inMs(state.to)], [0, inner]);
-    plot.append(axisBelow(
-        x, inner, height, 'ms since power-up',
-        {text: tick => fixed(tick, state.to - state.from < 20000 ? 2 : 0)}));
+
+  const titleOf = i => {
+    if (kind[i] === 'wait') return `${kWaits[what[i]]}${frame[i] >= 0 ? ` (frame ${frame[i]})` : ''}`;
+    if (kind[i] === 'drop') return `Camera frame ${cameraFrame[i]} of the ${what[i]} camera is dropped`;
+    const part = {strobe: ': start', pipeline: ': last registers'}[what[i]] ?? '';
+    const of = frame[i] >= 0 ? ` of frame ${frame[i]}` : kind[i] === 'upload' ? ` of ${what[i]}` : '';
+    return `${kNames[kind[i]]}${part}${of}`;
+  };
+  const linesOfEvent =
+      i => [titleOf(i),
+            end[i] > start[i] ? `${fixed(start[i] / kPsOfMs, 3)} to ${fixed(end[i] / kPsOfMs, 3)} ms: ${
+                                    fixed((end[i] - start[i]) / kPsOfMs, 3)} ms` :
+                                `at ${fixed(start[i] / kPsOfMs, 3)} ms`,
+            ['wait', 'drop'].includes(kind[i]) && whyText(kind[i] === 'drop' ? 'drop' : what[i], why[i])]
+               .filter(Boolean);
+
+  const drawOverview = (plot, inner) => {
+    const x = linear([0, last], [0, inner]);
+    lanes.forEach((name, line) => overview.lanes.forEach(({kind: its, class: side, amounts}) => {
+      if (laneOf(its, side) !== name) return;
+      const isDrop = its === 'drop';
+      unpack(amounts, overview.bins).forEach((amount, bin) => {
+        if (amount === 0) return;
+        plot.append(s('rect', {
+          x: bin / overview.bins * inner,
+          y: line * kOverviewLine + (isDrop ? 5 : 1),
+          width: inner / overview.bins + 0.3,
+          height: isDrop ? 2 : 7,
+          style: `fill:var(${isDrop ? '--ink' : kColours[its]});fill-opacity:${
+              isDrop ? 1 : 0.15 + 0.85 * Math.min(1, amount / 100)}`
+        }));
+      });
+    }));
+    const height = lanes.length * kOverviewLine;
+    plot.append(s('rect', {
+      x: x(state.from),
+      y: -1,
+      width: Math.max(2, x(state.to) - x(state.from)),
+      height: height + 2,
+      class: 'window'
+    }));
     addBrush(plot, {
       axis: 'x',
       width: inner,
       height,
-      end: box => box && zoom(1000 * x.invert(box.x0), 1000 * x.invert(box.x1))
+      end: (box, event) => {
+        if (box) return zoom(x.invert(box.x0), x.invert(box.x1));
+        const at = event.target.getBoundingClientRect();
+        const middle = x.invert((event.clientX - at.left) / at.width * inner);
+        zoom(middle - (state.to - state.from) / 2, middle + (state.to - state.from) / 2);
+      }
+    });
+  };
+
+  const draw = (host, width) => {
+    const left = Math.min(100, width * 0.26);
+    const top = lanes.length * kOverviewLine + 34;
+    const {svg, plot, width: inner, height} =
+        drawing(host, width, top + lanes.length * kLine + 46, {left, right: 8, top, bottom: 40}, 'Time line');
+    const above = s('g', {transform: `translate(${left} 16)`});
+    svg.append(above);
+    above.append(s('text', {x: -8, y: 12, 'text-anchor': 'end', class: 'label'}, 'whole run'));
+    above.append(
+        s('text', {x: inner, y: -5, 'text-anchor': 'end', class: 'label'},
+          `0 to ${fixed(last / kPsOfMs, 0)} ms; below: the window`));
+    drawOverview(above, inner);
+    const x = linear([state.from / kPsOfMs, state.to / kPsOfMs], [0, inner]);
+    const atPs = ps => Math.max(0, Math.min(inner, x(ps / kPsOfMs)));
+    const span = (state.to - state.from) / kPsOfMs;
+    plot.append(axisBelow(
+        x, inner, height, 'ms since power-up',
+        {text: tick => fixed(tick, Math.max(0, Math.ceil(1 - Math.log10(span / 5))))}));
+    addBrush(plot, {
+      axis: 'x',
+      width: inner,
+      height,
+      end: box => box && zoom(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
     });
     lanes.forEach(
         (name, line) =>
-            plot.append(s('text', {x: -8, y: line * 34 + 21, 'text-anchor': 'end'}, cut(name, left - 8))));
+            plot.append(s('text', {x: -8, y: line * kLine + 21, 'text-anchor': 'end'}, cut(name, left - 8))));
+    // Where the page has no events.
+    let known = 0;
+    for (const [from, to] of [...events.periods_ps, [last, last]]) {
+      if (from > known && atPs(from) > atPs(known))
+        plot.append(mark(
+            s('rect', {x: atPs(known), y: 0, width: atPs(from) - atPs(known), height, class: 'left-out'}),
+            ['Events of this time are not in the page', 'run --record --out writes all to timeline.csv']));
+      known = to;
+    }
     let marks = 0;
     for (let i = 0; i < events.rows && marks < kMostMarks; ++i) {
-      if (end[i] < state.from || start[i] - waited[i] > state.to) continue;
+      if (end[i] < state.from || start[i] > state.to) continue;
       ++marks;
-      const y = lanes.indexOf(lane[i]) * 34;
-      const at = us => Math.max(0, Math.min(inner, x(inMs(us))));
-      const [x0, x1] = [at(start[i]), at(end[i])];
-      if (waited[i] > 0)
-        plot.append(s('rect', {
-          x: at(start[i] - waited[i]),
-          y: y + 13,
-          width: Math.max(0.5, x0 - at(start[i] - waited[i])),
-          height: 8,
-          class: 'waiting'
-        }));
-      const lines = [
-        `${kind[i]}${frame[i] >= 0 ? ` of frame ${frame[i]}` : ''}: ${fixed(inMs(start[i]), 3)} to ${
-            fixed(inMs(end[i]), 3)} ms`,
-        end[i] > start[i] && `takes ${fixed(inMs(end[i] - start[i]), 3)} ms`,
-        waited[i] > 0 && `waited ${fixed(inMs(waited[i]), 3)} ms`, why[i] || null
-      ].filter(Boolean);
-      const shape = end[i] > start[i] ?
-          s('rect', {x: x0, y: y + 7, width: Math.max(1.5, x1 - x0), height: 20, rx: 2}) :
-          s('path', {d: `M${x0 - 5},${y + 12}l10,10m0,-10l-10,10`, class: 'cross'});
-      shape.setAttribute(
-          'style', `${end[i] > start[i] ? 'fill' : 'stroke'}:var(${kKinds[kind[i]] ?? '--grey'})`);
-      plot.append(mark(shape, lines));
-      if (frame[i] >= 0 && x1 - x0 > 26)
+      const y = lanes.indexOf(lane[i]) * kLine;
+      const [x0, x1] = [atPs(start[i]), atPs(end[i])];
+      if (kind[i] === 'wait') {
+        if (end[i] > start[i])
+          plot.append(mark(
+              s('rect', {x: x0, y: y + 13, width: Math.max(1, x1 - x0), height: 8, class: 'waiting'}),
+              linesOfEvent(i)));
+        continue;
+      }
+      const shape = kind[i] === 'drop' ?
+          s('path', {d: `M${x0 - 4},${y + 13}l8,8m0,-8l-8,8`, class: 'cross', style: 'stroke:var(--ink)'}) :
+          s('rect', {
+            x: x0,
+            y: y + 7,
+            width: Math.max(1.5, x1 - x0),
+            height: 20,
+            rx: Math.min(2, (x1 - x0) / 2),
+            style: `fill:var(${kColours[kind[i]]})`
+          });
+      plot.append(mark(shape, linesOfEvent(i)));
+      if (frame[i] >= 0 && x1 - x0 > 24)
         plot.append(
             s('text', {x: (x0 + x1) / 2, y: y + 21, 'text-anchor': 'middle', class: 'on-bar'},
               String(frame[i])));
     }
     if (marks === kMostMarks)
       plot.append(
-          s('text', {x: inner, y: 4, 'text-anchor': 'end', class: 'label'},
+          s('text', {x: inner, y: height - 6, 'text-anchor': 'end', class: 'label halo'},
             `the first ${whole(marks)} are drawn: zoom in`));
   };
   const zoom = (from, to) => {
-    const size = Math.max(10, Math.min(last, to - from));
+    const size = Math.max(1000, Math.min(last, to - from));
     state.from = Math.max(0, Math.min(last - size, from));
     state.to = state.from + size;
     chart.redraw();
@@ -103,21 +235,36 @@ export function addTimeLine(page, run, absent) {
         }
       },
         label);
-  const kinds = Object.entries(kKinds).filter(([name]) => kind.includes(name));
-  const core = kind.map((each, i) => each === 'core' ? end[i] - start[i] : 0).reduce((a, b) => a + b, 0);
+  const clock = settingOf(run, 'fpga.clock_mhz');
+  const works = run.stats.cycles / clock * 1e6 / last;
+  const drops = run.stats.cameras[0].dropped_frames;
+  const waits = coreWaits(run, last);
+  const leftOut = events.all > events.rows;
   const chart = addChart(page, {
     id: 'time',
     wide: true,
     draw,
-    title: `The core works ${fixed(100 * core / last, 1)} % of the time${
-        drops ? `; ${whole(drops)} camera frames are dropped` : ''}`,
-    note:
-        'The number in a bar is the frame; the thin bar before it the time that it waited. Drag to zoom in.',
+    title: `The core works ${percent(works)} of the time${waits.length ? `, and waits ${waits[0]}` : ''}`,
+    note: [
+      waits.length > 1 && `It also waits ${waits.slice(1).join(', and ')}.`,
+      drops > 0 && `${count(drops, 'frame')} of the left camera are dropped (crosses).`,
+      'The number in a bar is the frame; thin grey bars are waits. Drag in the overview, or in the window ' +
+          'below it, to choose the time that is shown.',
+      leftOut &&
+          `The page has ${whole(events.rows)} of ${whole(events.all)} events: those of the beginning, of ` +
+              'the slowest frame and of the end.'
+    ].filter(Boolean)
+              .join(' '),
     body: [
       h('div', {class: 'controls'}, button('+', 'Zoom in', 0.25, -0.25), button('−', 'Zoom out', -0.5, 0.5),
         button('◀', 'Earlier', -0.5, -0.5), button('▶', 'Later', 0.5, 0.5),
         h('button', {type: 'button', class: 'small', click: () => zoom(0, last)}, 'All')),
-      legend(kinds.map(([name, colour]) => [name, `var(${colour})`]))
+      legend([
+        ...Object.keys(kColours)
+            .filter(name => name !== 'drop' && kind.includes(name))
+            .map(name => [kNames[name], `var(${kColours[name]})`]),
+        ['waits', 'var(--faint)']
+      ])
     ],
     numbers: () =>
         [table.names,

@@ -1,11 +1,10 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
-import {count, fixed, percent, rate, signed, whole} from './format.js';
-import {unpack} from './table.js';
+import {count, fixed, percent, rate, signed, sum, whole} from './format.js';
 import {adviceOf, priceText, stepText} from './advice.js';
+import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kAbout = 1 + 1e-6;  // a rate that reaches its bound may be above it by rounding
 
-const sum = numbers => numbers.reduce((total, number) => total + number, 0);
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
@@ -74,12 +73,8 @@ function whoWaits(run) {
   ];
 }
 
-// The stalls of each row, of all ports together.
-export const stallsByRow = rows =>
-    rows.cycles.map((_, row) => sum(Object.values(rows.stalls).map(all => all[row])));
-
-// The rows that hold all but 1 % of an amount at each end.
-function mainRows(amounts) {
+// The first and the last of the amounts that hold all but 1 %, half of it at each end.
+function mainPart(amounts) {
   const total = sum(amounts);
   let first = 0;
   for (let below = amounts[0]; below < 0.005 * total; below += amounts[++first])
@@ -91,48 +86,53 @@ function mainRows(amounts) {
 }
 
 // The columns that hold the stalls.
-function mainColumns({columns, rows, width, stalls}) {
+function mainColumns(run) {
+  const [{columns, width, values}] = tilesOf(run);
   const amounts = new Array(columns).fill(0);
-  for (const {cycles} of stalls)
-    unpack(cycles, columns * rows).forEach((value, i) => {
-      amounts[i % columns] += value;
-    });
-  const {first, last} = mainRows(amounts);
-  return first === 0 && last === columns - 1 ? 'In all columns.' :
-                                               `In columns ${first * width} to ${(last + 1) * width - 1}.`;
+  values.forEach((value, i) => {
+    amounts[i % columns] += value;
+  });
+  const {first, last} = mainPart(amounts);
+  if (first === 0 && last === columns - 1) return 'Over all columns.';
+  return `In columns ${first * width} to ${Math.min((last + 1) * width, settingOf(run, 'image.width')) - 1}.`;
 }
 
 // Where in the picture the stalls are.
 export function whereText(run) {
-  const tiles = run.recording?.tiles;
-  const rows = run.rows;
-  if (!rows) return ['Not known: this report was made with --quick.'];
-  const amounts = stallsByRow(rows);
-  if (sum(amounts) === 0) return ['Nowhere: no row of the picture waits.'];
-  const {first, last, total} = mainRows(amounts);
-  const inside = amounts.slice(first, last + 1);
-  const mean = total / rows.frames / inside.length;
-  const tenth = Math.max(1, Math.round(amounts.length / 10));
-  let best = {sum: 0, row: 0};
-  for (let row = 0, window = 0; row < amounts.length; ++row) {
-    window += amounts[row] - (row >= tenth ? amounts[row - tenth] : 0);
-    if (window > best.sum) best = {sum: window, row: Math.max(0, row - tenth + 1)};
+  const recorded = linesOf(run);
+  if (!recorded) return ['Not known: this report was made with --quick, of a run without --record.'];
+  const {lines, height, frames, stalls} = recorded;
+  const amounts = Array.from({length: lines}, (_, line) => sum(stalls.map(({values}) => values[line])));
+  if (sum(amounts) === 0)
+    return [
+      stalls.length ? 'Nowhere: ports wait only before the first row.' :
+                      'Nowhere: no row of the picture waits.'
+    ];
+  const imageHeight = settingOf(run, 'image.height');
+  const {first, last, total} = mainPart(amounts);
+  const mean = total / frames / (last + 1 - first) / height;
+  const tenth = Math.max(1, Math.round(lines / 10));
+  let best = {sum: 0, line: 0};
+  for (let line = 0, window = 0; line < lines; ++line) {
+    window += amounts[line] - (line >= tenth ? amounts[line - tenth] : 0);
+    if (window > best.sum) best = {sum: window, line: Math.max(0, line - tenth + 1)};
   }
-  const uneven = best.sum / total > 2 * tenth / inside.length;
-  const texts =
-      [uneven ?
-           `Most in rows ${best.row} to ${best.row + tenth - 1}: ${
-               percent(best.sum / total, 0)} of all stalls.` :
-           `Rows ${first} to ${last} of ${amounts.length}, evenly: ${whole(mean)} cycles a row and frame.`];
-  const frames = run.stats.frame_cycles;
-  const least = Math.min(...frames);
-  const longer = frames.filter(cycles => cycles > 1.01 * least).length;
+  const uneven = best.sum / total > 2 * tenth / (last + 1 - first);
+  const texts = [
+    uneven ? `Most in ${rowsText(recorded, best.line, best.line + tenth, imageHeight)}: ${
+                 percent(best.sum / total, 0)} of all stalls.` :
+             `${rowsText(recorded, first, last + 1, imageHeight).replace(/^r/, 'R')} of ${
+                 imageHeight}, evenly: ${whole(mean)} cycles a row and frame.`,
+    mainColumns(run)
+  ];
+  const cycles = run.stats.frame_cycles;
+  const least = cycles.reduce((a, b) => Math.min(a, b));
+  const most = cycles.reduce((a, b) => Math.max(a, b));
+  const longer = cycles.filter(each => each > 1.01 * least).length;
   if (longer > 0) {
-    texts.push(
-        `In ${longer} of ${count(frames.length, 'frame')}: these take up to ` +
-        `${whole(Math.max(...frames))} cycles, the others ${whole(least)}.`);
+    texts.push(`In ${longer} of ${count(cycles.length, 'frame')}: these take up to ${
+        whole(most)} cycles, the others ${whole(least)}.`);
   }
-  if (tiles) texts.push(mainColumns(tiles));
   return texts;
 }
 

@@ -1,5 +1,7 @@
 // Numbers as text.
 
+export const kPsOfMs = 1e9;
+
 export const whole = number => Math.round(number).toLocaleString('en-US');
 export const fixed = (number, digits) =>
     number.toLocaleString('en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits});
@@ -20,6 +22,8 @@ export function brief(number) {
 
 // A value of a table: every digit that it has.
 export const value = any => any === null || any === undefined ? '' : String(any);
+
+export const sum = numbers => numbers.reduce((total, number) => total + number, 0);
 
 export const csvText = (names, rows) => [names, ...rows]
                                             .map(

@@ -1,5 +1,4 @@
 // What all pages have: the head line, the answers, groups of charts.
-import {addChart} from './chart.js';
 import {h} from './dom.js';
 import {themeSwitch} from './theme.js';
 
@@ -26,6 +25,3 @@ export function addGroup(page, title) {
   page.append(h('h2', {class: 'group'}, title), group);
   return group;
 }
-
-// A line in the place of a chart whose numbers were not recorded.
-export const addAbsent = text => (page, id, title) => addChart(page, {id, title, note: text});

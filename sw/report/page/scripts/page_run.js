@@ -8,18 +8,17 @@ import {addFrames} from './chart_frames.js';
 import {addKnobs, addRoofline} from './chart_knobs.js';
 import {addLatency} from './chart_latency.js';
 import {addMemory} from './chart_memory.js';
-import {addPicture, layersOf} from './chart_picture.js';
+import {addPicture} from './chart_picture.js';
 import {addRows} from './chart_rows.js';
 import {addBankUse, addPortStates} from './chart_states.js';
 import {addTimeLine} from './chart_time.js';
 import {h} from './dom.js';
 import {answersOf, headlineOf, settingOf} from './findings.js';
-import {addAbsent, addAnswers, addGroup, addHead} from './page_parts.js';
+import {addAnswers, addGroup, addHead} from './page_parts.js';
+import {tilesOf} from './recording.js';
 
 export function showRun(page, {run}) {
   const {stats} = run;
-  const absent = run.record_command ? `Not recorded in this run. To record it: ${run.record_command}` :
-                                      'Not recorded in this run.';
   addHead(page, {
     kind: 'run',
     name: stats.board,
@@ -33,11 +32,10 @@ export function showRun(page, {run}) {
   });
   addAnswers(page, answersOf(run));
 
-  if (run.memory_chart) addMemory(addGroup(page, 'The board and its traffic'), run);
+  addMemory(addGroup(page, 'The board and its traffic'), run);
   const limits = addGroup(page, 'What limits');
   addBounds(limits, run);
   addRoofline(limits, run);
-  if (!run.memory_chart) addMemory(limits, run);
   addBankUse(limits, run);
 
   const waits = addGroup(page, 'Who waits for whom, where and when');
@@ -46,16 +44,14 @@ export function showRun(page, {run}) {
   addRows(waits, run);
   if (run.pictures) {
     const {left, disparity, disparities} = run.pictures;
+    const layers = tilesOf(run);
     addPicture(waits, {
-      title: layersOf(run).length ? 'Stalls, painted over the picture' :
-                                    'The picture and its disparities: no stalls to paint',
-      layers: layersOf(run),
-      note: `The last frame${
-                run.recording?.tiles ? ' of the run.' :
-                                       ` of the run. ${
-                                           run.rows ? `Stalls by row; by column: ${absent}` :
-                                                      'Stalls are left out by --quick.'}`} ` +
-          'Disparities from dark (far) to bright (near); black: no answer.',
+      title: layers.length ? 'Where in the picture the ports wait' : 'The picture and its disparities',
+      layers,
+      note: `The last frame of the run. ${
+          layers.length     ? 'A stall belongs to the pixels whose results are next. ' :
+              run.recording ? 'There are no stalls to paint. ' :
+                              ''}Disparities from dark (far) to bright (near); black: no answer.`,
       pictures: left ? [{url: left}, {url: disparity, disparities}] : [{url: disparity, disparities}],
       names: left ? ['picture', 'disparities'] : ['disparities']
     });
@@ -63,8 +59,8 @@ export function showRun(page, {run}) {
   addFrames(waits, [['', stats.frame_cycles, '--blue']], settingOf(run, 'fpga.clock_mhz'));
   if (stats.cameras) {
     const computer = addGroup(page, 'The computer around the board');
-    addTimeLine(computer, run, addAbsent(absent));
-    addLatency(computer, run, run.recording?.latency ? '' : `How much of it is waiting: ${absent}`);
+    addTimeLine(computer, run);
+    addLatency(computer, run);
   }
   const change = addGroup(page, 'What to change, and what it costs');
   addKnobs(change, run);

@@ -179,9 +179,15 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
       note: 'The last frame of each run, with the rows that take longer in B.',
       pictures: [a, b].map(({pictures: {disparity, disparities}}) => ({url: disparity, disparities})),
       names: ['A', 'B'],
-      layers: rows?.cycles.some(value => value > 0) ?
-          [{name: 'B, by row', values: rows.cycles, columns: 1, rows: rows.cycles.length}] :
-          []
+      layers: rows?.cycles.some(value => value > 0) ? [{
+        name: 'B, by row',
+        values: rows.cycles,
+        columns: 1,
+        rows: rows.cycles.length,
+        width: settingOf(b, 'image.width'),
+        height: 1
+      }] :
+                                                      []
     });
   }
   addFrames(
