@@ -39,17 +39,22 @@ export function adviceOf(run) {
   const useful = steps.filter(
       step => gain(step) >= kWorthwhile && !step.changes_disparities && step.area.fits &&
           (!step.loses_pixels || board.loses_pixels));
-  const cheap = useful.filter(step => {
+  // Of a board that loses pixels, the best step that cures it comes first, whatever it gains or costs.
+  const cure = board.loses_pixels &&
+      steps.find(step => !step.loses_pixels && !step.changes_disparities && step.area.fits);
+  const isCheap = step => {
     const price = priceOf(step, board);
     return price.banks <= 0 && price.slicesPercent <= kCheapSlices && price.blockRams <= 0 &&
         step.clock_mhz === board.clock_mhz;
-  });
+  };
+  const cheap = useful.filter(isCheap);
   return {
-    first: cheap[0] ?? useful[0] ?? null,
+    first: cure || (cheap[0] ?? useful[0] ?? null),
     largest: useful[0] ?? null,
     gain,
     board,
-    isCheap: cheap.length > 0
+    isCheap: cure ? isCheap(cure) : cheap.length > 0,
+    cures: Boolean(cure),
   };
 }
 

@@ -3,7 +3,7 @@
 import {addChart, cut, drawing, textWidth} from './chart.js';
 import {s} from './dom.js';
 import {blamesOf, waitText} from './findings.js';
-import {fixed, whole} from './format.js';
+import {percent, whole} from './format.js';
 import {css, heat, inkOn} from './theme.js';
 import {mark} from './tooltip.js';
 
@@ -65,7 +65,7 @@ export function addBlame(page, run) {
               class: 'value',
               style: `fill:${inkOn(colour)}`
             },
-              fixed(100 * row.share, 1)));
+              percent(row.share).replace(' %', '')));
       });
     });
     const end = causes.length * kCellHeight;
@@ -77,10 +77,10 @@ export function addBlame(page, run) {
       const total = blames.filter(row => row.port === port.name).reduce((all, row) => all + row.cycles, 0);
       const x = cell * (column + 0.5);
       plot.append(
-          s('text', {x, y: end + 22, 'text-anchor': 'middle'}, fixed(100 * total / cycles, 1)),
+          s('text', {x, y: end + 22, 'text-anchor': 'middle'}, percent(total / cycles).replace(' %', '')),
           s('text',
             {x, y: end + 44, 'text-anchor': 'middle', class: total === port.stall_cycles ? 'good' : 'bad'},
-            fixed(100 * port.stall_cycles / cycles, 1) +
+            percent(port.stall_cycles / cycles).replace(' %', '') +
                 (total !== port.stall_cycles ? ' ≠' :
                      cell > 52               ? ' =' :
                                                '')));

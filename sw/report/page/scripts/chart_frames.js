@@ -45,8 +45,9 @@ export function addFrames(page, series, clockMhz) {
   addChart(page, {
     id: 'frames',
     draw,
-    title: least === most ? `Each of ${count(frames, 'frame')} takes ${whole(least)} cycles` :
-                            `Frames take ${brief(least)} to ${brief(most)} cycles`,
+    title: least === most ?
+        `${frames === 1 ? 'The frame' : `Each of ${frames} frames`} takes ${whole(least)} cycles` :
+        `Frames take ${brief(least)} to ${brief(most)} cycles`,
     note: 'Cycles of the FPGA clock from the start of a frame to its last result.',
     body: series.length > 1 && legend(series.map(([name, , colour]) => [name, `var(${colour})`])),
     numbers: () => [

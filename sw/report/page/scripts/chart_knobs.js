@@ -1,10 +1,13 @@
 // What one step of each knob gains, and its price.
 import {h, s} from './dom.js';
-import {brief, fixed, percent, rate, signed} from './format.js';
+import {brief, count, fixed, percent, rate, signed} from './format.js';
 import {addChart, cut, drawing} from './chart.js';
 import {adviceOf, priceOf, priceText, stepText} from './advice.js';
+import {rateOf} from './findings.js';
 import {axisBelow, axisLeft, logarithmic} from './scale.js';
 import {mark} from './tooltip.js';
+
+const kNearRoof = 0.9;
 
 export function addKnobs(page, run) {
   if (!run.knobs) {
@@ -92,8 +95,8 @@ export function addKnobs(page, run) {
     draw,
     title: advice.first ? `First: ${stepText(advice.first)}, ${signed(advice.gain(advice.first), percent)}` :
                           'No single step gains 1 % and keeps the disparities',
-    note:
-        `One step of each knob, simulated: ${board.frames} frames each. Right: gain, and what it takes in ` +
+    note: `One step of each knob, simulated: ${
+              count(board.frames, 'frame')} each. Right: gain, and what it takes in ` +
         'addition. *: changes the disparities. †: captures lose pixels.',
     body: h(
         'div', null, keep,
@@ -127,6 +130,7 @@ export function addKnobs(page, run) {
 export function addRoofline(page, run) {
   if (!run.knobs) return;
   const {board, steps} = run.knobs;
+  const {by} = rateOf(run);
   const setting = key => run.settings.find(each => each.key === key).value;
   const pixels = setting('image.width') * setting('image.height');
   const point = (step, name) => ({
@@ -170,14 +174,15 @@ export function addRoofline(page, run) {
           `${fixed(here.speed, 2)} Mpixels/s, ${percent(share)} of the roof`
         ]));
     const label = `${here.bank}: one access a cycle of ${here.clock} MHz`;
-    plot.append(s('text', {x: inner, y: 8, 'text-anchor': 'end', class: 'label'}, cut(label, inner)));
+    plot.append(s('text', {x: inner, y: 8, 'text-anchor': 'end', class: 'label halo'}, cut(label, inner)));
   };
   addChart(page, {
     id: 'roofline',
     draw,
-    title: share > 0.9 ?
-        `${here.bank} works at ${percent(share)} of its roof: fewer accesses are the way up` :
-        `${here.bank} works at ${percent(share)} of its roof: something else limits`,
+    title: `${here.bank} works at ${percent(share)} of its roof: ` +
+        (by.startsWith('bank') ? 'fewer accesses are the way up' :
+             share > kNearRoof ? `a faster ${by} needs fewer accesses too` :
+                                 `${by} limits`),
     note:
         'The line is what a bank with one access a cycle allows. Small: the board after one step of a knob.',
     numbers: () => [

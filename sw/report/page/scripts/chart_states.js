@@ -60,8 +60,7 @@ export function addPortStates(page, {stats}, suffix = '') {
         (worst.stall_cycles > 0 ?
              `${worst.name} is refused in ${percent(worst.stall_cycles / stats.cycles)} of the cycles` :
              'Every request of a port is granted at once'),
-    note:
-        'What each port does in all cycles of the frames; on the right the share granted. Passed: a ' +
+    note: 'What each port does in all cycles of the frames; on the right the share granted. Passed: a ' +
         'slot without access. Blocked: its lane is full. Starved: nothing to do yet.'
   });
 }

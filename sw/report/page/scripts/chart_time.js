@@ -85,8 +85,9 @@ export function addTimeLine(page, run) {
   }
   const {events, overview} = run.recording;
   const table = new Table(events.columns, events.rows);
-  const [kind, what, frame, cameraFrame, start, end, why] =
-      ['kind', 'class', 'frame', 'camera_frame', 'start_ps', 'end_ps', 'why'].map(name => table.column(name));
+  const [kind, what, frame, cameraFrame, start, end, lost, why] = [
+    'kind', 'class', 'frame', 'camera_frame', 'start_ps', 'end_ps', 'dropped_pixels', 'why'
+  ].map(name => table.column(name));
   const lane = kind.map((each, i) => laneOf(each, what[i]));
   const lanes = kLanes.filter(each => lane.includes(each));
   const last = overview.end_ps;
@@ -107,6 +108,7 @@ export function addTimeLine(page, run) {
             end[i] > start[i] ? `${fixed(start[i] / kPsOfMs, 3)} to ${fixed(end[i] / kPsOfMs, 3)} ms: ${
                                     fixed((end[i] - start[i]) / kPsOfMs, 3)} ms` :
                                 `at ${fixed(start[i] / kPsOfMs, 3)} ms`,
+            lost[i] > 0 && `${whole(lost[i])} pixels are lost: the FIFO was full`,
             ['wait', 'drop'].includes(kind[i]) && whyText(kind[i] === 'drop' ? 'drop' : what[i], why[i])]
                .filter(Boolean);
 
@@ -205,7 +207,7 @@ export function addTimeLine(page, run) {
             width: Math.max(1.5, x1 - x0),
             height: 20,
             rx: Math.min(2, (x1 - x0) / 2),
-            style: `fill:var(${kColours[kind[i]]})`
+            style: `fill:var(${kColours[kind[i]]})${lost[i] > 0 ? ';stroke:var(--bad);stroke-width:2.5' : ''}`
           });
       plot.append(mark(shape, linesOfEvent(i)));
       if (frame[i] >= 0 && x1 - x0 > 24)
@@ -263,8 +265,8 @@ export function addTimeLine(page, run) {
         ...Object.keys(kColours)
             .filter(name => name !== 'drop' && kind.includes(name))
             .map(name => [kNames[name], `var(${kColours[name]})`]),
-        ['waits', 'var(--faint)']
-      ])
+        ['waits', 'var(--faint)'], lost.some(pixels => pixels > 0) && ['loses pixels', 'var(--bad)']
+      ].filter(Boolean))
     ],
     numbers: () =>
         [table.names,

@@ -3,7 +3,8 @@ import {count, fixed, percent, rate, signed, sum, whole} from './format.js';
 import {adviceOf, priceText, stepText} from './advice.js';
 import {linesOf, rowsText, tilesOf} from './recording.js';
 
-const kAbout = 1 + 1e-6;  // a rate that reaches its bound may be above it by rounding
+const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
+const kAbout = 1 + 1e-6;     // a rate that reaches its bound may be above it by rounding
 
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
@@ -28,6 +29,8 @@ export const waitText = ({port, bank, by, share}) => by === 'turnaround' ?
     `${port} waits ${percent(share)} of all cycles, while ${bank} turns round` :
     `${port} waits ${percent(share)} of all cycles, for ${by}, on ${bank}`;
 
+const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
+
 function whatLimits(run) {
   const {by, limit, share, now, computer} = rateOf(run);
   const [kind, name] = by.split(' ');
@@ -36,11 +39,13 @@ function whatLimits(run) {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
       const busy = run.stats.banks.find(each => each.name === name);
-      return `Bank ${name}: it holds ${bank.buffers.map(each => each.name).join(', ')}, and is busy in ` +
+      return `Bank ${name} holds ${bank.buffers.map(each => each.name).join(', ')}, and is busy in ` +
           `${percent(busy.utilization)} of the cycles`;
     },
-    port: () => `Port ${name}: it takes one slot or word a cycle`,
-    matcher: () => 'The matcher: it takes one slot of both pictures a cycle, and the frame has so many slots',
+    port: () => `Port ${name}: it moves one word a cycle at most`,
+    matcher: () =>
+        'The matcher: it takes one pixel of each picture a cycle at most, and needs each pixel of ' +
+        'a window',
     camera: () => 'The cameras: the board could do more',
     pci: () => 'The PCI bus: the words of pictures and results fill it',
     bridge: () => 'The local bus behind the bridge',
@@ -54,16 +59,24 @@ function whatLimits(run) {
           `A capture begins with a camera frame: ${dropped.dropped_not_armed} of ${dropped.frames} frames ` +
           'of the camera found no free buffer');
     }
-    if (run.stats.cameras?.some(camera => camera.dropped_pixels > 0)) lost.push('captures lose pixels');
   }
   if (!computer && share < 0.99 && run.stats.blame.length === 0) {
     lost.push('no port stalls: the matcher waits for the queue of results, which no bound counts');
   }
-  return [`${because}.`, `${reached}: ${rate(now)}.${lost.length ? ` ${lost.join('; ')}.` : ''}`];
+  return [
+    `${because}.`, `${reached}: ${rate(now)}.${lost.length ? ` ${lost.join('; ')}.` : ''}`,
+    lostPixels(run) > 0 &&
+        `Captures lose ${whole(lostPixels(run))} pixels: their FIFOs are full before the ` +
+            'words reach the memory. Disparities there are wrong.'
+  ];
 }
 
 function whoWaits(run) {
   const blames = blamesOf(run);
+  if (blames.length > 0 && blames[0].share < kLeastShare) {
+    const all = sum(blames.map(row => row.cycles));
+    return [`Hardly anybody: all ports together wait ${count(all, 'cycle')} of ${whole(run.stats.cycles)}.`];
+  }
   if (blames.length === 0) return ['Nobody: no port of the banks ever stalls.'];
   const others =
       blames.slice(1, 3).map(row => `${row.port} for ${row.by} on ${row.bank} (${percent(row.share)})`);
@@ -122,7 +135,7 @@ export function whereText(run) {
     uneven ? `Most in ${rowsText(recorded, best.line, best.line + tenth, imageHeight)}: ${
                  percent(best.sum / total, 0)} of all stalls.` :
              `${rowsText(recorded, first, last + 1, imageHeight).replace(/^r/, 'R')} of ${
-                 imageHeight}, evenly: ${whole(mean)} cycles a row and frame.`,
+                 imageHeight}, evenly: ${whole(mean)} stall cycles a row and frame.`,
     mainColumns(run)
   ];
   const cycles = run.stats.frame_cycles;
@@ -139,12 +152,13 @@ export function whereText(run) {
 function whatFirst(run) {
   const advice = adviceOf(run);
   if (!advice) return ['Not known: this report was made with --quick.'];
-  const {first, largest, gain, isCheap} = advice;
+  const {first, largest, gain, isCheap, cures} = advice;
   if (!first) return ['Nothing in one step: no knob gains 1 % or more and keeps the disparities.'];
-  const text = step =>
-      `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s (${signed(gain(step), percent)})`;
+  const text = step => `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s (${
+      signed(gain(step), percent)})${step.loses_pixels ? ', and loses pixels too' : ''}`;
   return [
-    `${text(first)}${isCheap ? ', with the FPGA and the banks there are' : ''}.`,
+    `${text(first)}${isCheap ? ', with the FPGA and the banks there are' : ''}${
+        cures ? ', and loses no pixels' : ''}.`,
     largest === first ? null : `The largest step: ${text(largest)}.`
   ];
 }
@@ -167,7 +181,8 @@ export function headlineOf(run) {
              steady       ? ', steady' :
                  computer ? ' from power-up' :
                             ''}: ${percent(share)} of the bound ` +
-      `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets`;
+      `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets` +
+      (lostPixels(run) > 0 ? '. Captures lose pixels' : '');
 }
 
 // [question, [answer, ..]] in the order in which they are asked.

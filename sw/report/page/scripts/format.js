@@ -5,7 +5,12 @@ export const kPsOfMs = 1e9;
 export const whole = number => Math.round(number).toLocaleString('en-US');
 export const fixed = (number, digits) =>
     number.toLocaleString('en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits});
-export const percent = (share, digits = 1) => `${fixed(100 * share, digits)} %`;
+// What is more than nothing does not look like it: <0.1 %.
+export function percent(share, digits = 1) {
+  const least = 10 ** -digits;
+  const isLess = share > 0 && 100 * share < least / 2;
+  return `${isLess ? `<${fixed(least, digits)}` : fixed(100 * share, digits)} %`;
+}
 export const rate = number => fixed(number, number < 100 ? 2 : 1);
 export const signed = (number, text) => `${number < 0 ? '−' : '+'}${text(Math.abs(number))}`;
 export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? '' : 's'}`;

@@ -14,6 +14,7 @@ import {addBankUse, addPortStates} from './chart_states.js';
 import {addTimeLine} from './chart_time.js';
 import {h} from './dom.js';
 import {answersOf, headlineOf, settingOf} from './findings.js';
+import {count} from './format.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
 import {tilesOf} from './recording.js';
 
@@ -25,7 +26,7 @@ export function showRun(page, {run}) {
     headline: headlineOf(run),
     sub: [
       h('p', {class: 'note'},
-        `${run.folder} · ${stats.frames} frames · ` +
+        `${run.folder} · ${count(stats.frames, 'frame')} · ` +
             (stats.cameras ? 'the whole computer, with cameras' : 'the core alone, fed by an ideal host')),
       commandLine(run.command)
     ]

@@ -75,7 +75,7 @@ function addRowDifference(page, {rows, no_rows: reason}) {
             x: inner,
             y: y(parting.row) + (parting.row < 20 ? 14 : -5),
             'text-anchor': 'end',
-            class: 'now-label'
+            class: 'now-label halo'
           },
             `they part: row ${parting.row}`));
     }
@@ -116,7 +116,9 @@ function addTotals(page, a, b) {
         `${count(rows.length, 'figure')} of stats.json differ${rows.length === 1 ? 's' : ''}` :
         'All figures are the same',
     note: 'Only figures that differ are listed.',
-    body: htmlTable(['figure', 'A', 'B', 'B − A'], rows),
+    body: htmlTable(
+        ['figure', 'A', 'B', 'B − A'],
+        rows.map(row => row.map(cell => typeof cell === 'number' ? +cell.toPrecision(9) : cell))),
     numbers: () => [['figure', 'a', 'b', 'difference'], rows]
   });
 }

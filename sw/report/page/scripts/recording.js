@@ -45,8 +45,8 @@ export function tilesOf({recording}) {
     const values = unpack(column, tiles.columns * tiles.rows);
     return {...tiles, name: `${port} on ${bank} for ${by}`, values, total: sum(values)};
   });
-  maps.sort((a, b) => b.total - a.total);
-  if (maps.length < 2) return maps;
-  const all = maps[0].values.map((_, tile) => sum(maps.map(({values}) => values[tile])));
-  return [{...tiles, name: 'all stalls', values: all, total: sum(all)}, ...maps];
+  const some = maps.filter(({total}) => total > 0).sort((a, b) => b.total - a.total);
+  if (some.length < 2) return some;
+  const all = some[0].values.map((_, tile) => sum(some.map(({values}) => values[tile])));
+  return [{...tiles, name: 'all stalls', values: all, total: sum(all)}, ...some];
 }
