@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -37,12 +37,10 @@ class ConflictData {
     std::uint64_t cycles = 0;
     std::vector<fpga::FrameConflicts::BankAccesses> accesses;  // [bank]
   };
-  using Cause = std::array<std::string, 3>;  // port, bank, by
-
   std::size_t line_of(std::string_view first_row) const;
   std::pair<std::size_t, std::size_t> put_together() const;
   nlohmann::ordered_json rows_json() const;
-  nlohmann::ordered_json stall_json(const Cause& cause, const std::vector<std::uint64_t>& cycles) const;
+  nlohmann::ordered_json stall_json(const std::string& cause, const std::vector<std::uint64_t>& cycles) const;
   // Sums over rectangles of tiles.
   std::vector<std::uint64_t> larger_tiles(const std::vector<std::uint64_t>& cycles) const;
 
@@ -51,8 +49,9 @@ class ConflictData {
   CsvLines rows_csv_;
   CsvLines tiles_csv_;
   std::uint64_t frames_ = 0;
-  std::vector<Line> lines_;                             // [0]: the fill, before the first line of tiles
-  std::map<Cause, std::vector<std::uint64_t>> stalls_;  // [tile]; [0]: the fill
+  std::vector<Line> lines_;  // [0]: the fill, before the first line of tiles
+  // ["port,bank,by"][tile]; [0]: the fill
+  std::map<std::string, std::vector<std::uint64_t>, std::less<>> stalls_;
 };
 
 }  // namespace stereotlm::report
