@@ -123,7 +123,6 @@ class CommandLine(ProgramTest):
             ([*timing, "--truth", self.left], f"--truth: {no_disparities}"),
             ([*timing, *saved], f"--save-frames: {no_disparities}"),
             ([*pair, "--save-frames"], "--save-frames: goes with --out DIR"),
-            ([*pair, "--record", "--out", self.out], "--record: goes with --source camera, which has a time"),
         ], self.run_with)
         self.refused_in_one_line(run("run", "fpl2003", *pair, "--record"), "--record: goes with --out DIR")
         self.refused(self.run_with("--video", "a", "b", "c", "--video-layout", "two"))
