@@ -38,17 +38,15 @@ constexpr const char* kMark = "conflicts.csv";  // the file that is moved into p
 constexpr std::array kFigures = {"bank_rows", "picture", "time_line", "causes"};
 constexpr std::array kEndings = {".png", ".svg", ".pdf", ".csv"};
 constexpr const char* kConflictsFooter =
-    "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv, "
-    "stalls\n"
-    "by tile, which is a group of four columns in the rows of results that leave at once; rows.csv, cycles,\n"
-    "stalls and accesses of every frame by rows; and the figures, each with its data:\n"
+    "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv,\n"
+    "stalls by tile, which is a group of four columns in the rows of results that leave at once; rows.csv,\n"
+    "cycles, stalls and accesses of every frame by rows; and the figures, each with its data:\n"
     "  bank_rows  use of the banks, and stalls, by row\n"
     "  picture    stalls painted over the left picture\n"
     "  time_line  the frame with the most cycles: use of the banks, and stalls, over its time\n"
     "  causes     stalls of each port by bank and cause\n"
-    "A RUN is repeated from its config.yaml and run.json, after a check of every input by its SHA-256, and "
-    "must\n"
-    "give the figures of its stats.json. The sums of what is written equal the figures of the run.";
+    "A RUN is repeated from its config.yaml and run.json, after a check of every input by its SHA-256, and\n"
+    "must give the figures of its stats.json. The sums of what is written equal the figures of the run.";
 
 // The options of `conflicts`: those of `run` that say what is simulated, or a folder of a run.
 struct ConflictsOptions {
@@ -86,12 +84,12 @@ struct ConflictsOptions {
     problems.check();
   }
 
-  // The arguments of the script.
-  std::vector<std::string> arguments(const fs::path& folder) const {
+  // The arguments of the script. Without a folder it only checks them.
+  std::vector<std::string> arguments(const fs::path& folder = {}) const {
     std::vector<std::string> words;
     if (format.is_given()) words.push_back("--format=" + format.text);
     if (size.is_given()) words.push_back("--size=" + size.text);
-    words.insert(words.end(), {"--", folder.string()});
+    if (!folder.empty()) words.insert(words.end(), {"--", folder.string()});
     return words;
   }
 };
@@ -215,7 +213,15 @@ bool draw(const ConflictsOptions& options, const runs::RunInput& input, const ru
   return true;
 }
 
+// Refuses --format or --size if they are wrong, before anything is simulated.
+void check_looks(const ConflictsOptions& options) {
+  if (options.arguments().empty()) return;
+  const auto end = process::run_script(kScript, options.arguments());
+  if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
+}
+
 int conflicts(const ConflictsOptions& options) {
+  check_looks(options);
   Subject subject = load(options);
   runs::RunInput& input = subject.input;
   std::optional<files::OutputFolder> folder;
@@ -244,15 +250,16 @@ int conflicts(const ConflictsOptions& options) {
   if (!statistics.failed.empty()) return kFailed;
   if (subject.recorded)
     runs::check_repeated(*subject.recorded, runs::figures_of(statistics, simulation->last(), input));
-  process::print(report::conflicts_text(input.board, *simulation->conflicts(), shown.sums.sums()));
-  if (!folder) return kDone;
-  const std::string csv = report::conflicts_csv(input.board, *simulation->conflicts());
-  if (!draw(options, input, *simulation, shown, csv, *folder)) {
-    process::say("note", "interrupted: nothing is written");
-    return kInterrupted;
+  if (folder) {
+    const std::string csv = report::conflicts_csv(input.board, *simulation->conflicts());
+    if (!draw(options, input, *simulation, shown, csv, *folder)) {
+      process::say("note", "interrupted: nothing is written");
+      return kInterrupted;
+    }
+    folder->add(kMark, csv);
+    folder->commit();
   }
-  folder->add(kMark, csv);
-  folder->commit();
+  process::print(report::conflicts_text(input.board, *simulation->conflicts(), shown.sums.sums()));
   return kDone;
 }
 

@@ -11,7 +11,7 @@ import program
 from pictures import noise, pgm, ppm
 from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
 
-COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate plot diff paper".split()
+COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff paper".split()
 UNBUILT_COMMANDS = ["report"]
 UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
 OPTIONS_OF_RUN = (
