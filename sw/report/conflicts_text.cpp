@@ -35,12 +35,11 @@ std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t
   return best;
 }
 
-// "rows 12..40"; nothing if most of the rows are as good as any.
+// "80 % in rows 12..40"; empty if that is most of the rows.
 std::string place_of(const char* name, const std::vector<std::uint64_t>& values, std::size_t length,
                      int whole) {
   const auto [first, end] = shortest_run(values);
-  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size()))
-    return fmt::format("all over the {}", name);
+  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return {};
   const std::size_t last = std::min(end * length, static_cast<std::size_t>(whole)) - 1;
   return fmt::format("{:.0f} % in {} {}..{}", 100 * kMost, name, first * length, last);
 }
@@ -54,8 +53,10 @@ std::string where(const platform::BoardConfig& board, const fpga::TileGrid& grid
     columns[(tile - 1) % grid.columns] += tiles[tile];
   }
   if (sum_of(rows) == 0) return "before the first row of results";
-  return place_of("rows", rows, grid.rows_of_tile, board.image.height) + ", " +
-         place_of("columns", columns, grid.columns_of_tile, board.image.width);
+  const std::string of_rows = place_of("rows", rows, grid.rows_of_tile, board.image.height);
+  const std::string of_columns = place_of("columns", columns, grid.columns_of_tile, board.image.width);
+  if (of_rows.empty() && of_columns.empty()) return "all over the picture";
+  return of_rows + (of_rows.empty() || of_columns.empty() ? "" : ", ") + of_columns;
 }
 
 std::string table_of_rows(const platform::BoardConfig& board, const fpga::FrameConflicts& sums) {
