@@ -120,45 +120,49 @@ bool ConflictRecorder::is_at_strip_end() const {
   return strip_ == 0 ? columns_ == geometry_.result_delay_columns : group_ == groups_of_strip_;
 }
 
-void ConflictRecorder::repeat(const std::vector<const GroupConflicts*>& groups, std::uint64_t times,
+void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
                               const memory::Arbitration& arbitration) {
-  const std::size_t count = groups.size() * static_cast<std::size_t>(times);
-  columns_ += 4 * count;
-  for (std::size_t first = 0; first < groups.size(); ++first) {
+  for (std::size_t first = 0; first < size; ++first) {
     const GroupConflicts& group = *groups[first];
     if (group.host_words != 0)
       host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_) += group.host_words * times;
-    for (const memory::Stall& stall : group.stalls) {
-      const std::size_t requester = requester_of_port(stall.port);
-      const std::size_t by = requester_of_port(stall.by);
-      std::uint64_t* const cycles = stalls_of(requester, arbitration.bank_of(stall.port), by).data();
-      frame_.strips[strip_].stalls[requester] += stall.cycles * times;
-      if (strip_ == 0) {
-        cycles[0] += stall.cycles * times;
-        continue;
-      }
-      const std::size_t first_tile = tile_of(strip_, 0);
-      const std::uint64_t of_group = stall.cycles;
-      if (groups.size() == 1 && group_shift_ == 0) {  // mostly, and faster
-        std::uint64_t* const its = cycles + first_tile + group_;
-        for (std::size_t next = 0; next < count; ++next) its[next] += of_group;
-        continue;
-      }
-      for (std::size_t next = group_ + first; next < group_ + count; next += groups.size())
-        cycles[first_tile + (next >> group_shift_)] += of_group;
-    }
+    if (!group.stalls.empty()) add_stalls(group, first, static_cast<std::size_t>(times), size, arbitration);
   }
+  columns_ += 4 * size * times;
   if (strip_ == 0) {
-    for (const GroupConflicts* group : groups) cycle_ += group->cycles * times;
+    for (std::size_t group = 0; group < size; ++group) cycle_ += groups[group]->cycles * times;
     return;
   }
   for (std::uint64_t time = 0; time < times; ++time) {
-    for (const GroupConflicts* group : groups) {
-      cycle_ += group->cycles;
+    for (std::size_t group = 0; group < size; ++group) {
+      cycle_ += groups[group]->cycles;
       end_group_of_strip();
     }
   }
   tile_ = tile_of(strip_, std::min(group_, groups_of_strip_ - 1));
+}
+
+// Adds the stalls of a group that comes `count` times, every `step` groups, `first` groups after the next one.
+void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
+                                  std::size_t step, const memory::Arbitration& arbitration) {
+  for (const memory::Stall& stall : group.stalls) {
+    const std::size_t requester = requester_of_port(stall.port);
+    const std::size_t by = requester_of_port(stall.by);
+    std::uint64_t* const cycles = stalls_of(requester, arbitration.bank_of(stall.port), by).data();
+    frame_.strips[strip_].stalls[requester] += stall.cycles * count;
+    if (strip_ == 0) {
+      cycles[0] += stall.cycles * count;
+      continue;
+    }
+    std::uint64_t* const of_strip = cycles + tile_of(strip_, 0);
+    const std::uint64_t of_group = stall.cycles;
+    if (step == 1 && group_shift_ == 0) {  // mostly, and faster
+      for (std::size_t next = group_; next < group_ + count; ++next) of_strip[next] += of_group;
+      continue;
+    }
+    for (std::size_t next = group_ + first, end = next + step * count; next < end; next += step)
+      of_strip[next >> group_shift_] += of_group;
+  }
 }
 
 void ConflictRecorder::end_strip(const CoreControl& control, const memory::Arbitration& arbitration) {
@@ -194,7 +198,16 @@ HostTraffic ConflictRecorder::traffic_of(bool write, std::uint64_t address) cons
 
 void ConflictRecorder::add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle,
                                   std::uint64_t cycles, bool granted) {
-  if (is_recording_) served_.push_back({cycle, cycles, bank, traffic, granted});
+  if (!is_recording_) return;
+  if (!served_.empty()) {
+    Served& last = served_.back();
+    if (last.cycle + last.cycles == cycle && last.bank == bank && last.traffic == traffic &&
+        last.granted == granted) {
+      last.cycles += cycles;
+      return;
+    }
+  }
+  served_.push_back({cycle, cycles, bank, traffic, granted});
 }
 
 void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& control,

@@ -99,7 +99,8 @@ class ConflictRecorder {
   bool start_frame(std::uint64_t cycle, const CoreControl& control);
   void end_frame(std::uint64_t end_cycle, const CoreControl& control, const memory::Arbitration& arbitration);
 
-  // For CoreStepper: these ports requested and were granted in a cycle.
+  // For CoreStepper: these ports requested and were granted in a cycle. May be left out for a cycle in which
+  // the host was not granted and nobody was refused.
   void step(memory::PortMask requests, memory::PortMask granted, const memory::Arbitration& arbitration);
   // The group has been completed in the cycle before `next_cycle`.
   void end_group(std::uint64_t next_cycle, const CoreControl& control,
@@ -109,7 +110,7 @@ class ConflictRecorder {
   // must be in the state after them when end_strip() is called.
   std::uint64_t columns_to_strip_end() const;
   // These groups follow each other, and this `times` times. They end at the end of the strip at the latest.
-  void repeat(const std::vector<const GroupConflicts*>& groups, std::uint64_t times,
+  void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
               const memory::Arbitration& arbitration);
   bool is_at_strip_end() const;
   void end_strip(const CoreControl& control, const memory::Arbitration& arbitration);
@@ -171,6 +172,8 @@ class ConflictRecorder {
   std::uint64_t& host_accesses(std::size_t strip, std::size_t bank, HostTraffic traffic) {
     return accesses_of(strip, bank)[1 + static_cast<std::size_t>(traffic)];
   }
+  void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step,
+                  const memory::Arbitration& arbitration);
   void count_grants(const CoreControl& control, const memory::Arbitration& arbitration);
   std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
   // The group ends before cycle_.

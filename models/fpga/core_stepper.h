@@ -37,7 +37,7 @@ class CoreStepper {
     control_.count_host(host_requests, (granted & host) != 0);
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     if (conflicts_ != nullptr) {
-      conflicts_->step(requests, granted, arbitration_);
+      if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted, arbitration_);
       if (completed_group_) conflicts_->end_group(cycle + 1, control_, arbitration_);
     }
     return granted;

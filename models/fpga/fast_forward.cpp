@@ -292,22 +292,20 @@ void FastForward::skip(const Progress& progress) {
   skipped_cycles_ += progress.cycles;
 }
 
-// Hands what has been skipped to the recorder of the frame, if there is one. Returns true at the end of a
-// strip, where more may be skipped.
-bool FastForward::record_skipped(std::uint64_t cycle) {
-  ConflictRecorder* const conflicts = stepper_.conflicts();
-  if (conflicts == nullptr || known_.in_order().empty()) return false;
+// See record_skipped().
+bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle) {
+  if (known_.in_order().empty()) return false;
   const std::vector<TransitionCache::InOrder>& in_order = known_.in_order();
   for (auto next = in_order.begin(); next != in_order.end(); next += repeated_.size()) {
     repeated_.clear();
     for (std::uint32_t step = 0; step < next->length; ++step)
       repeated_.push_back(&known_.conflicts((next + step)->effect));
-    conflicts->repeat(repeated_, next->times, stepper_.arbitration());
+    conflicts.repeat(repeated_.data(), repeated_.size(), next->times, stepper_.arbitration());
   }
   known_.forget_order();
-  if (!conflicts->is_at_strip_end()) return false;
+  if (!conflicts.is_at_strip_end()) return false;
   catch_up(cycle);
-  conflicts->end_strip(control(), stepper_.arbitration());
+  conflicts.end_strip(control(), stepper_.arbitration());
   return true;
 }
 

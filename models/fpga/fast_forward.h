@@ -105,7 +105,12 @@ class FastForward {
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   void follow(const TransitionCache::Transition& transition);
   void skip(const Progress& progress);
-  bool record_skipped(std::uint64_t cycle);
+  // Hands what has been skipped to the recorder of the frame, if there is one. Returns true at the end of a
+  // strip, where more may be skipped.
+  bool record_skipped(std::uint64_t cycle) {
+    return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle);
+  }
+  bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle);
   void tell_assumed();
   void catch_up(std::uint64_t cycle);
   StateNumber walk_known(StateNumber state, Progress& room);

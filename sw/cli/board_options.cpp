@@ -4,9 +4,10 @@
 
 namespace stereotlm::cli {
 
-void BoardOptions::add_to(CLI::App& command) {
+void BoardOptions::add_to(CLI::App& command, const std::string& beside_board) {
   board_.add_to(command, "BOARD", " ",
-                "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml");
+                "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml" +
+                    beside_board);
   sets_.add_to(command, "--set", "KEY=VALUE",
                "Give a key of the board another value, a YAML flow value; again for further keys "
                "(see stereotlm keys)");

@@ -18,14 +18,16 @@ namespace stereotlm::cli {
 // The argument BOARD and the options --set and --calibration, which all commands that take a board share.
 class BoardOptions {
  public:
-  // Adds the options to a command, before parsing.
-  void add_to(CLI::App& command);
+  // Adds the options to a command, before parsing. `beside_board`: what BOARD may be beside a board.
+  void add_to(CLI::App& command, const std::string& beside_board = "");
 
   // To be called in the command's callback: reports a missing BOARD.
   void check_given(process::Problems& problems);
   // To be called in the command's callback: throws Refused if BOARD is missing.
   void check_usage();
 
+  // Whether --set or --calibration is given.
+  bool changes_board() const { return sets_.is_given() || calibration_option_.is_given(); }
   // BOARD as typed.
   const std::string& name() const { return board_.text; }
 

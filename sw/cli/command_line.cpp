@@ -103,6 +103,7 @@ Action parse_command_line(int argc, const char* const* argv) {
   add_merge(program, action);
   add_allocate(program, action);
   add_plot(program, action);
+  add_conflicts(program, action);
   add_diff(program, action);
   add_diagram(program, action);
   add_report(program, action);

@@ -25,6 +25,7 @@ void add_allocate(CLI::App& program, Action& action);
 void add_sweep(CLI::App& program, Action& action);
 void add_merge(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
+void add_conflicts(CLI::App& program, Action& action);
 void add_diagram(CLI::App& program, Action& action);
 void add_diff(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);

@@ -27,6 +27,8 @@ class PictureOptions {
   // To be called after check_given(): reports all other problems.
   void check_usage(process::Problems& problems);
 
+  bool is_given() const { return !sources_given().empty() || video_layout_.is_given(); }
+
   // Set by check_usage(). If there were no problems, exactly one member is set, or none if pictures may be
   // missing.
   runs::PictureSource source;

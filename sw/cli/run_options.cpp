@@ -19,8 +19,8 @@ const std::vector<std::string> kFidelities = {"fast", "cycle"};
 
 }  // namespace
 
-void RunOptions::add_to(CLI::App& command) {
-  board.add_to(command);
+void RunOptions::add_simulation_to(CLI::App& command, const std::string& beside_board) {
+  board.add_to(command, beside_board);
   pictures.add_to(command);
   frames_.add_to(command, "--frames", "N",
                  "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows "
@@ -37,6 +37,15 @@ void RunOptions::add_to(CLI::App& command) {
   add_flag(command, "--timing-only", timing_only,
            "Leave out all pixels: the times and counts are the same, and no picture is needed; writes no "
            "disparities");
+}
+
+bool RunOptions::has_board_only() const {
+  return !board.changes_board() && !pictures.is_given() && !frames_.is_given() && !source_.is_given() &&
+         !fidelity_.is_given() && !timing_only;
+}
+
+void RunOptions::add_to(CLI::App& command) {
+  add_simulation_to(command);
   add_flag(command, "--verify", verify,
            "Run at the other fidelity too, in a second process, and compare every figure, time and pixel");
   truth.add_to(command, "the left picture that the last frame shows");

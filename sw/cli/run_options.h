@@ -21,6 +21,10 @@ class RunOptions {
  public:
   // Adds the options to the command, before parsing.
   void add_to(CLI::App& command);
+  // Adds only those that say what is simulated, for another command. `run`: what BOARD may be beside a board.
+  void add_simulation_to(CLI::App& command, const std::string& beside_board = "");
+  // Whether none of these but BOARD is given.
+  bool has_board_only() const;
 
   // To be called in the command's callback: throws Refused if options are wrong.
   void check_usage();

@@ -9,7 +9,7 @@ void UnbuiltOption::add_to(CLI::App& command) {
 }
 
 void UnbuiltOption::report(process::Problems& problems) const {
-  if (option_->count() > 0) problems.add(name_ + ": " + kNotInThisVersion);
+  if (option_ != nullptr && option_->count() > 0) problems.add(name_ + ": " + kNotInThisVersion);
 }
 
 }  // namespace stereotlm::cli

@@ -56,13 +56,6 @@ Rerun::Frame frame_of(const std::string& message, const RecordedRun& run) {
   return frame;
 }
 
-std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input) {
-  statistics.fidelity = input.described.fidelity;
-  std::optional<report::Accuracy> accuracy;
-  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
-  return report::stats_json(statistics, accuracy);
-}
-
 void run_again(const RecordedRun& run, bool record, const process::Child::Tell& tell) {
   process::Problems problems;
   RunInput input = open_again(run, problems);
@@ -93,6 +86,26 @@ void run_again(const RecordedRun& run, bool record, const process::Child::Tell& 
 
 }  // namespace
 
+std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input) {
+  statistics.fidelity = input.described.fidelity;
+  std::optional<report::Accuracy> accuracy;
+  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
+  return report::stats_json(statistics, accuracy);
+}
+
+void check_repeated(const RecordedRun& run, const std::string& stats_json) {
+  if (stats_json == run.stats_json) return;
+  const auto differences = report::stats_differences(run.stats_json, stats_json, "recorded", "again");
+  std::string text = differences.empty() ? "its stats.json is not as `run` writes it"
+                                         : "repeated, it has other figures: " + differences.front();
+  if (differences.size() > 1) text += fmt::format(", and {} more", differences.size() - 1);
+  if (run.options.program_version != process::kVersion) {
+    text += fmt::format("; it was written by version {}, this is {}", run.options.program_version,
+                        process::kVersion);
+  }
+  throw std::runtime_error(text);
+}
+
 Rerun::Rerun(const RecordedRun& run, Record record)
     : run_(run),
       record_(std::move(record)),
@@ -111,24 +124,11 @@ std::optional<Rerun::Frame> Rerun::next() {
     }
     if (!message) throw std::runtime_error("has ended without figures");
     if (message->front() == kFrame) return frame_of(*message, run_);
-    check_figures(message->substr(1));
+    check_repeated(run_, message->substr(1));
     return std::nullopt;
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}: {}", name_of(run_), error.what()));
   }
-}
-
-void Rerun::check_figures(const std::string& stats_json) const {
-  if (stats_json == run_.stats_json) return;
-  const auto differences = report::stats_differences(run_.stats_json, stats_json, "recorded", "again");
-  std::string text = differences.empty() ? "its stats.json is not as `run` writes it"
-                                         : "repeated, it has other figures: " + differences.front();
-  if (differences.size() > 1) text += fmt::format(", and {} more", differences.size() - 1);
-  if (run_.options.program_version != process::kVersion) {
-    text += fmt::format("; it was written by version {}, this is {}", run_.options.program_version,
-                        process::kVersion);
-  }
-  throw std::runtime_error(text);
 }
 
 }  // namespace stereotlm::runs

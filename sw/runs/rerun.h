@@ -11,11 +11,17 @@
 #include "models/kernels/gray_image.h"
 #include "sw/process/child.h"
 #include "sw/runs/recorded_run.h"
+#include "sw/runs/simulation/simulation.h"
 
 namespace stereotlm::runs {
 
-// Repeats a recorded run in a child process and records the rows of its frames, and what `run --record` does. The repetition is always at
-// fidelity fast, because the figures do not depend on the fidelity.
+// The figures of a repeated run, as text for check_repeated(). `input`: see open_again().
+std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input);
+// Throws std::runtime_error if these figures of the repetition differ from those of the run.
+void check_repeated(const RecordedRun& run, const std::string& figures);
+
+// Repeats a recorded run in a child process and records the rows of its frames, and what `run --record` does.
+// The repetition is always at fidelity fast, because the figures do not depend on the fidelity.
 class Rerun {
  public:
   // Takes text for the end of a file of `run --record`.
@@ -37,8 +43,6 @@ class Rerun {
   std::optional<Frame> next();
 
  private:
-  void check_figures(const std::string& stats_json) const;
-
   const RecordedRun& run_;
   Record record_;
   std::unique_ptr<process::Child> child_;

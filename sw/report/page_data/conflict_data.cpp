@@ -61,15 +61,16 @@ void ConflictData::add_rows(std::string_view text) {
 
 void ConflictData::add_tiles(std::string_view text) {
   tiles_csv_.read(text, [this](const CsvLines::Cells& cells) {
-    std::vector<std::uint64_t>& cycles =
-        stalls_[{std::string(cells[kPort]), std::string(cells[kPort + 1]), std::string(cells[kPort + 2])}];
-    cycles.resize(1 + grid_.rows * grid_.columns);
+    const char* const first = cells[kPort].data();
+    const std::string_view cause(first, static_cast<std::size_t>(cells[kPort + 3].data() - 1 - first));
+    auto found = stalls_.find(cause);
+    if (found == stalls_.end()) found = stalls_.emplace(cause, 1 + grid_.rows * grid_.columns).first;
     std::size_t tile = 0;
     if (!cells[kTileRow].empty()) {
       const std::size_t column = tiles_csv_.number(cells[kTileColumn]) / grid_.columns_of_tile;
       tile = 1 + (line_of(cells[kTileRow]) - 1) * grid_.columns + std::min(column, grid_.columns - 1);
     }
-    cycles[tile] += tiles_csv_.number(cells[kPort + 3]);
+    found->second[tile] += tiles_csv_.number(cells[kPort + 3]);
   });
 }
 
@@ -112,13 +113,15 @@ Json ConflictData::rows_json() const {
           {"accesses", std::move(accesses)}};
 }
 
-Json ConflictData::stall_json(const Cause& cause, const std::vector<std::uint64_t>& cycles) const {
+Json ConflictData::stall_json(const std::string& cause, const std::vector<std::uint64_t>& cycles) const {
+  const std::size_t port_end = cause.find(',');
+  const std::size_t bank_end = cause.rfind(',');
   std::vector<std::uint64_t> rows = {cycles[0]};
   for (auto row = cycles.begin() + 1; row != cycles.end(); row += static_cast<std::ptrdiff_t>(grid_.columns))
     rows.push_back(std::accumulate(row, row + static_cast<std::ptrdiff_t>(grid_.columns), std::uint64_t{0}));
-  return {{"port", cause[0]},
-          {"bank", cause[1]},
-          {"by", cause[2]},
+  return {{"port", cause.substr(0, port_end)},
+          {"bank", cause.substr(port_end + 1, bank_end - port_end - 1)},
+          {"by", cause.substr(bank_end + 1)},
           {"rows", packed(rows)},
           {"tiles", packed(larger_tiles(cycles))}};
 }

@@ -37,6 +37,7 @@ class ConflictData {
     std::uint64_t cycles = 0;
     std::vector<fpga::FrameConflicts::BankAccesses> accesses;  // [bank]
   };
+
   std::size_t line_of(std::string_view first_row) const;
   std::pair<std::size_t, std::size_t> put_together() const;
   nlohmann::ordered_json rows_json() const;

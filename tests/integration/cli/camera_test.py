@@ -107,7 +107,7 @@ class Recording(CameraTest):
     def test_a_full_disk_leaves_the_folder_as_it_was(self):
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
         command = self.arguments("--timing-only", "--record", "--frames", "20", "--out", self.out)
-        self.fails(run(*command, preexec_fn=limit), "'timeline.csv' cannot be written: File too large")
+        self.fails(run(*command, preexec_fn=limit), "'rows.csv' cannot be written: File too large")
         self.assertFalse(self.out.exists())
 
     def test_a_recorded_run_is_repeated_by_diff(self):

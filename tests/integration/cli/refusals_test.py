@@ -11,7 +11,9 @@ import program
 from pictures import noise, pgm, ppm
 from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
 
-COMMANDS = "run check boards keys bounds explain calibrate sweep merge allocate plot diff diagram report paper".split()
+COMMANDS = (
+    "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report paper"
+).split()
 UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
@@ -119,7 +121,6 @@ class CommandLine(ProgramTest):
             ([*timing, "--truth", self.left], f"--truth: {no_disparities}"),
             ([*timing, *saved], f"--save-frames: {no_disparities}"),
             ([*pair, "--save-frames"], "--save-frames: goes with --out DIR"),
-            ([*pair, "--record", "--out", self.out], "--record: goes with --source camera, which has a time"),
         ], self.run_with)
         self.refused_in_one_line(run("run", "fpl2003", *pair, "--record"), "--record: goes with --out DIR")
         self.refused(self.run_with("--video", "a", "b", "c", "--video-layout", "two"))

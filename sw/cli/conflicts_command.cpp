@@ -1,0 +1,273 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sw/cli/add_command.h"
+#include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/load_run_input.h"
+#include "sw/cli/run_options.h"
+#include "sw/files/folder_entries.h"
+#include "sw/files/output_folder.h"
+#include "sw/files/temporary_folder.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/python_script.h"
+#include "sw/process/streams.h"
+#include "sw/report/conflicts_csv.h"
+#include "sw/report/conflicts_text.h"
+#include "sw/runs/recorded_run.h"
+#include "sw/runs/rerun.h"
+#include "sw/runs/run_mode.h"
+
+namespace stereotlm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScript = "plot_conflicts.py";
+constexpr const char* kMark = "conflicts.csv";  // the file that is moved into place last
+constexpr std::array kFigures = {"bank_rows", "picture", "time_line", "causes"};
+constexpr std::array kEndings = {".png", ".svg", ".pdf", ".csv"};
+constexpr const char* kConflictsFooter =
+    "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv,\n"
+    "stalls by tile, which is a group of four columns in the rows of results that leave at once; rows.csv,\n"
+    "cycles, stalls and accesses of every frame by rows; and the figures, each with its data:\n"
+    "  bank_rows  use of the banks, and stalls, by row\n"
+    "  picture    stalls painted over the left picture\n"
+    "  time_line  the frame with the most cycles: use of the banks, and stalls, over its time\n"
+    "  causes     stalls of each port by bank and cause\n"
+    "A RUN is repeated from its config.yaml and run.json, after a check of every input by its SHA-256, and\n"
+    "must give the figures of its stats.json. The sums of what is written equal the figures of the run.";
+
+// The options of `conflicts`: those of `run` that say what is simulated, or a folder of a run.
+struct ConflictsOptions {
+  RunOptions run;
+  Typed out_option;
+  Typed format;
+  Typed size;
+
+  void add_to(CLI::App& command) {
+    run.add_simulation_to(command, "; or RUN, a folder that run --out has written");
+    out_option.add_to(command, "--out", "DIR", "The folder to write, created if missing (default: no files)");
+    format.add_to(command, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg");
+    size.add_to(command, "--size", "WxH", "Width and height of each figure in inches");
+  }
+
+  bool is_of_run() const { return fs::is_regular_file(fs::path(run.board.name()) / "run.json"); }
+
+  // Set by check_usage().
+  std::optional<std::string> out;
+
+  void check_usage() {
+    process::Problems problems;
+    if (out_option.is_given()) out = out_option.text;
+    for (const auto& [name, option] : {std::pair("--format", &format), std::pair("--size", &size)}) {
+      if (option->is_given() && !out) problems.add(fmt::format("{}: goes with --out DIR", name));
+    }
+    if (!is_of_run()) {
+      problems.check();
+      run.check_usage();
+      return;
+    }
+    if (!run.has_board_only())
+      problems.add(
+          fmt::format("'{}': a run is repeated as it was: no option of run goes with it", run.board.name()));
+    problems.check();
+  }
+
+  // The arguments of the script. Without a folder it only checks them.
+  std::vector<std::string> arguments(const fs::path& folder = {}) const {
+    std::vector<std::string> words;
+    if (format.is_given()) words.push_back("--format=" + format.text);
+    if (size.is_given()) words.push_back("--size=" + size.text);
+    if (!folder.empty()) words.insert(words.end(), {"--", folder.string()});
+    return words;
+  }
+};
+
+bool is_file_name(const std::string& name) {
+  if (name == kMark || name == "rows.csv") return true;
+  return std::any_of(kFigures.begin(), kFigures.end(), [&name](const std::string& figure) {
+    return std::any_of(kEndings.begin(), kEndings.end(),
+                       [&](const char* ending) { return name == figure + ending; });
+  });
+}
+
+std::optional<std::string> foreign_part(const fs::path& entry) {
+  const std::string name = entry.filename();
+  return is_file_name(name) && files::is_file(entry) ? std::nullopt : std::optional(name);
+}
+
+std::optional<std::string> problem_of(const fs::path& dir, bool /*was_left*/) {
+  for (const fs::path& name : files::entries(dir)) {
+    if (name == files::kAsideFolder) continue;
+    if (const auto foreign = foreign_part(dir / name))
+      return fmt::format("holds '{}': must be empty or hold only files that conflicts writes", *foreign);
+  }
+  return std::nullopt;
+}
+
+// What is simulated.
+struct Subject {
+  std::optional<runs::RecordedRun> recorded;  // nullopt: a board
+  runs::RunInput input;
+};
+
+Subject load(const ConflictsOptions& options) {
+  Subject subject;
+  if (!options.is_of_run()) {
+    subject.input = load_run_input(options.run);
+  } else {
+    process::Problems problems;
+    subject.recorded = runs::load_recorded_run("RUN", options.run.board.name(), problems);
+    problems.check();
+    subject.input = runs::open_again(*subject.recorded, problems);
+    problems.check();
+    subject.input.fast = true;  // the figures do not depend on the fidelity
+    process::catch_interrupts();
+  }
+  subject.input.record = true;
+  return subject;
+}
+
+// What the figures show beside the tables: sums over the frames, and one frame.
+struct Shown {
+  report::StripSums sums;
+  std::uint64_t frames = 0;
+  std::uint64_t longest = 0;         // the frame with the most cycles
+  std::uint64_t longest_cycles = 0;  // 0: none yet
+  fpga::FrameConflicts longest_frame;
+
+  void add(const fpga::FrameConflicts& frame) {
+    sums.add(frame);
+    std::uint64_t cycles = 0;
+    for (const fpga::StripConflicts& strip : frame.strips) cycles += strip.cycles;
+    if (cycles > longest_cycles) {
+      longest = frames;
+      longest_cycles = cycles;
+      longest_frame = frame;
+    }
+    ++frames;
+  }
+};
+
+// Returns false if interrupted.
+bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::OutputFolder* folder,
+              Shown& shown) {
+  if (folder != nullptr) folder->append("rows.csv", report::rows_csv_head(input.board));
+  while (!simulation.finished()) {
+    if (process::interrupted()) return false;
+    simulation.advance();
+    simulation.take_timeline();
+    for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
+      if (folder != nullptr) folder->append("rows.csv", report::rows_csv(input.board, shown.frames, frame));
+      shown.add(frame);
+    }
+  }
+  return !process::interrupted();
+}
+
+// Draws the figures and adds them to the folder. Returns false if interrupted.
+bool draw(const ConflictsOptions& options, const runs::RunInput& input, const runs::Simulation& simulation,
+          const Shown& shown, const std::string& conflicts_csv, files::OutputFolder& folder) {
+  const files::TemporaryFolder drawings;
+  const fs::path& path = drawings.path();
+  const platform::BoardConfig& board = input.board;
+  const std::string head = report::rows_csv_head(board);
+  files::write_whole_file(path / kMark, conflicts_csv);
+  files::write_whole_file(path / "sums.csv", head + report::rows_csv(board, 0, shown.sums.sums()));
+  files::write_whole_file(path / "frame.csv",
+                          head + report::rows_csv(board, shown.longest, shown.longest_frame));
+  const nlohmann::ordered_json about = {{"board", board.name},          {"width", board.image.width},
+                                        {"height", board.image.height}, {"clock_mhz", board.fpga.clock_mhz},
+                                        {"frames", shown.frames},       {"frame", shown.longest}};
+  files::write_whole_file(path / "about.json", about.dump());
+  if (!input.timing_only) {
+    const kernels::GrayImage& left = input.pairs->pair(simulation.last().number).left;
+    const kernels::GrayImage shown_left =
+        input.tables.left ? kernels::rectify(left, *input.tables.left) : left;
+    files::write_whole_file(path / "picture.raw",
+                            std::string(shown_left.pixels.begin(), shown_left.pixels.end()));
+  }
+  const auto end = process::run_script(kScript, options.arguments(path));
+  if (process::interrupted()) return false;
+  if (end.status != 0) {
+    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,
+                                         end.status, end.errors));
+  }
+  for (const std::string figure : kFigures) {
+    for (const char* ending : kEndings) {
+      const fs::path file = path / (figure + ending);
+      if (fs::exists(file)) folder.add(figure + ending, files::read_whole_file(file));
+    }
+  }
+  return true;
+}
+
+// Refuses --format or --size if they are wrong, before anything is simulated.
+void check_looks(const ConflictsOptions& options) {
+  if (options.arguments().empty()) return;
+  const auto end = process::run_script(kScript, options.arguments());
+  if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
+}
+
+int conflicts(const ConflictsOptions& options) {
+  check_looks(options);
+  Subject subject = load(options);
+  runs::RunInput& input = subject.input;
+  std::optional<files::OutputFolder> folder;
+  if (options.out) {
+    try {
+      folder.emplace(*options.out,
+                     files::OutputContent{"folder of conflicts", kMark, foreign_part, problem_of});
+      if (const auto problem = folder->problem()) folder->refuse(*problem);
+    } catch (const std::runtime_error& error) {
+      process::refuse(error.what());
+    }
+  }
+  Binder binder;
+  runs::BlankPairs blank(input.board);
+  host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
+  const auto simulation =
+      runs::make_simulation(input.board, input.tables, pairs, runs::run_mode(input), binder);
+  Shown shown;
+  if (!simulate(*simulation, input, folder ? &*folder : nullptr, shown)) {
+    process::say("note", "interrupted: nothing is written");
+    return kInterrupted;
+  }
+  const platform::Statistics statistics = simulation->statistics();
+  for (const std::string& identity : statistics.failed)
+    process::say("error", "identity does not hold: " + identity);
+  if (!statistics.failed.empty()) return kFailed;
+  if (subject.recorded)
+    runs::check_repeated(*subject.recorded, runs::figures_of(statistics, simulation->last(), input));
+  if (folder) {
+    const std::string csv = report::conflicts_csv(input.board, *simulation->conflicts());
+    if (!draw(options, input, *simulation, shown, csv, *folder)) {
+      process::say("note", "interrupted: nothing is written");
+      return kInterrupted;
+    }
+    folder->add(kMark, csv);
+    folder->commit();
+  }
+  process::print(report::conflicts_text(input.board, *simulation->conflicts(), shown.sums.sums()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_conflicts(CLI::App& program, Action& action) {
+  add_command(program, action, "conflicts", "Where in the picture, and when, ports wait for banks", conflicts,
+              kConflictsFooter);
+}
+
+}  // namespace stereotlm::cli

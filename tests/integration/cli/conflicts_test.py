@@ -1,0 +1,158 @@
+"""run --record and conflicts: where in the picture, and when in a frame, ports wait for banks."""
+
+import csv
+import json
+import signal
+import struct
+
+import program
+from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, PROGRESS, SMALL
+from program import ProgramTest, Terminal, run, sets
+
+TABLES = ("rows.csv", "conflicts.csv")
+FIGURES = ("bank_rows", "picture", "time_line", "causes")
+SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
+# Captures into the bank of both left pictures, which the core reads.
+CAPTURES = [*CAMERA_RATES, *sets("allocation.left_image=[bank0, bank0]", "allocation.disparity=[bank0, bank0]")]
+
+
+class ConflictsTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = ["fpl2003", *SMALL, "--synthetic", "1", "--frames", "3"]
+
+    def table(self, name, folder=None):
+        with open((folder or self.out) / name, encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def check_sums(self):
+        """The tables against stats.json."""
+        stats, rows, tiles = self.stats(), self.table("rows.csv"), self.table("conflicts.csv")
+        self.assertNotIn("failed", stats)
+        pipeline = 16 * stats["frames"]
+        self.assertEqual(sum(int(row["cycles"]) for row in rows), sum(stats["frame_cycles"]) - pipeline)
+        self.assertEqual({int(row["frame"]) for row in rows}, set(range(stats["frames"])))
+        for port in stats["ports"]:
+            columns = [name for name in rows[0] if name.startswith(port["name"]) and name.endswith("_stall_cycles")]
+            self.assertEqual(sum(int(row[name]) for row in rows for name in columns), port["stall_cycles"])
+        for bank in stats["banks"]:
+            columns = [f"{bank['name']}_{kind}_accesses" for kind in ("core", "capture", "upload", "read_back")]
+            accesses = sum(int(row[name]) for row in rows for name in columns)
+            self.assertEqual(accesses, bank["reads"] + bank["writes"])
+        blame = {}
+        for row in tiles:
+            port = lambda name: "host" if name.startswith("host ") else name
+            key = port(row["port"]), row["bank"], port(row["by"])
+            blame[key] = blame.get(key, 0) + int(row["cycles"])
+            self.assertNotEqual(row["cycles"], "0")
+        self.assertEqual(blame, {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]})
+
+
+class Recorded(ConflictsTest):
+    def record(self, *more, out=None):
+        self.succeeds(run("run", *self.scene, "--record", *more, "--out", out or self.out))
+
+    def test_its_sums_are_the_figures_of_the_run_at_each_fidelity(self):
+        cycle, timing = self.folder / "cycle", self.folder / "timing"
+        for options in ([*PRELOADED, *SHARED], CAPTURES):
+            self.record(*options)
+            self.check_sums()
+            self.record(*options, *CYCLE, out=cycle)
+            self.record(*options, "--timing-only", out=timing)
+            for name in TABLES:
+                self.assertEqual((self.out / name).read_bytes(), (cycle / name).read_bytes())
+                self.assertEqual((self.out / name).read_bytes(), (timing / name).read_bytes())
+
+    def test_captures_are_told_from_other_traffic_of_the_host(self):
+        self.record(*CAPTURES)
+        self.assertIn("host capture", {row["by"] for row in self.table("conflicts.csv")})
+        rows = self.table("rows.csv")
+        self.assertGreater(sum(int(row["bank0_capture_accesses"]) for row in rows), 0)
+        self.assertGreater(sum(int(row["bank0_read_back_accesses"]) for row in rows), 0)
+
+    def test_a_frame_has_its_fill_and_all_its_rows(self):
+        self.record(*PRELOADED, *sets("matcher.rows=5"))
+        rows = [row for row in self.table("rows.csv") if row["frame"] == "1"]
+        self.assertEqual((rows[0]["first_row"], rows[0]["last_row"]), ("", ""))
+        self.assertEqual([int(row["first_row"]) for row in rows[1:]], list(range(0, HEIGHT, 5)))
+        self.assertEqual(int(rows[-1]["last_row"]), HEIGHT - 1)
+
+    def test_an_interrupted_run_of_the_board_alone_finishes_its_frame(self):
+        options = [*PRELOADED, *SHARED]
+        terminal = Terminal(["run", *self.scene[:-1], "1000000", "--record", *options, "--out", self.out])
+        self.assertEqual(terminal.interrupt(PROGRESS, signal.SIGINT)[0], 130)
+        self.check_sums()
+        whole = self.folder / "whole"
+        self.scene[-1] = str(self.stats()["frames"])
+        self.record(*options, out=whole)
+        self.assertEqual(self.result(), self.result(whole))
+
+
+class Command(ConflictsTest):
+    def test_it_says_who_waits_and_where(self):
+        text = self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED))
+        self.assertRegex(text, r"stalls       left_lut on bank0 lost \d+ cycles \(\d+\.\d\d %\) to left_pixel: ")
+        self.assertIn("rows             stalls %   bank0 %", text)
+        text = self.succeeds(run("conflicts", *self.scene, *PRELOADED))
+        self.assertIn("stalls       none\n", text)
+
+    def test_it_writes_tables_and_figures(self):
+        options = ["--format", "png,svg,pdf", "--out", self.out]
+        self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
+        endings = (".png", ".svg", ".pdf", ".csv")
+        names = {*TABLES, *(figure + ending for figure in FIGURES for ending in endings)}
+        self.assertEqual({path.name for path in self.out.iterdir()}, names)
+        recorded = self.folder / "recorded"
+        self.succeeds(run("run", *self.scene, *CAPTURES, "--record", "--out", recorded))
+        for name in TABLES:
+            self.assertEqual((self.out / name).read_bytes(), (recorded / name).read_bytes())
+        lost = sum(int(row["stall_cycles"]) for row in self.table("picture.csv"))
+        of_tiles = sum(int(row["cycles"]) for row in self.table("conflicts.csv") if row["first_row"])
+        self.assertEqual(lost, of_tiles)
+        self.assertEqual(sum(int(row["cycles"]) for row in self.table("causes.csv")),
+                         sum(row["cycles"] for row in self.stats(recorded)["blame"]))
+        self.assertIn("lost to host capture", (self.out / "causes.svg").read_text())
+        with self.unchanged(self.out):  # the same bytes again
+            self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
+
+    def test_without_stalls_there_is_no_figure_of_their_causes(self):
+        self.succeeds(run("conflicts", *self.scene, *PRELOADED, "--timing-only", "--size", "5x6", "--out", self.out))
+        self.assertFalse((self.out / "causes.png").exists())
+        size = struct.unpack(">II", (self.out / "bank_rows.png").read_bytes()[16:24])
+        self.assertEqual(size, (1000, 1200))
+
+    def test_a_run_is_repeated(self):
+        recorded = self.folder / "recorded"
+        self.succeeds(run("run", *self.scene, *PRELOADED, *SHARED, *CYCLE, "--out", recorded))
+        text = self.succeeds(run("conflicts", recorded, "--out", self.out))
+        self.assertEqual(text, self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED)))
+        self.assertIn("left_lut,bank0,left_pixel", (self.out / "conflicts.csv").read_text())
+        stats = json.loads((recorded / "stats.json").read_text())
+        stats["cycles"] += 1
+        (recorded / "stats.json").write_text(json.dumps(stats))
+        self.fails(run("conflicts", recorded), "repeated, it has other figures")
+
+    def test_names_are_text(self):
+        board = self.file("board.yaml", b"extends: fpl2003\nname: $x_{<script>}$\n")
+        self.scene[0] = str(board)
+        self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED, "--format", "svg", "--out", self.out))
+        self.assertIn("Board $x_{&lt;script&gt;}$", (self.out / "causes.svg").read_text())
+
+    def test_what_does_not_fit_is_refused(self):
+        recorded = self.folder / "recorded"
+        self.succeeds(run("run", *self.scene, *PRELOADED, "--out", recorded))
+        self.refused(run("conflicts"), "BOARD: missing")
+        self.all_refused([
+            ([*self.scene, "--format", "png"], "--format: goes with --out DIR"),
+            ([*self.scene, "--size", "5x5"], "--size: goes with --out DIR"),
+            ([recorded, "--frames", "2"], "a run is repeated as it was: no option of run goes with it"),
+            ([recorded, *SHARED], "a run is repeated as it was"),
+            ([recorded, "--out", recorded], "must be empty or hold only files that conflicts writes"),
+            ([recorded, "--format", "gif", "--out", self.out], "--format = gif: must be png, svg, pdf"),
+            ([recorded, "--size", "1x5", "--out", self.out], "--size = 1x5: must be WIDTHxHEIGHT in inches"),
+        ], lambda *arguments: run("conflicts", *arguments))
+        self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    program.main()
