@@ -103,7 +103,7 @@ class EveryChart(PageTest):
         "core": "memory bounds roofline banks blame ports rows picture frames knobs area audit configuration",
         "computer": "memory bounds roofline banks blame ports rows picture frames time latency knobs area "
         "audit configuration",
-        "two": "rows picture frames blame ports-A ports-B settings totals",
+        "two": "rows picture frames blame memory ports-A ports-B settings totals",
         "database": "scatter chosen filters parallel points constants",
     }
 
@@ -369,6 +369,17 @@ class Tools(PageTest):
         self.browser.run("document.querySelector('#picture canvas').focus()")
         self.browser.keys(Keys.ARROW_DOWN)
         self.assertIn("row 13", self.browser.text("#tooltip"))
+
+    def test_the_memory_charts_of_two_runs_change_places(self):
+        self.browser.open(page_of(shared_run("plain", *PRELOADED, "--frames", "4"), core()))
+        links = lambda: self.browser.run(
+            "return [...document.querySelectorAll('#memory svg:not([hidden]) .edge')].map(edge => edge.id)")
+        self.assertIn("edge-left_lut-bank6", links())
+        self.browser.choose("memory-run", 1)
+        self.assertIn("edge-left_lut-bank0", links())
+        rows = {row["link"]: row for row in self.browser.table("memory")}
+        self.assertEqual(rows["left_lut – bank6"]["megabytes_per_second_b"], "0")
+        self.assertEqual(rows["left_lut – bank0"]["megabytes_per_second_a"], "0")
 
     def test_keys_are_searched(self):
         self.browser.open(page_of(core()))

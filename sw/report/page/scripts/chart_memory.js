@@ -2,7 +2,7 @@
 import {addChart} from './chart.js';
 import {h} from './dom.js';
 import {settingOf} from './findings.js';
-import {fixed, percent} from './format.js';
+import {fixed, percent, signed} from './format.js';
 import {isDark, whenThemeChanges} from './theme.js';
 import {linkMarks, mark} from './tooltip.js';
 
@@ -25,26 +25,23 @@ function parsedSvg(text) {
 
 const nameOf = id => id.slice(id.indexOf('-') + 1);
 
-// Takes the titles of the drawing, which a browser would show beside the tooltips of the page.
-function markAll(svg) {
+// The links of a drawing: {name, from, to, rate, peak, element}.
+const linksOf = svg => [...svg.querySelectorAll('.edge')].map(element => {
+  const [from, to] = [nameOf(element.dataset.from), nameOf(element.dataset.to)];
+  const {mbps, peak} = element.dataset;
+  return {name: `${from} – ${to}`, from, to, rate: Number(mbps), peak: Number(peak), element};
+});
+
+// Gives a drawing marks, its size and the theme of the page. `moreLines(link)`: for the tooltip of a link. The
+// titles of the drawing go, because a browser would show them beside the tooltips.
+function useInPage(svg, links, moreLines = () => []) {
   for (const title of svg.querySelectorAll('title')) {
     const element = title.parentElement;
     title.remove();
-    if (element !== svg) mark(element, title.textContent.split('\n'));
+    if (element === svg) continue;
+    const link = links.find(each => each.element === element);
+    mark(element, [...title.textContent.split('\n'), ...(link ? moreLines(link) : [])]);
   }
-}
-
-export function addMemory(page, run) {
-  const svg = parsedSvg(run.memory_chart);
-  markAll(svg);
-  const clock = settingOf(run, 'fpga.clock_mhz');
-  const banks = run.stats.banks.map(({name, megabytes_per_second: rate}, i) => {
-    const peak = kBytesPerWord * clock * run.banks[i].accesses_per_cycle;
-    return {name, rate, peak, share: rate / peak};
-  });
-  const fullest = [...banks].sort((a, b) => b.share - a.share)[0];
-  const links = [...svg.querySelectorAll('.edge')].map(
-      ({dataset: {from, to, mbps, peak}}) => [nameOf(from), nameOf(to), Number(mbps), Number(peak)]);
   const width = Number(svg.getAttribute('width'));
   svg.removeAttribute('width');
   svg.removeAttribute('height');
@@ -52,17 +49,74 @@ export function addMemory(page, run) {
   const useTheme = () => svg.setAttribute('class', `memory-chart ${isDark() ? 'dark' : 'light'}`);
   useTheme();
   whenThemeChanges(useTheme);
+}
+
+const kHowTo = 'Each block and link has its figures: point at it, or go there with the arrow keys.';
+
+export function addMemory(page, run) {
+  const svg = parsedSvg(run.memory_chart);
+  const links = linksOf(svg);
+  useInPage(svg, links);
+  const clock = settingOf(run, 'fpga.clock_mhz');
+  const banks = run.stats.banks.map(({name, megabytes_per_second: rate}, i) => {
+    const peak = kBytesPerWord * clock * run.banks[i].accesses_per_cycle;
+    return {name, rate, share: rate / peak};
+  });
+  const fullest = [...banks].sort((a, b) => b.share - a.share)[0];
   const body = h('div', {class: 'memory'}, svg);
   linkMarks(body);
   addChart(page, {
     id: 'memory',
     wide: true,
     title: `${fullest.name} carries ${fixed(fullest.rate, 1)} MB/s, ${percent(fullest.share)} of its peak`,
-    note: 'The board as it was run, with the traffic of each link. Each block and link has its figures: ' +
-        'point at it, or go there with the arrow keys.',
+    note: `The board as it was run, with the traffic of each link. ${kHowTo}`,
     body,
     numbers: () => [
         ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
-        links.map(([from, to, rate, peak]) => [from, to, rate, peak, 100 * rate / peak])]
+        links.map(({from, to, rate, peak}) => [from, to, rate, peak, 100 * rate / peak])]
   });
+}
+
+// Both boards at the same place, one shown at a time.
+export function addMemoryOfTwo(page, a, b) {
+  const svgs = [a, b].map(run => parsedSvg(run.memory_chart));
+  const links = svgs.map(linksOf);
+  const rates = new Map();  // of each link, in A and in B
+  links.forEach((all, i) => {
+    for (const {name, rate} of all) {
+      if (!rates.has(name)) rates.set(name, []);
+      rates.get(name)[i] = rate;
+    }
+  });
+  const linesOf = ({name}) => {
+    const [inA, inB] = rates.get(name);
+    return inA === undefined ? ['not in A'] :
+        inB === undefined    ? ['not in B'] :
+                               [`B − A: ${signed(inB - inA, rate => fixed(rate, 2))} MB/s`];
+  };
+  svgs.forEach((svg, i) => useInPage(svg, links[i], linesOf));
+  const body = h('div', {class: 'memory'}, svgs);
+  const show = number => {
+    svgs.forEach((svg, i) => svg.toggleAttribute('hidden', i !== number));
+    linkMarks(body);
+  };
+  const choose = event => show(Number(event.target.value));
+  const differences = [...rates].map(([key, [inA = 0, inB = 0]]) => [key, inA, inB, inB - inA]);
+  const [[name, inA, inB]] = [...differences].sort((x, y) => Math.abs(y[3]) - Math.abs(x[3]));
+  addChart(page, {
+    id: 'memory',
+    wide: true,
+    title: inA === inB ? 'Each link carries the same' :
+                         `${name}: ${fixed(inA, 1)} MB/s in A, ${fixed(inB, 1)} in B`,
+    note: `The board with the traffic of each link. ${kHowTo}`,
+    body: [
+      h('div', {class: 'controls'},
+        h('label', null, 'run ',
+          h('select', {id: 'memory-run', change: choose},
+            ['A', 'B'].map((name, i) => h('option', {value: i}, name))))),
+      body
+    ],
+    numbers: () => [['link', 'megabytes_per_second_a', 'megabytes_per_second_b', 'difference'], differences]
+  });
+  show(0);
 }

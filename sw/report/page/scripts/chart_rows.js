@@ -56,7 +56,7 @@ export function addRows(page, run) {
                                     []];
   const state = {from: 0, to: lines};
   const draw = (host, width) => {
-    const wordsOf = name => name.split(/(?<=_)| · | (?=.{8})/);
+    const wordsOf = name => name.split(/(?<=_)| · | /);
     const upright = columns.some(  // names from bottom to top
         ({name}) => wordsOf(name).some(word => textWidth(word) > (width - 48) / columns.length));
     const top = upright ? 150 : 60;

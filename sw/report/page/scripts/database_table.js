@@ -1,7 +1,7 @@
 // The filters and the table of a database.
 import {addChart, htmlTable} from './chart.js';
 import {h} from './dom.js';
-import {count, value, whole} from './format.js';
+import {count, shortened, value, whole} from './format.js';
 
 const kMostChips = 16;
 const kRowsShown = 100;
@@ -82,7 +82,7 @@ export function addTable(page, points, first, choose) {
                 row =>
                     [h('button', {type: 'button', class: 'small', 'data-row': row, click: () => choose(row)},
                        'Board'),
-                     ...names.map(name => points.column(name)[row])]));
+                     ...names.map(name => shortened(points.column(name)[row]))]));
     table.querySelectorAll('th').forEach((cell, i) => {
       if (i === 0) return;
       const name = names[i - 1];

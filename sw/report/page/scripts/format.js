@@ -25,6 +25,9 @@ export function brief(number) {
   return String(+number.toPrecision(4));
 }
 
+// For tables that are looked at: what is beyond the ninth digit goes.
+export const shortened = any => typeof any === 'number' ? +any.toPrecision(9) : any;
+
 // A value of a table: every digit that it has.
 export const value = any => any === null || any === undefined ? '' : String(any);
 

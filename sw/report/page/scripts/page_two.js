@@ -1,10 +1,11 @@
 // The page of two runs: what differs in B.
 import {h, s} from './dom.js';
-import {count, percent, rate, signed, whole} from './format.js';
+import {count, percent, rate, shortened, signed, whole} from './format.js';
 import {addBlameDifference} from './chart_blame.js';
 import {addChart, drawing, htmlTable, legend} from './chart.js';
 import {commandLine} from './chart_config.js';
 import {addFrames} from './chart_frames.js';
+import {addMemoryOfTwo} from './chart_memory.js';
 import {addPicture} from './chart_picture.js';
 import {addPortStates} from './chart_states.js';
 import {blamesOf, rateOf, settingOf, waitText} from './findings.js';
@@ -116,9 +117,7 @@ function addTotals(page, a, b) {
         `${count(rows.length, 'figure')} of stats.json differ${rows.length === 1 ? 's' : ''}` :
         'All figures are the same',
     note: 'Only figures that differ are listed.',
-    body: htmlTable(
-        ['figure', 'A', 'B', 'B − A'],
-        rows.map(row => row.map(cell => typeof cell === 'number' ? +cell.toPrecision(9) : cell))),
+    body: htmlTable(['figure', 'A', 'B', 'B − A'], rows.map(row => row.map(shortened))),
     numbers: () => [['figure', 'a', 'b', 'difference'], rows]
   });
 }
@@ -196,6 +195,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
       where, [['A', a.stats.frame_cycles, '--blue'], ['B', b.stats.frame_cycles, '--vermilion']],
       settingOf(a, 'fpga.clock_mhz'));
   addBlameDifference(where, a, b);
+  addMemoryOfTwo(where, a, b);
 
   const ports = addGroup(page, 'The ports');
   addPortStates(ports, a, 'A');

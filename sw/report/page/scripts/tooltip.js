@@ -34,7 +34,7 @@ export function mark(element, lines) {
 
 // The first mark of a chart takes part in the order of tabs; arrow keys go to its neighbours.
 export function linkMarks(host) {
-  const marks = [...host.querySelectorAll('.mark')];
+  const marks = [...host.querySelectorAll('.mark')].filter(element => !element.closest('[hidden]'));
   if (marks.length === 0) return;
   marks[0].setAttribute('tabindex', '0');
   host.onkeydown = event => {
