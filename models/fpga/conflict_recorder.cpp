@@ -64,7 +64,7 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
   columns_ = 0;
-  strip_ = group_ = tile_ = 0;
+  strip_ = group_ = strip_tile_ = 0;
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     grants_[port] = control.port_cycles(port).granted();
   assumed_ = {};
@@ -93,7 +93,7 @@ void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
     const memory::Port port = memory::lowest_port(static_cast<memory::PortMask>(stalled));
     const std::size_t requester = requester_of_port(port);
     const std::size_t by = requester_of_port(arbitration.cause_of(port, granted));
-    ++stalls_of(requester, arbitration.bank_of(port), by)[tile_];
+    ++stalls_of(requester, arbitration.bank_of(port), by)[tile()];
     ++frame_.strips[strip_].stalls[requester];
   }
 }
@@ -105,11 +105,7 @@ void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& co
   if (strip_ != 0) {
     end_group_of_strip();
   }
-  if (is_at_strip_end()) {
-    end_strip(control, arbitration);
-  } else {
-    tile_ = tile_of(strip_, group_);
-  }
+  if (is_at_strip_end()) end_strip(control, arbitration);
 }
 
 std::uint64_t ConflictRecorder::columns_to_strip_end() const {
@@ -139,7 +135,6 @@ void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t s
       end_group_of_strip();
     }
   }
-  tile_ = tile_of(strip_, std::min(group_, groups_of_strip_ - 1));
 }
 
 // Adds the stalls of a group that comes `count` times, every `step` groups, `first` groups after the next one.
@@ -154,7 +149,7 @@ void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first
       cycles[0] += stall.cycles * count;
       continue;
     }
-    std::uint64_t* const of_strip = cycles + tile_of(strip_, 0);
+    std::uint64_t* const of_strip = cycles + strip_tile_;
     const std::uint64_t of_group = stall.cycles;
     if (step == 1 && group_shift_ == 0) {  // mostly, and faster
       for (std::size_t next = group_; next < group_ + count; ++next) of_strip[next] += of_group;
@@ -172,7 +167,7 @@ void ConflictRecorder::end_strip(const CoreControl& control, const memory::Arbit
   count_grants(control, arbitration);
   ++strip_;
   group_ = 0;
-  tile_ = tile_of(strip_, group_);
+  strip_tile_ = tile_of(strip_);
 }
 
 // Counts the accesses of the core since the end of the strip before.
@@ -244,7 +239,7 @@ void ConflictRecorder::count_served() {
       } else {
         const std::size_t place = first_behind(ends_, cycle);
         until = std::min(until, ends_[place]);
-        const std::size_t tile = tile_of(strip, 0) + place - place_of(strip, 0);
+        const std::size_t tile = tile_of(strip) + place - place_of(strip, 0);
         stalls_of(requester, served.bank, kTurnaroundToBlame)[tile] += until - cycle;
         frame_.strips[strip].stalls[requester] += until - cycle;
       }
@@ -257,7 +252,7 @@ std::vector<std::uint64_t> ConflictRecorder::tile_cycles() const {
   std::vector<std::uint64_t> cycles(tiles());
   std::uint64_t before = 0;
   for (std::size_t strip = 0; strip < strips_; ++strip) {
-    std::size_t tile = tile_of(strip, 0);
+    std::size_t tile = tile_of(strip);
     for (std::size_t place = place_of(strip, 0); place <= place_of(strip, groups_of_strip_ - 1); ++place) {
       cycles[tile++] += cycles_up_to_[place] - before;
       before = cycles_up_to_[place];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -158,8 +159,13 @@ class ConflictRecorder {
     if (port == memory::ArbiterStats::kTurnaround) return kTurnaroundToBlame;
     return port == kHostPort ? requester_of(traffic_) : port;
   }
-  std::size_t tile_of(std::size_t strip, std::size_t group) const {
-    return strip == 0 ? 0 : 1 + (strip - 1) / grid_.strips_of_tile * grid_.columns + (group >> group_shift_);
+  // The first tile of a strip.
+  std::size_t tile_of(std::size_t strip) const {
+    return strip == 0 ? 0 : 1 + (strip - 1) / grid_.strips_of_tile * grid_.columns;
+  }
+  // The tile of the next group, or of the last one if it has ended.
+  std::size_t tile() const {
+    return strip_tile_ + (strip_ == 0 ? 0 : std::min(group_, groups_of_strip_ - 1) >> group_shift_);
   }
   // The index in ends_.
   std::size_t place_of(std::size_t strip, std::size_t group) const {
@@ -205,7 +211,7 @@ class ConflictRecorder {
   std::uint64_t columns_ = 0;                           // consumed up to there
   std::size_t strip_ = 0;                               // of the next group
   std::size_t group_ = 0;                               // number of the next group in its strip
-  std::size_t tile_ = 0;                                // of the next group
+  std::size_t strip_tile_ = 0;                          // the first tile of this strip
   std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
   std::array<const AccessPattern*, 2> assumed_{};
   // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in an

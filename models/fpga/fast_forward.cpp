@@ -296,8 +296,14 @@ void FastForward::skip(const Progress& progress) {
 bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle) {
   if (known_.in_order().empty()) return false;
   const std::vector<TransitionCache::InOrder>& in_order = known_.in_order();
-  for (auto next = in_order.begin(); next != in_order.end(); next += repeated_.size()) {
+  for (auto next = in_order.begin(); next != in_order.end(); next += next->length) {
+    if (next->length == 1) {
+      const GroupConflicts* const group = &known_.conflicts(next->effect);
+      conflicts.repeat(&group, 1, next->times, stepper_.arbitration());
+      continue;
+    }
     repeated_.clear();
+    for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
     for (std::uint32_t step = 0; step < next->length; ++step)
       repeated_.push_back(&known_.conflicts((next + step)->effect));
     conflicts.repeat(repeated_.data(), repeated_.size(), next->times, stepper_.arbitration());

@@ -211,14 +211,10 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
   return state;
 }
 
-const GroupConflicts& TransitionCache::conflicts(std::uint32_t effect) {
+const GroupConflicts& TransitionCache::find_conflicts(std::uint32_t effect) {
   if (effect >= conflicts_.size()) conflicts_.resize(effects_.size());
-  GroupConflicts& conflicts = conflicts_[effect];
-  if (conflicts.cycles == 0) {
-    conflicts = {progress_[effect].cycles, host_[effect].words,
-                 memory::Arbitration::stalls_of(effects_[effect]->decided)};
-  }
-  return conflicts;
+  return conflicts_[effect] = {progress_[effect].cycles, host_[effect].words,
+                               memory::Arbitration::stalls_of(effects_[effect]->decided)};
 }
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {

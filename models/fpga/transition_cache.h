@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -148,7 +147,11 @@ class TransitionCache {
   void keep_order(bool keeps_order) { keeps_order_ = keeps_order; }
   const std::vector<InOrder>& in_order() const { return in_order_; }
   void forget_order() { in_order_.clear(); }
-  const GroupConflicts& conflicts(std::uint32_t effect);
+  // Valid until the next call for an effect that has not been asked for.
+  const GroupConflicts& conflicts(std::uint32_t effect) {
+    const bool is_known = effect < conflicts_.size() && conflicts_[effect].cycles != 0;
+    return is_known ? conflicts_[effect] : find_conflicts(effect);
+  }
   // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
   // transitions is repeated in one step. Returns the state that comes next.
   StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room);
@@ -172,6 +175,7 @@ class TransitionCache {
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
+  const GroupConflicts& find_conflicts(std::uint32_t effect);
   void double_buckets();
 
   std::size_t words_;  // of the accesses
@@ -187,7 +191,7 @@ class TransitionCache {
   std::vector<std::uint32_t> effects_followed_;
   bool keeps_order_ = false;
   std::vector<InOrder> in_order_;
-  std::deque<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
+  std::vector<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;
