@@ -4,8 +4,8 @@ import {adviceOf, priceText, stepText} from './advice.js';
 import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
+const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the stalls
 const kAbout = 1 + 1e-6;     // a rate that reaches its bound may be above it by rounding
-
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
@@ -98,16 +98,22 @@ function mainPart(amounts) {
   return {first, last, total};
 }
 
-// The columns that hold the stalls.
-function mainColumns(run) {
-  const [{columns, width, values}] = tilesOf(run);
+// Which columns hold the stalls, and whether few tiles hold many.
+function acrossText(run) {
+  const [{columns, width, values, total}] = tilesOf(run);
   const amounts = new Array(columns).fill(0);
   values.forEach((value, i) => {
     amounts[i % columns] += value;
   });
   const {first, last} = mainPart(amounts);
-  if (first === 0 && last === columns - 1) return 'Over all columns.';
-  return `In columns ${first * width} to ${Math.min((last + 1) * width, settingOf(run, 'image.width')) - 1}.`;
+  const lastColumn = Math.min((last + 1) * width, settingOf(run, 'image.width')) - 1;
+  const where = first === 0 && last === columns - 1 ? 'Over all columns' :
+                                                      `In columns ${first * width} to ${lastColumn}`;
+  const order = [...values].sort((x, y) => y - x);
+  let tiles = 0;
+  for (let rest = total / 2; rest > 0; ++tiles) rest -= order[tiles];
+  const share = tiles / values.length;
+  return `${where}${share < kFewTiles ? `; half of them in ${percent(share, 0)} of the picture` : ''}.`;
 }
 
 // Where in the picture the stalls are.
@@ -136,7 +142,7 @@ export function whereText(run) {
                  percent(best.sum / total, 0)} of all stalls.` :
              `${rowsText(recorded, first, last + 1, imageHeight).replace(/^r/, 'R')} of ${
                  imageHeight}, evenly: ${whole(mean)} stall cycles a row and frame.`,
-    mainColumns(run)
+    acrossText(run)
   ];
   const cycles = run.stats.frame_cycles;
   const least = cycles.reduce((a, b) => Math.min(a, b));

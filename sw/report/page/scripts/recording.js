@@ -2,7 +2,6 @@
 import {sum} from './format.js';
 import {unpack} from './table.js';
 
-
 const known = new WeakMap();
 
 // The lines of the picture from top to bottom, each of `height` rows:
