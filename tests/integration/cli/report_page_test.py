@@ -115,13 +115,12 @@ class EveryChart(PageTest):
             "database": page_of(database()),
         }
         for name, page in pages.items():
-            for width in (390, 1280, 2560):
-                for theme in ("light", "dark"):
-                    with self.subTest(page=name, width=width, theme=theme):
-                        self.browser.open(page, width, theme)
-                        self.assertEqual(self.charts(), self.CHARTS[name].split())
-                        self.is_whole(width, theme)
-                        self.browser.screenshot(f"{name}_{width}_{theme}")
+            for width, theme in ((390, "light"), (390, "dark"), (1280, "light"), (1280, "dark"), (2560, "light")):
+                with self.subTest(page=name, width=width, theme=theme):
+                    self.browser.open(page, width, theme)
+                    self.assertEqual(self.charts(), self.CHARTS[name].split())
+                    self.is_whole(width, theme)
+                    self.browser.screenshot(f"{name}_{width}_{theme}")
 
     def is_whole(self, width, theme):
         self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
@@ -358,6 +357,18 @@ class Tools(PageTest):
         instant = sum(line.startswith("wait") and line.split(",")[4] == line.split(",")[5] for line in events)
         self.assertEqual(len(self.browser.all("#time .mark")), len(events) - instant)
 
+    def test_the_time_line_shows_where_the_page_has_no_events(self):
+        data = data_of(page_of(computer()))
+        recording = data["run"]["recording"]
+        end = recording["overview"]["end_ps"]
+        recording["events"].update(periods_ps=[[0, end // 4], [end // 2, end]], all=9999)
+        self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
+        self.browser.button("time", "All")
+        self.assertIn("of 9,999 events", self.browser.text("#time"))
+        box = "return document.querySelector(arguments[0]).getBoundingClientRect().width"
+        self.assertAlmostEqual(self.browser.run(box, "#time .left-out") * 4,
+                               self.browser.run(box, "#time .window"), delta=8)
+
     def test_sliders_move_the_picture_and_the_paint(self):
         self.browser.open(page_of(computer()))
         self.browser.drawn()
@@ -369,6 +380,16 @@ class Tools(PageTest):
         self.browser.run("document.querySelector('#picture canvas').focus()")
         self.browser.keys(Keys.ARROW_DOWN)
         self.assertIn("row 13", self.browser.text("#tooltip"))
+
+    def test_stalls_are_painted_without_pixels_too(self):
+        data = data_of(page_of(computer()))
+        del data["run"]["pictures"]
+        self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
+        self.browser.drawn()
+        states = [self.picture()]
+        self.browser.choose("picture-paint", 100)
+        self.assertNotEqual(self.picture(), states[0])
+        self.assertEqual(self.browser.all("#picture-split"), [])
 
     def test_the_memory_charts_of_two_runs_change_places(self):
         self.browser.open(page_of(shared_run("plain", *PRELOADED, "--frames", "4"), core()))

@@ -1,5 +1,6 @@
 """report: the page's data, and what is refused. The page itself: report_page_test.py."""
 
+import json
 import os
 import shutil
 import sqlite3
@@ -89,6 +90,10 @@ class Run(ReportTest):
         folder = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "3", "--record")
         self.assertEqual(self.data(folder, "--quick")["run"]["recording"],
                          self.data(folder)["run"]["recording"])
+        stats = self.stats(folder)
+        (folder / "stats.json").write_text(json.dumps({**stats, "banks": stats["banks"][1:]}))
+        self.fails(run("report", folder, "--out", self.page, "--quick"), "stats.json has 7 banks, the board 8")
+        (folder / "stats.json").write_text(json.dumps(stats))
         (folder / "rows.csv").write_text("frame\n")
         self.fails(run("report", folder, "--out", self.page, "--quick"), "rows.csv:1: is not as")
 

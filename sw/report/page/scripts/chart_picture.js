@@ -9,13 +9,18 @@ const kInvalid = 255;
 const kMostHeight = 900;
 const kPaint = [255, 60, 0];
 
-async function pixelsOf(url) {
+// A picture without URL is grey.
+async function pixelsOf({url, width, height}) {
   const image = new Image();
-  image.src = url;
-  await image.decode();
-  const canvas = h('canvas', {width: image.naturalWidth, height: image.naturalHeight});
+  if (url) {
+    image.src = url;
+    await image.decode();
+  }
+  const canvas = h('canvas', {width: width ?? image.naturalWidth, height: height ?? image.naturalHeight});
   const context = canvas.getContext('2d', {willReadFrequently: true});
-  context.drawImage(image, 0, 0);
+  context.fillStyle = '#808080';
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  if (url) context.drawImage(image, 0, 0);
   return {canvas, context, data: context.getImageData(0, 0, canvas.width, canvas.height)};
 }
 
@@ -47,7 +52,8 @@ function paintOf({values, columns, rows}) {
   return canvas;
 }
 
-// pictures: one or two of {url, disparities}, the latter of a picture of disparities; names: of the pictures.
+// pictures: one or two of {url, disparities}, the latter of a picture of disparities, or of {width, height}
+// without picture; names: of the pictures.
 // layers: maps of amounts as those of tilesOf().
 export function addPicture(page, {id = 'picture', title, note, pictures, layers, names}) {
   const state = {split: 0.5, paint: 0.35, layer: 0};
@@ -168,8 +174,8 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
                                          ]
   });
   (async () => {
-    const first = await pixelsOf(pictures[0].url);
-    const second = pictures[1] ? await pixelsOf(pictures[1].url) : null;
+    const first = await pixelsOf(pictures[0]);
+    const second = pictures[1] ? await pixelsOf(pictures[1]) : null;
     const all = [first, second];
     const greys = pictures.map(
         (picture, i) => picture.disparities ? colourDisparities(all[i], picture.disparities) : null);

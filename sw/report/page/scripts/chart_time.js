@@ -186,10 +186,15 @@ export function addTimeLine(page, run) {
             ['Events of this time are not in the page', 'run --record --out writes all to timeline.csv']));
       known = to;
     }
-    let marks = 0;
-    for (let i = 0; i < events.rows && marks < kMostMarks; ++i) {
-      if (end[i] < state.from || start[i] > state.to) continue;
-      ++marks;
+    const inWindow = kind.map((_, i) => i).filter(i => end[i] >= state.from && start[i] <= state.to);
+    // Of many events those are left out that would lie on others.
+    const gap = inWindow.length > kMostMarks ? 1 : -Infinity;
+    const drawnTo = new Map();  // of a lane and kind, in pixels
+    for (const i of inWindow) {
+      const place = `${lane[i]} ${kind[i]}`;
+      const far = kind[i] === 'drop' ? 8 * gap : gap;
+      if (atPs(end[i]) < (drawnTo.get(place) ?? -Infinity) + far) continue;
+      drawnTo.set(place, atPs(end[i]));
       const y = lanes.indexOf(lane[i]) * kLine;
       const [x0, x1] = [atPs(start[i]), atPs(end[i])];
       if (kind[i] === 'wait') {
@@ -215,10 +220,6 @@ export function addTimeLine(page, run) {
             s('text', {x: (x0 + x1) / 2, y: y + 21, 'text-anchor': 'middle', class: 'on-bar'},
               String(frame[i])));
     }
-    if (marks === kMostMarks)
-      plot.append(
-          s('text', {x: inner, y: height - 6, 'text-anchor': 'end', class: 'label halo'},
-            `the first ${whole(marks)} are drawn: zoom in`));
   };
   const zoom = (from, to) => {
     const size = Math.max(1000, Math.min(last, to - from));

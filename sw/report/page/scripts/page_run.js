@@ -18,6 +18,29 @@ import {count} from './format.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
 import {tilesOf} from './recording.js';
 
+// The stalls over the picture and its disparities, or over grey where the run has computed no pixels.
+function addPictureOf(page, run) {
+  const layers = tilesOf(run);
+  if (!run.pictures && layers.length === 0) return;
+  const {left, disparity, disparities} = run.pictures ?? {};
+  const [width, height] = ['image.width', 'image.height'].map(key => settingOf(run, key));
+  addPicture(page, {
+    title: layers.length ? 'Where in the picture the ports wait' : 'The picture and its disparities',
+    layers,
+    note: [
+      layers.length     ? 'A stall belongs to the pixels whose results are next; sums over all frames.' :
+          run.recording ? 'There are no stalls to paint.' :
+                          '',
+      run.pictures ?
+          'Below is the last frame: disparities from dark (far) to bright (near); black: no answer.' :
+          'The run has computed no pixels.'
+    ].join(' '),
+    pictures:
+        [left && {url: left}, disparity ? {url: disparity, disparities} : {width, height}].filter(Boolean),
+    names: left ? ['picture', 'disparities'] : ['disparities']
+  });
+}
+
 export function showRun(page, {run}) {
   const {stats} = run;
   addHead(page, {
@@ -43,20 +66,7 @@ export function showRun(page, {run}) {
   addBlame(waits, run);
   addPortStates(waits, run);
   addRows(waits, run);
-  if (run.pictures) {
-    const {left, disparity, disparities} = run.pictures;
-    const layers = tilesOf(run);
-    addPicture(waits, {
-      title: layers.length ? 'Where in the picture the ports wait' : 'The picture and its disparities',
-      layers,
-      note: `The last frame of the run. ${
-          layers.length     ? 'A stall belongs to the pixels whose results are next. ' :
-              run.recording ? 'There are no stalls to paint. ' :
-                              ''}Disparities from dark (far) to bright (near); black: no answer.`,
-      pictures: left ? [{url: left}, {url: disparity, disparities}] : [{url: disparity, disparities}],
-      names: left ? ['picture', 'disparities'] : ['disparities']
-    });
-  }
+  addPictureOf(waits, run);
   addFrames(waits, [['', stats.frame_cycles, '--blue']], settingOf(run, 'fpga.clock_mhz'));
   if (stats.cameras) {
     const computer = addGroup(page, 'The computer around the board');
