@@ -31,6 +31,8 @@ using Pair = std::array<std::uint32_t, 2>;  // [left, right]
 
 constexpr DeviceMap kLinesMap;
 constexpr std::uint64_t kLongPs = 1'000'000'000'000;
+// No frame of the core is longer than this.
+constexpr std::uint64_t kFramePs = 10'000'000'000;
 // No line that is skipped is as short as this.
 constexpr std::uint64_t kShortPs = 50'000;
 
@@ -83,7 +85,10 @@ class LinesRun : public pci::PciMasterIf {
       write(kBoards[side] + capture::registers::kBufferAddress, program_.buffers[side]);
     }
     for (int capture = 0; capture < program_.captures; ++capture) {
-      if (program_.first_bank_of_frame) start_frame(*program_.first_bank_of_frame);
+      if (program_.first_bank_of_frame) {
+        run_for(kFramePs);  // the frame before ends
+        start_frame(*program_.first_bank_of_frame);
+      }
       write(kBoards[1] + capture::registers::kControl, capture::registers::kControlArm);
       write(kBoards[0] + capture::registers::kControl,
             capture::registers::kControlArm | capture::registers::kControlTrigger);
@@ -93,7 +98,7 @@ class LinesRun : public pci::PciMasterIf {
         write(board + capture::registers::kStatus, capture::registers::kStatusDone);
       }
     }
-    run_for(kLongPs / 50);  // to the end of the frame
+    run_for(kFramePs);
     const auto words = static_cast<std::size_t>(board_.image.width * board_.image.height / 4);
     if (program_.fidelity == fpga::Fidelity::kFast) {
       for (const std::uint32_t buffer : program_.buffers)
@@ -107,17 +112,24 @@ class LinesRun : public pci::PciMasterIf {
   }
   void end_burst(const pci::BurstResult& result) override {
     figures_ += fmt::format("burst {} {}\n", result.end_ps, static_cast<int>(result.end));
-    has_ended_ = true;
-    loop_.notice();
+    const auto rest = words_.begin() + static_cast<std::ptrdiff_t>(result.words);
+    done_.insert(done_.end(), words_.begin(), rest);
+    words_.erase(words_.begin(), is_error(result.end) ? words_.end() : rest);
+    address_ += 4 * result.words;
+    if (words_.empty()) {
+      loop_.notice();
+    } else {
+      loop_.host_slot().request(*this, result.end_ps);
+    }
   }
 
  private:
   static constexpr std::array<std::uint64_t, 2> kBoards = {kLinesMap.left_capture, kLinesMap.right_capture};
 
   void access() {
-    has_ended_ = false;
+    done_.clear();
     loop_.host_slot().request(*this, loop_.now_ps());
-    while (!has_ended_) loop_.run(loop_.now_ps() + kLongPs);
+    while (!words_.empty()) loop_.run(loop_.now_ps() + kLongPs);
   }
   void write(std::uint64_t address, std::uint32_t word) {
     writes_ = true;
@@ -130,7 +142,7 @@ class LinesRun : public pci::PciMasterIf {
     address_ = address;
     words_.assign(words, 0);
     access();
-    return words_;
+    return done_;
   }
   void run_for(std::uint64_t time_ps) {
     const std::uint64_t end_ps = loop_.now_ps() + time_ps;
@@ -181,9 +193,9 @@ class LinesRun : public pci::PciMasterIf {
   NoiseSource right_;
   ComputerLoop loop_;
   bool writes_ = false;
-  bool has_ended_ = true;
   std::uint64_t address_ = 0;
-  std::vector<std::uint32_t> words_;
+  std::vector<std::uint32_t> words_;  // of the burst that are still to be transferred
+  std::vector<std::uint32_t> done_;   // the others
   std::string figures_;
 };
 
