@@ -4,7 +4,6 @@
 
 #include "models/memory/crossbar_address.h"
 #include "models/time_ps.h"
-#include "platform/computer_parts.h"
 #include "platform/device_map.h"
 
 namespace stereotlm::platform {
@@ -46,13 +45,6 @@ CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge
       captures_(captures),
       has_pixels_(has_pixels),
       buses_are_in_step_(pci_clock().has_edges_of(local_clock())) {}
-
-bool CameraLines::both_request() const {
-  const std::uint64_t clock = pci_bus_.decision_clock();
-  return pci_bus_.request_clock(kLeftCapture) == clock && pci_bus_.request_clock(kRightCapture) == clock &&
-         captures_[0].requested_ps() == captures_[1].requested_ps() &&
-         captures_[0].fifo().next_row() == captures_[1].fifo().next_row();
-}
 
 bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   const auto addresses = bank_addresses();

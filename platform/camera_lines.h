@@ -9,6 +9,7 @@
 #include "models/capture/capture_control.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
+#include "platform/computer_parts.h"
 #include "platform/fast_board.h"
 
 namespace stereotlm::platform {
@@ -40,9 +41,12 @@ class CameraLines {
   CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
               std::array<capture::CaptureControl, 2>& captures, bool has_pixels);
 
-  // Whether a line begins with the next decision of the PCI bus.
+  // Whether a line begins with the next decision of the PCI bus: both boards wait for the same line, and the bus
+  // is free as they request it.
   bool begins() const {
-    return captures_[0].is_between_lines() && captures_[1].is_between_lines() && both_request();
+    return captures_[0].is_between_lines() && captures_[1].is_between_lines() &&
+           captures_[0].requested_ps() == captures_[1].requested_ps() &&
+           pci_bus_.request_clock(kLeftCapture) == pci_bus_.decision_clock();
   }
   // To be called then, before that decision, at `now_ps`. Before `end_ps` nothing but the PCI bus and the
   // bridge has an event. Returns true if it has skipped the line, instead of that decision.
@@ -121,7 +125,6 @@ class CameraLines {
     std::uint64_t bursts_seen = 0;
   };
 
-  bool both_request() const;
   std::optional<OfSides<std::uint64_t>> bank_addresses() const;
   Beginning beginning(std::uint64_t now_ps) const;
   const Line* find(const Beginning& beginning) const;

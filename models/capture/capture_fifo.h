@@ -58,10 +58,8 @@ class CaptureFifo {
   // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
   // For platform::CameraLines, which skips lines that it has seen before. A line is skipped between two lines:
-  // all words of the lines up to now have entered and left, and a line comes, which is next_row().
-  bool is_between_lines() const {
-    return occupancy_ == 0 && line_end_ps_ <= now_ps_ && taken_ == words_per_line_ && next_line_ps_ != kNever;
-  }
+  // no word of the lines up to now is to come or to leave, and a line comes, which is next_row().
+  bool is_between_lines() const { return occupancy_ == 0 && takes_no_more() && next_line_ps_ != kNever; }
   int next_row() const { return row_ + 1; }
   bool has_row(int row) const { return row < timing_->height(); }
   int words_per_line() const { return words_per_line_; }
