@@ -23,6 +23,12 @@ std::int64_t from_to(std::uint64_t from_ps, std::uint64_t to_ps) {
   return static_cast<std::int64_t>(to_ps) - static_cast<std::int64_t>(from_ps);
 }
 
+// Against the clocks of the local bus those of the PCI bus may have few phases. Then two phases that differ by
+// less than half a step are the same.
+std::int64_t play_ps(const Clock& pci, const Clock& local) {
+  return static_cast<std::int64_t>(local.edge_ps(1) / pci.phases_against(local) / 2) - kRounding;
+}
+
 using Counts = pci::PciBusControl::MasterCounts;
 
 Counts sum(const Counts& a, const Counts& b) {
@@ -44,11 +50,11 @@ CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge
       board_(board),
       captures_(captures),
       has_pixels_(has_pixels),
-      buses_are_in_step_(pci_clock().has_edges_of(local_clock())) {}
+      local_play_ps_(play_ps(pci_clock(), local_clock())) {}
 
 bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   const auto addresses = bank_addresses();
-  if (!addresses || !bridge_.is_idle(now_ps) || !board_.local_bus().is_idle(now_ps)) {
+  if (!addresses || !bridge_.is_idle(now_ps)) {
     drop();
     return false;
   }
@@ -184,13 +190,13 @@ void CameraLines::keep_place_among_pixels(std::uint64_t pci_clock) {
 }
 
 void CameraLines::keep_place_among_local_clocks(std::uint64_t pci_clock) {
-  if (buses_are_in_step_) return;
   const std::uint64_t time_ps = this->pci_clock().edge_ps(pci_clock);
   const std::uint64_t next = local_clock().edge_at_or_after(time_ps);
-  record_.local_earlier_ps =
-      std::min(record_.local_earlier_ps, from_to(time_ps, local_clock().edge_ps(next)) - kRounding);
-  record_.local_later_ps =
-      std::min(record_.local_later_ps, from_to(local_clock().edge_ps(next - 1), time_ps) - kRounding);
+  const std::uint64_t next_ps = local_clock().edge_ps(next);
+  // A clock that begins at this very time must still do so.
+  const std::uint64_t last_ps = next_ps == time_ps ? time_ps : local_clock().edge_ps(next - 1);
+  record_.local_earlier_ps = std::min(record_.local_earlier_ps, from_to(time_ps, next_ps) - kRounding);
+  record_.local_later_ps = std::min(record_.local_later_ps, from_to(last_ps, time_ps) - kRounding);
 }
 
 void CameraLines::see_local_burst() {
@@ -208,6 +214,8 @@ void CameraLines::see_local_burst() {
 // Called when the next line begins. Everything is idle again.
 void CameraLines::end_record() {
   is_recording_ = false;
+  record_.local_earlier_ps = std::max(record_.local_earlier_ps, local_play_ps_);
+  record_.local_later_ps = std::max(record_.local_later_ps, local_play_ps_);
   if (!record_is_whole()) return;
   const fpga::LocalBusControl& local_bus = board_.local_bus();
   Line& line = record_.line;

@@ -18,9 +18,9 @@ namespace stereotlm::platform {
 //
 // Both cameras send a line at the same time. Its words take bursts on the PCI bus, wait in the bridge, and take
 // bursts on the local bus to their banks. What happens when depends on three series of times: the arrivals of
-// the first and of the last pixel of each word, the clocks of the PCI bus, and the clocks of the local bus. No
-// two of them are in step, so the times of one line seldom come again. But only their order matters: which
-// words are complete when a clock of the PCI bus begins, and which clock of the local bus is the next one then.
+// the first and of the last pixel of each word, the clocks of the PCI bus, and the clocks of the local bus. These
+// are seldom in step, so the times of one line seldom come again. But only their order matters: which words are
+// complete when a clock of the PCI bus begins, and which clock of the local bus is the next one then.
 //
 // So a line is stepped once and recorded: what it counts, and in which clocks it ends. Beside that stands how
 // far the clocks of the PCI bus could move against the pixels, and those of the local bus against those of the
@@ -32,8 +32,8 @@ namespace stereotlm::platform {
 // - The words go to two banks, and each bank takes one word a cycle, beside the frame of the core. The local
 //   bus and the core must have the same clock.
 // - Until the last word is stored, no other master requests the PCI bus, and no other block has an event.
-// - No word finds more words in its FIFO than fit if none leaves: else the data clock in which each word leaves
-//   would matter too.
+// - No pixel arrives when its FIFO would be full if no word left: else it would also matter in which data clock
+//   each word leaves.
 // The first line of a picture and the last one are always stepped.
 class CameraLines {
  public:
@@ -151,7 +151,8 @@ class CameraLines {
   FastBoard& board_;
   OfSides<capture::CaptureControl>& captures_;
   bool has_pixels_;
-  bool buses_are_in_step_;
+  // What the clocks of the local bus may be earlier or later and yet have the same phase.
+  std::int64_t local_play_ps_;
 
   std::vector<Bounds> bounds_;
   std::vector<Line> lines_;  // [index in bounds_]

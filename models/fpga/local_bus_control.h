@@ -109,10 +109,6 @@ class LocalBusControl final : public LocalBusIf {
 
   // For platform::CameraLines, which skips bursts to the banks that it has seen before.
   const Clock& clock() const { return clock_; }
-  bool is_idle(std::uint64_t now_ps) const {
-    return words_left_ == 0 && next_ps_ == kNever && idle_clock_ != kUnknown &&
-           clock_.edge_ps(idle_clock_ + 1) <= now_ps;
-  }
   // The last burst, and the number of its idle clock.
   const LocalBurst& burst() const { return burst_; }
   std::uint64_t idle_clock() const { return idle_clock_; }
