@@ -104,8 +104,7 @@ bool CameraLines::fits_before(const Line& line, std::uint64_t now_ps, std::uint6
   const std::uint64_t free_clock = pci_bus_.decision_clock() + line.pci.free_clock;
   if (pci_bus_.earliest_request_beside(kLeftCapture, kRightCapture) < free_clock) return false;
   const std::uint64_t idle_clock = local_clock().edge_at_or_after(now_ps) + line.idle_clock;
-  const std::uint64_t last_ps =
-      std::max(pci_clock().edge_ps(free_clock), local_clock().edge_ps(idle_clock + 1));
+  const std::uint64_t last_ps = local_clock().edge_ps(idle_clock + 1);  // behind the end of all PCI bursts
   const capture::CaptureFifo& fifo = captures_[0].fifo();
   return last_ps < end_ps && last_ps < fifo.first_request_ps(fifo.next_row() + 1);
 }
