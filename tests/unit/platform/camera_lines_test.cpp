@@ -365,7 +365,7 @@ Settings random_settings(std::uint64_t seed) {
 
 TEST(CameraLines, GiveTheSameFiguresAsSteppedLinesInRandomComputers) {
   const char* const asked = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
-  const std::uint64_t computers = asked != nullptr ? std::stoull(asked) : 100;
+  const std::uint64_t computers = asked != nullptr ? std::stoull(asked) : 200;
   std::uint64_t lines = 0;
   std::uint64_t skipped = 0;
   for (std::uint64_t seed = 0; seed < computers; ++seed) {
