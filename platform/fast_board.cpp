@@ -53,8 +53,8 @@ void FastBoard::catch_up(std::uint64_t now_ps) {
 }
 
 bool FastBoard::takes_in_step(std::uint64_t address, std::uint64_t bytes) {
-  return direct(address, bytes) != nullptr &&
-         fast_core_.is_apart(memory::bank_of_address(address), {address, address + bytes}, true);
+  const std::size_t bank = memory::bank_of_address(address);
+  return bank < banks_.size() && direct(address, bytes) != nullptr && host_port_.serves_in_step(bank);
 }
 
 std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,

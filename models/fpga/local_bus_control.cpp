@@ -138,11 +138,10 @@ void LocalBusControl::end(std::uint64_t idle_clock) {
   master_->end_burst_at(free_ps_, ok_);
 }
 
-void LocalBusControl::skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t address_clock,
-                              std::uint64_t idle_clock) {
+void LocalBusControl::skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock) {
   stats_.bursts = bursts;
-  stats_.busy_clocks = busy_clocks - (idle_clock - address_clock);
-  address_clock_ = address_clock;
+  stats_.busy_clocks = busy_clocks;
+  address_clock_ = idle_clock;  // all clocks of the last burst are counted
   idle_clock_ = idle_clock;
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);
 }

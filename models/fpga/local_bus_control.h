@@ -109,21 +109,15 @@ class LocalBusControl final : public LocalBusIf {
 
   // For platform::CameraLines, which skips bursts to the banks that it has seen before.
   const Clock& clock() const { return clock_; }
-  bool is_idle(std::uint64_t now_ps) const {
-    return words_left_ == 0 && next_ps_ == kNever && idle_clock_ != kUnknown &&
-           clock_.edge_ps(idle_clock_ + 1) <= now_ps;
-  }
-  // The last burst, and the numbers of its address clock and of its idle clock.
+  // The last burst, and the number of its idle clock.
   const LocalBurst& burst() const { return burst_; }
-  std::uint64_t address_clock() const { return address_clock_; }
   std::uint64_t idle_clock() const { return idle_clock_; }
   // The clocks of all bursts, while the bus is idle.
   std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
   std::uint64_t bursts() const { return stats_.bursts; }
-  // Bursts have written words: all clocks, and the last burst's, are those after them. For each range of
-  // addresses count_skipped() adds their words.
-  void skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t address_clock,
-               std::uint64_t idle_clock);
+  // Bursts have written words: the number and the clocks of all bursts, and the idle clock of the last one, are
+  // those after them. For each range of addresses count_skipped() adds their words.
+  void skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
   void count_skipped(std::uint64_t address, std::uint64_t words);
 
   // Counts up to `now_ps`.

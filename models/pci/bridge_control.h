@@ -88,7 +88,7 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
 
   // For platform::CameraLines, which skips writes that it has seen before.
   //
-  // Whether nothing is under way in the bridge, or waits there.
+  // Whether nothing is under way in the bridge or on the local bus, or waits there.
   bool is_idle(std::uint64_t now_ps);
   // The byte address on the local bus to which `bytes` bytes of the slave window lead, if they lead to one
   // bank at contiguous addresses.
