@@ -26,7 +26,7 @@ constexpr std::size_t kFirstBuckets = 1024;
 
 std::uint64_t Progress::times_in(const Progress& room) const {
   std::uint64_t times = room.cycles / cycles;
-  if (columns != 0) times = std::min(times, room.columns / columns);
+  if (consumed != 0) times = std::min(times, room.consumed / consumed);
   if (left_slots != 0) times = std::min(times, room.left_slots / left_slots);
   if (right_slots != 0) times = std::min(times, room.right_slots / right_slots);
   if (words != 0) times = std::min(times, room.words / words);
@@ -40,6 +40,7 @@ std::size_t TransitionCache::StateHash::operator()(const State& state) const {
   for (const std::uint64_t word : state.arbitration) hash.mix(word);
   hash.mix(state.empty);
   hash.mix(state.frame);
+  hash.mix(state.visited);
   return hash.value();
 }
 
@@ -47,7 +48,7 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
   Hash hash;
   const Progress& progress = effect.progress;
   for (const std::uint64_t word :
-       {progress.cycles, progress.left_slots, progress.right_slots, progress.words})
+       {progress.cycles, progress.consumed, progress.left_slots, progress.right_slots, progress.words})
     hash.mix(word);
   for (const PortCycles& port : effect.counts) {
     hash.mix(port.granted() << 32U | port.stalled());

@@ -97,15 +97,16 @@ TEST_F(TransitionCacheTest, DistinguishesTheRequestsOfTheHost) {
   const auto number = groups_.number_of(state(0));
   TransitionCache::Effect granting = effect(0);
   granting.host = {5, 9, 7};
-  groups_.record(number, {}, {3, 5}, number, granting);
+  groups_.record(number, {}, {3, 5, 7}, number, granting);
   const auto finds = [&](const HostRequests& host) { return groups_.find(number, {}, host).has_value(); };
-  EXPECT_TRUE(finds({3, 5}));
-  EXPECT_FALSE(finds({4, 5}));
-  EXPECT_FALSE(finds({3, 6}));
-  EXPECT_FALSE(finds({3, HostRequests::kEndless}));
+  EXPECT_TRUE(finds({3, 5, 7}));
+  EXPECT_FALSE(finds({4, 5, 7}));
+  EXPECT_FALSE(finds({3, 6, 7}));
+  EXPECT_FALSE(finds({3, 5, 6}));
+  EXPECT_FALSE(finds({3, HostRequests::kEndless, 7}));
   EXPECT_FALSE(finds({}));
   groups_.record(number, {}, {}, number, effect(0));
-  EXPECT_EQ(groups_.host(*groups_.find(number, {}, {3, 5})), granting.host);
+  EXPECT_EQ(groups_.host(*groups_.find(number, {}, {3, 5, 7})), granting.host);
   EXPECT_EQ(groups_.host(*groups_.find(number, {})), HostGrants{});
 }
 
